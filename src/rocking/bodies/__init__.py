@@ -1,0 +1,9 @@
+"""What rocks: blocks, sections of any shape, mass points."""
+
+from rocking.bodies.block import Block
+from rocking.bodies.body import Body
+from rocking.bodies.mass_points import MassPoints
+from rocking.bodies.section import Region, Section
+from rocking.bodies.side import Side
+
+__all__ = ["Block", "Body", "MassPoints", "Region", "Section", "Side"]

@@ -1,0 +1,186 @@
+"""What every rocking body answers, whatever it is made of."""
+
+import math
+from abc import ABC, abstractmethod
+from typing import Self
+
+from rocking import checks, conventions
+from rocking.bodies.moments import PlaneMoments
+from rocking.bodies.side import Side
+from rocking.conventions import Foot
+from rocking.errors import AsymmetricBodyError, GeometryError
+
+Interval = tuple[float, float]
+
+# Feet closer to the plumb line of the centre than this, relative to the body's size, are no support.
+_SUPPORT_TOLERANCE = 1e-12
+
+
+class Body(ABC):
+    """A rigid body of plane shape standing on two feet.
+
+    A subclass fixes the mass distribution in a local frame whose origin lies on the ground, near the body
+    (`origin_x`, `ground`), so that nothing is lost far from the user's origin.
+    """
+
+    @property
+    @abstractmethod
+    def origin_x(self) -> float:
+        """Horizontal position of the local frame in the user's coordinates [m]."""
+
+    @property
+    @abstractmethod
+    def ground(self) -> float:
+        """Height of the ground in the user's coordinates [m]."""
+
+    @property
+    @abstractmethod
+    def local_feet(self) -> Interval:
+        """Positions of the left and right foot in the local frame [m]."""
+
+    @property
+    @abstractmethod
+    def local_moments(self) -> PlaneMoments:
+        """Mass, centre and central second moments in the local frame."""
+
+    @property
+    @abstractmethod
+    def local_contact(self) -> tuple[Interval, ...]:
+        """Stretches of the ground that the base touches between the feet, left to right, local frame [m]."""
+
+    @property
+    @abstractmethod
+    def local_box(self) -> tuple[float, float, float, float]:
+        """Bounding box (x_min, y_min, x_max, y_max) in the local frame [m]."""
+
+    @abstractmethod
+    def mirrored(self) -> Self:
+        """Return the body seen in a vertical mirror: left and right change places."""
+
+    @abstractmethod
+    def scaled(self, *, size: float = 1.0, density: float = 1.0) -> Self:
+        """Return the body with all lengths times `size` and all densities times `density`.
+
+        Parameters
+        ----------
+        size : float
+            Factor on all lengths, depth included [-].
+        density : float
+            Factor on all densities [-].
+        """
+
+    @abstractmethod
+    def with_feet(self, left: float, right: float) -> "Body":
+        """Return the same body standing on other feet.
+
+        Parameters
+        ----------
+        left, right : float
+            New positions of the feet in the user's coordinates [m].
+        """
+
+    @property
+    def mass(self) -> float:
+        """Mass m [kg]."""
+        return self.local_moments.mass
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Centre of mass (x, y) in the user's coordinates [m]."""
+        moments = self.local_moments
+        return self.origin_x + moments.x, self.ground + moments.y
+
+    @property
+    def feet(self) -> Interval:
+        """Positions of the left and right foot in the user's coordinates [m]."""
+        left, right = self.local_feet
+        return self.origin_x + left, self.origin_x + right
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Polar moment I_C about the centre of mass [kg m2]."""
+        return self.local_moments.polar
+
+    def side(self, foot: Foot, gravity: float = conventions.g) -> Side:
+        """Return the body seen from one of its feet.
+
+        Parameters
+        ----------
+        foot : {"left", "right"}
+            The foot it turns about.
+        gravity : float
+            Acceleration of gravity [m/s2].
+
+        Returns
+        -------
+        Side
+            Slenderness, semi-diagonal, frequency parameter and uplift acceleration about that foot.
+
+        Raises
+        ------
+        InvalidValueError
+            If the foot is neither, or gravity is not above zero.
+
+        Examples
+        --------
+        >>> from rocking import Block
+        >>> round(Block(width=1.0, height=4.0).side("right", gravity=9.81).frequency_parameter, 10)
+        1.8891563520
+        """
+        foot = checks.foot("foot", foot)
+        moments, (left, right) = self.local_moments, self.local_feet
+        half_width = moments.x - left if foot == "left" else right - moments.x
+        inertia = moments.polar + moments.mass * (half_width**2 + moments.y**2)
+        gravity = checks.positive("gravity", gravity, "m/s2")
+        return Side(foot, half_width, moments.y, moments.mass, inertia, gravity)
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether both feet are equally far from the centre of mass (to 1e-12 of the base)."""
+        left, right = self.local_feet
+        return abs(self.local_moments.x - 0.5 * (left + right)) <= 1e-12 * (right - left)
+
+    @property
+    def slenderness_ratio(self) -> float:
+        """Slenderness h/b [-] of a body with equal sides."""
+        return self._either_side("slenderness_ratio").slenderness_ratio
+
+    @property
+    def slenderness_angle(self) -> float:
+        """Slenderness angle alpha = atan(b/h) [rad] of a body with equal sides."""
+        return self._either_side("slenderness_angle").slenderness_angle
+
+    @property
+    def semi_diagonal(self) -> float:
+        """Distance R from a foot to the centre of mass [m] of a body with equal sides."""
+        return self._either_side("semi_diagonal").semi_diagonal
+
+    @property
+    def frequency_parameter(self) -> float:
+        """Frequency parameter p [rad/s] of a body with equal sides, at standard gravity."""
+        return self._either_side("frequency_parameter").frequency_parameter
+
+    @property
+    def uplift_acceleration(self) -> float:
+        """Ground acceleration at which rocking starts [m/s2] of a body with equal sides, at standard gravity."""
+        return self._either_side("uplift_acceleration").uplift_acceleration
+
+    def _either_side(self, name: str) -> Side:
+        if not self.is_symmetric:
+            raise AsymmetricBodyError(
+                f'{name} depends on the side of this body; ask body.side("left").{name} or "right"'
+            )
+        return self.side("right")
+
+    def _check_support(self) -> None:
+        moments, (left, right) = self.local_moments, self.local_feet
+        if not (moments.mass > 0.0 and math.isfinite(moments.polar)):
+            raise GeometryError(f"the body must have a finite mass > 0 kg, got {moments.mass:g}")
+        slack = _SUPPORT_TOLERANCE * max(right - left, moments.y)
+        if not left + slack < moments.x < right - slack:
+            x = self.origin_x + moments.x
+            a, b = self.feet
+            raise GeometryError(
+                f"the centre of mass (x = {x:.6g} m) must lie between the feet ({a:.6g} and {b:.6g} m); "
+                "a body like this falls over by itself"
+            )

@@ -1,0 +1,144 @@
+"""A body given as mass points: the system in which Mao et al. (2024) write their model."""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies.body import Body, Interval
+from rocking.bodies.moments import PlaneMoments
+from rocking.conventions import FloatArray
+from rocking.errors import GeometryError
+
+
+class MassPoints(Body):
+    """A rigid body lumped into points, for instance from a mesh.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Positions (x, y), none below the ground y = 0 [m].
+    masses : array_like, shape (n,)
+        Masses, all above zero [kg].
+    feet : (float, float)
+        Positions of the left and right foot on the ground [m].
+
+    Raises
+    ------
+    GeometryError
+        If a point is not finite or below the ground, or the centre is not between the feet.
+    InvalidValueError
+        If a mass is not a finite number above zero.
+
+    Examples
+    --------
+    A single mass at the polar angle phi seen from the new pivot has r = sin(phi)**2:
+
+    >>> import rocking as rk
+    >>> lollipop = rk.MassPoints([(0.0, 2.0)], [1.0], feet=(-1.0, 1.0))
+    >>> round(rk.coefficient_of_restitution(lollipop, "ked"), 12)
+    0.8
+    """
+
+    def __init__(self, points: Any, masses: Any, feet: tuple[float, float]) -> None:
+        self.masses = np.atleast_1d(checks.positive_array("masses", masses, "kg"))
+        self.points = _points(points, len(self.masses))
+        try:
+            left, right = feet
+        except (TypeError, ValueError) as error:
+            raise GeometryError("feet must be a pair (x_left, x_right) in m") from error
+        self._feet = checks.number("left foot", left, "m"), checks.number("right foot", right, "m")
+        self._check_support()
+
+    @property
+    def origin_x(self) -> float:
+        """The local frame is the user's."""
+        return 0.0
+
+    @property
+    def ground(self) -> float:
+        """Height of the ground [m]: zero."""
+        return 0.0
+
+    @property
+    def local_feet(self) -> Interval:
+        """Positions of the feet [m]."""
+        return self._feet
+
+    @cached_property
+    def local_moments(self) -> PlaneMoments:  # type: ignore[override]
+        """Sums over the points."""
+        mass = float(self.masses.sum())
+        x, y = (self.masses @ self.points) / mass
+        xx, yy = self.masses @ (self.points - (x, y)) ** 2
+        return PlaneMoments(mass, float(x), float(y), float(xx), float(yy))
+
+    @property
+    def local_contact(self) -> tuple[Interval, ...]:
+        """The base between the feet [m]."""
+        return (self._feet,)
+
+    @property
+    def local_box(self) -> tuple[float, float, float, float]:
+        """Box around points and feet [m]."""
+        left, right = self._feet
+        x, y = self.points.T
+        return min(left, float(x.min())), 0.0, max(right, float(x.max())), float(y.max())
+
+    def mirrored(self) -> "MassPoints":
+        """Return the points seen in a vertical mirror at x = 0.
+
+        Returns
+        -------
+        MassPoints
+            The mirror image.
+        """
+        left, right = self._feet
+        return MassPoints(self.points * (-1.0, 1.0), self.masses, (-right, -left))
+
+    def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "MassPoints":
+        """Return the points with all lengths times `size` and all masses times `density`.
+
+        Parameters
+        ----------
+        size, density : float
+            Factors [-].
+
+        Returns
+        -------
+        MassPoints
+            The scaled points.
+        """
+        size, density = checks.positive("size", size), checks.positive("density", density)
+        left, right = self._feet
+        return MassPoints(self.points * size, self.masses * density, (left * size, right * size))
+
+    def with_feet(self, left: float, right: float) -> "MassPoints":
+        """Return the same points standing on other feet.
+
+        Parameters
+        ----------
+        left, right : float
+            Positions of the feet [m].
+
+        Returns
+        -------
+        MassPoints
+            The same points.
+        """
+        return MassPoints(self.points, self.masses, (left, right))
+
+
+def _points(points: Any, count: int) -> FloatArray:
+    try:
+        result = np.array(points, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise GeometryError("points must be a list of (x, y) in m") from error
+    if result.shape != (count, 2) or count == 0:
+        raise GeometryError(f"points must have shape ({count}, 2), one (x, y) per mass, got {result.shape}")
+    bad = ~(np.isfinite(result).all(axis=1) & (result[:, 1] >= 0.0))
+    if bad.any():
+        i = int(np.argmax(bad))
+        raise GeometryError(f"point {i} must be finite with y >= 0 m, got {tuple(result[i].tolist())}")
+    return result

@@ -1,0 +1,443 @@
+"""A body of any plane shape: polygons with holes, each with its density."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies import shapes, topology
+from rocking.bodies.block import DEFAULT_DENSITY
+from rocking.bodies.body import Body, Interval
+from rocking.bodies.moments import PlaneMoments, combined, ring_moments
+from rocking.conventions import FloatArray
+from rocking.errors import GeometryError
+
+# Vertices this close to the ground, relative to the body's size, stand on it.
+_GROUND_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """One polygon of one material.
+
+    Parameters
+    ----------
+    outline : array_like, shape (n, 2)
+        Vertices (x, y), y up [m], in either sense of rotation; the first need not be repeated at the end.
+    density : float
+        Density [kg/m3].
+    holes : sequence of array_like
+        Rings cut out of the outline [m].
+
+    Raises
+    ------
+    GeometryError
+        If a ring crosses itself or another, or a hole lies outside the outline.
+    InvalidValueError
+        If the density is not a finite number above zero.
+
+    Examples
+    --------
+    >>> from rocking import Region
+    >>> Region([(0, 0), (1, 0), (1, 2), (0, 2)], density=2400.0).outline.shape
+    (4, 2)
+    """
+
+    outline: FloatArray
+    density: float = DEFAULT_DENSITY
+    holes: Sequence[FloatArray] = ()
+
+    def __post_init__(self) -> None:
+        """Normalise the rings: outline counter-clockwise, holes clockwise."""
+        outline = topology.ring("outline", self.outline)
+        holes = tuple(topology.ring(f"hole {i}", hole) for i, hole in enumerate(self.holes))
+        topology.check_polygon("region", outline, holes)
+        object.__setattr__(self, "outline", _turned(outline, 1.0))
+        object.__setattr__(self, "holes", tuple(_turned(hole, -1.0) for hole in holes))
+        object.__setattr__(self, "density", checks.positive("density", self.density, "kg/m3"))
+
+    @property
+    def rings(self) -> tuple[FloatArray, ...]:
+        """Outline (counter-clockwise) and holes (clockwise) [m]."""
+        return (self.outline, *self.holes)
+
+    def moved(self, dx: float, dy: float) -> "Region":
+        """Return the region moved by (dx, dy).
+
+        Parameters
+        ----------
+        dx, dy : float
+            Displacement [m].
+
+        Returns
+        -------
+        Region
+            The same shape elsewhere.
+        """
+        return self._mapped(lambda ring: ring + np.array([dx, dy]))
+
+    def _mapped(self, change: Any, density: float = 1.0) -> "Region":
+        # a similarity keeps a valid region valid, so the checks are not run again
+        region = object.__new__(Region)
+        outline, *holes = (change(ring) for ring in self.rings)
+        object.__setattr__(region, "outline", _turned(outline, 1.0))
+        object.__setattr__(region, "holes", tuple(_turned(hole, -1.0) for hole in holes))
+        object.__setattr__(region, "density", self.density * density)
+        return region
+
+
+class Section(Body):
+    """A rigid body whose cross-section is any set of polygons.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        The polygons [m]; they may touch but not overlap.
+    feet : (float, float), optional
+        Positions of the left and right foot on the ground [m]; by default the ends of the base.
+    depth : float
+        Depth out of the plane [m].
+    ground : float
+        Height of the ground [m]: the lowest vertices must lie on it.
+
+    Raises
+    ------
+    GeometryError
+        If regions overlap, the body does not touch the ground, a foot lies outside the base, or the centre of
+        mass is not between the feet.
+    InvalidValueError
+        If depth or ground is not a finite number.
+
+    Examples
+    --------
+    A trapezoidal pedestal, 1 m wide at the base and 0.4 m at the top:
+
+    >>> import rocking as rk
+    >>> outline = [(0.0, 0.0), (1.0, 0.0), (0.7, 2.5), (0.3, 2.5)]
+    >>> section = rk.Section([rk.Region(outline, density=2400.0)])
+    >>> round(rk.coefficient_of_restitution(section, "housner"), 10)
+    0.7416338583
+    """
+
+    def __init__(
+        self,
+        regions: Sequence[Region],
+        feet: tuple[float, float] | None = None,
+        *,
+        depth: float = 1.0,
+        ground: float = 0.0,
+    ) -> None:
+        regions = tuple([regions] if isinstance(regions, Region) else regions)
+        if not regions or not all(isinstance(region, Region) for region in regions):
+            raise GeometryError("a Section needs a list of at least one Region(outline, density, holes)")
+        self._depth = checks.positive("depth", depth, "m")
+        self._ground = checks.number("ground", ground, "m")
+        low = np.min([region.outline.min(axis=0) for region in regions], axis=0)
+        high = np.max([region.outline.max(axis=0) for region in regions], axis=0)
+        self._origin_x = 0.5 * float(low[0] + high[0])
+        self._size = float((high - low).max())
+        self._check_ground(float(low[1]))
+        self.regions = tuple(region.moved(-self._origin_x, -self._ground) for region in regions)
+        topology.check_disjoint([(region.outline, region.holes) for region in self.regions])
+        self._local_feet = self._placed(feet)
+        self._check_support()
+
+    def __repr__(self) -> str:
+        """Name, regions and feet."""
+        left, right = self.feet
+        vertices = sum(len(ring) for region in self.regions for ring in region.rings)
+        return f"Section({len(self.regions)} region(s), {vertices} vertices, feet=({left:g}, {right:g}) m)"
+
+    @classmethod
+    def from_points(
+        cls,
+        outline: Any,
+        density: float = DEFAULT_DENSITY,
+        *,
+        holes: Sequence[Any] = (),
+        feet: tuple[float, float] | None = None,
+        depth: float = 1.0,
+        ground: float = 0.0,
+    ) -> "Section":
+        """Return the body of one polygon.
+
+        Parameters
+        ----------
+        outline : array_like, shape (n, 2)
+            Vertices (x, y) [m].
+        density : float
+            Density [kg/m3].
+        holes : sequence of array_like
+            Rings cut out [m].
+        feet : (float, float), optional
+            Positions of the feet [m]; by default the ends of the base.
+        depth : float
+            Depth out of the plane [m].
+        ground : float
+            Height of the ground [m].
+
+        Returns
+        -------
+        Section
+            The body.
+
+        Examples
+        --------
+        >>> from rocking import Section
+        >>> Section.from_points([(0, 0), (2, 0), (1, 3)]).centre
+        (1.0, 1.0)
+        """
+        return cls([Region(outline, density, holes)], feet, depth=depth, ground=ground)
+
+    @classmethod
+    def from_rectangle(cls, width: float, height: float, **options: Any) -> "Section":
+        """Return a rectangle standing on 0 <= x <= width.
+
+        Parameters
+        ----------
+        width, height : float
+            Full width and height [m].
+        **options
+            As for `from_points`.
+
+        Returns
+        -------
+        Section
+            The body.
+        """
+        return cls.from_points(shapes.rectangle(width, height), **options)
+
+    @classmethod
+    def from_trapezoid(
+        cls, base: float, top: float, height: float, lean: float = 0.0, **options: Any
+    ) -> "Section":
+        """Return a trapezoid standing on 0 <= x <= base.
+
+        Parameters
+        ----------
+        base, top, height : float
+            Width at the ground, width at the top, height [m].
+        lean : float
+            Distance by which the middle of the top lies right of the middle of the base [m].
+        **options
+            As for `from_points`.
+
+        Returns
+        -------
+        Section
+            The body.
+        """
+        return cls.from_points(shapes.trapezoid(base, top, height, lean), **options)
+
+    @classmethod
+    def from_regular_polygon(cls, sides: int, radius: float, **options: Any) -> "Section":
+        """Return a regular polygon standing on one of its sides.
+
+        Parameters
+        ----------
+        sides : int
+            Number of sides, at least 3 [-].
+        radius : float
+            Radius of the circle through the vertices [m].
+        **options
+            As for `from_points`.
+
+        Returns
+        -------
+        Section
+            The body.
+        """
+        return cls.from_points(shapes.regular_polygon(sides, radius), **options)
+
+    @classmethod
+    def from_ellipse(cls, width: float, height: float, sides: int = 64, **options: Any) -> "Section":
+        """Return an ellipse as an inscribed polygon standing on one of its sides.
+
+        Parameters
+        ----------
+        width, height : float
+            Full axes of the ellipse [m].
+        sides : int
+            Number of sides; the lowest one is the base [-].
+        **options
+            As for `from_points`.
+
+        Returns
+        -------
+        Section
+            The body.
+        """
+        return cls.from_points(shapes.ellipse(width, height, sides), **options)
+
+    @property
+    def depth(self) -> float:
+        """Depth out of the plane [m]."""
+        return self._depth
+
+    @property
+    def origin_x(self) -> float:
+        """Middle of the body's box in the user's coordinates [m]."""
+        return self._origin_x
+
+    @property
+    def ground(self) -> float:
+        """Height of the ground in the user's coordinates [m]."""
+        return self._ground
+
+    @property
+    def local_feet(self) -> Interval:
+        """Positions of the feet in the local frame [m]."""
+        return self._local_feet
+
+    @cached_property
+    def local_moments(self) -> PlaneMoments:  # type: ignore[override]
+        """Mass, centre and central second moments in the local frame, exact for polygons."""
+        return combined(
+            ring_moments(ring).times(region.density * self._depth)
+            for region in self.regions
+            for ring in region.rings
+        )
+
+    @cached_property
+    def local_contact(self) -> tuple[Interval, ...]:  # type: ignore[override]
+        """Flat stretches of the base between the feet, local frame [m]; none if it stands on points."""
+        left, right = self._local_feet
+        stretches = sorted(self._ground_edges())
+        merged: list[Interval] = []
+        for a, b in ((max(a, left), min(b, right)) for a, b in stretches):
+            if b <= a:
+                continue
+            if merged and a <= merged[-1][1] + _GROUND_TOLERANCE * self._size:
+                merged[-1] = (merged[-1][0], max(b, merged[-1][1]))
+            else:
+                merged.append((a, b))
+        return tuple(merged)
+
+    @property
+    def local_box(self) -> tuple[float, float, float, float]:
+        """Bounding box in the local frame [m]."""
+        low = np.min([region.outline.min(axis=0) for region in self.regions], axis=0)
+        high = np.max([region.outline.max(axis=0) for region in self.regions], axis=0)
+        return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+    def mirrored(self) -> "Section":
+        """Return the section seen in a vertical mirror.
+
+        Returns
+        -------
+        Section
+            Mirrored about the middle of its box.
+        """
+        left, right = self._local_feet
+        return self._copy(lambda ring: ring * np.array([-1.0, 1.0]), feet=(-right, -left))
+
+    def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Section":
+        """Return the section with all lengths times `size` and all densities times `density`.
+
+        Parameters
+        ----------
+        size, density : float
+            Factors [-].
+
+        Returns
+        -------
+        Section
+            The scaled section, about its own origin.
+        """
+        size, density = checks.positive("size", size), checks.positive("density", density)
+        left, right = self._local_feet
+        return self._copy(
+            lambda ring: ring * size,
+            feet=(left * size, right * size),
+            density=density,
+            size=size,
+        )
+
+    def with_feet(self, left: float, right: float) -> "Section":
+        """Return the same section standing on other feet.
+
+        Parameters
+        ----------
+        left, right : float
+            Positions of the feet in the user's coordinates [m].
+
+        Returns
+        -------
+        Section
+            The same polygons, other feet.
+
+        Raises
+        ------
+        GeometryError
+            If a foot lies outside the base or the centre is not between them.
+        """
+        section = self._copy(lambda ring: ring, feet=self._local_feet)
+        section._local_feet = section._placed((left, right))
+        section.__dict__.pop("local_contact", None)
+        section._check_support()
+        return section
+
+    def _copy(self, change: Any, feet: Interval, density: float = 1.0, size: float = 1.0) -> "Section":
+        section = object.__new__(Section)
+        section.regions = tuple(region._mapped(change, density) for region in self.regions)
+        section._depth, section._size = self._depth * size, self._size * size
+        section._origin_x, section._ground, section._local_feet = self._origin_x, self._ground, feet
+        return section
+
+    def _check_ground(self, lowest: float) -> None:
+        if abs(lowest - self._ground) > _GROUND_TOLERANCE * self._size:
+            verb = "floats above" if lowest > self._ground else "reaches below"
+            raise GeometryError(
+                f"the body {verb} the ground: its lowest point is y = {lowest:.9g} m, the ground {self._ground:.9g} m; "
+                f"pass ground={lowest:.9g} or move the outline"
+            )
+
+    def _ground_edges(self) -> list[Interval]:
+        tolerance = _GROUND_TOLERANCE * self._size
+        found = []
+        for region in self.regions:
+            ring = region.outline
+            low = np.abs(ring[:, 1]) <= tolerance
+            both = low & np.roll(low, -1)
+            ends = np.roll(ring[:, 0], -1)
+            found += [(min(a, b), max(a, b)) for a, b in zip(ring[both, 0], ends[both], strict=True)]
+        return [(float(a), float(b)) for a, b in found]
+
+    def _base(self) -> Interval:
+        tolerance = _GROUND_TOLERANCE * self._size
+        touching = np.concatenate([r.outline[np.abs(r.outline[:, 1]) <= tolerance, 0] for r in self.regions])
+        return float(touching.min()), float(touching.max())
+
+    def _placed(self, feet: tuple[float, float] | None) -> Interval:
+        base = self._base()
+        if feet is None:
+            if base[1] - base[0] <= _GROUND_TOLERANCE * self._size:
+                raise GeometryError("the body touches the ground in one point only; it needs two feet to rock")
+            return base
+        try:
+            left, right = feet
+        except (TypeError, ValueError) as error:
+            raise GeometryError("feet must be a pair (x_left, x_right) in m") from error
+        left = checks.number("left foot", left, "m") - self._origin_x
+        right = checks.number("right foot", right, "m") - self._origin_x
+        if not left < right:
+            raise GeometryError(f"the left foot must lie left of the right one, got {feet[0]:g} and {feet[1]:g} m")
+        slack = _GROUND_TOLERANCE * self._size + 4.0 * math.ulp(abs(self._origin_x))
+        for name, x in (("left", left), ("right", right)):
+            if not base[0] - slack <= x <= base[1] + slack:
+                a, b = base[0] + self._origin_x, base[1] + self._origin_x
+                raise GeometryError(
+                    f"the {name} foot must lie on the base, x in [{a:.9g}, {b:.9g}] m, got {x + self._origin_x:.9g}"
+                )
+        return max(left, base[0]), min(right, base[1])
+
+
+def _turned(ring: FloatArray, sense: float) -> FloatArray:
+    x, y = (ring - ring[0]).T
+    twice_area = float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+    result = ring if twice_area * sense > 0.0 else ring[::-1]
+    return np.ascontiguousarray(result)

@@ -1,0 +1,220 @@
+"""What is refused at the door: one function per kind of value, one sentence per refusal."""
+
+import math
+from typing import Any, cast
+
+import numpy as np
+
+from rocking.conventions import FEET, LENGTH_UNITS, FloatArray, Foot
+from rocking.errors import InvalidValueError
+
+
+def number(name: str, value: Any, unit: str = "-") -> float:
+    """Return `value` as a finite float.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    value : Any
+        What the user gave.
+    unit : str
+        Unit that the error shows.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is not one finite real number.
+    """
+    if isinstance(value, (bool, str, bytes, complex)) or value is None:
+        raise InvalidValueError(f"{name} must be a number [{unit}], got {value!r}")
+    try:
+        result = float(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidValueError(f"{name} must be one number [{unit}], got {_short(value)}") from error
+    if not math.isfinite(result):
+        raise InvalidValueError(f"{name} must be finite [{unit}], got {result}")
+    return result
+
+
+def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
+    """Return `value` as a finite float above zero.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    value : Any
+        What the user gave.
+    unit : str
+        Unit that the error shows.
+    hint : str
+        Likely cause, appended to the error.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is not one finite number above zero.
+    """
+    result = number(name, value, unit)
+    if result <= 0.0:
+        raise InvalidValueError(f"{name} must be > 0 {_in(unit)}, got {result:g}{_because(hint)}")
+    return result
+
+
+def within(
+    name: str,
+    value: Any,
+    low: float,
+    high: float,
+    *,
+    unit: str = "-",
+    open_low: bool = False,
+    open_high: bool = False,
+    hint: str = "",
+) -> float:
+    """Return `value` as a float between `low` and `high`.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    value : Any
+        What the user gave.
+    low, high : float
+        Ends of the allowed range.
+    unit : str
+        Unit that the error shows.
+    open_low, open_high : bool
+        Whether the end itself is refused.
+    hint : str
+        Likely cause, appended to the error.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is outside the range.
+    """
+    result = number(name, value, unit)
+    too_low = result < low or (open_low and result == low)
+    too_high = result > high or (open_high and result == high)
+    if too_low or too_high:
+        brackets = "(" if open_low else "[", ")" if open_high or math.isinf(high) else "]"
+        allowed = f"{brackets[0]}{low:g}, {high:g}{brackets[1]}"
+        raise InvalidValueError(f"{name} must be in {allowed} {_in(unit)}, got {result:g}{_because(hint)}")
+    return result
+
+
+def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
+    """Return `values` as an array of finite numbers above zero.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    values : Any
+        A number or an array of any shape.
+    unit : str
+        Unit that the error shows.
+
+    Returns
+    -------
+    ndarray
+        float64, of the same shape; not a copy if it already was one.
+
+    Raises
+    ------
+    InvalidValueError
+        If any of them is not finite or not above zero; the first one is named with its index.
+    """
+    try:
+        result = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidValueError(f"{name} must be numbers [{unit}], got {_short(values)}") from error
+    # min() carries NaN along, so two reductions settle the whole array
+    if result.size and not (result.min() > 0.0 and result.max() < math.inf):
+        bad = tuple(int(i) for i in np.argwhere(~((result > 0.0) & np.isfinite(result)))[0])
+        where = f" at index {bad[0] if len(bad) == 1 else bad}" if bad else ""
+        raise InvalidValueError(f"{name} must be finite and > 0 {_in(unit)}, got {result[bad]}{where}")
+    return result
+
+
+def foot(name: str, value: Any) -> Foot:
+    """Return `value` as a foot.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    value : Any
+        What the user gave.
+
+    Returns
+    -------
+    {"left", "right"}
+        The foot.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is neither.
+    """
+    if value not in FEET:
+        raise InvalidValueError(f'{name} must be "left" or "right", got {value!r}')
+    return cast("Foot", value)
+
+
+def length_unit(value: Any) -> float:
+    """Return the length of a unit in metres.
+
+    Parameters
+    ----------
+    value : str
+        Name of the unit: m, cm, mm, ft or in.
+
+    Returns
+    -------
+    float
+        Its length [m].
+
+    Raises
+    ------
+    InvalidValueError
+        If the unit is unknown.
+
+    Examples
+    --------
+    >>> length_unit("cm")
+    0.01
+    """
+    if not isinstance(value, str) or value not in LENGTH_UNITS:
+        raise InvalidValueError(f"length unit must be one of {', '.join(LENGTH_UNITS)}, got {value!r}")
+    return LENGTH_UNITS[value]
+
+
+def _in(unit: str) -> str:
+    return "" if unit == "-" else unit
+
+
+def _because(hint: str) -> str:
+    return f"; {hint}" if hint else ""
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

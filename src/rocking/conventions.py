@@ -1,0 +1,44 @@
+"""Signs, units and constants that hold everywhere in this package.
+
+Inside, lengths are in m, masses in kg, angles in rad, times in s, all float64. The rotation theta is positive
+**clockwise**: a body with ``theta > 0`` stands on its **right** foot, with ``theta < 0`` on its left one. The
+coefficient of restitution is the ratio of angular velocities, ``theta_dot_after / theta_dot_before``; its square
+is the energy ratio only for symmetric bodies.
+"""
+
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Foot = Literal["left", "right"]
+FloatArray = NDArray[np.float64]
+
+g: Final = 9.80665
+"""Standard gravity [m/s2] (exact by definition, 3rd CGPM 1901)."""
+
+FEET: Final[tuple[Foot, Foot]] = ("left", "right")
+
+LENGTH_UNITS: Final[dict[str, float]] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
+"""Length of one unit in metres; units are always named, never guessed."""
+
+
+def opposite(foot: Foot) -> Foot:
+    """Return the other foot.
+
+    Parameters
+    ----------
+    foot : {"left", "right"}
+        One foot of the body.
+
+    Returns
+    -------
+    {"left", "right"}
+        The foot on the other side.
+
+    Examples
+    --------
+    >>> opposite("left")
+    'right'
+    """
+    return "left" if foot == "right" else "right"

@@ -1,0 +1,29 @@
+"""One family of errors: everything this package refuses is a `RockingError`."""
+
+
+class RockingError(Exception):
+    """Base of every error that this package raises on purpose."""
+
+
+class InvalidValueError(RockingError, ValueError):
+    """A number or a word is outside its allowed range."""
+
+
+class GeometryError(InvalidValueError):
+    """An outline, a hole, a foot or a set of regions does not describe a body."""
+
+
+class AsymmetricBodyError(RockingError, AttributeError):
+    """A body that is not symmetric was asked for a quantity that depends on the side."""
+
+
+class UnknownModelError(RockingError, LookupError):
+    """No restitution model of that name, or a model was given parameters it does not have."""
+
+
+class BodyFileError(RockingError):
+    """A body file (TOML, WKT, GeoJSON, DXF) cannot be read as a body."""
+
+
+class MissingExtraError(RockingError, ImportError):
+    """A feature needs an optional dependency that is not installed."""

@@ -1,0 +1,146 @@
+"""Distributed impulse: contact pressure follows the downward speed to the power q, over the base."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.conventions import FloatArray, Foot
+from rocking.restitution.contact import contact_of, is_whole_base
+from rocking.restitution.impact import ImpactGeometry
+from rocking.restitution.model import InertiaModel
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(60)
+
+
+@dataclass(frozen=True)
+class DistributedImpulse(InertiaModel):
+    """A flat base lands point after point; pressure ~ (downward speed)^q while a point descends.
+
+    ``r = exp(-Int kappa s_c / (1 + kappa s_c sigma) d(sigma))`` over the base, sigma the point that has just
+    stopped descending, s_c(sigma) the centre of the pressure ahead of it, kappa = m / (I_C + m h^2). Closed form
+    where the whole base touches, quadrature where only parts of it do.
+
+    Parameters
+    ----------
+    q : float
+        Exponent [-]: 0 rigid-plastic pressure, 1 viscous interface, infinity Housner.
+
+    Raises
+    ------
+    InvalidValueError
+        If q is negative or not finite.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> round(DistributedImpulse(q=1.0).coefficient(Block(width=1.0, height=2.0)), 12)
+    0.796535422516
+    """
+
+    q: float = 1.0
+
+    name = "distributed-impulse"
+    title = "contact pressure over the flat base follows the downward speed to the power q"
+    reference = "derived in this project (theory, section 5); no publication yet"
+    assumptions = (
+        "flat base, sticking, instantaneous impact",
+        "contact neither pulls nor pushes back: pressure only while a point descends",
+    )
+    domain = "every body and q >= 0 for which the base leaves the ground behind it; otherwise the body stops: r = 0"
+    known_defects = ("q is an interface property that has to be chosen or fitted",)
+    inertia_only = True
+
+    def __post_init__(self) -> None:
+        """Refuse an exponent that is no pressure law."""
+        checks.within("q", self.q, 0.0, float("inf"), open_high=True)
+
+    def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
+        """Closed form for a base that touches from foot to foot.
+
+        Parameters
+        ----------
+        geometry : ImpactGeometry
+            Levers and inertia.
+
+        Returns
+        -------
+        ndarray
+            Coefficients; zero where the old foot would be pressed into the ground [-].
+        """
+        start, end = -geometry.old_lever, geometry.new_lever
+        c = 1.0 / (geometry.base_gyration * (self.q + 2.0))
+        e = c * (self.q + 1.0) * end
+        lowest = np.clip(-0.5 * (self.q + 1.0) * end, start, end)
+        # D = 1 + kappa s_c sigma > 0: the stopped points stay behind
+        leaves = 1.0 + e * lowest + c * lowest**2 > 0.0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = (1.0 + e * end + c * end**2) / (1.0 + e * start + c * start**2)
+            exponent = 0.5 * np.log(ratio) + 0.5 * e * _inverse_quadratic(c, e, start, end)
+        return np.where(leaves, np.exp(-np.where(leaves, exponent, np.inf)), 0.0)
+
+    def raw_coefficient(self, body: Body, onto: Foot) -> float:
+        """Closed form where the whole base touches, quadrature over its parts otherwise.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+        onto : {"left", "right"}
+            The foot on which it lands.
+
+        Returns
+        -------
+        float
+            theta_dot_after / theta_dot_before [-].
+        """
+        geometry = ImpactGeometry.of_body(body, onto)
+        patches = contact_of(body, onto)
+        if is_whole_base(patches, geometry):
+            return float(self.of_geometry(geometry))
+        return self._by_quadrature(patches, geometry)
+
+    def _by_quadrature(self, patches: FloatArray, geometry: ImpactGeometry) -> float:
+        start, end = -float(geometry.old_lever), float(geometry.new_lever)
+        kappa = 1.0 / float(geometry.base_gyration)
+        cuts = np.unique(np.concatenate([[start, end], patches.ravel()]))
+        exponent = 0.0
+        for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
+            # a quintic change of variable takes out the fractional powers at the ends of a patch
+            t = 0.5 * (1.0 + _NODES)
+            sigma = a + (b - a) * t**3 * (10.0 - 15.0 * t + 6.0 * t * t)
+            slope = 0.5 * (b - a) * 30.0 * t * t * (1.0 - t) ** 2
+            arm = kappa * _centre_ahead(sigma, patches, end, self.q)
+            behind = 1.0 + arm * sigma
+            if behind.min() <= 0.0:
+                return 0.0
+            exponent += float(_WEIGHTS @ (slope * arm / behind))
+        return float(np.exp(-exponent))
+
+
+def _centre_ahead(sigma: FloatArray, patches: FloatArray, end: float, q: float) -> FloatArray:
+    force, moment = np.zeros_like(sigma), np.zeros_like(sigma)
+    for a, b in patches.tolist():
+        near, far = np.maximum(a - sigma, 0.0), np.maximum(b - sigma, 0.0)
+        part = (far ** (q + 1.0) - near ** (q + 1.0)) / (q + 1.0)
+        force += part
+        moment += (far ** (q + 2.0) - near ** (q + 2.0)) / (q + 2.0) + sigma * part
+    # no flat stretch ahead: the foot itself takes the impulse
+    return np.divide(moment, force, out=np.full_like(sigma, end), where=force > 0.0)
+
+
+def _inverse_quadratic(c: FloatArray, e: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    # Int d(sigma) / (1 + e sigma + c sigma^2), the same expression on both sides of a zero discriminant
+    delta = 4.0 * c - e * e
+    x0, x1 = 2.0 * c * start + e, 2.0 * c * end + e
+    below = delta + x0 * x1
+    root = np.sqrt(np.abs(delta))
+    tangent = root * (x1 - x0) / below
+    near = np.abs(tangent) < 1e-3
+    z = np.where(near, np.sign(delta) * tangent * tangent, 0.0)
+    series = 2.0 * (x1 - x0) / below * (1.0 - z / 3.0 + z * z / 5.0)
+    trigonometric = np.arctan2(root * (x1 - x0), below)
+    hyperbolic = np.arctanh(np.clip(tangent, -1.0, 1.0))
+    far = 2.0 / np.where(root > 0.0, root, 1.0) * np.where(delta > 0.0, trigonometric, hyperbolic)
+    return np.where(near & (below > 0.0), series, far)

@@ -1,0 +1,78 @@
+"""A coefficient given by hand, for instance a measured one."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.conventions import FloatArray, Foot
+from rocking.restitution.model import RestitutionModel
+
+
+@dataclass(frozen=True)
+class Fixed(RestitutionModel):
+    """The same coefficient for every body and both directions.
+
+    Parameters
+    ----------
+    r : float
+        Coefficient of restitution, ratio of velocities, not of energies [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If r is outside [0, 1].
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> Fixed(r=0.9).coefficient(Block(width=1.0, height=4.0))
+    0.9
+    """
+
+    r: float
+
+    name = "fixed"
+    title = "a coefficient given by hand"
+    reference = "the user's own value"
+    assumptions = ("the value was measured on this body or one like it",)
+    domain = "0 <= r <= 1"
+    known_defects = ("does not know the body: it may break the energy bound of an asymmetric one",)
+    inertia_only = True
+
+    def __post_init__(self) -> None:
+        """Refuse what is no coefficient."""
+        checks.within("r", self.r, 0.0, 1.0, hint="a velocity ratio; is it an energy ratio or a percentage?")
+
+    def raw_coefficient(self, body: Body, onto: Foot) -> float:
+        """Return the value.
+
+        Parameters
+        ----------
+        body : Body
+            Not used.
+        onto : {"left", "right"}
+            Not used.
+
+        Returns
+        -------
+        float
+            r [-].
+        """
+        return self.r
+
+    def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
+        """Return the value for every slenderness.
+
+        Parameters
+        ----------
+        slenderness : ndarray
+            Slenderness ratios h/b [-].
+
+        Returns
+        -------
+        ndarray
+            r, of the same shape [-].
+        """
+        return np.full(slenderness.shape, self.r)

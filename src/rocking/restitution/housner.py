@@ -1,0 +1,54 @@
+"""Housner (1963): angular momentum about the new foot is conserved; any inertia, asymmetric feet."""
+
+from dataclasses import dataclass
+
+from rocking.conventions import FloatArray
+from rocking.restitution.impact import ImpactGeometry
+from rocking.restitution.model import InertiaModel
+
+
+@dataclass(frozen=True)
+class Housner(InertiaModel):
+    """The classical model: the whole impulse acts at the new foot.
+
+    ``r = (I_C + m (h^2 - b_old b_new)) / (I_C + m (h^2 + b_new^2))`` (Eq. 4 of Mao et al. 2024, generalised to
+    any inertia and asymmetric feet), ``1 - 3/2 sin(alpha)^2`` for a homogeneous rectangle (Eq. 5).
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> round(Housner().coefficient(Block(width=1.0, height=2.0)), 12)
+    0.7
+    """
+
+    name = "housner"
+    title = "angular momentum about the new foot is conserved"
+    reference = "Housner 1963, Bull. Seismol. Soc. Am. 53(2) 403-417, doi:10.1785/BSSA0530020403"
+    assumptions = (
+        "rigid body and rigid ground, instantaneous impact",
+        "the impulse acts at the new foot alone: the base touches at its corners only",
+        "no sliding, no bouncing",
+    )
+    domain = (
+        "r > 0 (rectangles with h/b > 1/sqrt(2)); below, both corners take an impulse and the body stops: r = 0"
+    )
+    known_defects = (
+        "measured coefficients of squat blocks (h/b below about 4) lie above it",
+        "real bases touch over an area, so the impulse acts inside the base",
+    )
+    inertia_only = True
+
+    def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
+        """Eq. 4, Mao et al. 2024, generalised.
+
+        Parameters
+        ----------
+        geometry : ImpactGeometry
+            Levers and inertia.
+
+        Returns
+        -------
+        ndarray
+            Coefficients, negative below the domain [-].
+        """
+        return (geometry.base_gyration - geometry.old_lever * geometry.new_lever) / geometry.new_gyration

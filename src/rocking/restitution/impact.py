@@ -1,0 +1,97 @@
+"""The impact as the inertia-only models see it: levers, height and gyration, of one body or of many."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.bodies import Body
+from rocking.conventions import FloatArray, Foot, opposite
+
+
+@dataclass(frozen=True, slots=True)
+class ImpactGeometry:
+    """Levers and inertia of an impact, per unit mass; every field is a number or arrays of one shape.
+
+    The body turns about the old foot before and about the new foot after the impact; x runs from the old foot to
+    the new one, measured from the plumb line of the centre of mass.
+
+    Parameters
+    ----------
+    height : ndarray
+        Height h of the centre of mass [m].
+    old_lever : ndarray
+        Distance of the old foot behind the plumb line [m].
+    new_lever : ndarray
+        Distance of the new foot ahead of the plumb line [m].
+    spread_x, spread_y : ndarray
+        Central second moments over mass, of x and of y [m2].
+
+    Examples
+    --------
+    >>> float(ImpactGeometry.of_slenderness(2.0).base_gyration)
+    5.666666666666667
+    """
+
+    height: FloatArray
+    old_lever: FloatArray
+    new_lever: FloatArray
+    spread_x: FloatArray
+    spread_y: FloatArray
+
+    @classmethod
+    def of_body(cls, body: Body, onto: Foot) -> "ImpactGeometry":
+        """Return the impact of a body onto one of its feet.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+        onto : {"left", "right"}
+            The new foot.
+
+        Returns
+        -------
+        ImpactGeometry
+            Of zero-dimensional arrays.
+        """
+        new, old, moments = body.side(onto), body.side(opposite(onto)), body.local_moments
+        return cls(
+            np.asarray(moments.y),
+            np.asarray(old.half_width),
+            np.asarray(new.half_width),
+            np.asarray(moments.xx / moments.mass),
+            np.asarray(moments.yy / moments.mass),
+        )
+
+    @classmethod
+    def of_slenderness(cls, slenderness: FloatArray | float) -> "ImpactGeometry":
+        """Return the impact of homogeneous rectangles with b = 1 m, h = slenderness.
+
+        Parameters
+        ----------
+        slenderness : array_like
+            Slenderness ratios h/b [-].
+
+        Returns
+        -------
+        ImpactGeometry
+            Of arrays of the same shape.
+        """
+        h = np.asarray(slenderness, dtype=np.float64)
+        one = np.ones_like(h)
+        return cls(h, one, one, one / 3.0, h * h / 3.0)
+
+    @property
+    def base_gyration(self) -> FloatArray:
+        """(I_C + m h^2) / m, about the point of the ground below the centre [m2]."""
+        return self.spread_x + self.spread_y + self.height**2
+
+    @property
+    def old_gyration(self) -> FloatArray:
+        """I_O / m about the old foot [m2]."""
+        return self.base_gyration + self.old_lever**2
+
+    @property
+    def new_gyration(self) -> FloatArray:
+        """I_O' / m about the new foot [m2]."""
+        return self.base_gyration + self.new_lever**2

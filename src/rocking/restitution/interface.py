@@ -1,0 +1,89 @@
+"""The interface factor: what mortar, tape, dust or rubber takes on top of the geometry."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.conventions import FloatArray, Foot
+from rocking.restitution.model import RestitutionModel
+
+
+@dataclass(frozen=True)
+class Interface(RestitutionModel):
+    """Any model times a factor eta: ``r = eta * r_model``.
+
+    Parameters
+    ----------
+    model : RestitutionModel
+        The geometric model.
+    eta : float
+        Interface factor in (0, 1] [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If eta is outside (0, 1].
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> from rocking.restitution import Housner
+    >>> round(Interface(Housner(), eta=0.9).coefficient(Block(width=1.0, height=2.0)), 12)
+    0.63
+    """
+
+    model: RestitutionModel
+    eta: float
+
+    name: ClassVar[str] = "interface"
+    title: ClassVar[str] = "a geometric model times an interface factor"
+    reference: ClassVar[str] = "this project"
+
+    def __post_init__(self) -> None:
+        """Refuse a factor that would create energy, and wrap once only."""
+        checks.within("eta", self.eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
+        for words in ("assumptions", "domain", "known_defects", "inertia_only"):
+            object.__setattr__(self, words, getattr(self.model, words))
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Parameters of the wrapped model, and eta."""
+        return {**self.model.parameters, "eta": self.eta}
+
+    @property
+    def label(self) -> str:
+        """Factor and wrapped model: ``0.98*ked``."""
+        return f"{self.eta:.4g}*{self.model.label}"
+
+    def raw_coefficient(self, body: Body, onto: Foot) -> float:
+        """Return eta times the wrapped model's value.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+        onto : {"left", "right"}
+            The foot on which it lands.
+
+        Returns
+        -------
+        float
+            theta_dot_after / theta_dot_before [-].
+        """
+        return self.eta * self.model.raw_coefficient(body, onto)
+
+    def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
+        """Return eta times the wrapped model's values.
+
+        Parameters
+        ----------
+        slenderness : ndarray
+            Slenderness ratios h/b [-].
+
+        Returns
+        -------
+        ndarray
+            Of the same shape [-].
+        """
+        return self.eta * self.model.raw_of_slenderness(slenderness)

@@ -1,0 +1,125 @@
+"""Plastic Winkler bed: pressure grows with indentation while a point descends, and is gone once it rises."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from rocking.bodies import Body
+from rocking.conventions import FloatArray, Foot
+from rocking.restitution.contact import contact_of
+from rocking.restitution.impact import ImpactGeometry
+from rocking.restitution.model import InertiaModel
+
+# The contact ends exponentially: once the tip is this slow, relative to the start, nothing more happens.
+_AT_REST = 1e-14
+_TOLERANCE = 1e-13
+_LARGEST_BATCH = 64
+_DEGREE = 47
+
+
+@dataclass(frozen=True)
+class PlasticWinkler(InertiaModel):
+    """A flat base on springs that do not push back; the result does not depend on their stiffness.
+
+    Pressure is k_w times indentation while a point still descends, zero after. Integrated in moment form: the
+    state is (v, omega, Y = Int v dt, Theta = Int omega dt), without a mesh along the base.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> round(PlasticWinkler().coefficient(Block(width=1.0, height=2.0)), 8)
+    0.81425939
+    """
+
+    name = "plastic-winkler"
+    title = "flat base on a bed of plastic springs that do not push back"
+    reference = "derived in this project (theory, section 6); no publication yet"
+    assumptions = (
+        "flat base, sticking, impact much shorter than the motion",
+        "the bed is uniform and gives nothing back while it unloads",
+    )
+    domain = "every body whose base leaves the ground behind it; otherwise the body stops: r = 0"
+    known_defects = ("one pressure law for every interface: soft layers and rough contacts differ",)
+    inertia_only = True
+
+    def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
+        """Coefficients for bases that touch from foot to foot.
+
+        Parameters
+        ----------
+        geometry : ImpactGeometry
+            Levers and inertia.
+
+        Returns
+        -------
+        ndarray
+            Coefficients; zero where the body stops [-].
+        """
+        lever = geometry.new_lever
+        kappa, back = np.broadcast_arrays(lever**2 / geometry.base_gyration, geometry.old_lever / lever)
+        if kappa.size > _LARGEST_BATCH and (back == 1.0).all() and kappa.max() <= 3.0:
+            return np.exp(kappa * _loss_of_rectangle()(kappa))
+        flat = np.column_stack([kappa.ravel(), back.ravel()])
+        values = [_impact(float(k), float(b), np.array([[-b, 1.0]])) for k, b in flat.tolist()]
+        return np.array(values).reshape(kappa.shape)
+
+    def raw_coefficient(self, body: Body, onto: Foot) -> float:
+        """Coefficient of a body, over the stretches of its base that touch.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+        onto : {"left", "right"}
+            The foot on which it lands.
+
+        Returns
+        -------
+        float
+            theta_dot_after / theta_dot_before [-].
+        """
+        geometry = ImpactGeometry.of_body(body, onto)
+        lever, back = float(geometry.new_lever), float(geometry.old_lever)
+        patches = contact_of(body, onto) / lever
+        return _impact(lever**2 / float(geometry.base_gyration), back / lever, patches)
+
+
+@lru_cache(maxsize=1)
+def _loss_of_rectangle() -> np.polynomial.Chebyshev:
+    # ln(r) / kappa is analytic on 0 < kappa < 3, the range of all homogeneous rectangles
+    return np.polynomial.Chebyshev.interpolate(
+        lambda kappa: np.array([np.log(_impact(k, 1.0, np.array([[-1.0, 1.0]]))) / k for k in kappa.tolist()]),
+        _DEGREE,
+        domain=[0.0, 3.0],
+    )
+
+
+def _impact(kappa: float, back: float, patches: FloatArray) -> float:
+    """Velocity ratio for levers in units of the new one; kappa = m b_new^2 / (I_C + m h^2)."""
+    from scipy.integrate import solve_ivp
+
+    if not patches.size or patches[-1, 1] < 1.0 - 1e-12:
+        patches = np.vstack([patches.reshape(-1, 2), [1.0, 1.0]])
+    if (patches[:, 1] - patches[:, 0]).sum() <= 1e-9 * (1.0 + back):
+        # feet without area: the whole impulse acts at the new one (Housner)
+        return (1.0 - kappa * back) / (1.0 + kappa)
+
+    def bed(_: float, state: FloatArray) -> FloatArray:
+        v, omega, y, theta = state
+        near, far = np.maximum(patches[:, 0], v / omega), patches[:, 1]
+        near = np.minimum(near, far)
+        force = float((theta * (far**2 - near**2) / 2.0 - y * (far - near)).sum())
+        moment = float((theta * (far**3 - near**3) / 3.0 - y * (far**2 - near**2) / 2.0).sum())
+        return np.array([force, -kappa * moment, v, omega])
+
+    def tip(_: float, state: FloatArray) -> float:
+        return float(state[1] - state[0] - _AT_REST)
+
+    def stop(_: float, state: FloatArray) -> float:
+        return float(state[1] - 1e-9)
+
+    tip.terminal = stop.terminal = True  # type: ignore[attr-defined]
+    start = np.array([-back, 1.0, 0.0, 0.0])
+    run = solve_ivp(bed, (0.0, 1e4), start, "DOP853", rtol=_TOLERANCE, atol=1e-16, events=[tip, stop])
+    return 0.0 if len(run.t_events[1]) else float(run.y[1, -1])

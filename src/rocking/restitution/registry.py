@@ -1,0 +1,146 @@
+"""Names of the restitution models; a new one is one file and one line here, or one call of `register`."""
+
+from typing import Any
+
+from rocking import checks
+from rocking.errors import InvalidValueError, UnknownModelError
+from rocking.restitution.distributed_impulse import DistributedImpulse
+from rocking.restitution.fixed import Fixed
+from rocking.restitution.horizontal_momentum import HorizontalMomentum
+from rocking.restitution.housner import Housner
+from rocking.restitution.interface import Interface
+from rocking.restitution.ked import Ked
+from rocking.restitution.model import RestitutionModel
+from rocking.restitution.plastic_winkler import PlasticWinkler
+from rocking.restitution.shifted_impulse import ShiftedImpulse
+
+_MODELS: dict[str, type[RestitutionModel]] = {
+    kind.name: kind
+    for kind in (
+        Housner,
+        Ked,
+        HorizontalMomentum,
+        ShiftedImpulse,
+        DistributedImpulse,
+        PlasticWinkler,
+        Fixed,
+    )
+}
+
+
+def models() -> dict[str, type[RestitutionModel]]:
+    """Return every registered restitution model.
+
+    Returns
+    -------
+    dict of str to type
+        Name to class; a copy.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> sorted(rk.restitution.models())[:3]
+    ['distributed-impulse', 'fixed', 'horizontal-momentum']
+    """
+    return dict(_MODELS)
+
+
+def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
+    """Register a model class under its name, so that it can be asked for by name; usable as a decorator.
+
+    Parameters
+    ----------
+    kind : type
+        Subclass of `RestitutionModel` with a name.
+
+    Returns
+    -------
+    type
+        The class itself.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no such class, has no name, or another model has that name.
+    """
+    if not (isinstance(kind, type) and issubclass(kind, RestitutionModel)):
+        raise InvalidValueError(f"a restitution model is a subclass of RestitutionModel, got {kind!r}")
+    name = getattr(kind, "name", None)
+    if not isinstance(name, str) or not name:
+        raise InvalidValueError(f"{kind.__name__} needs a class attribute name = '...'")
+    if _MODELS.get(name, kind) is not kind:
+        raise InvalidValueError(f"a restitution model named {name!r} exists already: {_MODELS[name].__name__}")
+    _MODELS[name] = kind
+    return kind
+
+
+def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any) -> RestitutionModel:
+    """Return a restitution model by name, with its parameters and an interface factor.
+
+    Parameters
+    ----------
+    which : str or RestitutionModel
+        Name, name with parameters (``"shifted-impulse:k=0.6"``, ``"0.98*ked"``), or a model object.
+    eta : float
+        Interface factor in (0, 1] [-].
+    **parameters
+        The model's parameters: ``k``, ``q`` or ``r``.
+
+    Returns
+    -------
+    RestitutionModel
+        The model.
+
+    Raises
+    ------
+    UnknownModelError
+        If the name or a parameter is unknown, or a required parameter is missing.
+    InvalidValueError
+        If a parameter is outside its range.
+
+    Examples
+    --------
+    >>> model("0.98*shifted-impulse:k=0.6").label
+    '0.98*shifted-impulse:k=0.6'
+    """
+    if isinstance(which, str):
+        found, factor = _parsed(which, parameters)
+        eta = checks.number("eta", eta) * factor
+    elif isinstance(which, RestitutionModel):
+        if parameters:
+            raise UnknownModelError(f"a model object takes no further parameters, got {', '.join(parameters)}")
+        found = which
+    else:
+        raise UnknownModelError(f"a restitution model is a name or a RestitutionModel object, got {which!r:.60}")
+    return found if eta == 1.0 else Interface(found, eta=checks.number("eta", eta))
+
+
+def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, float]:
+    factor, star, rest = words.partition("*")
+    eta = _value("eta", factor) if star else 1.0
+    name, _, tail = (rest if star else words).strip().partition(":")
+    given = dict(parameters)
+    for item in filter(None, tail.split(",")):
+        key, equals, value = item.partition("=")
+        if not equals:
+            raise UnknownModelError(f"write parameters as name:k=0.6, got {words!r}")
+        given[key.strip()] = _value(key.strip(), value)
+    if name not in _MODELS:
+        raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(_MODELS)}")
+    kind = _MODELS[name]
+    try:
+        return kind(**given), eta
+    except TypeError as error:
+        raise UnknownModelError(f"model {name!r} {_takes(kind)}, got {', '.join(given) or 'none'}") from error
+
+
+def _takes(kind: type[RestitutionModel]) -> str:
+    names = list(getattr(kind, "__dataclass_fields__", {}))
+    return f"takes the parameter {', '.join(names)}" if names else "takes no parameters"
+
+
+def _value(name: str, words: str) -> float:
+    try:
+        return float(words)
+    except ValueError as error:
+        raise InvalidValueError(f"{name} must be a number, got {words!r}") from error

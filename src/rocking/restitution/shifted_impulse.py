@@ -1,0 +1,71 @@
+"""Shifted impulse: the resultant acts at k times the lever of the new foot (Kalliontzis et al. 2016)."""
+
+from dataclasses import dataclass
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.restitution.impact import ImpactGeometry
+from rocking.restitution.model import InertiaModel
+
+
+@dataclass(frozen=True)
+class ShiftedImpulse(InertiaModel):
+    """Angular momentum is conserved about a point of the base, a = k b_new ahead of the plumb line.
+
+    ``r = (I_C + m (h^2 - a b_old)) / (I_C + m (h^2 + a b_new))``; k = 1 is Housner, k = 0 loses nothing.
+
+    Parameters
+    ----------
+    k : float
+        Position of the impulse between plumb line (0) and new foot (1) [-]; 2/3 is the slender limit of KED and
+        of a viscous flat contact.
+
+    Raises
+    ------
+    InvalidValueError
+        If k is outside [0, 1].
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> block = Block(width=1.0, height=2.0)
+    >>> round(ShiftedImpulse(k=1.0).coefficient(block), 12), ShiftedImpulse(k=0.0).coefficient(block)
+    (0.7, 1.0)
+    """
+
+    k: float = 2.0 / 3.0
+
+    name = "shifted-impulse"
+    title = "the impulse acts inside the base, at k times the half base"
+    reference = (
+        "Kalliontzis, Sritharan & Schultz 2016, J. Struct. Eng. 142(12) 06016002, "
+        "doi:10.1061/(ASCE)ST.1943-541X.0001562; the form in k is derived in this project"
+    )
+    assumptions = (
+        "rigid body and ground, instantaneous impact, no sliding, no bouncing",
+        "the resultant of all contact impulses passes through one known point of the base",
+    )
+    domain = "0 <= k <= 1; the body stops (r = 0) where 3 k >= 1 + 4 (h/b)^2 for a rectangle"
+    known_defects = ("k is not predicted: it has to be measured or fitted",)
+    inertia_only = True
+
+    def __post_init__(self) -> None:
+        """Refuse an impulse outside the base."""
+        checks.within("k", self.k, 0.0, 1.0, hint="the impulse acts between the plumb line (0) and the foot (1)")
+
+    def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
+        """Conservation of angular momentum about the point of the impulse.
+
+        Parameters
+        ----------
+        geometry : ImpactGeometry
+            Levers and inertia.
+
+        Returns
+        -------
+        ndarray
+            Coefficients [-].
+        """
+        arm = self.k * geometry.new_lever
+        gyration = geometry.base_gyration
+        return (gyration - arm * geometry.old_lever) / (gyration + arm * geometry.new_lever)
