@@ -68,7 +68,7 @@ def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
     """
     result = number(name, value, unit)
     if result <= 0.0:
-        raise InvalidValueError(f"{name} must be > 0 {_in(unit)}, got {result:g}{_because(hint)}")
+        raise InvalidValueError(f"{name} must be > 0{_in(unit)}, got {result:g}{_because(hint)}")
     return result
 
 
@@ -115,8 +115,9 @@ def within(
     too_high = result > high or (open_high and result == high)
     if too_low or too_high:
         brackets = "(" if open_low else "[", ")" if open_high or math.isinf(high) else "]"
-        allowed = f"{brackets[0]}{low:g}, {high:g}{brackets[1]}"
-        raise InvalidValueError(f"{name} must be in {allowed} {_in(unit)}, got {result:g}{_because(hint)}")
+        top = "pi/2" if high == 0.5 * math.pi else f"{high:g}"
+        allowed = f"{brackets[0]}{low:g}, {top}{brackets[1]}"
+        raise InvalidValueError(f"{name} must be in {allowed}{_in(unit)}, got {result:g}{_because(hint)}")
     return result
 
 
@@ -150,7 +151,7 @@ def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
     if result.size and not (result.min() > 0.0 and result.max() < math.inf):
         bad = tuple(int(i) for i in np.argwhere(~((result > 0.0) & np.isfinite(result)))[0])
         where = f" at index {bad[0] if len(bad) == 1 else bad}" if bad else ""
-        raise InvalidValueError(f"{name} must be finite and > 0 {_in(unit)}, got {result[bad]}{where}")
+        raise InvalidValueError(f"{name} must be finite and > 0{_in(unit)}, got {result[bad]}{where}")
     return result
 
 
@@ -208,7 +209,7 @@ def length_unit(value: Any) -> float:
 
 
 def _in(unit: str) -> str:
-    return "" if unit == "-" else unit
+    return "" if unit == "-" else f" {unit}"
 
 
 def _because(hint: str) -> str:

@@ -1,5 +1,6 @@
 """The homogeneous rectangular block: the body of Housner (1963) and of Mao et al. (2024)."""
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -53,6 +54,48 @@ class Block(Body):
         for name, unit in (("width", "m"), ("height", "m"), ("depth", "m"), ("density", "kg/m3")):
             object.__setattr__(self, name, checks.positive(name, getattr(self, name), unit))
         self._check_support()
+
+    @classmethod
+    def from_angle(cls, slenderness_angle: float, semi_diagonal: float, **options: float) -> "Block":
+        """Return the block with a slenderness angle and a semi-diagonal, as papers on rocking give it.
+
+        Parameters
+        ----------
+        slenderness_angle : float
+            alpha = atan(b/h), between 0 and pi/2 [rad].
+        semi_diagonal : float
+            R, from a foot to the centre of mass [m].
+        **options : float
+            ``depth`` [m] and ``density`` [kg/m3].
+
+        Returns
+        -------
+        Block
+            The block.
+
+        Raises
+        ------
+        InvalidValueError
+            If a value is outside its range; an angle above pi/2 is most likely in degrees.
+
+        Examples
+        --------
+        >>> import math
+        >>> round(Block.from_angle(math.atan(0.25), 2.0).slenderness_ratio, 12)
+        4.0
+        """
+        alpha = checks.within(
+            "slenderness_angle",
+            slenderness_angle,
+            0.0,
+            0.5 * math.pi,
+            unit="rad",
+            open_low=True,
+            open_high=True,
+            hint="degrees?",
+        )
+        size = checks.positive("semi_diagonal", semi_diagonal, "m")
+        return cls(width=2.0 * size * math.sin(alpha), height=2.0 * size * math.cos(alpha), **options)
 
     @property
     def half_width(self) -> float:

@@ -1,5 +1,6 @@
 """A body given as mass points: the system in which Mao et al. (2024) write their model."""
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
@@ -23,6 +24,8 @@ class MassPoints(Body):
         Masses, all above zero [kg].
     feet : (float, float)
         Positions of the left and right foot on the ground [m].
+    contact : sequence of (float, float), optional
+        Flat stretches of the base that touch the ground [m]; by default all of it, from foot to foot.
 
     Raises
     ------
@@ -41,7 +44,13 @@ class MassPoints(Body):
     0.8
     """
 
-    def __init__(self, points: Any, masses: Any, feet: tuple[float, float]) -> None:
+    def __init__(
+        self,
+        points: Any,
+        masses: Any,
+        feet: tuple[float, float],
+        contact: Sequence[tuple[float, float]] | None = None,
+    ) -> None:
         self.masses = np.atleast_1d(checks.positive_array("masses", masses, "kg"))
         self.points = _points(points, len(self.masses))
         try:
@@ -49,6 +58,7 @@ class MassPoints(Body):
         except (TypeError, ValueError) as error:
             raise GeometryError("feet must be a pair (x_left, x_right) in m") from error
         self._feet = checks.number("left foot", left, "m"), checks.number("right foot", right, "m")
+        self._contact = contact
         self._check_support()
 
     @property
@@ -76,8 +86,12 @@ class MassPoints(Body):
 
     @property
     def local_contact(self) -> tuple[Interval, ...]:
-        """The base between the feet [m]."""
-        return (self._feet,)
+        """The stretches that were given, cut at the feet, or the whole base between them [m]."""
+        if self._contact is None:
+            return (self._feet,)
+        left, right = self._feet
+        cut = ((max(float(a), left), min(float(b), right)) for a, b in sorted(self._contact))
+        return tuple((a, b) for a, b in cut if b > a)
 
     @property
     def local_box(self) -> tuple[float, float, float, float]:
@@ -95,7 +109,8 @@ class MassPoints(Body):
             The mirror image.
         """
         left, right = self._feet
-        return MassPoints(self.points * (-1.0, 1.0), self.masses, (-right, -left))
+        contact = None if self._contact is None else [(-b, -a) for a, b in self._contact]
+        return MassPoints(self.points * (-1.0, 1.0), self.masses, (-right, -left), contact)
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "MassPoints":
         """Return the points with all lengths times `size` and all masses times `density`.
@@ -112,7 +127,8 @@ class MassPoints(Body):
         """
         size, density = checks.positive("size", size), checks.positive("density", density)
         left, right = self._feet
-        return MassPoints(self.points * size, self.masses * density, (left * size, right * size))
+        contact = None if self._contact is None else [(a * size, b * size) for a, b in self._contact]
+        return MassPoints(self.points * size, self.masses * density, (left * size, right * size), contact)
 
     def with_feet(self, left: float, right: float) -> "MassPoints":
         """Return the same points standing on other feet.
@@ -127,7 +143,7 @@ class MassPoints(Body):
         MassPoints
             The same points.
         """
-        return MassPoints(self.points, self.masses, (left, right))
+        return MassPoints(self.points, self.masses, (left, right), self._contact)
 
 
 def _points(points: Any, count: int) -> FloatArray:

@@ -1,0 +1,166 @@
+"""Which identities of rigid-body mechanics a model keeps for a given body, and which it breaks."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rocking.bodies import Body, MassPoints
+from rocking.conventions import Foot, opposite
+from rocking.restitution.implied import implied
+from rocking.restitution.model import RestitutionModel
+
+_EXACT = 1e-9
+# Feet this far apart, relative to the base, stand for coincident ones; sound models are then within its square root.
+_NEARLY_COINCIDENT = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class IdentityCheck:
+    """One identity, tried on one model and one body.
+
+    Parameters
+    ----------
+    name : str
+        Short name, such as ``"coincident pivots"``.
+    statement : str
+        What should hold.
+    expected : float
+        The value that the identity asks for [-].
+    found : float
+        The value furthest from it that the model gave [-].
+    holds : bool
+        Whether the identity holds.
+    """
+
+    name: str
+    statement: str
+    expected: float
+    found: float
+    holds: bool
+
+    @property
+    def sentence(self) -> str:
+        """The verdict as a user reads it."""
+        if self.holds:
+            return f"{self.name}: holds"
+        return f"{self.name}: violated for this body ({self.statement}; expected {self.expected:.6g}, got {self.found:.6g})"
+
+
+def identity_report(body: Body, model: RestitutionModel, *, onto: Foot = "right") -> tuple[IdentityCheck, ...]:
+    """Try every identity on a model and a body.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    model : RestitutionModel
+        The model.
+    onto : {"left", "right"}
+        The foot on which it lands.
+
+    Returns
+    -------
+    tuple of IdentityCheck
+        Scale, density, mirror, coincident pivots, inertia alone, energy bound, round trip, impulse on the base.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> from rocking.restitution import Ked
+    >>> report = identity_report(Block(width=1.0, height=2.0), Ked())
+    >>> [check.name for check in report if not check.holds]
+    ['coincident pivots', 'inertia alone']
+    """
+    return tuple(check(body, model, onto) for check in _CHECKS)
+
+
+def _scale(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
+    here = model.coefficient(body, onto)
+    found = model.coefficient(body.scaled(size=3.7), onto)
+    return _equal("scale", "the coefficient does not depend on size", here, found)
+
+
+def _density(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
+    here = model.coefficient(body, onto)
+    found = model.coefficient(body.scaled(density=3.7), onto)
+    return _equal("density", "the coefficient does not depend on density", here, found)
+
+
+def _mirror(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
+    here = model.coefficient(body, onto)
+    found = model.coefficient(body.mirrored(), opposite(onto))
+    return _equal("mirror", "the mirror image has the same coefficient", here, found)
+
+
+def _coincident(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
+    (left, right), x = body.feet, body.centre[0]
+    gap = 0.5 * _NEARLY_COINCIDENT * (right - left)
+    found = model.coefficient(body.with_feet(x - gap, x + gap), onto)
+    statement = "with both feet in one place there is no impact and nothing is lost"
+    return _equal("coincident pivots", statement, 1.0, found, math.sqrt(_NEARLY_COINCIDENT))
+
+
+def _inertia_alone(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
+    here = model.coefficient(body, onto)
+    others = [model.coefficient(twin, onto) for twin in _dumbbells(body)]
+    found = max(others, key=lambda value: abs(value - here))
+    statement = "bodies with the same mass, centre, inertia and base have the same coefficient"
+    return _equal("inertia alone", statement, here, found)
+
+
+def _energy(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
+    result = implied(body, model.coefficient(body, onto), onto=onto)
+    return IdentityCheck(
+        "energy bound",
+        "the impact creates no energy, r^2 I_O' <= I_O",
+        result.largest_coefficient,
+        result.coefficient,
+        result.within_energy,
+    )
+
+
+def _round_trip(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
+    there, back = model.coefficient(body, onto), model.coefficient(body, opposite(onto))
+    holds = there * back <= 1.0 + _EXACT
+    return IdentityCheck("round trip", "an impact onto each foot gains nothing, r r' <= 1", 1.0, there * back, holds)
+
+
+def _on_base(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
+    result = implied(body, model.coefficient(body, onto), onto=onto)
+    return IdentityCheck(
+        "impulse on the base", "the implied impulse acts on the base, k <= 1", 1.0, result.impulse_ratio, result.within_base
+    )
+
+
+_CHECKS: tuple[Callable[[Body, RestitutionModel, Foot], IdentityCheck], ...] = (
+    _scale,
+    _density,
+    _mirror,
+    _coincident,
+    _inertia_alone,
+    _energy,
+    _round_trip,
+    _on_base,
+)
+
+
+def _equal(
+    name: str, statement: str, expected: float, found: float, tolerance: float = _EXACT
+) -> IdentityCheck:
+    return IdentityCheck(name, statement, expected, found, abs(found - expected) <= tolerance)
+
+
+def _dumbbells(body: Body) -> list[MassPoints]:
+    """Two equal masses with the body's mass, centre and polar inertia: lying, and standing if it fits."""
+    moments = body.local_moments
+    arm = math.sqrt(moments.polar / moments.mass)
+    arms = [(arm, 0.0)] + ([(0.0, arm)] if arm <= moments.y else [])
+    return [
+        MassPoints(
+            [(moments.x - dx, moments.y - dy), (moments.x + dx, moments.y + dy)],
+            [0.5 * moments.mass] * 2,
+            feet=body.local_feet,
+            contact=body.local_contact,
+        )
+        for dx, dy in arms
+    ]

@@ -1,0 +1,114 @@
+"""What a coefficient of restitution implies: where the impulse acts, what friction it needs, what energy it costs."""
+
+import math
+from dataclasses import dataclass
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.conventions import Foot, opposite
+
+# Bounds are met to rounding by the models that sit exactly on them (Housner has k = 1).
+_SLACK = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Implication:
+    """Mechanics behind one coefficient of one body.
+
+    Parameters
+    ----------
+    coefficient : float
+        theta_dot_after / theta_dot_before [-].
+    impulse_arm : float
+        Distance a of the impulse from the plumb line of the centre, towards the new foot [m].
+    impulse_ratio : float
+        Its ratio k to the lever of the new foot [-]; 1 is Housner, above 1 lies outside the base.
+    impulse_x : float
+        Its position on the ground in the user's coordinates [m].
+    friction_demand : float
+        Friction coefficient below which the foot slips during the impact [-].
+    energy_loss : float
+        Share of the kinetic energy that the impact costs, 1 - r^2 I_O'/I_O [-].
+    largest_coefficient : float
+        Energy bound sqrt(I_O / I_O') on the coefficient [-].
+    within_base, within_energy : bool
+        Whether the impulse acts on the base, and the impact creates no energy.
+    """
+
+    coefficient: float
+    impulse_arm: float
+    impulse_ratio: float
+    impulse_x: float
+    friction_demand: float
+    energy_loss: float
+    largest_coefficient: float
+    within_base: bool
+    within_energy: bool
+
+    @property
+    def admissible(self) -> bool:
+        """Whether one impulse on the base can produce the coefficient without creating energy."""
+        return self.within_base and self.within_energy
+
+    @property
+    def objections(self) -> tuple[str, ...]:
+        """What is wrong with the coefficient, in sentences; empty if admissible."""
+        found = []
+        if not self.within_base:
+            found.append(f"implies an impulse outside the base (k = {self.impulse_ratio:.3f})")
+        if not self.within_energy:
+            found.append(f"creates energy: r must not exceed {self.largest_coefficient:.6f} for this body")
+        return tuple(found)
+
+
+def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implication:
+    """Return what a coefficient implies for a body.
+
+    Angular momentum about the point of the ground where the impulse acts is conserved, so
+    ``a = I_h (1 - r) / (m (b_old + r b_new))`` with ``I_h = I_C + m h^2``, and the ratio of horizontal to vertical
+    impulse is ``h (1 - r) / (b_old + r b_new)``.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    coefficient : float
+        theta_dot_after / theta_dot_before, not below zero [-].
+    onto : {"left", "right"}
+        The foot on which it lands.
+
+    Returns
+    -------
+    Implication
+        Impulse position, friction, energy, admissibility.
+
+    Raises
+    ------
+    InvalidValueError
+        If the coefficient is not finite or is negative.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> result = implied(Block(width=1.0, height=2.0), 0.7)
+    >>> round(result.impulse_ratio, 12), round(result.energy_loss, 12)
+    (1.0, 0.51)
+    """
+    r = checks.within("coefficient", coefficient, 0.0, math.inf, hint="a ratio of angular velocities")
+    new, old = body.side(onto), body.side(opposite(checks.foot("onto", onto)))
+    base_inertia = new.moment_of_inertia - new.mass * new.half_width**2
+    lift = old.half_width + r * new.half_width
+    arm = base_inertia * (1.0 - r) / (new.mass * lift)
+    direction = 1.0 if onto == "right" else -1.0
+    bound = math.sqrt(old.moment_of_inertia / new.moment_of_inertia)
+    return Implication(
+        coefficient=r,
+        impulse_arm=arm,
+        impulse_ratio=arm / new.half_width,
+        impulse_x=body.centre[0] + direction * arm,
+        friction_demand=new.centre_height * abs(1.0 - r) / lift,
+        energy_loss=1.0 - (r / bound) ** 2,
+        largest_coefficient=bound,
+        within_base=-old.half_width * (1.0 + _SLACK) <= arm <= new.half_width * (1.0 + _SLACK),
+        within_energy=r <= bound * (1.0 + _SLACK),
+    )
