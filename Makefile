@@ -1,0 +1,65 @@
+# One environment in .venv serves everything; it is set up when first needed and again when a lock changes.
+PYTHON ?= python3
+OUT ?= demo-output
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+.PHONY: help demo test lint bench gallery lock clean
+
+help:
+	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
+	@echo "make test     set up, run linters, type checker, docstring and import checks, tests with coverage"
+	@echo "make lint     the checks alone          make bench    speed, as ratios"
+	@echo "make gallery  run every example         make lock     pin the dependencies anew"
+	@echo "make clean    remove what was made"
+
+$(VENV)/created:
+	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "rocking needs Python 3.11 or newer, this is " + sys.version)'
+	@echo "Making an environment in $(VENV) ..."
+	@$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+$(VENV)/demo: $(VENV)/created requirements/demo.lock pyproject.toml
+	@echo "Installing the pinned dependencies (a minute or two, once) ..."
+	@$(PIP) install --require-hashes -r requirements/demo.lock
+	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@touch $@
+
+$(VENV)/dev: $(VENV)/created requirements/dev.lock pyproject.toml
+	@echo "Installing the pinned dependencies and tools (a minute or two, once) ..."
+	@$(PIP) install --require-hashes -r requirements/dev.lock
+	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@touch $@ $(VENV)/demo
+
+demo: $(VENV)/demo
+	@$(BIN)/rocking paper --out $(OUT)
+	@$(BIN)/rocking cor --width 1 --height 4 --picture $(OUT)/body.png
+
+lint: $(VENV)/dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m numpydoc.hooks.validate_docstrings $$(git ls-files 'src/rocking/*.py')
+	$(BIN)/lint-imports
+	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
+
+test: lint
+	$(BIN)/python -m pytest --cov --cov-report=term
+
+bench: $(VENV)/dev
+	$(BIN)/python -m benchmarks
+
+gallery: $(VENV)/dev
+	@for example in examples/*.py; do echo "== $$example"; $(BIN)/python $$example || exit 1; done
+
+lock: $(VENV)/created
+	$(PIP) install uv
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
+		--no-annotate --no-emit-package rocking --extra dev pyproject.toml -o requirements/dev.lock
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
+		--no-annotate --no-emit-package rocking --extra demo --constraint requirements/dev.lock pyproject.toml \
+		-o requirements/demo.lock
+
+clean:
+	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage $(OUT) gallery-output
