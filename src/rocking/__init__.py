@@ -4,11 +4,32 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rocking import bodies, conventions, errors, restitution
-    from rocking.bodies import Block, Body, MassPoints, Region, Section, Side
+    from rocking import bodies, conventions, errors, evidence, plots, report, restitution
+    from rocking.bodies import Block, Body, MassPoints, Region, Section, Side, shapes
+    from rocking.bodies.formats import read_body
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Block",
+    "Body",
+    "MassPoints",
+    "Region",
+    "RestitutionModel",
+    "Section",
+    "Side",
+    "bodies",
+    "coefficient_of_restitution",
+    "conventions",
+    "errors",
+    "evidence",
+    "plots",
+    "read_body",
+    "report",
+    "restitution",
+    "shapes",
+]
 
 _HOME = {
     "Block": "rocking.bodies",
@@ -19,19 +40,17 @@ _HOME = {
     "Section": "rocking.bodies",
     "Side": "rocking.bodies",
     "coefficient_of_restitution": "rocking.restitution",
+    "read_body": "rocking.bodies.formats",
+    "shapes": "rocking.bodies",
 }
-_ROOMS = ("bodies", "conventions", "errors", "restitution")
-
-__all__ = [*_HOME, *_ROOMS]
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first asked for, so that `import rocking` stays quick."""
-    if name in _HOME:
-        return getattr(import_module(_HOME[name]), name)
-    if name in _ROOMS:
-        return import_module(f"rocking.{name}")
-    raise AttributeError(f"module 'rocking' has no attribute {name!r}")
+    if name not in __all__:
+        raise AttributeError(f"module 'rocking' has no attribute {name!r}")
+    home = _HOME.get(name)
+    return getattr(import_module(home), name) if home else import_module(f"rocking.{name}")
 
 
 def __dir__() -> list[str]:

@@ -1,9 +1,10 @@
 """What rocks: blocks, sections of any shape, mass points."""
 
+from rocking.bodies import shapes
 from rocking.bodies.block import Block
 from rocking.bodies.body import Body
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.section import Region, Section
 from rocking.bodies.side import Side
 
-__all__ = ["Block", "Body", "MassPoints", "Region", "Section", "Side"]
+__all__ = ["Block", "Body", "MassPoints", "Region", "Section", "Side", "shapes"]

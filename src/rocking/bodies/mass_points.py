@@ -77,7 +77,7 @@ class MassPoints(Body):
         return self._feet
 
     @cached_property
-    def local_moments(self) -> PlaneMoments:  # type: ignore[override]
+    def local_moments(self) -> PlaneMoments:
         """Sums over the points."""
         mass = float(self.masses.sum())
         x, y = (self.masses @ self.points) / mass

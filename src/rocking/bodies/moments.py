@@ -92,6 +92,4 @@ def combined(parts: Iterable[PlaneMoments]) -> PlaneMoments:
     m, x, y, xx, yy = np.array([(p.mass, p.x, p.y, p.xx, p.yy) for p in parts]).T
     mass = float(m.sum())
     cx, cy = float(m @ x) / mass, float(m @ y) / mass
-    return PlaneMoments(
-        mass, cx, cy, float((xx + m * (x - cx) ** 2).sum()), float((yy + m * (y - cy) ** 2).sum())
-    )
+    return PlaneMoments(mass, cx, cy, float((xx + m * (x - cx) ** 2).sum()), float((yy + m * (y - cy) ** 2).sum()))

@@ -212,9 +212,7 @@ class Section(Body):
         return cls.from_points(shapes.rectangle(width, height), **options)
 
     @classmethod
-    def from_trapezoid(
-        cls, base: float, top: float, height: float, lean: float = 0.0, **options: Any
-    ) -> "Section":
+    def from_trapezoid(cls, base: float, top: float, height: float, lean: float = 0.0, **options: Any) -> "Section":
         """Return a trapezoid standing on 0 <= x <= base.
 
         Parameters
@@ -294,16 +292,14 @@ class Section(Body):
         return self._local_feet
 
     @cached_property
-    def local_moments(self) -> PlaneMoments:  # type: ignore[override]
+    def local_moments(self) -> PlaneMoments:
         """Mass, centre and central second moments in the local frame, exact for polygons."""
         return combined(
-            ring_moments(ring).times(region.density * self._depth)
-            for region in self.regions
-            for ring in region.rings
+            ring_moments(ring).times(region.density * self._depth) for region in self.regions for ring in region.rings
         )
 
     @cached_property
-    def local_contact(self) -> tuple[Interval, ...]:  # type: ignore[override]
+    def local_contact(self) -> tuple[Interval, ...]:
         """Flat stretches of the base between the feet, local frame [m]; none if it stands on points."""
         left, right = self._local_feet
         stretches = sorted(self._ground_edges())

@@ -77,7 +77,7 @@ def ellipse(width: float, height: float, sides: int = 64) -> FloatArray:
     0.0
     """
     w, h = checks.positive("width", width, "m"), checks.positive("height", height, "m")
-    if isinstance(sides, bool) or not isinstance(sides, int) or sides < 3:
+    if type(sides) is not int or sides < 3:
         raise InvalidValueError(f"sides must be a whole number >= 3, got {sides!r}")
     angle = -0.5 * math.pi + 2.0 * math.pi / sides * (np.arange(sides) + 0.5)
     x, y = 0.5 * w * np.cos(angle), 0.5 * h * np.sin(angle)

@@ -43,7 +43,7 @@ def ring(name: str, points: Any) -> FloatArray:
     if not finite.all():
         bad = int(np.argmin(finite))
         raise GeometryError(f"{name}: point {bad} must be finite, got {tuple(vertices[bad].tolist())}")
-    kept = vertices[(vertices != np.roll(vertices, 1, axis=0)).any(axis=1)]
+    kept: FloatArray = vertices[(vertices != np.roll(vertices, 1, axis=0)).any(axis=1)]
     if len(kept) < 3:
         raise GeometryError(f"{name} must have at least 3 different points, got {len(kept)}")
     return kept

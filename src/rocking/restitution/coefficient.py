@@ -1,4 +1,4 @@
-"""The one-line question: what is the coefficient of restitution of this body?"""
+"""The one-line question: the coefficient of restitution of a body under a model."""
 
 from typing import Any
 

@@ -57,7 +57,7 @@ class DistributedImpulse(InertiaModel):
         checks.within("q", self.q, 0.0, float("inf"), open_high=True)
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Closed form for a base that touches from foot to foot.
+        """Evaluate the closed form for a base that touches from foot to foot.
 
         Parameters
         ----------
@@ -81,7 +81,7 @@ class DistributedImpulse(InertiaModel):
         return np.where(leaves, np.exp(-np.where(leaves, exponent, np.inf)), 0.0)
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Closed form where the whole base touches, quadrature over its parts otherwise.
+        """Evaluate the closed form where the whole base touches, quadrature over its parts otherwise.
 
         Parameters
         ----------

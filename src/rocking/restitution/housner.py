@@ -29,9 +29,7 @@ class Housner(InertiaModel):
         "the impulse acts at the new foot alone: the base touches at its corners only",
         "no sliding, no bouncing",
     )
-    domain = (
-        "r > 0 (rectangles with h/b > 1/sqrt(2)); below, both corners take an impulse and the body stops: r = 0"
-    )
+    domain = "r > 0 (rectangles with h/b > 1/sqrt(2)); below, both corners take an impulse and the body stops: r = 0"
     known_defects = (
         "measured coefficients of squat blocks (h/b below about 4) lie above it",
         "real bases touch over an area, so the impulse acts inside the base",

@@ -43,7 +43,8 @@ class IdentityCheck:
         """The verdict as a user reads it."""
         if self.holds:
             return f"{self.name}: holds"
-        return f"{self.name}: violated for this body ({self.statement}; expected {self.expected:.6g}, got {self.found:.6g})"
+        numbers = f"expected {self.expected:.6g}, got {self.found:.6g}"
+        return f"{self.name}: violated for this body ({self.statement}; {numbers})"
 
 
 def identity_report(body: Body, model: RestitutionModel, *, onto: Foot = "right") -> tuple[IdentityCheck, ...]:
@@ -128,7 +129,11 @@ def _round_trip(body: Body, model: RestitutionModel, onto: Foot) -> IdentityChec
 def _on_base(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
     result = implied(body, model.coefficient(body, onto), onto=onto)
     return IdentityCheck(
-        "impulse on the base", "the implied impulse acts on the base, k <= 1", 1.0, result.impulse_ratio, result.within_base
+        "impulse on the base",
+        "the implied impulse acts on the base, k <= 1",
+        1.0,
+        result.impulse_ratio,
+        result.within_base,
     )
 
 
@@ -144,9 +149,7 @@ _CHECKS: tuple[Callable[[Body, RestitutionModel, Foot], IdentityCheck], ...] = (
 )
 
 
-def _equal(
-    name: str, statement: str, expected: float, found: float, tolerance: float = _EXACT
-) -> IdentityCheck:
+def _equal(name: str, statement: str, expected: float, found: float, tolerance: float = _EXACT) -> IdentityCheck:
     return IdentityCheck(name, statement, expected, found, abs(found - expected) <= tolerance)
 
 

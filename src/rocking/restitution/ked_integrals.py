@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import BoolArray, FloatArray
 
 # Below this slenderness the closed form loses more than two digits and the series is summed instead.
 _SERIES_BELOW = 0.3
@@ -95,7 +95,7 @@ def ring_integral(ring: FloatArray) -> float:
     return 0.25 * total
 
 
-def _is_smooth(offset: FloatArray, u0: FloatArray, u1: FloatArray) -> np.ndarray:  # type: ignore[type-arg]
+def _is_smooth(offset: FloatArray, u0: FloatArray, u1: FloatArray) -> BoolArray:
     # size of the Bernstein ellipse through the pole u = i * offset; 12 nodes err by its power -24
     z = (1j * np.abs(offset) - 0.5 * (u0 + u1)) / (0.5 * (u1 - u0))
     root = np.sqrt(z * z - 1.0)

@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Block, Body
-from rocking.conventions import FloatArray, Foot
+from rocking.conventions import BoolArray, FloatArray, Foot
 from rocking.errors import InvalidValueError
 from rocking.restitution.impact import ImpactGeometry
 
@@ -69,6 +69,7 @@ class RestitutionModel(ABC):
     >>> import rocking as rk
     >>> class Half(rk.RestitutionModel):
     ...     name = "half"
+    ...
     ...     def raw_coefficient(self, body, onto):
     ...         return 0.5
     >>> rk.coefficient_of_restitution(rk.Block(width=1.0, height=4.0), Half())
@@ -187,7 +188,7 @@ class RestitutionModel(ABC):
         raw = self.raw_of_slenderness(checks.positive_array("slenderness_ratio", slenderness))
         return np.maximum(raw, 0.0) if self.can_stop else raw
 
-    def stops(self, slenderness: Any) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    def stops(self, slenderness: Any) -> BoolArray:
         """Return where a homogeneous rectangle stops instead of stepping on.
 
         Parameters

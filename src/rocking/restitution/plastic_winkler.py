@@ -59,7 +59,7 @@ class PlasticWinkler(InertiaModel):
         lever = geometry.new_lever
         kappa, back = np.broadcast_arrays(lever**2 / geometry.base_gyration, geometry.old_lever / lever)
         if kappa.size > _LARGEST_BATCH and (back == 1.0).all() and kappa.max() <= 3.0:
-            return np.exp(kappa * _loss_of_rectangle()(kappa))
+            return np.asarray(np.exp(kappa * _loss_of_rectangle()(kappa)))
         flat = np.column_stack([kappa.ravel(), back.ravel()])
         values = [_impact(float(k), float(b), np.array([[-b, 1.0]])) for k, b in flat.tolist()]
         return np.array(values).reshape(kappa.shape)
@@ -122,4 +122,5 @@ def _impact(kappa: float, back: float, patches: FloatArray) -> float:
     tip.terminal = stop.terminal = True  # type: ignore[attr-defined]
     start = np.array([-back, 1.0, 0.0, 0.0])
     run = solve_ivp(bed, (0.0, 1e4), start, "DOP853", rtol=_TOLERANCE, atol=1e-16, events=[tip, stop])
-    return 0.0 if len(run.t_events[1]) else float(run.y[1, -1])
+    stopped = run.t_events is not None and len(run.t_events[1]) > 0
+    return 0.0 if stopped else float(run.y[1, -1])

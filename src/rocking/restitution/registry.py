@@ -1,5 +1,6 @@
 """Names of the restitution models; a new one is one file and one line here, or one call of `register`."""
 
+import inspect
 from typing import Any
 
 from rocking import checks
@@ -63,9 +64,9 @@ def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
     InvalidValueError
         If it is no such class, has no name, or another model has that name.
     """
-    if not (isinstance(kind, type) and issubclass(kind, RestitutionModel)):
+    if not (inspect.isclass(kind) and issubclass(kind, RestitutionModel)):
         raise InvalidValueError(f"a restitution model is a subclass of RestitutionModel, got {kind!r}")
-    name = getattr(kind, "name", None)
+    name: object = getattr(kind, "name", None)
     if not isinstance(name, str) or not name:
         raise InvalidValueError(f"{kind.__name__} needs a class attribute name = '...'")
     if _MODELS.get(name, kind) is not kind:
