@@ -64,7 +64,8 @@ def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
     InvalidValueError
         If it is no such class, has no name, or another model has that name.
     """
-    if not (inspect.isclass(kind) and issubclass(kind, RestitutionModel)):
+    candidate: object = kind
+    if not (inspect.isclass(candidate) and issubclass(candidate, RestitutionModel)):
         raise InvalidValueError(f"a restitution model is a subclass of RestitutionModel, got {kind!r}")
     name: object = getattr(kind, "name", None)
     if not isinstance(name, str) or not name:

@@ -1,0 +1,34 @@
+"""The command line: `rocking cor`, `rocking paper`, `rocking models`."""
+
+import sys
+from collections.abc import Sequence
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and leave with its exit code: 0 done, 2 refused, 130 interrupted.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after ``rocking``; by default those of the process.
+
+    Raises
+    ------
+    SystemExit
+        Always.
+    """
+    from rocking.cli.application import application
+    from rocking.errors import RockingError
+
+    try:
+        code = application()(args=arguments, prog_name="rocking", standalone_mode=True)
+    except RockingError as error:
+        print(f"rocking: {error}", file=sys.stderr)
+        sys.exit(2)
+    except OSError as error:
+        print(f"rocking: {error.strerror or error}: {error.filename or ''}".rstrip(": "), file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        print("rocking: interrupted", file=sys.stderr)
+        sys.exit(130)
+    sys.exit(code or 0)

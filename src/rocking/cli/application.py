@@ -1,0 +1,43 @@
+"""The commands and their help; what they do is imported when they run."""
+
+import typer
+
+from rocking.cli.cor import cor
+from rocking.cli.models import models
+from rocking.cli.paper import paper
+
+
+def application() -> typer.Typer:
+    """Return the command line application.
+
+    Returns
+    -------
+    typer.Typer
+        With every command registered.
+    """
+    app = typer.Typer(
+        name="rocking",
+        help="Predict what an impact costs a rocking body, with the evidence beside every number.",
+        no_args_is_help=True,
+        pretty_exceptions_enable=False,
+        add_completion=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback()(_root)
+    for command in (cor, paper, models):
+        app.command()(command)
+    return app
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from rocking import __version__
+
+        print(f"rocking {__version__}")
+        raise typer.Exit
+
+
+def _root(
+    version: bool = typer.Option(False, "--version", callback=_version, is_eager=True, help="Print the version."),
+) -> None:
+    """Predict what an impact costs a rocking body, with the evidence beside every number."""

@@ -1,0 +1,67 @@
+"""The body of a command: a file, or dimensions on the command line."""
+
+from pathlib import Path
+
+from rocking.bodies import Block, Body
+from rocking.checks import length_unit
+from rocking.errors import InvalidValueError
+
+
+def body_from(
+    file: Path | None,
+    *,
+    width: float | None,
+    height: float | None,
+    depth: float | None,
+    density: float | None,
+    angle: float | None,
+    semi_diagonal: float | None,
+    unit: str | None,
+) -> Body:
+    """Return the body that a command was given.
+
+    Parameters
+    ----------
+    file : Path, optional
+        Body file.
+    width, height, depth : float, optional
+        Dimensions of a block, in `unit`.
+    density : float, optional
+        Density [kg/m3].
+    angle : float, optional
+        Slenderness angle [rad].
+    semi_diagonal : float, optional
+        Semi-diagonal, in `unit`.
+    unit : str, optional
+        Unit of length; m if not given, and for files the unit they are drawn in.
+
+    Returns
+    -------
+    Body
+        The body.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is given twice, in part, or not at all.
+    """
+    sizes = {"--width": width, "--height": height, "--angle": angle, "--semi-diagonal": semi_diagonal}
+    given = [name for name, value in sizes.items() if value is not None]
+    if file is not None:
+        if given or depth is not None or density is not None:
+            raise InvalidValueError("give a body file or dimensions, not both")
+        from rocking.bodies.formats import read_body
+
+        return read_body(file, units=unit)
+    scale = length_unit(unit or "m")
+    options = {} if density is None else {"density": density}
+    if depth is not None:
+        options["depth"] = depth * scale
+    if width is not None and height is not None and len(given) == 2:
+        return Block(width=width * scale, height=height * scale, **options)
+    if angle is not None and semi_diagonal is not None and len(given) == 2:
+        return Block.from_angle(angle, semi_diagonal * scale, **options)
+    raise InvalidValueError(
+        "a body is a file, or --width and --height, or --angle and --semi-diagonal; "
+        f"got {' '.join(given) if given else 'none of them'}"
+    )

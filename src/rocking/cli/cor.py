@@ -1,0 +1,77 @@
+"""`rocking cor`: the coefficient of restitution of a body under every model."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+_BODY = "Size"
+_OUTPUT = "Output"
+
+
+def cor(
+    body: Annotated[Path | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit.")] = None,
+    width: Annotated[float | None, typer.Option(help="Full width of a block.", rich_help_panel=_BODY)] = None,
+    height: Annotated[float | None, typer.Option(help="Full height of a block.", rich_help_panel=_BODY)] = None,
+    depth: Annotated[float | None, typer.Option(help="Depth of a block.", rich_help_panel=_BODY)] = None,
+    density: Annotated[float | None, typer.Option(help="Density [kg/m3].", rich_help_panel=_BODY)] = None,
+    angle: Annotated[
+        float | None, typer.Option(help="Slenderness angle alpha = atan(b/h) [rad].", rich_help_panel=_BODY)
+    ] = None,
+    semi_diagonal: Annotated[
+        float | None, typer.Option(help="Semi-diagonal R, with --angle.", rich_help_panel=_BODY)
+    ] = None,
+    unit: Annotated[
+        str | None, typer.Option(help="Unit of all lengths: m (default), cm, mm, ft, in.", rich_help_panel=_BODY)
+    ] = None,
+    onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
+    model: Annotated[
+        list[str] | None,
+        typer.Option(help="Model, repeatable: ked, 0.98*ked, shifted-impulse:k=0.6, my_file.py:MyModel."),
+    ] = None,
+    eta: Annotated[float, typer.Option(help="Interface factor in (0, 1] on every model.")] = 1.0,
+    gravity: Annotated[float | None, typer.Option(help="Acceleration of gravity [m/s2].")] = None,
+    identities: Annotated[
+        bool, typer.Option("--identities", help="Also try the identities of mechanics on every model.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+    csv: Annotated[Path | None, typer.Option(help="Write the table for Excel.", rich_help_panel=_OUTPUT)] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(help="Draw the body against the published data (.png, .svg, .pdf).", rich_help_panel=_OUTPUT),
+    ] = None,
+) -> None:
+    """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
+    from rocking.cli import cor_output
+    from rocking.cli.body_options import body_from
+    from rocking.cli.model_options import models_from
+    from rocking.conventions import g
+
+    subject = body_from(
+        body,
+        width=width,
+        height=height,
+        depth=depth,
+        density=density,
+        angle=angle,
+        semi_diagonal=semi_diagonal,
+        unit=unit,
+    )
+    answer = cor_output.Answer.of(
+        subject,
+        models_from(model),
+        onto=onto,
+        eta=eta,
+        gravity=g if gravity is None else gravity,
+        identities=identities,
+    )
+    if csv is not None:
+        cor_output.write_csv(answer, csv)
+    if picture is not None:
+        cor_output.draw(answer, picture)
+    if as_json:
+        print(cor_output.as_json(answer))
+    else:
+        cor_output.show(answer)
+        for path in filter(None, (csv, picture)):
+            print(f"wrote {path}")

@@ -1,0 +1,46 @@
+"""`rocking models`: every restitution model with its source, assumptions, domain and defects."""
+
+import json
+import textwrap
+from typing import Annotated
+
+import typer
+
+
+def models(
+    name: Annotated[str | None, typer.Argument(help="One model; all if left out.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """List the restitution models: reference, assumptions, domain, known defects."""
+    from rocking.restitution import models as registered
+
+    found = registered()
+    if name is not None and name not in found:
+        from rocking.errors import UnknownModelError
+
+        raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(found)}")
+    chosen = {key: kind for key, kind in found.items() if name in (None, key)}
+    facts = {
+        key: {
+            "title": kind.title,
+            "reference": kind.reference,
+            "assumptions": list(kind.assumptions),
+            "domain": kind.domain,
+            "known_defects": list(kind.known_defects),
+        }
+        for key, kind in chosen.items()
+    }
+    if as_json:
+        print(json.dumps(facts, indent=2))
+        return
+    for key, entry in facts.items():
+        print(f"{key}: {entry['title']}")
+        for word in ("reference", "assumptions", "domain", "known_defects"):
+            _print_fact(word.replace("_", " "), entry[word])
+        print()
+
+
+def _print_fact(word: str, value: str | list[str]) -> None:
+    for i, line in enumerate([value] if isinstance(value, str) else value):
+        first = f"  {word + ':' if i == 0 else '':<15}"
+        print(textwrap.fill(line, width=100, initial_indent=first, subsequent_indent=" " * 17))

@@ -1,0 +1,167 @@
+"""One body under every model: coefficient with its interval, and what it implies."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rocking.evidence.calibration import CALIBRATED_RANGE, calibrate, interval_for
+
+from rocking.bodies import Body
+from rocking.conventions import Foot, opposite
+from rocking.restitution import Flag, Implication, RestitutionModel, implied, model, models
+
+CALIBRATED = "calibrated"
+
+
+@dataclass(frozen=True, slots=True)
+class CoefficientRow:
+    """One model's answer for one body.
+
+    Parameters
+    ----------
+    name : str
+        Name of the model with its parameters, or ``"calibrated"``.
+    title : str
+        The model in one line.
+    coefficient : float
+        theta_dot_after / theta_dot_before [-].
+    low, high : float
+        95 % interval for a single measured body, from the residuals on the published measurements [-].
+    implication : Implication
+        Impulse position, friction, energy loss.
+    warnings : tuple of str
+        What a user should know before using the number.
+    """
+
+    name: str
+    title: str
+    coefficient: float
+    low: float
+    high: float
+    implication: Implication
+    warnings: tuple[str, ...]
+
+    @property
+    def half_interval(self) -> float:
+        """Half the width of the interval [-]."""
+        return 0.5 * (self.high - self.low)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the row as plain values, for JSON and tables.
+
+        Returns
+        -------
+        dict
+            Field names to numbers and strings.
+        """
+        return {
+            "model": self.name,
+            "coefficient_of_restitution": self.coefficient,
+            "low_95": self.low,
+            "high_95": self.high,
+            "impulse_ratio_k": self.implication.impulse_ratio,
+            "impulse_x_m": self.implication.impulse_x,
+            "energy_loss": self.implication.energy_loss,
+            "friction_demand": self.implication.friction_demand,
+            "admissible": self.implication.admissible,
+            "warnings": list(self.warnings),
+        }
+
+
+def default_models() -> list[RestitutionModel]:
+    """Return every registered model that needs no value by hand.
+
+    Returns
+    -------
+    list of RestitutionModel
+        With default parameters, in the order of the registry.
+    """
+    return [model(name) for name in models() if name != "fixed"]
+
+
+def coefficient_table(
+    body: Body,
+    which: Sequence[RestitutionModel] | None = None,
+    *,
+    onto: Foot = "right",
+    eta: float = 1.0,
+    calibrated: bool = True,
+) -> tuple[CoefficientRow, ...]:
+    """Return the coefficient of a body under every model, with intervals and implications.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    which : sequence of RestitutionModel, optional
+        Models to show; by default every registered one.
+    onto : {"left", "right"}
+        The foot on which it lands.
+    eta : float
+        Interface factor applied to every model [-].
+    calibrated : bool
+        Whether the calibrated default comes first.
+
+    Returns
+    -------
+    tuple of CoefficientRow
+        One row a model.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> rows = coefficient_table(Block(width=1.0, height=4.0))
+    >>> rows[0].name, [round(row.coefficient, 6) for row in rows if row.name == "housner"]
+    ('calibrated', [0.911765])
+    """
+    chosen = default_models() if which is None else list(which)
+    rows = [_model_row(body, model(each, eta=eta), onto) for each in chosen]
+    return ((_calibrated_row(body, onto), *rows)) if calibrated else tuple(rows)
+
+
+def outside_evidence(body: Body, onto: Foot = "right") -> str:
+    """Say whether a body lies outside the slendernesses that were measured.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    onto : {"left", "right"}
+        The foot on which it lands.
+
+    Returns
+    -------
+    str
+        A sentence, or nothing if the body lies inside.
+    """
+    low, high = CALIBRATED_RANGE
+    ratio = body.side(opposite(onto)).slenderness_ratio
+    if low <= ratio <= high:
+        return ""
+    return f"h/b = {ratio:.3g} is outside the measured range {low:g} to {high:g}: the interval is an extrapolation"
+
+
+def _model_row(body: Body, which: RestitutionModel, onto: Foot) -> CoefficientRow:
+    result = which.evaluate(body, onto)
+    implication = implied(body, result.coefficient, onto=onto)
+    interval = interval_for(which, body, onto=onto)
+    warnings = tuple(flag.value for flag in result.flags if isinstance(flag, Flag)) + implication.objections
+    return CoefficientRow(
+        which.label, which.title, result.coefficient, interval.low, interval.high, implication, warnings
+    )
+
+
+def _calibrated_row(body: Body, onto: Foot) -> CoefficientRow:
+    calibration = calibrate()
+    prediction = calibration.predict(body, onto=onto)
+    value = float(prediction.coefficient)
+    implication = implied(body, value, onto=onto)
+    return CoefficientRow(
+        CALIBRATED,
+        f"default, fitted to the published measurements: {calibration.model().label}",
+        value,
+        float(prediction.low),
+        float(prediction.high),
+        implication,
+        tuple(words for words in (outside_evidence(body, onto), *implication.objections) if words),
+    )
