@@ -22,13 +22,13 @@ $(VENV)/created:
 
 $(VENV)/demo: $(VENV)/created requirements/demo.lock pyproject.toml
 	@echo "Installing the pinned dependencies (a minute or two, once) ..."
-	@$(PIP) install --require-hashes -r requirements/demo.lock
+	@$(PIP) install --require-hashes --only-binary=:all: -r requirements/demo.lock
 	@$(PIP) install --no-deps --no-build-isolation --editable .
 	@touch $@
 
 $(VENV)/dev: $(VENV)/created requirements/dev.lock pyproject.toml
 	@echo "Installing the pinned dependencies and tools (a minute or two, once) ..."
-	@$(PIP) install --require-hashes -r requirements/dev.lock
+	@$(PIP) install --require-hashes --only-binary=:all: -r requirements/dev.lock
 	@$(PIP) install --no-deps --no-build-isolation --editable .
 	@touch $@ $(VENV)/demo
 
@@ -40,7 +40,7 @@ lint: $(VENV)/dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/python -m numpydoc.hooks.validate_docstrings $$(git ls-files 'src/rocking/*.py')
+	$(BIN)/python -m numpydoc lint $$(find src/rocking -name '*.py')
 	$(BIN)/lint-imports
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
 
@@ -56,9 +56,9 @@ gallery: $(VENV)/dev
 lock: $(VENV)/created
 	$(PIP) install uv
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --extra dev pyproject.toml -o requirements/dev.lock
+		--no-annotate --no-emit-package rocking --upgrade --extra dev pyproject.toml -o requirements/dev.lock
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
-		--no-annotate --no-emit-package rocking --extra demo --constraint requirements/dev.lock pyproject.toml \
+		--no-annotate --no-emit-package rocking --upgrade --extra demo --constraint requirements/dev.lock pyproject.toml \
 		-o requirements/demo.lock
 
 clean:

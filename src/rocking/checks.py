@@ -143,16 +143,68 @@ def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
     InvalidValueError
         If any of them is not finite or not above zero; the first one is named with its index.
     """
-    try:
-        result = np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidValueError(f"{name} must be numbers [{unit}], got {_short(values)}") from error
-    # min() carries NaN along, so two reductions settle the whole array
-    if result.size and not (result.min() > 0.0 and result.max() < math.inf):
-        bad = tuple(int(i) for i in np.argwhere(~((result > 0.0) & np.isfinite(result)))[0])
-        where = f" at index {bad[0] if len(bad) == 1 else bad}" if bad else ""
-        raise InvalidValueError(f"{name} must be finite and > 0{_in(unit)}, got {result[bad]}{where}")
+    result = real_array(name, values, unit)
+    all_positive(name, result, unit)
     return result
+
+
+def real_array(name: str, values: Any, unit: str = "-") -> FloatArray:
+    """Return `values` as an array of float64, finite or not.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    values : Any
+        A number or an array of any shape.
+    unit : str
+        Unit that the error shows.
+
+    Returns
+    -------
+    ndarray
+        float64, of the same shape; not a copy if it already was one.
+
+    Raises
+    ------
+    InvalidValueError
+        If these are not real numbers.
+    """
+    try:
+        given = np.asarray(values)
+    except ValueError as error:
+        raise InvalidValueError(f"{name} must be numbers [{unit}], got {_short(values)}") from error
+    if given.dtype.kind not in "iuf":
+        raise InvalidValueError(f"{name} must be numbers [{unit}], got {_short(values)}")
+    return np.asarray(given, dtype=np.float64)
+
+
+def all_positive(name: str, values: FloatArray, unit: str = "-", whole: FloatArray | None = None) -> None:
+    """Refuse an array that holds anything but finite numbers above zero.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    values : ndarray
+        The array, or a piece of one.
+    unit : str
+        Unit that the error shows.
+    whole : ndarray, optional
+        The array that the piece is from, so that the index in the error is the user's.
+
+    Raises
+    ------
+    InvalidValueError
+        Naming the first bad value and its index.
+    """
+    # min() and max() carry NaN along, so two reductions settle it
+    if not values.size or (values.min() > 0.0 and values.max() < math.inf):
+        return
+    whole = values if whole is None else whole
+    bad = tuple(int(i) for i in np.argwhere(~((whole > 0.0) & np.isfinite(whole)))[0])
+    where = f" at index {bad[0] if len(bad) == 1 else bad}" if bad else ""
+    raise InvalidValueError(f"{name} must be finite and > 0{_in(unit)}, got {whole[bad]:g}{where}")
 
 
 def foot(name: str, value: Any) -> Foot:

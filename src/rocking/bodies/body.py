@@ -125,7 +125,7 @@ class Body(ABC):
         --------
         >>> from rocking import Block
         >>> round(Block(width=1.0, height=4.0).side("right", gravity=9.81).frequency_parameter, 10)
-        1.8891563520
+        1.889156352
         """
         foot = checks.foot("foot", foot)
         moments, (left, right) = self.local_moments, self.local_feet

@@ -71,6 +71,11 @@ def ellipse(width: float, height: float, sides: int = 64) -> FloatArray:
     ndarray, shape (sides, 2)
         Vertices, counter-clockwise, centred on x = 0 [m].
 
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+
     Examples
     --------
     >>> float(ellipse(2.0, 4.0, sides=8)[:, 1].min())

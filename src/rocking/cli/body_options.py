@@ -54,7 +54,7 @@ def body_from(
 
         return read_body(file, units=unit)
     scale = length_unit(unit or "m")
-    options = {} if density is None else {"density": density}
+    options: dict[str, float] = {} if density is None else {"density": density}
     if depth is not None:
         options["depth"] = depth * scale
     if width is not None and height is not None and len(given) == 2:

@@ -28,8 +28,8 @@ class ImpactGeometry:
 
     Examples
     --------
-    >>> float(ImpactGeometry.of_slenderness(2.0).base_gyration)
-    5.666666666666667
+    >>> round(float(ImpactGeometry.of_slenderness(2.0).base_gyration), 12)
+    5.666666666667
     """
 
     height: FloatArray

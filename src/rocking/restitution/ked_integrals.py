@@ -7,7 +7,6 @@ from rocking.conventions import BoolArray, FloatArray
 # Below this slenderness the closed form loses more than two digits and the series is summed instead.
 _SERIES_BELOW = 0.3
 _SERIES = np.array([(-1.0) ** j / ((2 * j - 1) * (2 * j + 3)) for j in range(14, 0, -1)])
-_CHUNK = 16384
 # Edges whose end angles differ little are summed by Gauss-Legendre: the closed form would cancel.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _GAUSS_BEYOND = 5.0
@@ -28,36 +27,26 @@ def coefficient_of_rectangle(slenderness: FloatArray) -> FloatArray:
     ndarray
         r, relative error below 3e-14 [-].
     """
-    flat = np.ascontiguousarray(slenderness).ravel()
-    result = np.empty_like(flat)
-    room = np.empty((3, min(_CHUNK, flat.size)))
-    # chunks that stay in the cache: the arithmetic costs less than moving the data
-    with np.errstate(over="ignore", invalid="ignore"):
-        for start in range(0, flat.size, _CHUNK):
-            chunk = flat[start : start + _CHUNK]
-            _closed_form(chunk, room[:, : chunk.size], result[start : start + _CHUNK])
-    return result.reshape(np.shape(slenderness))
-
-
-def _closed_form(ratio: FloatArray, room: FloatArray, out: FloatArray) -> None:
     # N/D in partial fractions, t = 1/l: r^2 = 1/4 + (3 pi t/8 - 1) / (1 + l^2) + 3/4 atan(t) (l - t)
-    t, angle, below = room
-    np.divide(1.0, ratio, out=t)
-    np.arctan(t, out=angle)
-    np.subtract(ratio, t, out=out)
-    out *= angle
-    out *= 0.75
-    t *= 0.375 * np.pi
-    t -= 1.0
-    np.multiply(ratio, ratio, out=below)
-    below += 1.0
-    t /= below
-    out += t
-    out += 0.25
-    np.sqrt(out, out=out)
-    if ratio.min() < _SERIES_BELOW:
+    ratio = np.asarray(slenderness)
+    t = np.divide(1.0, ratio, out=np.empty(ratio.shape))
+    result = np.subtract(ratio, t, out=np.empty(ratio.shape))
+    room = np.arctan(t, out=np.empty(ratio.shape))
+    with np.errstate(over="ignore", invalid="ignore"):
+        result *= room
+        result *= 0.75
+        np.multiply(ratio, ratio, out=room)
+        room += 1.0
+        t *= 0.375 * np.pi
+        t -= 1.0
+        t /= room
+        result += t
+        result += 0.25
+        np.sqrt(result, out=result)
+    if ratio.size and ratio.min() < _SERIES_BELOW:
         squat = ratio < _SERIES_BELOW
-        out[squat] = _series(ratio[squat])
+        result[squat] = _series(ratio[squat])
+    return result
 
 
 def _series(t: FloatArray) -> FloatArray:

@@ -13,6 +13,8 @@ from rocking.conventions import BoolArray, FloatArray, Foot
 from rocking.errors import InvalidValueError
 from rocking.restitution.impact import ImpactGeometry
 
+_PIECE = 16384
+
 
 class Flag(Enum):
     """Why a coefficient is not the bare number of its model; the value is the sentence a user reads."""
@@ -185,8 +187,8 @@ class RestitutionModel(ABC):
         >>> Housner().of_slenderness([0.5, 2.0, 4.0]).round(6).tolist()
         [0.0, 0.7, 0.911765]
         """
-        raw = self.raw_of_slenderness(checks.positive_array("slenderness_ratio", slenderness))
-        return np.maximum(raw, 0.0) if self.can_stop else raw
+        raw = self._raw_checked(slenderness)
+        return np.maximum(raw, 0.0, out=raw) if self.can_stop else raw
 
     def stops(self, slenderness: Any) -> BoolArray:
         """Return where a homogeneous rectangle stops instead of stepping on.
@@ -201,7 +203,18 @@ class RestitutionModel(ABC):
         ndarray of bool
             Whether `Flag.STOPS` applies.
         """
-        return self.raw_of_slenderness(checks.positive_array("slenderness_ratio", slenderness)) <= 0.0
+        return self._raw_checked(slenderness) <= 0.0
+
+    def _raw_checked(self, slenderness: Any) -> FloatArray:
+        ratios = checks.real_array("slenderness_ratio", slenderness)
+        flat = ratios.ravel()
+        result = np.empty_like(flat)
+        # pieces that stay in the cache: checks and arithmetic cost less than moving the data
+        for start in range(0, flat.size, _PIECE):
+            piece = flat[start : start + _PIECE]
+            checks.all_positive("slenderness_ratio", piece, whole=ratios)
+            result[start : start + _PIECE] = self.raw_of_slenderness(piece)
+        return result.reshape(ratios.shape)
 
     @property
     def parameters(self) -> dict[str, float]:
