@@ -13,9 +13,9 @@ def rows() -> list[tuple[str, str, str, str, bool]]:
     """(subject, against, measured, goal, met) of every benchmark."""
     found = []
     for each in ked.comparisons():
-        faster = each.goal >= 1.0
+        faster = each.ratio >= 1.0
         measured = f"{each.ratio:,.0f} times faster" if faster else f"{1.0 / each.ratio:.2f} times its cost"
-        goal = f">= {each.goal:,.0f} times" if faster else f"<= {1.0 / each.goal:.0f} times"
+        goal = _goal(each.goal)
         cost = f"{each.ours * 1e9:.2f} ns against {each.theirs * 1e9:,.2f} ns a {each.unit}"
         found.append((each.subject, each.against, f"{measured} ({cost})", goal, each.met))
     spent = section.seconds()
@@ -30,6 +30,12 @@ def rows() -> list[tuple[str, str, str, str, bool]]:
     )
     found += [(what, "-", f"{spent:.3f} s", f"< {goal} s", spent < goal) for what, spent, goal in start.starts()]
     return found
+
+
+def _goal(goal: float | None) -> str:
+    if goal is None:
+        return "for information"
+    return f">= {goal:,.0f} times" if goal >= 1.0 else f"<= {1.0 / goal:.0f} times"
 
 
 def main() -> None:

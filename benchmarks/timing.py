@@ -14,7 +14,7 @@ class Comparison:
     against: str
     ours: float
     theirs: float
-    goal: float
+    goal: float | None
     unit: str = "value"
 
     @property
@@ -25,7 +25,7 @@ class Comparison:
     @property
     def met(self) -> bool:
         """Whether the goal is met."""
-        return self.ratio >= self.goal
+        return self.goal is None or self.ratio >= self.goal
 
 
 def cpu_seconds(work: Callable[[], object]) -> float:
@@ -41,7 +41,7 @@ def compare(
     ours: Callable[[], object],
     theirs: Callable[[], object],
     *,
-    goal: float,
+    goal: float | None,
     counts: tuple[int, int],
     repeats: int = 15,
 ) -> Comparison:

@@ -38,8 +38,8 @@ class ShiftedImpulse(InertiaModel):
     name = "shifted-impulse"
     title = "the impulse acts inside the base, at k times the half base"
     reference = (
-        "Kalliontzis, Sritharan & Schultz 2016, J. Struct. Eng. 142(12) 06016002, "
-        "doi:10.1061/(ASCE)ST.1943-541X.0001562; the form in k is derived in this project"
+        "after Kalliontzis, Sritharan & Schultz 2016, J. Struct. Eng. 142(12) 06016002; "
+        "the form in k is derived in this project"
     )
     assumptions = (
         "rigid body and ground, instantaneous impact, no sliding, no bouncing",
