@@ -8,6 +8,9 @@ import numpy as np
 from rocking.conventions import FEET, LENGTH_UNITS, FloatArray, Foot
 from rocking.errors import InvalidValueError
 
+SMALLEST, LARGEST = 1e-9, 1e9
+"""No body is smaller or larger than this [m]: squares and fourth powers stay far from overflow."""
+
 
 def number(name: str, value: Any, unit: str = "-") -> float:
     """Return `value` as a finite float.
@@ -70,6 +73,55 @@ def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
     if result <= 0.0:
         raise InvalidValueError(f"{name} must be > 0{_in(unit)}, got {result:g}{_because(hint)}")
     return result
+
+
+def length(name: str, value: Any) -> float:
+    """Return `value` as a length that a body can have.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    value : Any
+        What the user gave [m].
+
+    Returns
+    -------
+    float
+        The length [m].
+
+    Raises
+    ------
+    InvalidValueError
+        If it is not one finite number between 1e-9 and 1e9 m.
+    """
+    result = positive(name, value, "m")
+    if not SMALLEST <= result <= LARGEST:
+        raise InvalidValueError(f"{name} must be in [{SMALLEST:g}, {LARGEST:g}] m, got {result:g}; wrong unit?")
+    return result
+
+
+def density(name: str, value: Any) -> float:
+    """Return `value` as a density that a body can have.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    value : Any
+        What the user gave [kg/m3].
+
+    Returns
+    -------
+    float
+        The density [kg/m3].
+
+    Raises
+    ------
+    InvalidValueError
+        If it is not one finite number above zero and below 1e9 kg/m3.
+    """
+    return within(name, positive(name, value, "kg/m3"), 0.0, LARGEST, unit="kg/m3", open_low=True, hint="wrong unit?")
 
 
 def within(

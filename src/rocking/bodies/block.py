@@ -51,8 +51,9 @@ class Block(Body):
 
     def __post_init__(self) -> None:
         """Refuse what is not a block."""
-        for name, unit in (("width", "m"), ("height", "m"), ("depth", "m"), ("density", "kg/m3")):
-            object.__setattr__(self, name, checks.positive(name, getattr(self, name), unit))
+        for name in ("width", "height", "depth"):
+            object.__setattr__(self, name, checks.length(name, getattr(self, name)))
+        object.__setattr__(self, "density", checks.density("density", self.density))
         self._check_support()
 
     @classmethod

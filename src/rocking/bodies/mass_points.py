@@ -154,6 +154,8 @@ def _points(points: Any, count: int) -> FloatArray:
     if result.shape != (count, 2) or count == 0:
         raise GeometryError(f"points must have shape ({count}, 2), one (x, y) per mass, got {result.shape}")
     bad = ~(np.isfinite(result).all(axis=1) & (result[:, 1] >= 0.0))
+    if np.abs(result).max() > checks.LARGEST:
+        raise GeometryError(f"points must be within {checks.LARGEST:g} m of the origin; wrong unit?")
     if bad.any():
         i = int(np.argmax(bad))
         raise GeometryError(f"point {i} must be finite with y >= 0 m, got {tuple(result[i].tolist())}")

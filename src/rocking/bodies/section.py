@@ -54,11 +54,13 @@ class Region:
     def __post_init__(self) -> None:
         """Normalise the rings: outline counter-clockwise, holes clockwise."""
         outline = topology.ring("outline", self.outline)
+        if not isinstance(self.holes, (Sequence, np.ndarray)):
+            raise GeometryError("holes must be a list of rings, each a list of (x, y) points in m")
         holes = tuple(topology.ring(f"hole {i}", hole) for i, hole in enumerate(self.holes))
         topology.check_polygon("region", outline, holes)
         object.__setattr__(self, "outline", _turned(outline, 1.0))
         object.__setattr__(self, "holes", tuple(_turned(hole, -1.0) for hole in holes))
-        object.__setattr__(self, "density", checks.positive("density", self.density, "kg/m3"))
+        object.__setattr__(self, "density", checks.density("density", self.density))
 
     @property
     def rings(self) -> tuple[FloatArray, ...]:
@@ -131,10 +133,10 @@ class Section(Body):
         depth: float = 1.0,
         ground: float = 0.0,
     ) -> None:
-        regions = tuple([regions] if isinstance(regions, Region) else regions)
+        regions = tuple(regions) if isinstance(regions, Sequence) else (regions,)
         if not regions or not all(isinstance(region, Region) for region in regions):
             raise GeometryError("a Section needs a list of at least one Region(outline, density, holes)")
-        self._depth = checks.positive("depth", depth, "m")
+        self._depth = checks.length("depth", depth)
         self._ground = checks.number("ground", ground, "m")
         low = np.min([region.outline.min(axis=0) for region in regions], axis=0)
         high = np.max([region.outline.max(axis=0) for region in regions], axis=0)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking.checks import LARGEST, SMALLEST
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 
@@ -43,6 +44,8 @@ def ring(name: str, points: Any) -> FloatArray:
     if not finite.all():
         bad = int(np.argmin(finite))
         raise GeometryError(f"{name}: point {bad} must be finite, got {tuple(vertices[bad].tolist())}")
+    if np.abs(vertices).max(initial=0.0) > LARGEST:
+        raise GeometryError(f"{name}: coordinates must be within {LARGEST:g} m of the origin; wrong unit?")
     kept: FloatArray = vertices[(vertices != np.roll(vertices, 1, axis=0)).any(axis=1)]
     if len(kept) < 3:
         raise GeometryError(f"{name} must have at least 3 different points, got {len(kept)}")
@@ -77,6 +80,8 @@ def check_polygon(name: str, outline: FloatArray, holes: Sequence[FloatArray]) -
         if not polygon.is_valid:
             raise GeometryError(f"{label} {_reason(shapely.is_valid_reason(polygon), origin)}")
         box = np.ptp(points, axis=0)
+        if box.max() < SMALLEST:
+            raise GeometryError(f"{label} is smaller than {SMALLEST:g} m; wrong unit?")
         if polygon.area <= 1e-14 * float(box.max()) ** 2:
             raise GeometryError(f"{label} encloses no area; are all its points on one line?")
     if holes:
