@@ -5,13 +5,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rocking import checks
-from rocking.bodies.body import Body, Interval
+from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval
 from rocking.bodies.moments import PlaneMoments
 
 if TYPE_CHECKING:
     from rocking.bodies.section import Section
-
-DEFAULT_DENSITY = 2400.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,6 +12,9 @@ from rocking.errors import AsymmetricBodyError, GeometryError
 
 Interval = tuple[float, float]
 
+DEFAULT_DENSITY = 2400.0
+"""Plain concrete [kg/m3]; no coefficient of a homogeneous body depends on it."""
+
 # Feet closer to the plumb line of the centre than this, relative to the body's size, are no support.
 _SUPPORT_TOLERANCE = 1e-12
 

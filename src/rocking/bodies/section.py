@@ -1,8 +1,6 @@
 """A body of any plane shape: polygons with holes, each with its density."""
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -10,86 +8,12 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import shapes, topology
-from rocking.bodies.block import DEFAULT_DENSITY
-from rocking.bodies.body import Body, Interval
+from rocking.bodies.base import GROUND_TOLERANCE, extent_on_ground, flat_stretches, placed_feet
+from rocking.bodies.body import DEFAULT_DENSITY, Body, Interval
 from rocking.bodies.moments import PlaneMoments, combined, ring_moments
+from rocking.bodies.region import Region
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
-
-# Vertices this close to the ground, relative to the body's size, stand on it.
-_GROUND_TOLERANCE = 1e-9
-
-
-@dataclass(frozen=True, eq=False)
-class Region:
-    """One polygon of one material.
-
-    Parameters
-    ----------
-    outline : array_like, shape (n, 2)
-        Vertices (x, y), y up [m], in either sense of rotation; the first need not be repeated at the end.
-    density : float
-        Density [kg/m3].
-    holes : sequence of array_like
-        Rings cut out of the outline [m].
-
-    Raises
-    ------
-    GeometryError
-        If a ring crosses itself or another, or a hole lies outside the outline.
-    InvalidValueError
-        If the density is not a finite number above zero.
-
-    Examples
-    --------
-    >>> from rocking import Region
-    >>> Region([(0, 0), (1, 0), (1, 2), (0, 2)], density=2400.0).outline.shape
-    (4, 2)
-    """
-
-    outline: FloatArray
-    density: float = DEFAULT_DENSITY
-    holes: Sequence[FloatArray] = ()
-
-    def __post_init__(self) -> None:
-        """Normalise the rings: outline counter-clockwise, holes clockwise."""
-        outline = topology.ring("outline", self.outline)
-        if not isinstance(self.holes, (Sequence, np.ndarray)):
-            raise GeometryError("holes must be a list of rings, each a list of (x, y) points in m")
-        holes = tuple(topology.ring(f"hole {i}", hole) for i, hole in enumerate(self.holes))
-        topology.check_polygon("region", outline, holes)
-        object.__setattr__(self, "outline", _turned(outline, 1.0))
-        object.__setattr__(self, "holes", tuple(_turned(hole, -1.0) for hole in holes))
-        object.__setattr__(self, "density", checks.density("density", self.density))
-
-    @property
-    def rings(self) -> tuple[FloatArray, ...]:
-        """Outline (counter-clockwise) and holes (clockwise) [m]."""
-        return (self.outline, *self.holes)
-
-    def moved(self, dx: float, dy: float) -> "Region":
-        """Return the region moved by (dx, dy).
-
-        Parameters
-        ----------
-        dx, dy : float
-            Displacement [m].
-
-        Returns
-        -------
-        Region
-            The same shape elsewhere.
-        """
-        return self._mapped(lambda ring: ring + np.array([dx, dy]))
-
-    def _mapped(self, change: Any, density: float = 1.0) -> "Region":
-        # a similarity keeps a valid region valid, so the checks are not run again
-        region = object.__new__(Region)
-        outline, *holes = (change(ring) for ring in self.rings)
-        object.__setattr__(region, "outline", _turned(outline, 1.0))
-        object.__setattr__(region, "holes", tuple(_turned(hole, -1.0) for hole in holes))
-        object.__setattr__(region, "density", self.density * density)
-        return region
 
 
 class Section(Body):
@@ -133,7 +57,8 @@ class Section(Body):
         depth: float = 1.0,
         ground: float = 0.0,
     ) -> None:
-        regions = tuple(regions) if isinstance(regions, Sequence) else (regions,)
+        given: object = regions
+        regions = tuple(regions) if isinstance(given, Sequence) else (regions,)
         if not regions or not all(isinstance(region, Region) for region in regions):
             raise GeometryError("a Section needs a list of at least one Region(outline, density, holes)")
         self._depth = checks.length("depth", depth)
@@ -303,17 +228,7 @@ class Section(Body):
     @cached_property
     def local_contact(self) -> tuple[Interval, ...]:
         """Flat stretches of the base between the feet, local frame [m]; none if it stands on points."""
-        left, right = self._local_feet
-        stretches = sorted(self._ground_edges())
-        merged: list[Interval] = []
-        for a, b in ((max(a, left), min(b, right)) for a, b in stretches):
-            if b <= a:
-                continue
-            if merged and a <= merged[-1][1] + _GROUND_TOLERANCE * self._size:
-                merged[-1] = (merged[-1][0], max(b, merged[-1][1]))
-            else:
-                merged.append((a, b))
-        return tuple(merged)
+        return flat_stretches(self.regions, self._size, self._local_feet)
 
     @property
     def local_box(self) -> tuple[float, float, float, float]:
@@ -379,63 +294,22 @@ class Section(Body):
         section._check_support()
         return section
 
-    def _copy(self, change: Any, feet: Interval, density: float = 1.0, size: float = 1.0) -> "Section":
+    def _copy(
+        self, change: Callable[[FloatArray], FloatArray], feet: Interval, density: float = 1.0, size: float = 1.0
+    ) -> "Section":
         section = object.__new__(Section)
-        section.regions = tuple(region._mapped(change, density) for region in self.regions)
+        section.regions = tuple(region.mapped(change, density) for region in self.regions)
         section._depth, section._size = self._depth * size, self._size * size
         section._origin_x, section._ground, section._local_feet = self._origin_x, self._ground, feet
         return section
 
     def _check_ground(self, lowest: float) -> None:
-        if abs(lowest - self._ground) > _GROUND_TOLERANCE * self._size:
+        if abs(lowest - self._ground) > GROUND_TOLERANCE * self._size:
             verb = "floats above" if lowest > self._ground else "reaches below"
             raise GeometryError(
                 f"the body {verb} the ground: its lowest point is y = {lowest:.9g} m, the ground {self._ground:.9g} m; "
                 f"pass ground={lowest:.9g} or move the outline"
             )
 
-    def _ground_edges(self) -> list[Interval]:
-        tolerance = _GROUND_TOLERANCE * self._size
-        found = []
-        for region in self.regions:
-            ring = region.outline
-            low = np.abs(ring[:, 1]) <= tolerance
-            both = low & np.roll(low, -1)
-            ends = np.roll(ring[:, 0], -1)
-            found += [(min(a, b), max(a, b)) for a, b in zip(ring[both, 0], ends[both], strict=True)]
-        return [(float(a), float(b)) for a, b in found]
-
-    def _base(self) -> Interval:
-        tolerance = _GROUND_TOLERANCE * self._size
-        touching = np.concatenate([r.outline[np.abs(r.outline[:, 1]) <= tolerance, 0] for r in self.regions])
-        return float(touching.min()), float(touching.max())
-
     def _placed(self, feet: tuple[float, float] | None) -> Interval:
-        base = self._base()
-        if feet is None:
-            if base[1] - base[0] <= _GROUND_TOLERANCE * self._size:
-                raise GeometryError("the body touches the ground in one point only; it needs two feet to rock")
-            return base
-        try:
-            left, right = feet
-        except (TypeError, ValueError) as error:
-            raise GeometryError("feet must be a pair (x_left, x_right) in m") from error
-        left = checks.number("left foot", left, "m") - self._origin_x
-        right = checks.number("right foot", right, "m") - self._origin_x
-        if not left < right:
-            raise GeometryError(f"the left foot must lie left of the right one, got {feet[0]:g} and {feet[1]:g} m")
-        slack = _GROUND_TOLERANCE * self._size + 4.0 * math.ulp(abs(self._origin_x))
-        for name, x in (("left", left), ("right", right)):
-            if not base[0] - slack <= x <= base[1] + slack:
-                a, b = base[0] + self._origin_x, base[1] + self._origin_x
-                raise GeometryError(
-                    f"the {name} foot must lie on the base, x in [{a:.9g}, {b:.9g}] m, got {x + self._origin_x:.9g}"
-                )
-        return max(left, base[0]), min(right, base[1])
-
-
-def _turned(ring: FloatArray, sense: float) -> FloatArray:
-    x, y = (ring - ring[0]).T
-    twice_area = float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
-    result = ring if twice_area * sense > 0.0 else ring[::-1]
-    return np.ascontiguousarray(result)
+        return placed_feet(extent_on_ground(self.regions, self._size), self._size, self._origin_x, feet)

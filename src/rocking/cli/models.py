@@ -2,6 +2,7 @@
 
 import json
 import textwrap
+from collections.abc import Sequence
 from typing import Annotated
 
 import typer
@@ -40,7 +41,7 @@ def models(
         print()
 
 
-def _print_fact(word: str, value: str | list[str]) -> None:
+def _print_fact(word: str, value: Sequence[str]) -> None:
     for i, line in enumerate([value] if isinstance(value, str) else value):
         first = f"  {word + ':' if i == 0 else '':<15}"
         print(textwrap.fill(line, width=100, initial_indent=first, subsequent_indent=" " * 17))
