@@ -58,7 +58,7 @@ class Section(Body):
         ground: float = 0.0,
     ) -> None:
         given: object = regions
-        regions = tuple(regions) if isinstance(given, Sequence) else (regions,)
+        regions = tuple(regions) if isinstance(given, Sequence) else ()
         if not regions or not all(isinstance(region, Region) for region in regions):
             raise GeometryError("a Section needs a list of at least one Region(outline, density, holes)")
         self._depth = checks.length("depth", depth)
