@@ -61,8 +61,9 @@ class PlasticWinkler(InertiaModel):
         if kappa.size > _LARGEST_BATCH and (back == 1.0).all() and kappa.max() <= 3.0:
             return np.asarray(np.exp(kappa * _loss_of_rectangle()(kappa)))
         flat = np.column_stack([kappa.ravel(), back.ravel()])
-        values = [_impact(float(k), float(b), np.array([[-b, 1.0]])) for k, b in flat.tolist()]
-        return np.array(values).reshape(kappa.shape)
+        different, place = np.unique(flat, axis=0, return_inverse=True)
+        values = [_whole_base(k, b) for k, b in different.tolist()]
+        return np.array(values)[place].reshape(kappa.shape)
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
         """Coefficient of a body, over the stretches of its base that touch.
@@ -85,11 +86,16 @@ class PlasticWinkler(InertiaModel):
         return _impact(lever**2 / float(geometry.base_gyration), back / lever, patches)
 
 
+@lru_cache(maxsize=4096)
+def _whole_base(kappa: float, back: float) -> float:
+    return _impact(kappa, back, np.array([[-back, 1.0]]))
+
+
 @lru_cache(maxsize=1)
 def _loss_of_rectangle() -> np.polynomial.Chebyshev:
     # ln(r) / kappa is analytic on 0 < kappa < 3, the range of all homogeneous rectangles
     return np.polynomial.Chebyshev.interpolate(
-        lambda kappa: np.array([np.log(_impact(k, 1.0, np.array([[-1.0, 1.0]]))) / k for k in kappa.tolist()]),
+        lambda kappa: np.array([np.log(_whole_base(k, 1.0)) / k for k in kappa.tolist()]),
         _DEGREE,
         domain=[0.0, 3.0],
     )

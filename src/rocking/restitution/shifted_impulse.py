@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.restitution.impact import ImpactGeometry
@@ -66,6 +68,23 @@ class ShiftedImpulse(InertiaModel):
         ndarray
             Coefficients [-].
         """
-        arm = self.k * geometry.new_lever
-        gyration = geometry.base_gyration
-        return (gyration - arm * geometry.old_lever) / (gyration + arm * geometry.new_lever)
+        return shifted(geometry, np.asarray(self.k))
+
+
+def shifted(geometry: ImpactGeometry, k: FloatArray) -> FloatArray:
+    """Return the coefficients for arrays of impulse positions.
+
+    Parameters
+    ----------
+    geometry : ImpactGeometry
+        Levers and inertia.
+    k : ndarray
+        Positions of the impulse; broadcast against the geometry [-].
+
+    Returns
+    -------
+    ndarray
+        Coefficients [-].
+    """
+    arm, gyration = k * geometry.new_lever, geometry.base_gyration
+    return np.asarray((gyration - arm * geometry.old_lever) / (gyration + arm * geometry.new_lever))

@@ -1,0 +1,152 @@
+"""Who takes part in the league: every model as it is, and families with fitted parameters."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.evidence.measurements import DataSet
+from rocking.restitution import (
+    DistributedImpulse,
+    HorizontalMomentum,
+    Housner,
+    Interface,
+    Ked,
+    PlasticWinkler,
+    RestitutionModel,
+    ShiftedImpulse,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Contender:
+    """A model, or a family of models with the rule that fits it.
+
+    Parameters
+    ----------
+    name : str
+        Name in the league.
+    parameters : tuple of str
+        Names of the fitted parameters; none for a model as it is.
+    fit : callable
+        Takes a `DataSet` and returns the model that fits it best in least squares of r.
+    """
+
+    name: str
+    parameters: tuple[str, ...]
+    fit: Callable[[DataSet], RestitutionModel]
+
+
+def as_it_is(model: RestitutionModel) -> Contender:
+    """Return a contender without anything fitted.
+
+    Parameters
+    ----------
+    model : RestitutionModel
+        The model.
+
+    Returns
+    -------
+    Contender
+        That returns the same model for all data.
+    """
+    return Contender(model.label, (), lambda data: model)
+
+
+def with_interface(model: RestitutionModel) -> Contender:
+    """Return a contender with a fitted interface factor.
+
+    Parameters
+    ----------
+    model : RestitutionModel
+        The geometric model.
+
+    Returns
+    -------
+    Contender
+        eta times the model.
+    """
+
+    def fit(data: DataSet) -> RestitutionModel:
+        return Interface(model, eta=_best_eta(model.of_slenderness(data.slenderness), data.coefficient))
+
+    return Contender(f"eta*{model.name}", ("eta",), fit)
+
+
+def family(
+    name: str, parameter: str, make: Callable[[float], RestitutionModel], ends: tuple[float, float], *, eta: bool
+) -> Contender:
+    """Return a contender with one fitted parameter, and an interface factor on request.
+
+    Parameters
+    ----------
+    name : str
+        Name of the model.
+    parameter : str
+        Name of the parameter.
+    make : callable
+        Makes the model from the parameter's value.
+    ends : (float, float)
+        Range of the parameter.
+    eta : bool
+        Whether to fit an interface factor as well.
+
+    Returns
+    -------
+    Contender
+        The family.
+    """
+
+    def fitted(value: float, data: DataSet) -> tuple[RestitutionModel, float]:
+        model = make(value)
+        r = model.of_slenderness(data.slenderness)
+        factor = _best_eta(r, data.coefficient) if eta else 1.0
+        misfit = float(((factor * r - data.coefficient) ** 2).sum())
+        return (Interface(model, eta=factor) if eta else model), misfit
+
+    def fit(data: DataSet) -> RestitutionModel:
+        from scipy.optimize import minimize_scalar
+
+        found = minimize_scalar(
+            lambda value: fitted(float(value), data)[1], bounds=ends, method="bounded", options={"xatol": 1e-7}
+        )
+        return fitted(float(found.x), data)[0]
+
+    prefix = "eta*" if eta else ""
+    return Contender(f"{prefix}{name}({parameter})", (("eta", parameter) if eta else (parameter,)), fit)
+
+
+def contenders() -> list[Contender]:
+    """Return everyone who takes part by default.
+
+    Returns
+    -------
+    list of Contender
+        Models as they are, then families with one and with two fitted parameters.
+    """
+    whole = [
+        Housner(),
+        Ked(),
+        HorizontalMomentum(),
+        ShiftedImpulse(k=2.0 / 3.0),
+        DistributedImpulse(q=0.0),
+        DistributedImpulse(q=1.0),
+        DistributedImpulse(q=2.0),
+        PlasticWinkler(),
+    ]
+    factored = [Housner(), Ked(), HorizontalMomentum(), PlasticWinkler()]
+    shifted = ("shifted-impulse", "k", ShiftedImpulse, (0.0, 1.0))
+    distributed = ("distributed-impulse", "q", DistributedImpulse, (0.0, 20.0))
+    return [
+        *(as_it_is(model) for model in whole),
+        family(*shifted, eta=False),
+        family(*distributed, eta=False),
+        *(with_interface(model) for model in factored),
+        family(*shifted, eta=True),
+        family(*distributed, eta=True),
+    ]
+
+
+def _best_eta(model: FloatArray, measured: FloatArray) -> float:
+    return float(np.clip((model @ measured) / (model @ model), 1e-6, 1.0))

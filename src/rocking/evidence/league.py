@@ -1,0 +1,179 @@
+"""The league table: every model against every measurement, by measures that can tell them apart."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.evidence import agreement
+from rocking.evidence.contenders import Contender, as_it_is, contenders
+from rocking.evidence.likelihood import gaussian_bic, rounding_bic
+from rocking.evidence.measurements import BANDS, GROUPS, DataSet, all_measurements
+from rocking.restitution import RestitutionModel
+
+_RESAMPLES = 4000
+_SEED = 20240710
+
+
+@dataclass(frozen=True, slots=True)
+class LeagueRow:
+    """One contender's record on the 39 measurements.
+
+    Parameters
+    ----------
+    name : str
+        Name in the league.
+    model : RestitutionModel
+        The model, with fitted values where there are any.
+    parameters : tuple of str
+        Names of the fitted parameters.
+    rmse, bias : float
+        Of r, model minus experiment [-].
+    rmse_low, rmse_high : float
+        95 % bootstrap interval of the error, rows resampled within their data sets [-].
+    correlation, concordance : float
+        Pearson's and Lin's [-].
+    loss_rmse, log_loss_rmse : float
+        Errors of the energy loss 1 - r^2, absolute and logarithmic [-].
+    leave_one_out, leave_group_out : float
+        RMSE of predictions by fits that have not seen the row, or its whole data set [-].
+    bic, bic_rounding : float
+        Least squares, and from the likelihood that knows the rounding; lower is better.
+    by_group, by_band : dict of str to float
+        RMSE by data set and by slenderness band [-].
+    ahead_of_ked : (float, float)
+        95 % bootstrap interval of RMSE minus that of KED [-]; all below zero is better than KED beyond doubt.
+    """
+
+    name: str
+    model: RestitutionModel
+    parameters: tuple[str, ...]
+    rmse: float
+    bias: float
+    rmse_low: float
+    rmse_high: float
+    correlation: float
+    concordance: float
+    loss_rmse: float
+    log_loss_rmse: float
+    leave_one_out: float
+    leave_group_out: float
+    bic: float
+    bic_rounding: float
+    by_group: dict[str, float]
+    by_band: dict[str, float]
+    ahead_of_ked: tuple[float, float]
+
+    @property
+    def fitted(self) -> str:
+        """The fitted values, as words."""
+        values = self.model.parameters
+        return ", ".join(f"{name} = {values[name]:.4g}" for name in self.parameters)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the row as plain values.
+
+        Returns
+        -------
+        dict
+            Field names to numbers and strings.
+        """
+        plain = {name: getattr(self, name) for name in self.__slots__ if name not in ("model", "parameters")}
+        return {**plain, "fitted": {name: self.model.parameters[name] for name in self.parameters}}
+
+
+def league(extra: Sequence[RestitutionModel] = ()) -> tuple[LeagueRow, ...]:
+    """Return the league table, best RMSE of r first.
+
+    Parameters
+    ----------
+    extra : sequence of RestitutionModel
+        Your own models, to take part as they are.
+
+    Returns
+    -------
+    tuple of LeagueRow
+        One row a contender.
+
+    Examples
+    --------
+    >>> [row.name for row in league() if not row.parameters][0]
+    'horizontal-momentum'
+    """
+    rows = [*_standing(), *(_row(as_it_is(model), all_measurements()) for model in extra)]
+    return tuple(sorted(rows, key=lambda row: row.rmse))
+
+
+@lru_cache(maxsize=1)
+def _standing() -> tuple[LeagueRow, ...]:
+    data = all_measurements()
+    return tuple(_row(contender, data) for contender in contenders())
+
+
+def _row(contender: Contender, data: DataSet) -> LeagueRow:
+    model = contender.fit(data)
+    r, measured = model.of_slenderness(data.slenderness), data.coefficient
+    low, high, behind, ahead = _bootstrap(r, data)
+    count = len(contender.parameters)
+    bands = {name: (data.slenderness > a) & (data.slenderness <= b) for name, a, b in BANDS}
+    groups = {name: np.array([group == name for group in data.group]) for name in GROUPS}
+    return LeagueRow(
+        name=contender.name,
+        model=model,
+        parameters=contender.parameters,
+        rmse=agreement.rmse(r, measured),
+        bias=agreement.bias(r, measured),
+        rmse_low=low,
+        rmse_high=high,
+        correlation=agreement.correlation(r, measured),
+        concordance=agreement.concordance(r, measured),
+        loss_rmse=agreement.loss_rmse(r, measured),
+        log_loss_rmse=agreement.log_loss_rmse(r, measured),
+        leave_one_out=_left_out(contender, data, [data.slenderness == data.slenderness] if not count else _each(data)),
+        leave_group_out=_left_out(contender, data, list(groups.values())),
+        bic=gaussian_bic(r - measured, count),
+        bic_rounding=rounding_bic(data, r, count),
+        by_group={name: agreement.rmse(r[rows], measured[rows]) for name, rows in groups.items()},
+        by_band={name: agreement.rmse(r[rows], measured[rows]) for name, rows in bands.items()},
+        ahead_of_ked=(behind, ahead),
+    )
+
+
+def _each(data: DataSet) -> list[Any]:
+    return list(np.eye(len(data), dtype=bool))
+
+
+def _left_out(contender: Contender, data: DataSet, parts: list[Any]) -> float:
+    predicted = np.empty(len(data))
+    for left in parts:
+        # nothing is fitted where nothing is free, so the whole may be left out at once
+        model = contender.fit(data.rows(~left)) if contender.parameters else contender.fit(data)
+        predicted[left] = model.of_slenderness(data.slenderness[left])
+    return agreement.rmse(predicted, data.coefficient)
+
+
+def _bootstrap(r: FloatArray, data: DataSet) -> tuple[float, float, float, float]:
+    draws = _draws(data)
+    error = np.sqrt(((r - data.coefficient)[draws] ** 2).mean(axis=1))
+    ked = np.sqrt(((_ked(data) - data.coefficient)[draws] ** 2).mean(axis=1))
+    low, high = np.quantile(error, [0.025, 0.975]).tolist()
+    behind, ahead = np.quantile(error - ked, [0.025, 0.975]).tolist()
+    return low, high, behind, ahead
+
+
+def _ked(data: DataSet) -> FloatArray:
+    from rocking.restitution import Ked
+
+    return Ked().of_slenderness(data.slenderness)
+
+
+def _draws(data: DataSet) -> Any:
+    rng = np.random.default_rng(_SEED)
+    columns = []
+    for name in dict.fromkeys(data.group):
+        rows = np.flatnonzero([group == name for group in data.group])
+        columns.append(rng.choice(rows, size=(_RESAMPLES, rows.size)))
+    return np.concatenate(columns, axis=1)

@@ -1,0 +1,126 @@
+"""Likelihood of measurements that were rounded before they were printed."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.evidence.measurements import DataSet
+
+
+def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray, sd: FloatArray) -> FloatArray:
+    """Logarithm of the probability that a normal value lies in the interval that rounding leaves open.
+
+    ``ln(Phi((high - mean)/sd) - Phi((low - mean)/sd))``, stable far out in the tails; arrays broadcast.
+
+    Parameters
+    ----------
+    low, high : ndarray
+        Ends of the interval [-].
+    mean, sd : ndarray
+        Of the normal distribution [-].
+
+    Returns
+    -------
+    ndarray
+        Logarithms, of the common shape.
+    """
+    from scipy.special import log_ndtr
+
+    a, b = (low - mean) / sd, (high - mean) / sd
+    # both ends on the same side of zero keep their digits in the lower tail
+    flip = a > 0.0
+    a, b = np.where(flip, -b, a), np.where(flip, -a, b)
+    upper, lower = log_ndtr(b), log_ndtr(a)
+    return np.asarray(upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-300))))
+
+
+def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
+    """Standard deviation of a measured coefficient around its prediction.
+
+    Parameters
+    ----------
+    mean : ndarray
+        Predicted coefficients [-].
+    floor : float
+        Scale s of the scatter [-].
+    slope : float
+        Power with which it grows with the loss, s (1 - r)^slope; 0 is a constant scatter [-].
+
+    Returns
+    -------
+    ndarray
+        Standard deviations [-].
+    """
+    return np.asarray(floor * np.maximum(1.0 - mean, 1e-6) ** slope)
+
+
+def gaussian_bic(residuals: FloatArray, parameters: int) -> float:
+    """Bayesian information criterion of least squares, n ln(RSS/n) + (parameters + 1) ln n.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (n,)
+        Model minus experiment [-].
+    parameters : int
+        Number of fitted parameters, the variance not counted [-].
+
+    Returns
+    -------
+    float
+        Lower is better; differences below 2 mean nothing, above 10 a lot.
+    """
+    n = residuals.size
+    return n * math.log(float(residuals @ residuals) / n) + (parameters + 1) * math.log(n)
+
+
+def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
+    """Fit the scatter law around given predictions by maximum likelihood.
+
+    Parameters
+    ----------
+    data : DataSet
+        Measurements with their rounding intervals.
+    mean : ndarray, shape (n,)
+        Predicted coefficients [-].
+
+    Returns
+    -------
+    floor, slope, log_likelihood : float
+        Parameters of `scatter` and the logarithm of the likelihood.
+    """
+    (log_floor, slope), best = _maximise(
+        lambda p: float(
+            interval_log_likelihood(data.low, data.high, mean, scatter(mean, math.exp(p[0]), float(p[1]))).sum()
+        ),
+        [-2.3, 0.8],
+    )
+    return math.exp(log_floor), slope, best
+
+
+def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
+    """Bayesian information criterion from the rounding-aware likelihood, scatter law fitted.
+
+    Parameters
+    ----------
+    data : DataSet
+        Measurements.
+    mean : ndarray, shape (n,)
+        Predictions [-].
+    parameters : int
+        Number of fitted parameters of the model; two more are those of the scatter [-].
+
+    Returns
+    -------
+    float
+        -2 ln L + (parameters + 2) ln n.
+    """
+    return -2.0 * fit_scatter(data, mean)[2] + (parameters + 2) * math.log(len(data))
+
+
+def _maximise(function: Callable[[FloatArray], float], start: list[float]) -> tuple[list[float], float]:
+    from scipy.optimize import minimize
+
+    result = minimize(lambda p: -function(p), start, method="Nelder-Mead", options={"xatol": 1e-8, "fatol": 1e-10})
+    return [float(value) for value in result.x], -float(result.fun)

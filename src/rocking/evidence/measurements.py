@@ -1,0 +1,188 @@
+"""The published measurements, with where they come from and how far rounding leaves them open."""
+
+import csv
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+
+GROUPS = ("table1", "S", "M", "L")
+"""The independent data sets; Table 2 holds means of Table 1."""
+
+BANDS = (("h/b <= 3", 0.0, 3.0), ("3 < h/b <= 6", 3.0, 6.0), ("h/b > 6", 6.0, np.inf))
+"""Slenderness bands of the league table: name, above, up to."""
+
+
+@dataclass(frozen=True, eq=False)
+class DataSet:
+    """Measured coefficients of restitution of homogeneous rectangular blocks.
+
+    Parameters
+    ----------
+    name, title, source : str
+        Short name, title, and publication with DOI.
+    slenderness : ndarray, shape (n,)
+        Slenderness ratio h/b [-].
+    coefficient : ndarray, shape (n,)
+        Measured r, ratio of velocities [-].
+    low, high : ndarray, shape (n,)
+        Interval that the printed digits leave open [-].
+    mass : ndarray, shape (n,)
+        Mass, NaN where the source gives none [kg].
+    labels : tuple of str
+        Block, or materials at the interface.
+    group : tuple of str
+        Data set of each row.
+    printed : dict of str to ndarray
+        The paper's own columns: ``housner``, ``ked``, ``relative_error``.
+    """
+
+    name: str
+    title: str
+    source: str
+    slenderness: FloatArray
+    coefficient: FloatArray
+    low: FloatArray
+    high: FloatArray
+    mass: FloatArray
+    labels: tuple[str, ...]
+    group: tuple[str, ...]
+    printed: dict[str, FloatArray]
+
+    def __len__(self) -> int:
+        """Number of rows."""
+        return len(self.slenderness)
+
+    def rows(self, chosen: Sequence[int] | FloatArray) -> "DataSet":
+        """Return some rows, in the order given.
+
+        Parameters
+        ----------
+        chosen : sequence of int
+            Indices, or a boolean mask of length n.
+
+        Returns
+        -------
+        DataSet
+            Those rows.
+        """
+        index = np.arange(len(self))[np.asarray(chosen)]
+        columns = (self.slenderness, self.coefficient, self.low, self.high, self.mass)
+        return DataSet(
+            self.name,
+            self.title,
+            self.source,
+            *(column[index] for column in columns),
+            tuple(self.labels[i] for i in index.tolist()),
+            tuple(self.group[i] for i in index.tolist()),
+            {key: column[index] for key, column in self.printed.items()},
+        )
+
+
+@lru_cache(maxsize=1)
+def datasets() -> dict[str, DataSet]:
+    """Return the published data sets.
+
+    Returns
+    -------
+    dict of str to DataSet
+        ``table1`` (12 rows), ``table2`` (7 means), ``S``, ``M``, ``L`` (9 rows each).
+
+    Examples
+    --------
+    >>> {name: len(data) for name, data in datasets().items()}
+    {'table1': 12, 'table2': 7, 'S': 9, 'M': 9, 'L': 9}
+    """
+    first, second, third = (_read(f"mao2024_table{i}.csv") for i in (1, 2, 3))
+    found = {
+        "table1": _dataset("table1", "table1", first, [row["block_and_base"] for row in first]),
+        "table2": _dataset("table2", "table2", second, [f"h/b = {row['slenderness_ratio']}" for row in second]),
+    }
+    for name in ("S", "M", "L"):
+        rows = [row for row in third if row["block"].startswith(name)]
+        found[name] = _dataset(name, "table3", rows, [row["block"] for row in rows])
+    return found
+
+
+@lru_cache(maxsize=1)
+def all_measurements() -> DataSet:
+    """Return every independent measurement: Table 1 and the groups S, M, L.
+
+    Returns
+    -------
+    DataSet
+        39 rows.
+
+    Examples
+    --------
+    >>> len(all_measurements())
+    39
+    """
+    parts = [datasets()[name] for name in GROUPS]
+    joined = [
+        np.concatenate([getattr(part, name) for part in parts])
+        for name in ("slenderness", "coefficient", "low", "high", "mass")
+    ]
+    return DataSet(
+        "all",
+        "All 39 measurements",
+        parts[0].source,
+        *joined,
+        tuple(label for part in parts for label in part.labels),
+        tuple(group for part in parts for group in part.group),
+        {},
+    )
+
+
+@lru_cache(maxsize=1)
+def provenance() -> dict[str, object]:
+    """Return where the measurements come from, and how their rounding was read.
+
+    Returns
+    -------
+    dict
+        The provenance file.
+
+    Examples
+    --------
+    >>> provenance()["doi"]
+    '10.3390/buildings14072119'
+    """
+    text = files("rocking.evidence").joinpath("data", "provenance.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+def _read(name: str) -> list[dict[str, str]]:
+    with files("rocking.evidence").joinpath("data", name).open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def _dataset(name: str, table: str, rows: list[dict[str, str]], labels: list[str]) -> DataSet:
+    facts = provenance()[table]
+    assert isinstance(facts, dict)
+
+    def column(key: str) -> FloatArray:
+        values = np.array([float(row[key]) for row in rows])
+        values.setflags(write=False)
+        return values
+
+    printed = {"housner": "r_housner_printed", "ked": "r_ked_printed", "relative_error": "relative_error_printed"}
+    mass = 1e-3 * column("mass_g") if "mass_g" in rows[0] else np.full(len(rows), np.nan)
+    return DataSet(
+        name,
+        str(facts["title"]),
+        f"{provenance()['source']}, doi:{provenance()['doi']}",
+        column("slenderness_ratio"),
+        column("r_experiment"),
+        column("r_low"),
+        column("r_high"),
+        mass,
+        tuple(labels),
+        (name,) * len(rows),
+        {key: column(field) for key, field in printed.items() if field in rows[0]},
+    )
