@@ -1,8 +1,10 @@
 """The calibrated default: an interface factor times the shifted impulse, inferred from the 39 measurements.
 
-Model: ``r = eta * r_k(body) + error``; the error is normal with standard deviation ``s (1 - r)^gamma`` and enters through
-the probability of the interval that rounding leaves open. On the 39 measurements a scatter that grows with the loss beats
-a constant one by 20 in BIC (277 against 297), so its power is inferred too.
+Model: ``r = eta * r_k(body) + error``; the error is normal with standard deviation ``s (1 - r)^gamma`` and enters
+through the probability of the interval that rounding leaves open. On the 39 measurements a scatter that grows with the
+loss beats a constant one by 20 in BIC (277 against 297), so its power is inferred too. Left out one by one, 36 of the
+39 rows fall into their 95 % intervals; left out as a whole data set, 8 of the 12 rows of Table 1 and 25 of the 27 of
+Table 3 do: intervals for a new laboratory or interface are wider than these.
 
 Priors: ``k ~ N(0.6, 0.12)`` cut to [0, 1]; ``1 - eta ~ Beta(1.5, 98.5)`` (mean 0.015); flat in ``ln s`` and in gamma.
 """
@@ -136,8 +138,12 @@ class Calibration:
         low, high = (_quantile(mean, sd, p) for p in (0.5 * (1.0 - LEVEL), 0.5 * (1.0 + LEVEL)))
         spread = np.sqrt((sd**2 + mean**2).mean(axis=0) - mean.mean(axis=0) ** 2)
         shape = () if isinstance(body, Body) else np.shape(body)
-        parts = (mean.mean(axis=0), np.clip(low, 0.0, bound), np.clip(high, 0.0, bound), spread)
-        return Prediction(*(part.reshape(shape) for part in parts))
+        return Prediction(
+            mean.mean(axis=0).reshape(shape),
+            np.clip(low, 0.0, bound).reshape(shape),
+            np.clip(high, 0.0, bound).reshape(shape),
+            spread.reshape(shape),
+        )
 
     def draw(self, count: int, seed: int) -> FloatArray:
         """Draw parameters from the posterior.
@@ -206,8 +212,8 @@ def calibrate_on(data: DataSet) -> Calibration:
 def interval_for(model: RestitutionModel, body: Body, *, onto: Foot = "right") -> Prediction:
     """Return a model's coefficient with an interval from its own misfit to the 39 measurements.
 
-    The interval is the coefficient plus and minus the normal quantile of the scatter around the model's own predictions,
-    bias included: it says how far one measured body may lie from this model.
+    The interval is the coefficient plus and minus the normal quantile of the scatter around the model's own
+    predictions, bias included: it says how far one measured body may lie from this model.
 
     Parameters
     ----------
@@ -256,8 +262,8 @@ def _geometry(body: Body | Any, onto: Foot) -> tuple[ImpactGeometry, FloatArray]
 
 
 def _log_prior() -> FloatArray:
-    eta = 0.5 * np.log1p(-_ETA) + 97.5 * np.log(_ETA)
-    k = -0.5 * ((_K - 0.6) / 0.12) ** 2
+    eta: FloatArray = 0.5 * np.log1p(-_ETA) + 97.5 * np.log(_ETA)
+    k: FloatArray = -0.5 * ((_K - 0.6) / 0.12) ** 2
     return eta[:, None, None, None] + k[None, :, None, None]
 
 

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rocking.evidence.calibration import CALIBRATED_RANGE, calibrate, interval_for
-
 from rocking.bodies import Body
 from rocking.conventions import Foot, opposite
-from rocking.restitution import Flag, Implication, RestitutionModel, implied, model, models
+from rocking.evidence.calibration import CALIBRATED_RANGE, calibrate, interval_for
+from rocking.restitution import Implication, RestitutionModel, implied, model, models
 
 CALIBRATED = "calibrated"
 
@@ -145,9 +144,9 @@ def _model_row(body: Body, which: RestitutionModel, onto: Foot) -> CoefficientRo
     result = which.evaluate(body, onto)
     implication = implied(body, result.coefficient, onto=onto)
     interval = interval_for(which, body, onto=onto)
-    warnings = tuple(flag.value for flag in result.flags if isinstance(flag, Flag)) + implication.objections
+    warnings = tuple(flag.value for flag in result.flags) + implication.objections
     return CoefficientRow(
-        which.label, which.title, result.coefficient, interval.low, interval.high, implication, warnings
+        which.label, which.title, result.coefficient, float(interval.low), float(interval.high), implication, warnings
     )
 
 

@@ -98,8 +98,10 @@ def _wrong_value(tables: dict[str, DataSet]) -> Erratum:
     # an energy ratio rounded to two digits leaves r open by 0.005 / (2 r)
     beyond = np.abs(second.printed["housner"] - truth) > 0.0051 / (2.0 * truth)
     where = [
-        f"h/b = {l:g}: printed {p:.6f}, true {t:.6f}"
-        for l, p, t in zip(second.slenderness[beyond], second.printed["housner"][beyond], truth[beyond], strict=True)
+        f"h/b = {ratio:g}: printed {p:.6f}, true {t:.6f}"
+        for ratio, p, t in zip(
+            second.slenderness[beyond], second.printed["housner"][beyond], truth[beyond], strict=True
+        )
     ]
     return Erratum(
         "Table 2, a wrong r_H",
@@ -151,9 +153,7 @@ def _housner_correlates_as_well(tables: dict[str, DataSet]) -> Erratum:
     for name in ("table2", "S", "M", "L"):
         data = tables[name]
         pairs.append(
-            tuple(
-                correlation(model.of_slenderness(data.slenderness), data.coefficient) for model in (Housner(), Ked())
-            )
+            tuple(correlation(model.of_slenderness(data.slenderness), data.coefficient) for model in (Housner(), Ked()))
         )
     words = ", ".join(f"{housner:.4f} / {ked:.4f}" for housner, ked in pairs)
     return Erratum(
@@ -194,15 +194,13 @@ def _closer_in_half(tables: dict[str, DataSet]) -> Erratum:
     wins = [closer_rows(part) for part in parts]
     total, of_table_3 = sum(map(sum, wins)), sum(map(sum, wins[1:]))
     slender = [won for part, won in zip(parts, wins, strict=True)]
-    above = sum(
-        int((np.array(won) & (part.slenderness > 6.0)).sum()) for part, won in zip(parts, slender, strict=True)
-    )
-    count = sum(map(len, parts))
+    above = sum(int((np.array(won) & (part.slenderness > 6.0)).sum()) for part, won in zip(parts, slender, strict=True))
+    count, of = sum(map(len, parts)), sum(map(len, parts[1:]))
     rows_above = sum(int((part.slenderness > 6.0).sum()) for part in parts)
     return Erratum(
         "Agreement with experiment",
         "KED is closer to the experiment than Housner in about half of the rows, and in none above slenderness 6.",
-        f"{total} of {count} rows, {of_table_3} of {sum(map(len, parts[1:]))} in Table 3, {above} of {rows_above} above 6",
+        f"{total} of {count} rows, {of_table_3} of {of} in Table 3, {above} of {rows_above} above 6",
         total == 21 and count == 39 and of_table_3 == 13 and above == 0,
     )
 

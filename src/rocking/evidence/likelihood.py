@@ -37,7 +37,7 @@ def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray,
 
 
 def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
-    """Standard deviation of a measured coefficient around its prediction.
+    """Return the standard deviation of a measured coefficient around its prediction.
 
     Parameters
     ----------
@@ -122,5 +122,8 @@ def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
 def _maximise(function: Callable[[FloatArray], float], start: list[float]) -> tuple[list[float], float]:
     from scipy.optimize import minimize
 
-    result = minimize(lambda p: -function(p), start, method="Nelder-Mead", options={"xatol": 1e-8, "fatol": 1e-10})
+    def negative(parameters: FloatArray) -> float:
+        return -function(parameters)
+
+    result = minimize(negative, np.array(start), method="Nelder-Mead", options={"xatol": 1e-8, "fatol": 1e-10})
     return [float(value) for value in result.x], -float(result.fun)

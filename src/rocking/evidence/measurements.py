@@ -3,7 +3,7 @@
 import csv
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib.resources import files
 
@@ -55,7 +55,7 @@ class DataSet:
     printed: dict[str, FloatArray]
 
     def __len__(self) -> int:
-        """Number of rows."""
+        """Return the number of rows."""
         return len(self.slenderness)
 
     def rows(self, chosen: Sequence[int] | FloatArray) -> "DataSet":
@@ -72,15 +72,16 @@ class DataSet:
             Those rows.
         """
         index = np.arange(len(self))[np.asarray(chosen)]
-        columns = (self.slenderness, self.coefficient, self.low, self.high, self.mass)
-        return DataSet(
-            self.name,
-            self.title,
-            self.source,
-            *(column[index] for column in columns),
-            tuple(self.labels[i] for i in index.tolist()),
-            tuple(self.group[i] for i in index.tolist()),
-            {key: column[index] for key, column in self.printed.items()},
+        return replace(
+            self,
+            slenderness=self.slenderness[index],
+            coefficient=self.coefficient[index],
+            low=self.low[index],
+            high=self.high[index],
+            mass=self.mass[index],
+            labels=tuple(self.labels[i] for i in index.tolist()),
+            group=tuple(self.group[i] for i in index.tolist()),
+            printed={key: column[index] for key, column in self.printed.items()},
         )
 
 
@@ -124,18 +125,22 @@ def all_measurements() -> DataSet:
     39
     """
     parts = [datasets()[name] for name in GROUPS]
-    joined = [
-        np.concatenate([getattr(part, name) for part in parts])
-        for name in ("slenderness", "coefficient", "low", "high", "mass")
-    ]
+
+    def joined(name: str) -> FloatArray:
+        return np.concatenate([getattr(part, name) for part in parts])
+
     return DataSet(
-        "all",
-        "All 39 measurements",
-        parts[0].source,
-        *joined,
-        tuple(label for part in parts for label in part.labels),
-        tuple(group for part in parts for group in part.group),
-        {},
+        name="all",
+        title="All 39 measurements",
+        source=parts[0].source,
+        slenderness=joined("slenderness"),
+        coefficient=joined("coefficient"),
+        low=joined("low"),
+        high=joined("high"),
+        mass=joined("mass"),
+        labels=tuple(label for part in parts for label in part.labels),
+        group=tuple(group for part in parts for group in part.group),
+        printed={},
     )
 
 

@@ -1,0 +1,58 @@
+"""Everything that `rocking paper` computes, in one object."""
+
+from dataclasses import dataclass
+
+from rocking.evidence.calibration import Calibration, calibrate
+from rocking.evidence.claims import Claim, claims
+from rocking.evidence.errata import Erratum, errata
+from rocking.evidence.league import LeagueRow, league
+from rocking.evidence.tables import TableRow, recomputed
+from rocking.evidence.verdict import verdict
+
+TABLES = {
+    "Table 1": ("table1",),
+    "Table 2": ("table2",),
+    "Table 3": ("S", "M", "L"),
+}
+"""The paper's tables and the data sets they hold."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Reproduction:
+    """The paper, recomputed.
+
+    Parameters
+    ----------
+    tables : dict of str to tuple of TableRow
+        Table to rows, printed beside recomputed.
+    claims : tuple of Claim
+        Every claim with its verdict.
+    errata : tuple of Erratum
+        What recomputing found.
+    league : tuple of LeagueRow
+        Every model against every measurement.
+    calibration : Calibration
+        The calibrated default.
+    verdict : tuple of str
+        What the evidence says, in words.
+    """
+
+    tables: dict[str, tuple[TableRow, ...]]
+    claims: tuple[Claim, ...]
+    errata: tuple[Erratum, ...]
+    league: tuple[LeagueRow, ...]
+    calibration: Calibration
+    verdict: tuple[str, ...]
+
+
+def reproduce() -> Reproduction:
+    """Recompute the paper.
+
+    Returns
+    -------
+    Reproduction
+        Tables, claims, errata, league, calibration, verdict.
+    """
+    standings = league()
+    tables = {title: tuple(row for name in names for row in recomputed(name)) for title, names in TABLES.items()}
+    return Reproduction(tables, claims(), errata(), standings, calibrate(), verdict(standings))
