@@ -28,5 +28,5 @@ def paper(
     with paper_output.progress(quiet=as_json) as step:
         written = write_folder(result, out, step)
     if not as_json:
+        paper_output.what_to_look_at(result, written, out)
         paper_output.show(result)
-        paper_output.what_to_look_at(written, out)

@@ -290,4 +290,4 @@ def _quantile(mean: FloatArray, sd: FloatArray, level: float) -> FloatArray:
         middle = 0.5 * (low + high)
         below = ndtr((middle - mean) / sd).mean(axis=0) < level
         low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return 0.5 * (low + high)
+    return np.asarray(0.5 * (low + high))

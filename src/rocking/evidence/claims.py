@@ -127,7 +127,8 @@ def _closer(section: str, quote: str, names: tuple[str, ...]) -> Claim:
         quote,
         HOLDS if better and share > 0.75 else IN_PART if better else FAILS,
         f"closer in {sum(won)} of {len(won)} rows; RMSE of r {rmse(ked, measured):.4f} against "
-        f"{rmse(housner, measured):.4f}; of the energy loss {loss_rmse(ked, measured):.4f} against {loss_rmse(housner, measured):.4f}",
+        f"{rmse(housner, measured):.4f}; of the energy loss {loss_rmse(ked, measured):.4f} against "
+        f"{loss_rmse(housner, measured):.4f}",
         "rows in which KED is closer than Housner, and errors over all rows; holds in part below three rows in four",
     )
 

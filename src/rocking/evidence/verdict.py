@@ -50,7 +50,8 @@ def _against_free(ked: LeagueRow, free: Sequence[LeagueRow]) -> str:
     low, high = best.ahead_of_ked
     sure = "beyond doubt" if high < 0.0 else "though the bootstrap interval reaches zero"
     return (
-        f"Among the models without a fitted parameter KED loses to {len(better)}: {', '.join(row.name for row in better)}. "
+        f"Among the models without a fitted parameter KED loses to {len(better)}: "
+        f"{', '.join(row.name for row in better)}. "
         f"The closest is {best.name}, RMSE {best.rmse:.4f}, {ked.rmse - best.rmse:.4f} below KED "
         f"(95 % interval {-high:+.4f} to {-low:+.4f}, {sure}; BIC lower by {ked.bic - best.bic:.0f})."
     )
@@ -88,7 +89,7 @@ def _unresolved(rows: Sequence[LeagueRow], ked: LeagueRow) -> str:
     best = min(row.bic_rounding for row in rows)
     close = [row.name for row in rows if row.bic_rounding - best < _UNRESOLVED]
     return (
-        f"What these data cannot resolve: {', '.join(close)} lie within {_UNRESOLVED:g} in BIC of each other. Two sources, "
-        "repeated tests of the same blocks and one tape-covered interface are little evidence: what a model does outside "
-        "slenderness 1.5 to 9.75, or for other shapes, is theory."
+        f"What these data cannot resolve: {', '.join(close)} lie within {_UNRESOLVED:g} in BIC of each other. Two "
+        "sources, repeated tests of the same blocks and one tape-covered interface are little evidence: what a model does "
+        "outside slenderness 1.5 to 9.75, or for other shapes, is theory."
     )
