@@ -191,10 +191,10 @@ def draw(answer: Answer, path: Path) -> None:
     """
     if path.suffix not in (".png", ".svg", ".pdf"):
         raise InvalidValueError(f"a picture is .png, .svg or .pdf, got {path.name!r}")
-    from rocking.plots import coefficient_picture
+    from rocking.plots import coefficient_picture, write
 
     foot, rows = next(reversed(answer.tables.items()))
-    coefficient_picture(answer.body, rows, onto=foot).savefig(path)
+    write(coefficient_picture(answer.body, rows, onto=foot), path)
 
 
 def _same(left: tuple[CoefficientRow, ...], right: tuple[CoefficientRow, ...]) -> bool:

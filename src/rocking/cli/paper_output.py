@@ -132,16 +132,16 @@ def _league(result: Reproduction) -> object:
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False, header_style="bold")
-    table.add_column("  model", no_wrap=True, min_width=29)
+    table.add_column("  model", no_wrap=True, min_width=28)
     for name in ("RMSE", "bias", "<=3", "3-6", ">6", "loss", "BIC"):
-        table.add_column(name, justify="right")
+        table.add_column(name, justify="right", no_wrap=True)
     for row in result.league:
-        bands = [f"{value:.4f}" for value in row.by_band.values()]
+        bands = [f"{value:.3f}" for value in row.by_band.values()]
         style = "bold" if row.name in ("ked", "housner") else None
         table.add_row(
             f"  {row.name}",
             f"{row.rmse:.4f}",
-            f"{row.bias:+.4f}",
+            f"{row.bias:+.3f}",
             *bands,
             f"{row.log_loss_rmse:.3f}",
             f"{row.bic_rounding:.1f}",

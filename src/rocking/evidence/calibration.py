@@ -242,14 +242,9 @@ def _misfit(model: RestitutionModel) -> tuple[float, float]:
     if isinstance(model, Fixed):
         facts = calibrate().summary
         return facts["s"]["mean"], facts["gamma"]["mean"]
-    if model.label not in _MISFITS or _MISFITS[model.label][0] is not type(model):
-        data = all_measurements()
-        floor, slope, _ = fit_scatter(data, model.of_slenderness(data.slenderness))
-        _MISFITS[model.label] = type(model), floor, slope
-    return _MISFITS[model.label][1:]
-
-
-_MISFITS: dict[str, tuple[type, float, float]] = {}
+    data = all_measurements()
+    floor, slope, _ = fit_scatter(data, model.of_slenderness(data.slenderness))
+    return floor, slope
 
 
 def _geometry(body: Body | Any, onto: Foot) -> tuple[ImpactGeometry, FloatArray]:

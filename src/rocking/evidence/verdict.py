@@ -90,6 +90,6 @@ def _unresolved(rows: Sequence[LeagueRow], ked: LeagueRow) -> str:
     close = [row.name for row in rows if row.bic_rounding - best < _UNRESOLVED]
     return (
         f"What these data cannot resolve: {', '.join(close)} lie within {_UNRESOLVED:g} in BIC of each other. Two "
-        "sources, repeated tests of the same blocks and one tape-covered interface are little evidence: what a model does "
-        "outside slenderness 1.5 to 9.75, or for other shapes, is theory."
+        "sources, repeated tests of the same blocks and one tape-covered interface are little evidence: what a model "
+        "does outside slenderness 1.5 to 9.75, or for other shapes, is theory."
     )

@@ -227,7 +227,7 @@ class RestitutionModel(ABC):
     @property
     def label(self) -> str:
         """Name with parameters, as the command line takes it: ``shifted-impulse:k=0.6``."""
-        values = ",".join(f"{name}={value:g}" for name, value in self.parameters.items())
+        values = ",".join(f"{name}={value:.4g}" for name, value in self.parameters.items())
         return f"{self.name}:{values}" if values else self.name
 
 

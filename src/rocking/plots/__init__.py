@@ -1,0 +1,28 @@
+"""Pictures: the paper's figures, bodies, models against measurements."""
+
+from rocking.plots.body_picture import body_picture, coefficient_picture
+from rocking.plots.figure_1 import figure_1
+from rocking.plots.figure_2 import figure_2
+from rocking.plots.hero import hero
+from rocking.plots.overview import calibration_figure, league_figure, models_and_measurements
+from rocking.plots.paper_figures import figure_3, figure_5, figure_6, figure_7, figure_8, figure_9
+from rocking.plots.style import save, write
+
+__all__ = [
+    "body_picture",
+    "calibration_figure",
+    "coefficient_picture",
+    "figure_1",
+    "figure_2",
+    "figure_3",
+    "figure_5",
+    "figure_6",
+    "figure_7",
+    "figure_8",
+    "figure_9",
+    "hero",
+    "league_figure",
+    "models_and_measurements",
+    "save",
+    "write",
+]

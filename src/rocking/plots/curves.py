@@ -1,0 +1,72 @@
+"""Model curves and measured points, drawn the same way in every figure."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking.evidence.measurements import DataSet
+from rocking.plots.style import GROUP_STYLE, INK, MODEL_STYLE
+from rocking.restitution import RestitutionModel, model
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def curve(axes: "Axes", name: str, low: float, high: float, which: RestitutionModel | None = None) -> None:
+    """Draw a model's coefficient against slenderness.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where.
+    name : str
+        Model, as in `MODEL_STYLE`.
+    low, high : float
+        Range of h/b [-].
+    which : RestitutionModel, optional
+        The model, if it is not the one of that name.
+    """
+    ratio = np.linspace(low, high, 400)
+    axes.plot(ratio, (which or model(name)).of_slenderness(ratio), **MODEL_STYLE[name])
+
+
+def points(axes: "Axes", data: DataSet, style: str, *, filled: bool = False, label: str | None = None) -> None:
+    """Draw measured coefficients with the interval that rounding leaves open.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where.
+    data : DataSet
+        Measurements.
+    style : str
+        Group, as in `GROUP_STYLE`.
+    filled : bool
+        Whether the markers are filled.
+    label : str, optional
+        Words for the legend.
+    """
+    look = {**GROUP_STYLE[style], **({} if label is None else {"label": label})}
+    reach = np.array([data.coefficient - data.low, data.high - data.coefficient])
+    axes.errorbar(
+        data.slenderness,
+        data.coefficient,
+        yerr=reach,
+        linestyle="none",
+        color=INK,
+        markerfacecolor=INK if filled else "white",
+        markeredgewidth=0.7,
+        elinewidth=0.6,
+        **look,
+    )
+
+
+def slenderness_axis(axes: "Axes") -> None:
+    """Label the axis of slenderness.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where.
+    """
+    axes.set_xlabel("slenderness ratio h/b [-]")

@@ -1,0 +1,43 @@
+"""Every figure of the report, by the name of its file."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from rocking.evidence.calibration import Calibration
+from rocking.evidence.league import LeagueRow
+from rocking.plots.figure_1 import figure_1
+from rocking.plots.figure_2 import figure_2
+from rocking.plots.overview import calibration_figure, league_figure, models_and_measurements
+from rocking.plots.paper_figures import figure_3, figure_5, figure_6, figure_7, figure_8, figure_9
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Draw = Callable[[Sequence[LeagueRow], Calibration], "Figure"]
+
+
+def paper_figures() -> dict[str, Draw]:
+    """Return the figures of the report.
+
+    Returns
+    -------
+    dict of str to callable
+        File name to the function that draws it from the league and the calibration.
+    """
+    plain = {
+        "figure_1": figure_1,
+        "figure_2": figure_2,
+        "figure_3": figure_3,
+        "figure_5": figure_5,
+        "figure_6": figure_6,
+        "figure_7": figure_7,
+        "figure_8": figure_8,
+        "figure_9": figure_9,
+    }
+    drawn: dict[str, Draw] = {name: (lambda league, fit, draw=draw: draw()) for name, draw in plain.items()}
+    return {
+        **drawn,
+        "league": lambda league, fit: league_figure(league),
+        "models_and_measurements": lambda league, fit: models_and_measurements(fit),
+        "calibration": lambda league, fit: calibration_figure(fit),
+    }

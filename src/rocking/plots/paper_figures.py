@@ -1,0 +1,187 @@
+"""Figures 3 and 5 to 9 of the paper, from the measurements as printed."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking.evidence.agreement import relative_error
+from rocking.evidence.measurements import DataSet, datasets
+from rocking.plots.curves import curve, points, slenderness_axis
+from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, MODEL_STYLE, SINGLE, new_figure
+from rocking.restitution import model
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_PAIR = ("housner", "ked")
+_MARKER = {"housner": "s", "ked": "o"}
+
+
+def figure_3() -> "Figure":
+    """Draw slenderness against r with Table 2; bars are |r_r - r_e|, as in the paper.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel.
+    """
+    figure, (axes,) = new_figure(SINGLE, 2.7)
+    data = datasets()["table2"]
+    for name in _PAIR:
+        curve(axes, name, 1.5, 9.0)
+    reach = np.abs(model("ked").of_slenderness(data.slenderness) - data.coefficient)
+    axes.errorbar(
+        data.slenderness,
+        data.coefficient,
+        yerr=reach,
+        linestyle="none",
+        marker="s",
+        color=INK,
+        capsize=2.0,
+        elinewidth=0.8,
+        label="Table 2, means",
+    )
+    slenderness_axis(axes)
+    axes.set_ylabel("coefficient of restitution r [-]")
+    axes.set_ylim(0.55, 1.02)
+    axes.legend(loc="lower right")
+    return figure
+
+
+def figure_5() -> "Figure":
+    """Draw slenderness against r for the groups S, M and L.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel.
+    """
+    figure, (axes,) = new_figure(SINGLE, 2.7)
+    for name in _PAIR:
+        curve(axes, name, 1.3, 10.2)
+    for group in ("S", "M", "L"):
+        points(axes, datasets()[group], group, label=f"group {group}")
+    slenderness_axis(axes)
+    axes.set_ylabel("coefficient of restitution r [-]")
+    axes.legend(loc="lower right")
+    return figure
+
+
+def figure_6() -> "Figure":
+    """Draw the relative errors of both models for Table 2, with the paper's zones.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel.
+    """
+    figure, (axes,) = new_figure(SINGLE, 2.7)
+    _zoned(axes, datasets()["table2"])
+    axes.legend(loc="upper right")
+    return figure
+
+
+def figure_7() -> "Figure":
+    """Draw the relative errors of both models for the groups S, M and L.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels.
+    """
+    figure, axes = new_figure(DOUBLE, 2.5, columns=3, sharey=True)
+    for panel, letter, group in zip(axes, "abc", ("S", "M", "L"), strict=True):
+        _zoned(panel, datasets()[group])
+        panel.set_title(f"({letter}) group {group}")
+    for panel in axes[1:]:
+        panel.set_ylabel("")
+    axes[-1].legend(loc="upper right")
+    return figure
+
+
+def figure_8() -> "Figure":
+    """Draw the absolute errors r_r - r_e and r_e - r_H against mass.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel.
+    """
+    figure, (axes,) = new_figure(SINGLE, 2.9)
+    for name, sign, words in (("housner", -1.0, "$r_e - r_H$"), ("ked", 1.0, "$r_r - r_e$")):
+        for group in ("S", "M", "L"):
+            data = datasets()[group]
+            error = sign * (model(name).of_slenderness(data.slenderness) - data.coefficient)
+            color = MODEL_STYLE[name]["color"]
+            axes.plot(
+                data.mass,
+                error,
+                linestyle="none",
+                marker=GROUP_STYLE[group]["marker"],
+                color=color,
+                markerfacecolor="white" if name == "housner" else color,
+                label=f"{words}, {group}",
+            )
+    axes.axhline(0.0, color=GREY, linewidth=0.6)
+    axes.set_xscale("log")
+    axes.set_xlabel("mass [kg]")
+    axes.set_ylabel("absolute error of r [-]")
+    axes.legend(loc="upper right", ncols=2, columnspacing=0.8, handletextpad=0.2)
+    return figure
+
+
+def figure_9() -> "Figure":
+    """Draw the relative errors at equal slenderness for the three groups and both models.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel.
+    """
+    figure, (axes,) = new_figure(SINGLE, 2.9)
+    for name in _PAIR:
+        for group in ("S", "M", "L"):
+            data = datasets()[group]
+            error = 100.0 * relative_error(model(name).of_slenderness(data.slenderness), data.coefficient)
+            look = MODEL_STYLE[name]
+            axes.plot(
+                data.slenderness,
+                error,
+                color=look["color"],
+                linestyle=look["linestyle"],
+                linewidth=0.9,
+                marker=GROUP_STYLE[group]["marker"],
+                markerfacecolor="white",
+                markersize=3.5,
+                label=f"{look['label']}, {group}",
+            )
+    slenderness_axis(axes)
+    axes.set_ylabel("relative error of r [%]")
+    axes.set_ylim(bottom=0.0)
+    axes.legend(loc="upper right", ncols=2, columnspacing=0.8)
+    return figure
+
+
+def _zoned(axes: "Axes", data: DataSet) -> None:
+    for low, high, shade, name in ((0.0, 1.0, "#ececec", "I"), (1.0, 5.0, "#f7f7f7", "II")):
+        axes.axhspan(low, high, color=shade, linewidth=0.0, zorder=0)
+        axes.text(
+            0.995, 0.5 * (low + high), name, transform=axes.get_yaxis_transform(), ha="right", va="center", fontsize=7
+        )
+    axes.text(0.995, 7.0, "III", transform=axes.get_yaxis_transform(), ha="right", va="center", fontsize=7)
+    for name in _PAIR:
+        error = 100.0 * relative_error(model(name).of_slenderness(data.slenderness), data.coefficient)
+        look = MODEL_STYLE[name]
+        axes.plot(
+            data.slenderness,
+            error,
+            linestyle="none",
+            marker=_MARKER[name],
+            color=look["color"],
+            label=look["label"],
+            markerfacecolor="white" if name == "housner" else look["color"],
+        )
+    axes.set_ylim(bottom=0.0)
+    slenderness_axis(axes)
+    axes.set_ylabel("relative error of r [%]")

@@ -1,0 +1,148 @@
+"""One journal style for every picture: sizes, colours, and files that come out the same every time."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rocking.errors import MissingExtraError, RockingError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SINGLE, DOUBLE = 90.0 / 25.4, 190.0 / 25.4
+"""Widths of one and of two journal columns [in]."""
+
+INK, GREY, PALE = "#222222", "#8a8a8a", "#e6e6e6"
+
+MODEL_STYLE: dict[str, dict[str, Any]] = {
+    "housner": {"color": "#0072B2", "linestyle": "--", "label": "Housner"},
+    "ked": {"color": "#D55E00", "linestyle": "-", "label": "KED"},
+    "horizontal-momentum": {"color": "#009E73", "linestyle": "-.", "label": "cos$^2$ α"},
+    "shifted-impulse": {"color": "#CC79A7", "linestyle": ":", "label": "shifted impulse, k = 2/3"},
+    "distributed-impulse": {"color": "#56B4E9", "linestyle": (0, (5, 1, 1, 1, 1, 1)), "label": "distributed, q = 1"},
+    "plastic-winkler": {"color": "#E69F00", "linestyle": (0, (6, 2)), "label": "plastic Winkler"},
+}
+"""Okabe and Ito's colours, each with its own line so that grey print keeps them apart."""
+
+GROUP_STYLE: dict[str, dict[str, Any]] = {
+    "table1": {"marker": "s", "label": "Table 1"},
+    "S": {"marker": "v", "label": "S"},
+    "M": {"marker": "o", "label": "M"},
+    "L": {"marker": "^", "label": "L"},
+}
+
+_SETTINGS: dict[str, Any] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8.0,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": 8.0,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 4.0,
+    "legend.frameon": False,
+    "legend.fontsize": 7.0,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "rocking",
+    "mathtext.default": "regular",
+    "savefig.dpi": 300,
+}
+
+
+def new_figure(
+    width: float, height: float, *, rows: int = 1, columns: int = 1, **options: Any
+) -> tuple["Figure", list["Axes"]]:
+    """Return a figure in the journal style with its axes.
+
+    Parameters
+    ----------
+    width, height : float
+        Size [in].
+    rows, columns : int
+        Grid of axes.
+    **options
+        For ``Figure.subplots``.
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+        Not registered with pyplot.
+    axes : list of matplotlib.axes.Axes
+        Row by row.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+    """
+    try:
+        from matplotlib import rc_context
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise MissingExtraError("pictures need matplotlib: pip install 'rocking[plots]'") from error
+    with rc_context(_SETTINGS):
+        figure = Figure(figsize=(width, height), layout="constrained")
+        axes = figure.subplots(rows, columns, squeeze=False, **options)
+    return figure, list(axes.ravel())
+
+
+def save(figure: "Figure", folder: Path, stem: str) -> list[Path]:
+    """Write a figure as PNG and SVG, the same bytes every time.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    folder : Path
+        Where to write.
+    stem : str
+        File name without suffix.
+
+    Returns
+    -------
+    list of Path
+        PNG and SVG.
+    """
+    return [write(figure, folder / f"{stem}.{kind}") for kind in ("png", "svg")]
+
+
+def write(figure: "Figure", path: Path) -> Path:
+    """Write a figure in the format that the suffix names.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    path : Path
+        File ending in .png, .svg or .pdf.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    RockingError
+        If the suffix is another, or the file cannot be written.
+    """
+    from matplotlib import rc_context
+
+    metadata: dict[str, dict[str, Any]] = {
+        ".png": {"Software": None},
+        ".svg": {"Date": None, "Creator": None},
+        ".pdf": {"CreationDate": None},
+    }
+    if path.suffix not in metadata:
+        raise RockingError(f"a picture is .png, .svg or .pdf, got {path.name!r}")
+    try:
+        with rc_context(_SETTINGS):
+            figure.savefig(path, metadata=metadata[path.suffix])
+    except OSError as error:
+        raise RockingError(f"cannot write {path}: {error.strerror or error}") from error
+    return path
