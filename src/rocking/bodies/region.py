@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from rocking import checks
 from rocking.bodies import topology
@@ -12,7 +13,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class Region:
     """One polygon of one material.
 
@@ -40,19 +41,23 @@ class Region:
     """
 
     outline: FloatArray
-    density: float = DEFAULT_DENSITY
-    holes: Sequence[FloatArray] = ()
+    density: float
+    holes: tuple[FloatArray, ...]
 
-    def __post_init__(self) -> None:
-        """Normalise the rings: outline counter-clockwise, holes clockwise."""
-        outline = topology.ring("outline", self.outline)
-        if not isinstance(self.holes, (Sequence, np.ndarray)):
+    def __init__(self, outline: ArrayLike, density: float = DEFAULT_DENSITY, holes: Sequence[ArrayLike] = ()) -> None:
+        given: object = holes
+        if not isinstance(given, (Sequence, np.ndarray)):
             raise GeometryError("holes must be a list of rings, each a list of (x, y) points in m")
-        holes = tuple(topology.ring(f"hole {i}", hole) for i, hole in enumerate(self.holes))
-        topology.check_polygon("region", outline, holes)
+        outer = topology.ring("outline", outline)
+        inner = tuple(topology.ring(f"hole {i}", hole) for i, hole in enumerate(holes))
+        topology.check_polygon("region", outer, inner)
+        self._set(outer, checks.density("density", density), inner)
+
+    def _set(self, outline: FloatArray, density: float, holes: Sequence[FloatArray]) -> None:
+        # outline counter-clockwise, holes clockwise: the boundary integrals then add up by themselves
         object.__setattr__(self, "outline", _turned(outline, 1.0))
+        object.__setattr__(self, "density", density)
         object.__setattr__(self, "holes", tuple(_turned(hole, -1.0) for hole in holes))
-        object.__setattr__(self, "density", checks.density("density", self.density))
 
     @property
     def rings(self) -> tuple[FloatArray, ...]:
@@ -91,9 +96,7 @@ class Region:
         """
         region = object.__new__(Region)
         outline, *holes = (change(ring) for ring in self.rings)
-        object.__setattr__(region, "outline", _turned(outline, 1.0))
-        object.__setattr__(region, "holes", tuple(_turned(hole, -1.0) for hole in holes))
-        object.__setattr__(region, "density", self.density * density)
+        region._set(outline, self.density * density, holes)
         return region
 
 

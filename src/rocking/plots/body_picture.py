@@ -13,13 +13,14 @@ from rocking.evidence.measurements import GROUPS, datasets
 from rocking.plots.curves import points, slenderness_axis
 from rocking.plots.outline import draw_body
 from rocking.plots.overview import band
-from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, PALE, SINGLE, new_figure
+from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, PALE, SINGLE, in_journal_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
+@in_journal_style
 def body_picture(body: Body) -> "Figure":
     """Draw a body on its ground: outline, densities, feet, centre, semi-diagonals.
 
@@ -38,6 +39,7 @@ def body_picture(body: Body) -> "Figure":
     return figure
 
 
+@in_journal_style
 def coefficient_picture(body: Body, rows: Sequence[CoefficientRow], *, onto: Foot = "right") -> "Figure":
     """Draw a body, its coefficient under every model, and where it lies among the measurements.
 

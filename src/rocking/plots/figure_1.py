@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.plots.style import GREY, INK, SINGLE, new_figure
+from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 _B, _H, _THETA = 0.5, 1.25, 0.16
 
 
+@in_journal_style
 def figure_1() -> "Figure":
     """Draw the block, its feet, half sizes, semi-diagonal and angles.
 
@@ -45,9 +46,9 @@ def figure_1() -> "Figure":
     tilt = 90.0 - math.degrees(_THETA)
     axes.add_patch(Arc(tuple(foot), 1.5, 1.5, theta1=tilt, theta2=tilt + math.degrees(alpha), color=INK, linewidth=0.8))
     middle = math.radians(tilt + 0.5 * math.degrees(alpha))
-    _text(axes, "α", foot + 0.9 * np.array([math.cos(middle), math.sin(middle)]), (-3, -3))
+    _text(axes, r"$\alpha$", foot + 0.9 * np.array([math.cos(middle), math.sin(middle)]), (-3, -3))
     axes.add_patch(Arc(tuple(foot), 3.6, 3.6, theta1=tilt, theta2=90.0, color=INK, linewidth=0.8))
-    _text(axes, "θ > 0", foot + 1.8 * np.array([math.sin(0.5 * _THETA), math.cos(0.5 * _THETA)]), (4, 3))
+    _text(axes, r"$\theta > 0$", foot + 1.8 * np.array([math.sin(_THETA), math.cos(_THETA)]), (6, -2), align="left")
     _dimension(axes, turned[3], turned[2], "2b", (0, 9))
     _dimension(axes, turned[3], turned[0], "2h", (-16, 0))
     axes.annotate("", (0.55, -0.3), (0.0, -0.3), arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 0.8})
@@ -72,4 +73,4 @@ def _dimension(axes: "Axes", a: np.ndarray, b: np.ndarray, words: str, shift: tu
     normal = np.array([-(b - a)[1], (b - a)[0]]) / np.linalg.norm(b - a)
     outward = 0.1 * normal if words == "2b" else -0.1 * normal
     axes.annotate("", tuple(a + outward), tuple(b + outward), arrowprops={"arrowstyle": "<->", "linewidth": 0.6})
-    _text(axes, words, 0.5 * (a + b) + outward, shift if words == "2b" else (-9, -3))
+    _text(axes, words, 0.5 * (a + b) + outward, shift if words == "2b" else (-17, -3))

@@ -8,12 +8,13 @@ from rocking.bodies import Body, Section
 from rocking.bodies.density import density_at
 from rocking.conventions import FloatArray, Foot
 from rocking.plots.outline import outline_path
-from rocking.plots.style import DOUBLE, INK, new_figure
+from rocking.plots.style import DOUBLE, INK, in_journal_style, new_figure
 from rocking.restitution import EnergyLedger, energy_ledger
 from rocking.restitution.ledger import STAGES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
     from matplotlib.figure import Figure
 
 _GRID = 260
@@ -26,6 +27,7 @@ _WORDS = {
 }
 
 
+@in_journal_style
 def figure_2(body: Body | None = None, *, onto: Foot = "right", angular_velocity: float = 1.0) -> "Figure":
     """Draw energy density and velocities over a body, stage by stage.
 
@@ -67,7 +69,7 @@ def _panel(
     stage: str,
     field: tuple[FloatArray, FloatArray, FloatArray],
     top: float,
-) -> object:
+) -> "QuadMesh":
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -118,7 +120,7 @@ def _arrows(axes: "Axes", body: Body, ledger: EnergyLedger, stage: str) -> None:
         v,
         angles="xy",
         scale_units="xy",
-        scale=fastest / (1.6 * step),
+        scale=fastest / (0.95 * step),
         color="white",
         edgecolor=INK,
         linewidth=0.3,

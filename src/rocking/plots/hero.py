@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from rocking.bodies import Region, Section
+from rocking.bodies import Section
+from rocking.bodies.region import Region
 from rocking.plots.figure_2 import figure_2
 
 if TYPE_CHECKING:

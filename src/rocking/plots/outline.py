@@ -10,6 +10,7 @@ from rocking.plots.style import GREY, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.path import Path
 
 
 def draw_body(axes: "Axes", body: Body, *, filled: bool = True) -> None:
@@ -56,7 +57,7 @@ def outline_path(body: Body) -> list[FloatArray]:
     return [ring + shift for region in body.regions for ring in region.rings]
 
 
-def _paths(body: Body) -> list[tuple[object, float]]:
+def _paths(body: Body) -> "list[tuple[Path, float]]":
     from matplotlib.path import Path
 
     if isinstance(body, Block):

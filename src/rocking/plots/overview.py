@@ -9,7 +9,7 @@ from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration
 from rocking.evidence.league import LeagueRow
 from rocking.evidence.measurements import GROUPS, DataSet, datasets
 from rocking.plots.curves import curve, points, slenderness_axis
-from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, MODEL_STYLE, PALE, new_figure
+from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, MODEL_STYLE, PALE, in_journal_style, new_figure
 from rocking.restitution import model
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _LOW, _HIGH = 1.2, 10.5
 
 
+@in_journal_style
 def models_and_measurements(calibration: Calibration) -> "Figure":
     """Draw every model with all 39 measurements: r, and the energy loss, which tells slender bodies apart.
 
@@ -46,6 +47,7 @@ def models_and_measurements(calibration: Calibration) -> "Figure":
     return figure
 
 
+@in_journal_style
 def league_figure(rows: Sequence[LeagueRow]) -> "Figure":
     """Draw the error of every model with its bootstrap interval.
 
@@ -75,13 +77,14 @@ def league_figure(rows: Sequence[LeagueRow]) -> "Figure":
         right.plot(values, place, linestyle="none", marker=marker, color=INK, markerfacecolor="white", label=band_name)
     right.set_xscale("log")
     right.set_xlabel("RMSE of r by slenderness [-]")
-    right.legend(loc="upper right")
+    right.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.0, handletextpad=0.1)
     for axes in (left, right):
         axes.grid(axis="y", color=PALE, linewidth=0.5)
         axes.tick_params(axis="y", length=0)
     return figure
 
 
+@in_journal_style
 def calibration_figure(calibration: Calibration) -> "Figure":
     """Draw the posterior of eta and k, and the predictive band.
 

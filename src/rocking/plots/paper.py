@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 Draw = Callable[[Sequence[LeagueRow], Calibration], "Figure"]
 
 
+def _alone(draw: Callable[[], "Figure"]) -> Draw:
+    return lambda league, fit: draw()
+
+
 def paper_figures() -> dict[str, Draw]:
     """Return the figures of the report.
 
@@ -24,7 +28,7 @@ def paper_figures() -> dict[str, Draw]:
     dict of str to callable
         File name to the function that draws it from the league and the calibration.
     """
-    plain = {
+    plain: dict[str, Callable[[], Figure]] = {
         "figure_1": figure_1,
         "figure_2": figure_2,
         "figure_3": figure_3,
@@ -34,7 +38,7 @@ def paper_figures() -> dict[str, Draw]:
         "figure_8": figure_8,
         "figure_9": figure_9,
     }
-    drawn: dict[str, Draw] = {name: (lambda league, fit, draw=draw: draw()) for name, draw in plain.items()}
+    drawn: dict[str, Draw] = {name: _alone(draw) for name, draw in plain.items()}
     return {
         **drawn,
         "league": lambda league, fit: league_figure(league),

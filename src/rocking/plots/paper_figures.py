@@ -7,7 +7,7 @@ import numpy as np
 from rocking.evidence.agreement import relative_error
 from rocking.evidence.measurements import DataSet, datasets
 from rocking.plots.curves import curve, points, slenderness_axis
-from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, MODEL_STYLE, SINGLE, new_figure
+from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, MODEL_STYLE, SINGLE, in_journal_style, new_figure
 from rocking.restitution import model
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ _PAIR = ("housner", "ked")
 _MARKER = {"housner": "s", "ked": "o"}
 
 
+@in_journal_style
 def figure_3() -> "Figure":
     """Draw slenderness against r with Table 2; bars are |r_r - r_e|, as in the paper.
 
@@ -49,6 +50,7 @@ def figure_3() -> "Figure":
     return figure
 
 
+@in_journal_style
 def figure_5() -> "Figure":
     """Draw slenderness against r for the groups S, M and L.
 
@@ -68,6 +70,7 @@ def figure_5() -> "Figure":
     return figure
 
 
+@in_journal_style
 def figure_6() -> "Figure":
     """Draw the relative errors of both models for Table 2, with the paper's zones.
 
@@ -78,10 +81,12 @@ def figure_6() -> "Figure":
     """
     figure, (axes,) = new_figure(SINGLE, 2.7)
     _zoned(axes, datasets()["table2"])
+    axes.set_ylim(-0.4, 17.0)
     axes.legend(loc="upper right")
     return figure
 
 
+@in_journal_style
 def figure_7() -> "Figure":
     """Draw the relative errors of both models for the groups S, M and L.
 
@@ -94,12 +99,14 @@ def figure_7() -> "Figure":
     for panel, letter, group in zip(axes, "abc", ("S", "M", "L"), strict=True):
         _zoned(panel, datasets()[group])
         panel.set_title(f"({letter}) group {group}")
+    axes[0].set_ylim(-0.6, 26.0)
     for panel in axes[1:]:
         panel.set_ylabel("")
     axes[-1].legend(loc="upper right")
     return figure
 
 
+@in_journal_style
 def figure_8() -> "Figure":
     """Draw the absolute errors r_r - r_e and r_e - r_H against mass.
 
@@ -127,10 +134,11 @@ def figure_8() -> "Figure":
     axes.set_xscale("log")
     axes.set_xlabel("mass [kg]")
     axes.set_ylabel("absolute error of r [-]")
-    axes.legend(loc="upper right", ncols=2, columnspacing=0.8, handletextpad=0.2)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, columnspacing=1.2, handletextpad=0.2)
     return figure
 
 
+@in_journal_style
 def figure_9() -> "Figure":
     """Draw the relative errors at equal slenderness for the three groups and both models.
 
@@ -166,10 +174,8 @@ def figure_9() -> "Figure":
 def _zoned(axes: "Axes", data: DataSet) -> None:
     for low, high, shade, name in ((0.0, 1.0, "#ececec", "I"), (1.0, 5.0, "#f7f7f7", "II")):
         axes.axhspan(low, high, color=shade, linewidth=0.0, zorder=0)
-        axes.text(
-            0.995, 0.5 * (low + high), name, transform=axes.get_yaxis_transform(), ha="right", va="center", fontsize=7
-        )
-    axes.text(0.995, 7.0, "III", transform=axes.get_yaxis_transform(), ha="right", va="center", fontsize=7)
+        _zone_name(axes, name, 0.5 * (low + high))
+    _zone_name(axes, "III", 7.0)
     for name in _PAIR:
         error = 100.0 * relative_error(model(name).of_slenderness(data.slenderness), data.coefficient)
         look = MODEL_STYLE[name]
@@ -182,6 +188,10 @@ def _zoned(axes: "Axes", data: DataSet) -> None:
             label=look["label"],
             markerfacecolor="white" if name == "housner" else look["color"],
         )
-    axes.set_ylim(bottom=0.0)
     slenderness_axis(axes)
     axes.set_ylabel("relative error of r [%]")
+
+
+def _zone_name(axes: "Axes", name: str, height: float) -> None:
+    place = axes.get_yaxis_transform()
+    axes.text(1.01, height, name, transform=place, ha="left", va="center", fontsize=7, color=GREY)

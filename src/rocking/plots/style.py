@@ -1,13 +1,19 @@
 """One journal style for every picture: sizes, colours, and files that come out the same every time."""
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from rocking.errors import MissingExtraError, RockingError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 SINGLE, DOUBLE = 90.0 / 25.4, 190.0 / 25.4
 """Widths of one and of two journal columns [in]."""
@@ -17,7 +23,7 @@ INK, GREY, PALE = "#222222", "#8a8a8a", "#e6e6e6"
 MODEL_STYLE: dict[str, dict[str, Any]] = {
     "housner": {"color": "#0072B2", "linestyle": "--", "label": "Housner"},
     "ked": {"color": "#D55E00", "linestyle": "-", "label": "KED"},
-    "horizontal-momentum": {"color": "#009E73", "linestyle": "-.", "label": "cos$^2$ α"},
+    "horizontal-momentum": {"color": "#009E73", "linestyle": "-.", "label": r"cos$^2\,\alpha$"},
     "shifted-impulse": {"color": "#CC79A7", "linestyle": ":", "label": "shifted impulse, k = 2/3"},
     "distributed-impulse": {"color": "#56B4E9", "linestyle": (0, (5, 1, 1, 1, 1, 1)), "label": "distributed, q = 1"},
     "plastic-winkler": {"color": "#E69F00", "linestyle": (0, (6, 2)), "label": "plastic Winkler"},
@@ -31,7 +37,7 @@ GROUP_STYLE: dict[str, dict[str, Any]] = {
     "L": {"marker": "^", "label": "L"},
 }
 
-_SETTINGS: dict[str, Any] = {
+_SETTINGS: Any = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
     "font.size": 8.0,
@@ -54,6 +60,36 @@ _SETTINGS: dict[str, Any] = {
 }
 
 
+def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
+    """Let a drawing function run in the journal style.
+
+    Parameters
+    ----------
+    draw : callable
+        Returns a figure.
+
+    Returns
+    -------
+    callable
+        The same, refusing with `MissingExtraError` if matplotlib is not installed.
+    """
+
+    @wraps(draw)
+    def styled(*args: P.args, **options: P.kwargs) -> T:
+        with _style():
+            return draw(*args, **options)
+
+    return styled
+
+
+def _style() -> AbstractContextManager[None]:
+    try:
+        from matplotlib import rc_context
+    except ImportError as error:
+        raise MissingExtraError("pictures need matplotlib: pip install 'rocking[plots]'") from error
+    return rc_context(_SETTINGS)
+
+
 def new_figure(
     width: float, height: float, *, rows: int = 1, columns: int = 1, **options: Any
 ) -> tuple["Figure", list["Axes"]]:
@@ -74,20 +110,11 @@ def new_figure(
         Not registered with pyplot.
     axes : list of matplotlib.axes.Axes
         Row by row.
-
-    Raises
-    ------
-    MissingExtraError
-        If matplotlib is not installed.
     """
-    try:
-        from matplotlib import rc_context
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise MissingExtraError("pictures need matplotlib: pip install 'rocking[plots]'") from error
-    with rc_context(_SETTINGS):
-        figure = Figure(figsize=(width, height), layout="constrained")
-        axes = figure.subplots(rows, columns, squeeze=False, **options)
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False, **options)
     return figure, list(axes.ravel())
 
 
@@ -131,8 +158,6 @@ def write(figure: "Figure", path: Path) -> Path:
     RockingError
         If the suffix is another, or the file cannot be written.
     """
-    from matplotlib import rc_context
-
     metadata: dict[str, dict[str, Any]] = {
         ".png": {"Software": None},
         ".svg": {"Date": None, "Creator": None},
@@ -141,7 +166,7 @@ def write(figure: "Figure", path: Path) -> Path:
     if path.suffix not in metadata:
         raise RockingError(f"a picture is .png, .svg or .pdf, got {path.name!r}")
     try:
-        with rc_context(_SETTINGS):
+        with _style():
             figure.savefig(path, metadata=metadata[path.suffix])
     except OSError as error:
         raise RockingError(f"cannot write {path}: {error.strerror or error}") from error

@@ -1,0 +1,89 @@
+"""MassPoints: sums over points, and what is no set of mass points."""
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.errors import GeometryError, InvalidValueError
+
+POINTS, MASSES, FEET = [(-0.5, 1.0), (0.5, 1.0), (0.0, 3.0)], [1.0, 1.0, 2.0], (-1.0, 1.0)
+
+
+def test_sums():
+    """Mass, centre, inertia, box and contact of three points, by hand."""
+    body = rk.MassPoints(POINTS, MASSES, FEET)
+    assert body.mass == 4.0
+    assert body.centre == (0.0, 2.0)
+    assert body.moment_of_inertia == pytest.approx(0.5 + 4.0)
+    assert body.local_box == (-1.0, 0.0, 1.0, 3.0)
+    assert body.local_contact == ((-1.0, 1.0),)
+    assert body.side("left").moment_of_inertia == pytest.approx(4.5 + 4.0 * 5.0)
+    assert body.moment_of_inertia != pytest.approx(4.0 + 4.0 * 5.0)
+
+
+def test_copies():
+    """Scaling, mirroring and other feet, with contact stretches cut at the feet."""
+    body = rk.MassPoints(POINTS, MASSES, FEET, contact=[(0.5, 2.0), (-1.0, -0.9)])
+    assert body.local_contact == ((-1.0, -0.9), (0.5, 1.0))
+    assert body.mirrored().local_contact == ((-1.0, -0.5), (0.9, 1.0))
+    assert body.scaled(size=2.0).local_contact == ((-2.0, -1.8), (1.0, 2.0))
+    assert body.scaled(density=3.0).mass == 12.0
+    assert body.with_feet(-0.2, 0.6).local_contact == ((0.5, 0.6),)
+    assert body.with_feet(-0.2, 0.6).feet == (-0.2, 0.6)
+    assert body.feet == FEET
+
+
+@pytest.mark.parametrize(
+    ("points", "masses", "words"),
+    [
+        ([(0, -0.1)], [1.0], "point 0 must be finite with y >= 0 m"),
+        ([(0, 1), (0, float("nan"))], [1.0, 1.0], "point 1 must be finite"),
+        ([(0, float("inf"))], [1.0], "finite|within"),
+        ([(0, 1e10)], [1.0], "wrong unit"),
+        ([(0, 1)], [1.0, 1.0], r"shape \(2, 2\)"),
+        ([0, 1], [1.0, 1.0], "shape"),
+        ([], [], "shape"),
+        ("ab", [1.0], "points must be a list"),
+        (None, [1.0], "points must"),
+        ([(0, 1)], [0.0], "masses must be finite and > 0 kg, got 0 at index 0"),
+        ([(0, 1), (0, 2)], [1.0, -2.0], "-2 at index 1"),
+        ([(0, 1)], [float("nan")], "masses must be finite"),
+        ([(0, 1)], ["heavy"], "masses must be numbers"),
+        ([(0, 1)], [True], "masses must be numbers"),
+        ([(0, 1), (0, 2)], [[1.0, 1.0], [1.0, 1.0]], "masses|points"),
+    ],
+)
+def test_points_and_masses_that_are_none(points, masses, words):
+    """Points below the ground or not finite, masses not above zero, and shapes that do not match are
+    refused."""
+    with pytest.raises(InvalidValueError, match=words):
+        rk.MassPoints(points, masses, FEET)
+
+
+@pytest.mark.parametrize(
+    "feet", [(1.0, -1.0), (0.0, 1.0), (0.1, 1.0), (-1.0, -0.5), (-1.0,), 3, None, "ab", (np.nan, 1.0)]
+)
+def test_feet_that_are_none(feet):
+    """Feet swapped, beside the centre or malformed are refused."""
+    with pytest.raises(InvalidValueError, match=r"feet|foot"):
+        rk.MassPoints(POINTS, MASSES, feet)
+
+
+@pytest.mark.parametrize(
+    "contact", [[(0, "a")], [(0.0, np.nan)], [(0.5, -0.5)], [1.0], "ab", [(0, 1, 2)], 3], ids=repr
+)
+def test_contact_that_is_none(contact):
+    """Contact stretches that are no pairs of growing numbers are refused when they are given, not when
+    used."""
+    with pytest.raises(InvalidValueError, match="contact"):
+        rk.MassPoints(POINTS, MASSES, FEET, contact=contact)
+
+
+def test_single_point_above_the_foot_loses_nothing_and_on_the_ground_all():
+    """Physics 1.4: a mass above the new foot has r = 1, on the ground r = 0; no division by zero on the
+    foot."""
+    body = rk.MassPoints([(-1.0, 0.0), (1.0, 2.0), (1.0, 0.0), (-1.0, 1e-3)], [1.0, 1.0, 1.0, 1.0], FEET)
+    expected = np.sqrt((4.0 + 1e-12 / (4.0 + 1e-6)) / (4.0 + 4.0 + 4.0 + 1e-6))
+    assert rk.coefficient_of_restitution(body, "ked") == pytest.approx(expected, rel=1e-13)
+    assert expected != pytest.approx(1.0, rel=1e-3)
+    assert isinstance(GeometryError("x"), InvalidValueError)

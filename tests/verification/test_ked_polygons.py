@@ -1,0 +1,488 @@
+"""KED of any polygons: against slices integrated in 30 digits, exact rational moments, its identities.
+
+REF numbers: sections 1.4, 1.6 and 1.7 of the project's physics specification.
+"""
+
+from fractions import Fraction
+from itertools import pairwise
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from scipy.integrate import dblquad
+
+import rocking as rk
+from rocking.restitution.ked import projected_moment
+
+# --- the oracle: horizontal slices, exact along x, 25-digit quadrature along y; nothing is summed a
+
+
+def exact(points):
+    """Vertices as fractions: exactly the floats that the package was given."""
+    return [(Fraction(float(x)), Fraction(float(y))) for x, y in points]
+
+
+def bands(rings):
+    """Bands between neighbouring vertex heights, each with the edges that cross it, from left to right."""
+    edges = [
+        (a, b) for ring in rings for a, b in zip(ring, [*ring[1:], ring[0]], strict=True) if a[1] != b[1]
+    ]
+    heights = sorted({y for ring in rings for _, y in ring})
+    for low, high in pairwise(heights):
+        middle = (low + high) / 2
+        lines = []
+        for (xa, ya), (xb, yb) in edges:
+            if min(ya, yb) < middle < max(ya, yb):
+                slope = (xb - xa) / (yb - ya)
+                lines.append((xa + slope * (middle - ya), xa + slope * (low - ya), slope))
+        lines.sort()
+        yield low, high, [(x0, slope) for _, x0, slope in lines]
+
+
+def number(value):
+    return mp.mpf(value.numerator) / value.denominator
+
+
+def kept_of(rings):
+    """Int y^4/(x^2 + y^2) dA over one polygon with holes (rings in any order and sense), foot at the
+    origin."""
+    total = mp.mpf(0)
+    for low, high, lines in bands(rings):
+        floor, pairs = number(low), [(number(x0), number(slope)) for x0, slope in lines]
+
+        def slice_(y, floor=floor, pairs=pairs):
+            turn = [mp.atan2(x0 + slope * (y - floor), y) for x0, slope in pairs]
+            return y**3 * mp.fsum(b - a for a, b in zip(turn[::2], turn[1::2], strict=True))
+
+        top = number(high)
+        cuts = [floor, top] if low > 0 else [floor, top / 64, top / 8, top]
+        value, doubt = mp.quad(slice_, cuts, error=True)
+        assert doubt <= 1e-18 * max(abs(value), mp.mpf(10) ** -30)
+        total += value
+    return total
+
+
+def moments_of(regions):
+    """Mass, first and second moments of polygons as exact fractions, by fans of triangles about the
+    origin."""
+    m = mx = my = mxx = myy = Fraction(0)
+    for outline, density, holes in regions:
+        for ring, sign in [(outline, 1), *((hole, -1) for hole in holes)]:
+            parts = []
+            for (x0, y0), (x1, y1) in zip(ring, [*ring[1:], ring[0]], strict=True):
+                area = (x0 * y1 - x1 * y0) / 2
+                parts.append(
+                    (
+                        area,
+                        area * (x0 + x1) / 3,
+                        area * (y0 + y1) / 3,
+                        area * (x0 * x0 + x0 * x1 + x1 * x1) / 6,
+                        area * (y0 * y0 + y0 * y1 + y1 * y1) / 6,
+                    )
+                )
+            sums = [sum(column) for column in zip(*parts, strict=True)]
+            weight = Fraction(float(density)) * sign * (1 if sums[0] > 0 else -1)
+            m, mx, my, mxx, myy = (
+                old + weight * new for old, new in zip((m, mx, my, mxx, myy), sums, strict=True)
+            )
+    return m, mx, my, mxx, myy
+
+
+def moved(regions, dx, dy):
+    """Exact regions with (dx, dy) added."""
+    return [
+        ([(x + dx, y + dy) for x, y in o], d, [[(x + dx, y + dy) for x, y in h] for h in holes])
+        for o, d, holes in regions
+    ]
+
+
+def exact_regions(regions):
+    return [(exact(outline), density, [exact(hole) for hole in holes]) for outline, density, holes in regions]
+
+
+def oracle(regions, foot, ground=0.0):
+    """Eq. 17, Mao et al. 2024, for polygons on the floats given, with the new foot at (foot, ground)."""
+    with mp.workdps(30):
+        local = moved(exact_regions(regions), -Fraction(float(foot)), -Fraction(float(ground)))
+        kept = mp.fsum(mp.mpf(float(d)) * kept_of([o, *holes]) for o, d, holes in local)
+        *_, mxx, myy = moments_of(local)
+        return mp.sqrt(kept / number(mxx + myy))
+
+
+def agrees(found, expected, tolerance=1e-12):
+    return bool(abs(mp.mpf(float(found)) / expected - 1) < tolerance)
+
+
+# --- bodies -------------------------------------------------------------------------------------------------
+
+
+def polygon(sides, radius):
+    angle = -np.pi / 2 + 2 * np.pi / sides * (np.arange(sides) + 0.5)
+    points = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    points[:, 1] -= points[:, 1].min()
+    points[[0, -1], 1] = 0.0
+    return points.tolist()
+
+
+BOX = [(0, 0), (1, 0), (1, 2), (0, 2)]
+TRAPEZOID = [(0, 0), (1, 0), (0.7, 2.5), (0.3, 2.5)]
+BODIES = {
+    "triangle": ([([(0, 0), (1, 0), (0.4, 1.7)], 2400.0, [])], None),
+    "trapezoid": ([(TRAPEZOID, 2400.0, [])], None),
+    "leaning": ([([(0, 0), (1, 0), (1.3, 2), (0.6, 2)], 1.0, [])], None),
+    "L-shape": ([([(0, 0), (1.2, 0), (1.2, 0.4), (0.5, 0.4), (0.5, 2), (0, 2)], 2400.0, [])], None),
+    "holes": (
+        [
+            (
+                [(0, 0), (2, 0), (2, 3), (0, 3)],
+                7.0,
+                [[(0.3, 0.5), (0.9, 0.6), (0.5, 1.4)], [(1.2, 1.0), (1.8, 1.0), (1.8, 2.7), (1.1, 2.2)]],
+            )
+        ],
+        None,
+    ),
+    "two densities": (
+        [
+            ([(0, 0), (1, 0), (1, 0.5), (0, 0.5)], 2400.0, []),
+            ([(0.1, 0.5), (0.8, 0.5), (0.6, 2.0), (0.2, 2.1)], 700.0, []),
+        ],
+        None,
+    ),
+    "plug in a hole": (
+        [
+            ([(0, 0), (1, 0), (1, 3), (0, 3)], 1000.0, [[(0.2, 1.0), (0.7, 1.0), (0.7, 2.0), (0.2, 2.0)]]),
+            ([(0.2, 1.0), (0.7, 1.0), (0.7, 2.0), (0.2, 2.0)], 7850.0, []),
+        ],
+        None,
+    ),
+    "feet inside": ([(TRAPEZOID, 2400.0, [])], (0.2, 0.75)),
+    "portal": (
+        [([(0, 0), (0.2, 0), (0.2, 1), (0.8, 1), (0.8, 0), (1.1, 0), (1.1, 1.5), (0, 1.5)], 2400.0, [])],
+        None,
+    ),
+    "thin tube": ([(BOX, 7850.0, [[(0.001, 0.001), (0.999, 0.001), (0.999, 1.999), (0.001, 1.999)]])], None),
+    "needle": ([([(0, 0), (0.05, 0), (0.03, 10.0), (0.029, 10.0)], 2400.0, [])], None),
+    "squat wedge": ([([(0, 0), (1, 0), (0.3, 0.01)], 2400.0, [])], None),
+    "squat slab": ([([(0, 0), (1, 0), (0.95, 0.012), (0.02, 0.009)], 2400.0, [])], None),
+    "lens": ([([(-0.2, 0), (0.2, 0), (1.0, 0.3), (1.1, 0.5), (-1.0, 0.6), (-0.9, 0.2)], 5.0, [])], None),
+    "36-gon": ([(polygon(36, 1.3), 2400.0, [])], None),
+}
+PLACES = {"here": (0.0, 0.0), "1e6 m away": (1e6, 0.0), "1e6 m away and up": (-1e6 - 0.3, 1e6)}
+
+
+def placed(name, place):
+    """Regions, feet, ground at a place, in the floats that a user would have there."""
+    regions, feet = BODIES[name]
+    dx, dy = PLACES[place]
+    there = [
+        (
+            [(x + dx, y + dy) for x, y in outline],
+            density,
+            [[(x + dx, y + dy) for x, y in hole] for hole in holes],
+        )
+        for outline, density, holes in regions
+    ]
+    if feet is None:
+        base = [x for outline, _, _ in there for x, y in outline if y == dy]
+        return there, None, (min(base), max(base)), dy
+    feet = (feet[0] + dx, feet[1] + dx)
+    return there, feet, feet, dy
+
+
+def section_of(regions, feet=None, ground=0.0, **options):
+    return rk.Section([rk.Region(o, d, holes) for o, d, holes in regions], feet, ground=ground, **options)
+
+
+# --- tests --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("name", BODIES)
+def test_against_slices(name, place):
+    """Polygons with holes, densities, inner feet, thin, squat, far away: r to 1e-12 of independent
+    quadrature."""
+    regions, feet, (left, right), ground = placed(name, place)
+    section = section_of(regions, feet, ground)
+    assert agrees(rk.coefficient_of_restitution(section, "ked", onto="right"), oracle(regions, right, ground))
+    if place == "here":
+        assert agrees(
+            rk.coefficient_of_restitution(section, "ked", onto="left"), oracle(regions, left, ground)
+        )
+
+
+def test_slices_criterion_rejects_wrong_bodies():
+    """Negative control: the wrong foot, filled holes and mixed-up densities fail the criterion."""
+    regions, _, (left, right), _ = placed("holes", "here")
+    r = rk.coefficient_of_restitution(section_of(regions), "ked")
+    assert agrees(r, oracle(regions, right))
+    assert not agrees(r, oracle(regions, left))
+    assert not agrees(r, oracle([(outline, density, []) for outline, density, _ in regions], right))
+    (low, d_low, _), (high, d_high, _) = BODIES["two densities"][0]
+    r = rk.coefficient_of_restitution(section_of(BODIES["two densities"][0]), "ked")
+    assert not agrees(r, oracle([(low, d_high, []), (high, d_low, [])], 1.0))
+
+
+def test_oracle_against_two_dimensional_quadrature():
+    """The slice oracle itself: equal to scipy's dblquad over a triangle, to the 1e-9 that dblquad reaches."""
+    regions, _, (_, right), _ = placed("triangle", "here")
+    apex_x, apex_y = 0.4, 1.7
+    span = lambda y: (apex_x * y / apex_y, 1.0 + (apex_x - 1.0) * y / apex_y)  # noqa: E731
+    limits = (0.0, apex_y, lambda y: span(y)[0], lambda y: span(y)[1])
+    kept, _ = dblquad(lambda x, y: y**4 / max(y**2 + (right - x) ** 2, 1e-300), *limits, epsabs=1e-12)
+    inertia, _ = dblquad(lambda x, y: y**2 + (right - x) ** 2, *limits, epsabs=1e-12)
+    assert agrees(np.sqrt(kept / inertia), oracle(regions, right), 1e-9)
+    assert not agrees(np.sqrt(kept / inertia), oracle(regions, 0.0), 1e-9)
+
+
+def test_trapezoid_reference():
+    """REF of physics 1.6: trapezoid 1 x 2.5 m with a 0.4 m top, KED and Housner."""
+    section = rk.Section.from_trapezoid(1.0, 0.4, 2.5)
+    assert rk.coefficient_of_restitution(section, "ked") == pytest.approx(0.8704740952680223, rel=1e-14)
+    assert rk.coefficient_of_restitution(section, "housner") == pytest.approx(0.7416338582677167, rel=1e-14)
+    upright = rk.Section.from_trapezoid(1.0, 1.0, 2.5)
+    assert rk.coefficient_of_restitution(upright, "ked") != pytest.approx(0.8704740952680223, rel=1e-14)
+
+
+@pytest.mark.parametrize("ratio", [0.01, 0.1, 0.5, 1.0, 4.0, 30.0, 300.0])
+def test_rectangle_as_section(ratio):
+    """The boundary sum of a rectangle equals the closed form of a Block."""
+    block = rk.Block(width=1.0, height=ratio)
+    found = rk.coefficient_of_restitution(block.to_section(), "ked")
+    assert found == pytest.approx(rk.coefficient_of_restitution(block, "ked"), rel=1e-12)
+    leaning = rk.Section.from_trapezoid(1.0, 1.0, ratio, lean=1e-6)
+    wrong = rk.coefficient_of_restitution(leaning, "ked")
+    assert wrong != pytest.approx(rk.coefficient_of_restitution(block, "ked"), rel=1e-12)
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("name", BODIES)
+def test_exact_moments(name, place):
+    """Mass, centre and polar moment equal the exact rational ones of the same floats, also 1e6 m away."""
+    regions, feet, _, ground = placed(name, place)
+    section = section_of(regions, feet, ground, depth=0.5)
+    m, mx, my, mxx, myy = moments_of(exact_regions(regions))
+    polar = float((mxx + myy - (mx * mx + my * my) / m) / 2)
+    assert section.mass == pytest.approx(float(m / 2), rel=1e-12)
+    assert section.moment_of_inertia == pytest.approx(polar, rel=1e-12)
+    # rounded once to the user's coordinates; a wall of 1e-3 m is the difference of areas 300 times its own
+    assert section.centre == pytest.approx((float(mx / m), float(my / m)), rel=1e-15, abs=1e-13)
+
+
+def test_far_away_criterion_rejects_uncentred_sums():
+    """Negative control: the same sums in the user's coordinates lose everything 1e6 m away."""
+    regions, _, _, _ = placed("trapezoid", "1e6 m away and up")
+    x, y = np.array(regions[0][0]).T
+    x1, y1 = np.roll(x, -1), np.roll(y, -1)
+    cross = x * y1 - x1 * y
+    area = 0.5 * cross.sum()
+    naive = (cross * (x * x + x * x1 + x1 * x1 + y * y + y * y1 + y1 * y1)).sum() / 12.0
+    naive -= ((cross * (x + x1)).sum() ** 2 + (cross * (y + y1)).sum() ** 2) / (36.0 * area)
+    m, mx, my, mxx, myy = moments_of(exact_regions([(regions[0][0], 1.0, [])]))
+    assert naive != pytest.approx(float(mxx + myy - (mx * mx + my * my) / m), rel=1e-3)
+
+
+@st.composite
+def polygons(draw):
+    """Star-shaped polygons with a base from -a to c and one to six other vertices above it."""
+    count = draw(st.integers(1, 6))
+    share = st.floats(0.1, 0.9)
+    angles = [(i + draw(share)) * np.pi / count for i in range(count)]
+    radii = [draw(st.floats(0.3, 3.0)) for _ in range(count)]
+    around = [(r * np.cos(t), r * np.sin(t)) for r, t in zip(radii, angles, strict=True)]
+    ring = [(-draw(st.floats(0.5, 2.0)), 0.0), (draw(st.floats(0.5, 2.0)), 0.0), *around]
+    x, y = np.array(ring).T
+    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
+    centre = (cross * (x + np.roll(x, -1))).sum() / (3.0 * cross.sum())
+    assume(ring[0][0] + 0.05 < centre < ring[1][0] - 0.05)
+    return ring
+
+
+@settings(max_examples=12)
+@given(polygons())
+def test_random_polygons_against_slices(ring):
+    """Random asymmetric polygons: r to 1e-12 of independent quadrature, about both feet."""
+    section, regions = rk.Section.from_points(ring, 1.0), [(ring, 1.0, [])]
+    assert agrees(rk.coefficient_of_restitution(section, "ked", onto="right"), oracle(regions, ring[1][0]))
+    assert agrees(rk.coefficient_of_restitution(section, "ked", onto="left"), oracle(regions, ring[0][0]))
+
+
+@given(polygons())
+def test_additive_over_a_cut(ring):
+    """N, mass and inertia of a body cut into a fan of touching triangles equal those of the whole."""
+    left, right, *rest = ring
+    fan = [right, *rest, left]
+    parts = [rk.Region([(0.0, 0.0), a, b], 3.0) for a, b in pairwise(fan)]
+    whole, cut = rk.Section.from_points(ring, 3.0), rk.Section(parts)
+    for onto in ("left", "right"):
+        assert projected_moment(cut, onto) == pytest.approx(projected_moment(whole, onto), rel=1e-11)
+    assert cut.mass == pytest.approx(whole.mass, rel=1e-12)
+    assert cut.moment_of_inertia == pytest.approx(whole.moment_of_inertia, rel=1e-11)
+    if len(parts) > 2 and parts[0].outline[:, 0].max() == right[0]:
+        some = sum(projected_moment(rk.MassPoints([(0, 1)], [1.0], (-1, 1)), "right") for _ in parts)
+        assert some != pytest.approx(projected_moment(whole, "right"), rel=1e-11)
+
+
+@given(polygons(), st.integers(2, 40))
+def test_vertices_on_edges_change_nothing(ring, pieces):
+    """Every edge cut into many: the same coefficient, and a vertex moved by 1e-6 is noticed."""
+    corners = np.array([*ring, ring[0]])
+    along = np.linspace(0.0, 1.0, pieces, endpoint=False)[:, None]
+    fine = np.concatenate([a + (b - a) * along for a, b in pairwise(corners)])
+    r = rk.coefficient_of_restitution(rk.Section.from_points(ring), "ked")
+    assert rk.coefficient_of_restitution(rk.Section.from_points(fine), "ked") == pytest.approx(r, rel=1e-11)
+    corners[2] *= 1.0 + 1e-6
+    assert rk.coefficient_of_restitution(rk.Section.from_points(corners[:-1]), "ked") != pytest.approx(
+        r, rel=1e-11
+    )
+
+
+@given(polygons())
+def test_between_horizontal_momentum_and_the_energy_bound(ring):
+    """r_HM <= r_KED and N <= I_O for any body (physics 1.4); an integrand with a length too many breaks
+    it."""
+    section = rk.Section.from_points(ring)
+    for onto, other in (("left", "right"), ("right", "left")):
+        r = rk.coefficient_of_restitution(section, "ked", onto=onto)
+        assert rk.coefficient_of_restitution(section, "horizontal-momentum", onto=onto) <= r * (1 + 1e-12)
+        assert projected_moment(section, onto) <= section.side(other).moment_of_inertia * (1 + 1e-12)
+    tall = rk.Block(width=1.0, height=4.0)
+    y_to_the_fourth = 4.0**5 / 5.0 * tall.density
+    assert y_to_the_fourth > tall.side("left").moment_of_inertia
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(-0.9, 0.9), st.floats(0.0, 4.0), st.floats(0.1, 3.0)), min_size=1, max_size=12
+    )
+)
+def test_variance_identity_of_points(points):
+    """r_KED^2 = r_HM^2 + Var_w(sin^2 phi), w = |S - O'|^2 dm (physics 1.4), for any mass points."""
+    x, y, m = np.array(points).T
+    body = rk.MassPoints(np.column_stack([x, y]), m, (-1.0, 1.0))
+    squared = (1.0 - x) ** 2 + y**2
+    weight, sine = m * squared / (m * squared).sum(), y**2 / squared
+    mean = weight @ sine
+    variance = weight @ (sine - mean) ** 2
+    ked = rk.coefficient_of_restitution(body, "ked") ** 2
+    assert rk.coefficient_of_restitution(body, "horizontal-momentum") == pytest.approx(mean, abs=1e-14)
+    assert ked == pytest.approx(mean**2 + variance, rel=1e-12, abs=1e-28)
+    if variance > 1e-6:
+        unweighted = np.average((sine - mean) ** 2, weights=m) * 1.01 + 1e-6
+        assert ked != pytest.approx(mean**2 + unweighted + variance, rel=1e-12)
+
+
+def test_variance_identity_of_bodies():
+    """The same identity for a rectangle (REF of physics 1.4) and a trapezoid, the variance by quadrature."""
+    block = rk.Block(width=1.0, height=2.0)
+    ked, momentum = (rk.coefficient_of_restitution(block, name) for name in ("ked", "horizontal-momentum"))
+    assert momentum == pytest.approx(0.8, rel=1e-15)
+    assert ked**2 == pytest.approx(0.689413284635524127, rel=1e-14)
+    assert ked**2 - momentum**2 == pytest.approx(0.0494132846355241272, rel=1e-13)
+
+    section = rk.Section.from_trapezoid(1.0, 0.4, 2.5)
+    ked, momentum = (rk.coefficient_of_restitution(section, name) for name in ("ked", "horizontal-momentum"))
+    limits = (0.0, 2.5, lambda y: 0.12 * y, lambda y: 1.0 - 0.12 * y)
+    inertia, _ = dblquad(lambda x, y: y**2 + (1 - x) ** 2, *limits, epsabs=1e-12)
+
+    def spread(x, y, mean=momentum):
+        squared = max(y**2 + (1 - x) ** 2, 1e-300)
+        return (y**2 / squared - mean) ** 2 * squared
+
+    variance = dblquad(spread, *limits, epsabs=1e-12)[0] / inertia
+    assert ked**2 == pytest.approx(momentum**2 + variance, rel=1e-9)
+    shifted = dblquad(lambda x, y: spread(x, y, 0.99 * momentum), *limits, epsabs=1e-12)[0] / inertia
+    assert ked**2 != pytest.approx(momentum**2 + shifted, rel=1e-9)
+
+
+def lumped(cells, ratio, corner=0.0):
+    """Rectangle 1 x ratio as equal masses, one a square cell, at its middle or `corner` cells away from
+    it."""
+    x = (np.arange(cells) + 0.5 + corner) / cells
+    y = (np.arange(int(cells * ratio)) + 0.5 + corner) / cells
+    points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    return rk.MassPoints(points, np.ones(len(points)), (0.0, 1.0))
+
+
+def observed_orders(errors):
+    return np.log2(np.abs(errors[:-1]) / np.abs(errors[1:]))
+
+
+def test_mesh_convergence_of_order_two():
+    """Lumped meshes converge to the closed form at order 2, with the errors of physics 1.6 (lambda = 2)."""
+    cells = [4, 8, 16, 32, 64, 128, 256]
+    r = 0.830309150037216034
+    errors = np.array([rk.coefficient_of_restitution(lumped(n, 2), "ked") - r for n in cells])
+    # three printed digits each: half a unit of the last one
+    assert np.abs(errors) == pytest.approx(
+        [1.22e-3, 3.09e-4, 7.73e-5, 1.93e-5, 4.83e-6, 1.21e-6, 3.02e-7], rel=5e-3
+    )
+    orders = observed_orders(errors)
+    assert ((orders >= 1.95) & (orders <= 2.05)).all()
+
+
+def test_order_criterion_rejects_corner_lumping():
+    """Negative control: masses at the upper right corner of their cells converge at order 1 only."""
+    r = 0.830309150037216034
+    errors = [rk.coefficient_of_restitution(lumped(n, 2, -0.5), "ked") - r for n in (16, 32, 64)]
+    orders = observed_orders(np.array(errors))
+    assert not ((orders >= 1.95) & (orders <= 2.05)).any()
+
+
+@given(st.floats(0.05, np.pi - 0.05), st.floats(0.1, 50.0))
+def test_point_mass_rule(angle, distance):
+    """A single mass at the polar angle phi about the new foot has r = sin^2(phi) (physics 1.4), not
+    sin(phi)."""
+    x, y = distance * np.cos(angle), distance * np.sin(angle)
+    feet = (min(x, 0.0) - 1.0 - abs(x), 0.0)
+    assume(x < -1e-3)
+    body = rk.MassPoints([(x, y)], [3.0], feet)
+    r = rk.coefficient_of_restitution(body, "ked")
+    assert r == pytest.approx(np.sin(angle) ** 2, rel=1e-12)
+    if abs(np.sin(angle) - 1.0) > 1e-3:
+        assert r != pytest.approx(np.sin(angle), rel=1e-5)
+
+
+def dumbbell(turn):
+    """Two masses with the centre and inertia of a 1 x 2 m rectangle, turned from the horizontal."""
+    arm = np.sqrt((1.0**2 + 2.0**2) / 12.0)
+    step = arm * np.array([np.cos(turn), np.sin(turn)])
+    return rk.MassPoints([np.array([0.0, 1.0]) + step, np.array([0.0, 1.0]) - step], [0.5, 0.5], (-0.5, 0.5))
+
+
+def test_dumbbells():
+    """Bodies that are dynamically the 1 x 2 m block: KED .651 lying, .870 standing, Housner .7 (physics 1.7
+    (5))."""
+    bodies = [dumbbell(turn) for turn in np.linspace(0.0, np.pi, 181)]
+    ked = [rk.coefficient_of_restitution(body, "ked") for body in bodies]
+    housner = [rk.coefficient_of_restitution(body, "housner") for body in bodies]
+    assert (ked[0], ked[90]) == pytest.approx((0.651, 0.870), abs=5e-4)  # printed with three digits
+    assert housner == pytest.approx([0.7] * len(bodies), rel=1e-12)
+    for turn, found in zip(np.linspace(0.0, np.pi, 181), ked, strict=True):
+        masses = np.array([(1, 1), (-1, -1)]) * np.sqrt(5 / 12) * (np.cos(turn), np.sin(turn)) + (-0.5, 1.0)
+        squared = (masses**2).sum(axis=1)
+        assert found**2 == pytest.approx((masses[:, 1] ** 4 / squared).sum() / squared.sum(), rel=1e-12)
+    assert rk.coefficient_of_restitution(rk.Block(width=1, height=2), "ked") == pytest.approx(
+        0.8303, abs=5e-5
+    )
+
+
+@pytest.mark.parametrize(("spacing", "r"), [(1, 0.8303), (0.5, 0.9152), (0.1, 0.9460), (0.01, 0.9474)])
+def test_feet_spacing(spacing, r):
+    """KED under a 1 x 2 m block on closer and closer feet stays below 1 (physics 1.7 (6), four digits)."""
+    body = rk.Block(width=1.0, height=2.0).with_feet(0.5 - spacing / 2, 0.5 + spacing / 2)
+    assert rk.coefficient_of_restitution(body, "ked") == pytest.approx(r, abs=5e-5)
+    if spacing < 1:
+        # a model that counted the old foot, such as Housner's, is told apart
+        assert rk.coefficient_of_restitution(body, "housner") != pytest.approx(r, abs=5e-5)
+
+
+def test_ordering_is_not_universal():
+    """1 x 2 m on feet 0.5 m apart: KED .91517 is below Housner .91549 (physics 1.4)."""
+    body = rk.Block(width=1.0, height=2.0).with_feet(0.25, 0.75)
+    ked, housner = (rk.coefficient_of_restitution(body, name) for name in ("ked", "housner"))
+    assert (ked, housner) == pytest.approx((0.91517, 0.91549), abs=5e-6)
+    assert ked < housner
+    full = rk.Block(width=1.0, height=2.0)
+    assert rk.coefficient_of_restitution(full, "ked") > rk.coefficient_of_restitution(full, "housner")
