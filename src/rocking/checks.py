@@ -1,7 +1,7 @@
 """What is refused at the door: one function per kind of value, one sentence per refusal."""
 
 import math
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -34,7 +34,7 @@ def number(name: str, value: Any, unit: str = "-") -> float:
     InvalidValueError
         If it is not one finite real number.
     """
-    if isinstance(value, (bool, str, bytes, complex)) or value is None:
+    if isinstance(value, (bool, np.bool_, str, bytes, complex)) or value is None:
         raise InvalidValueError(f"{name} must be a number [{unit}], got {value!r}")
     try:
         result = float(value)
@@ -259,6 +259,32 @@ def all_positive(name: str, values: FloatArray, unit: str = "-", whole: FloatArr
     raise InvalidValueError(f"{name} must be finite and > 0{_in(unit)}, got {whole[bad]:g}{where}")
 
 
+def all_within(name: str, values: FloatArray, low: float, high: float, whole: FloatArray) -> None:
+    """Refuse an array that holds anything but numbers between two positive ends.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    values : ndarray
+        The array, or a piece of one.
+    low, high : float
+        Ends of the allowed range, themselves allowed.
+    whole : ndarray
+        The array that the piece is from, so that the index in the error is the user's.
+
+    Raises
+    ------
+    InvalidValueError
+        Naming the first bad value and its index.
+    """
+    if not values.size or (values.min() >= low and values.max() <= high):
+        return
+    all_positive(name, whole)
+    bad = tuple(int(i) for i in np.argwhere((whole < low) | (whole > high))[0])
+    raise InvalidValueError(f"{name} must be in [{low:g}, {high:g}], got {whole[bad]:g}")
+
+
 def foot(name: str, value: Any) -> Foot:
     """Return `value` as a foot.
 
@@ -279,9 +305,9 @@ def foot(name: str, value: Any) -> Foot:
     InvalidValueError
         If it is neither.
     """
-    if value not in FEET:
+    if not isinstance(value, str) or value not in FEET:
         raise InvalidValueError(f'{name} must be "left" or "right", got {value!r}')
-    return cast("Foot", value)
+    return value
 
 
 def length_unit(value: Any) -> float:

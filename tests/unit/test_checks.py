@@ -29,9 +29,7 @@ NOT_NUMBERS = [
 NOT_FINITE = [float("nan"), float("inf"), -float("inf"), np.nan, np.float32("inf")]
 
 
-@pytest.mark.parametrize(
-    "value", [3, 3.0, np.float32(3), np.int8(3), np.array(3.0), Fraction(3), Decimal(3)], ids=repr
-)
+@pytest.mark.parametrize("value", [3, 3.0, np.float32(3), np.int8(3), np.array(3.0), Fraction(3), Decimal(3)], ids=repr)
 def test_numbers_pass(value):
     """Whatever is one real number becomes that float."""
     assert checks.number("x", value) == 3.0
@@ -66,9 +64,7 @@ def test_what_is_not_positive(value):
 @pytest.mark.parametrize("value", [1e-10, 1.1e9, 1e300])
 def test_lengths_no_body_has(value):
     """Lengths outside 1e-9 to 1e9 m are refused with the range and the likely cause."""
-    with pytest.raises(
-        InvalidValueError, match=r"^width must be in \[1e-09, 1e\+09\] m, got .*; wrong unit\?$"
-    ):
+    with pytest.raises(InvalidValueError, match=r"^width must be in \[1e-09, 1e\+09\] m, got .*; wrong unit\?$"):
         checks.length("width", value)
     assert checks.length("width", 1e-9) == 1e-9
     assert checks.length("width", 1e9) == 1e9
@@ -115,9 +111,7 @@ def test_arrays_that_pass():
     assert checks.positive_array("ratio", []).shape == (0,)
 
 
-@pytest.mark.parametrize(
-    "value", ["up", "", "Right", None, 1, ["left"], np.array(["left", "right"])], ids=repr
-)
+@pytest.mark.parametrize("value", ["up", "", "Right", None, 1, ["left"], np.array(["left", "right"])], ids=repr)
 def test_feet_and_units(value):
     """A foot is "left" or "right", a unit one of the list; anything else is refused by name."""
     with pytest.raises(InvalidValueError, match=r'^onto must be "left" or "right", got '):

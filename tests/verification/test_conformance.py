@@ -226,12 +226,8 @@ def test_slenderness_arrays_are_blocks(model):
     ratios = np.array([0.05, 0.3, 0.6, 0.8, 1.0, 2.5, 7.0, 40.0])
     blocks = [rk.Block(width=0.7, height=0.7 * ratio, density=1.0) for ratio in ratios]
     expected = model.of_slenderness(ratios)
-    assert [model.coefficient(body, "right") for body in blocks] == pytest.approx(
-        expected, rel=1e-9, abs=1e-13
-    )
-    assert [model.coefficient(body, "left") for body in blocks] == pytest.approx(
-        expected, rel=1e-9, abs=1e-13
-    )
+    assert [model.coefficient(body, "right") for body in blocks] == pytest.approx(expected, rel=1e-9, abs=1e-13)
+    assert [model.coefficient(body, "left") for body in blocks] == pytest.approx(expected, rel=1e-9, abs=1e-13)
     sections = [body.to_section() for body in blocks]
     assert [model.coefficient(body) for body in sections] == pytest.approx(expected, rel=1e-9, abs=1e-13)
     assert model.stops(ratios).tolist() == [model.evaluate(body).flags == (Flag.STOPS,) for body in blocks]

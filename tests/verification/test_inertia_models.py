@@ -12,6 +12,7 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import rocking as rk
+from rocking.errors import InvalidValueError
 from rocking.restitution import (
     DistributedImpulse,
     Flag,
@@ -140,10 +141,7 @@ def test_impulse_position_that_ked_implies(ratio, k):
 @pytest.mark.parametrize(("ratio", "friction"), [(0.75, 9 / 13), (1.0, 0.6), (2.0, 6 / 17)])
 def test_friction_that_housner_needs(ratio, friction):
     """REF of physics 1.2: mu = 3 l/(1 + 4 l^2); at k = 2/3 it is two thirds of that."""
-    demand = [
-        implied(block(ratio), ShiftedImpulse(k=k).coefficient(block(ratio))).friction_demand
-        for k in (1, 2 / 3)
-    ]
+    demand = [implied(block(ratio), ShiftedImpulse(k=k).coefficient(block(ratio))).friction_demand for k in (1, 2 / 3)]
     assert demand == pytest.approx([friction, 2 * friction / 3], rel=1e-12)
     assert demand[1] != pytest.approx(friction, rel=1e-2)
 
@@ -163,12 +161,8 @@ def test_distributed_impulse_reference(ratio, values):
 def test_distributed_impulse_asymmetric_reference():
     """REF of physics 1.5: I_C = 5/3, h = 2, levers .5 and 1.2, q = 1, and the way back; their product is
     below 1."""
-    there = DistributedImpulse(q=1.0).of_geometry(
-        ImpactGeometry(*map(np.asarray, (2.0, 0.5, 1.2, 1 / 3, 4 / 3)))
-    )
-    back = DistributedImpulse(q=1.0).of_geometry(
-        ImpactGeometry(*map(np.asarray, (2.0, 1.2, 0.5, 1 / 3, 4 / 3)))
-    )
+    there = DistributedImpulse(q=1.0).of_geometry(ImpactGeometry(*map(np.asarray, (2.0, 0.5, 1.2, 1 / 3, 4 / 3))))
+    back = DistributedImpulse(q=1.0).of_geometry(ImpactGeometry(*map(np.asarray, (2.0, 1.2, 0.5, 1 / 3, 4 / 3))))
     assert there == pytest.approx(0.7750563835119877, rel=1e-13)
     assert back == pytest.approx(0.9374901693182466, rel=1e-13)
     assert there * back < 1.0
@@ -244,21 +238,24 @@ def test_closed_form_across_the_zero_discriminant(q):
     found = DistributedImpulse(q=q).of_slenderness(ratios)
     expected = [float(by_definition(ratio, q)) for ratio in ratios]
     assert found == pytest.approx(expected, rel=1e-12)
-    assert found != pytest.approx(
-        [float(by_definition(ratio, q * 1.001 + 1e-3)) for ratio in ratios], rel=1e-12
-    )
+    assert found != pytest.approx([float(by_definition(ratio, q * 1.001 + 1e-3)) for ratio in ratios], rel=1e-12)
 
 
-@pytest.mark.parametrize("q", [1e4, 1e6, 1e9, 1e12, 1e15, 1e100])
+@pytest.mark.parametrize("q", [1e2, 1e4, 1e5, 1e6])
 def test_distributed_impulse_tends_to_housner(q):
     """q to infinity is Housner exactly (physics 1.5); at finite q it differs by about 3/q, whatever the size
     of q."""
     for ratio in (0.8, 1.0, 2.0, 4.0):
         housner = Housner().coefficient(block(ratio))
-        assert DistributedImpulse(q=q).coefficient(block(ratio)) == pytest.approx(
-            housner, abs=3.0 / q + 1e-12
-        )
+        assert DistributedImpulse(q=q).coefficient(block(ratio)) == pytest.approx(housner, abs=3.0 / q + 1e-10)
     assert DistributedImpulse(q=10.0).coefficient(block(2.0)) != pytest.approx(0.7, abs=1e-2)
+
+
+@pytest.mark.parametrize("q", [1.1e6, 1e12, 1e100])
+def test_distributed_impulse_refuses_what_is_housner_to_its_digits(q):
+    """Beyond q = 1e6 the closed form would lose digits: refused, with the model that it has become."""
+    with pytest.raises(InvalidValueError, match="Housner"):
+        DistributedImpulse(q=q)
 
 
 @pytest.mark.parametrize("size", [0.01, 1.0, 100.0, 1000.0])

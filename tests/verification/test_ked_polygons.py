@@ -26,9 +26,7 @@ def exact(points):
 
 def bands(rings):
     """Bands between neighbouring vertex heights, each with the edges that cross it, from left to right."""
-    edges = [
-        (a, b) for ring in rings for a, b in zip(ring, [*ring[1:], ring[0]], strict=True) if a[1] != b[1]
-    ]
+    edges = [(a, b) for ring in rings for a, b in zip(ring, [*ring[1:], ring[0]], strict=True) if a[1] != b[1]]
     heights = sorted({y for ring in rings for _, y in ring})
     for low, high in pairwise(heights):
         middle = (low + high) / 2
@@ -84,9 +82,7 @@ def moments_of(regions):
                 )
             sums = [sum(column) for column in zip(*parts, strict=True)]
             weight = Fraction(float(density)) * sign * (1 if sums[0] > 0 else -1)
-            m, mx, my, mxx, myy = (
-                old + weight * new for old, new in zip((m, mx, my, mxx, myy), sums, strict=True)
-            )
+            m, mx, my, mxx, myy = (old + weight * new for old, new in zip((m, mx, my, mxx, myy), sums, strict=True))
     return m, mx, my, mxx, myy
 
 
@@ -207,9 +203,7 @@ def test_against_slices(name, place):
     section = section_of(regions, feet, ground)
     assert agrees(rk.coefficient_of_restitution(section, "ked", onto="right"), oracle(regions, right, ground))
     if place == "here":
-        assert agrees(
-            rk.coefficient_of_restitution(section, "ked", onto="left"), oracle(regions, left, ground)
-        )
+        assert agrees(rk.coefficient_of_restitution(section, "ked", onto="left"), oracle(regions, left, ground))
 
 
 def test_slices_criterion_rejects_wrong_bodies():
@@ -333,9 +327,7 @@ def test_vertices_on_edges_change_nothing(ring, pieces):
     r = rk.coefficient_of_restitution(rk.Section.from_points(ring), "ked")
     assert rk.coefficient_of_restitution(rk.Section.from_points(fine), "ked") == pytest.approx(r, rel=1e-11)
     corners[2] *= 1.0 + 1e-6
-    assert rk.coefficient_of_restitution(rk.Section.from_points(corners[:-1]), "ked") != pytest.approx(
-        r, rel=1e-11
-    )
+    assert rk.coefficient_of_restitution(rk.Section.from_points(corners[:-1]), "ked") != pytest.approx(r, rel=1e-11)
 
 
 @given(polygons())
@@ -352,11 +344,7 @@ def test_between_horizontal_momentum_and_the_energy_bound(ring):
     assert y_to_the_fourth > tall.side("left").moment_of_inertia
 
 
-@given(
-    st.lists(
-        st.tuples(st.floats(-0.9, 0.9), st.floats(0.0, 4.0), st.floats(0.1, 3.0)), min_size=1, max_size=12
-    )
-)
+@given(st.lists(st.tuples(st.floats(-0.9, 0.9), st.floats(0.0, 4.0), st.floats(0.1, 3.0)), min_size=1, max_size=12))
 def test_variance_identity_of_points(points):
     """r_KED^2 = r_HM^2 + Var_w(sin^2 phi), w = |S - O'|^2 dm (physics 1.4), for any mass points."""
     x, y, m = np.array(points).T
@@ -415,9 +403,7 @@ def test_mesh_convergence_of_order_two():
     r = 0.830309150037216034
     errors = np.array([rk.coefficient_of_restitution(lumped(n, 2), "ked") - r for n in cells])
     # three printed digits each: half a unit of the last one
-    assert np.abs(errors) == pytest.approx(
-        [1.22e-3, 3.09e-4, 7.73e-5, 1.93e-5, 4.83e-6, 1.21e-6, 3.02e-7], rel=5e-3
-    )
+    assert np.abs(errors) == pytest.approx([1.22e-3, 3.09e-4, 7.73e-5, 1.93e-5, 4.83e-6, 1.21e-6, 3.02e-7], rel=5e-3)
     orders = observed_orders(errors)
     assert ((orders >= 1.95) & (orders <= 2.05)).all()
 
@@ -463,9 +449,7 @@ def test_dumbbells():
         masses = np.array([(1, 1), (-1, -1)]) * np.sqrt(5 / 12) * (np.cos(turn), np.sin(turn)) + (-0.5, 1.0)
         squared = (masses**2).sum(axis=1)
         assert found**2 == pytest.approx((masses[:, 1] ** 4 / squared).sum() / squared.sum(), rel=1e-12)
-    assert rk.coefficient_of_restitution(rk.Block(width=1, height=2), "ked") == pytest.approx(
-        0.8303, abs=5e-5
-    )
+    assert rk.coefficient_of_restitution(rk.Block(width=1, height=2), "ked") == pytest.approx(0.8303, abs=5e-5)
 
 
 @pytest.mark.parametrize(("spacing", "r"), [(1, 0.8303), (0.5, 0.9152), (0.1, 0.9460), (0.01, 0.9474)])

@@ -15,7 +15,7 @@ Interval = tuple[float, float]
 DEFAULT_DENSITY = 2400.0
 """Plain concrete [kg/m3]; no coefficient of a homogeneous body depends on it."""
 
-# Feet closer to the plumb line of the centre than this, relative to the body's size, are no support.
+# Feet closer to the plumb line of the centre than this, relative to their distance, are no support.
 _SUPPORT_TOLERANCE = 1e-12
 
 
@@ -179,7 +179,7 @@ class Body(ABC):
         moments, (left, right) = self.local_moments, self.local_feet
         if not (moments.mass > 0.0 and math.isfinite(moments.polar)):
             raise GeometryError(f"the body must have a finite mass > 0 kg, got {moments.mass:g}")
-        slack = _SUPPORT_TOLERANCE * max(right - left, moments.y)
+        slack = _SUPPORT_TOLERANCE * (right - left)
         if not left + slack < moments.x < right - slack:
             x = self.origin_x + moments.x
             a, b = self.feet

@@ -1,5 +1,6 @@
 """A body given as mass points: the system in which Mao et al. (2024) write their model."""
 
+import math
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
@@ -52,13 +53,15 @@ class MassPoints(Body):
         contact: Sequence[tuple[float, float]] | None = None,
     ) -> None:
         self.masses = np.atleast_1d(checks.positive_array("masses", masses, "kg"))
+        if self.masses.ndim != 1:
+            raise GeometryError(f"masses must be a list of numbers, got an array of shape {self.masses.shape}")
         self.points = _points(points, len(self.masses))
         try:
             left, right = feet
         except (TypeError, ValueError) as error:
             raise GeometryError("feet must be a pair (x_left, x_right) in m") from error
         self._feet = checks.number("left foot", left, "m"), checks.number("right foot", right, "m")
-        self._contact = contact
+        self._contact = None if contact is None else _stretches(contact)
         self._check_support()
 
     @property
@@ -144,6 +147,17 @@ class MassPoints(Body):
             The same points.
         """
         return MassPoints(self.points, self.masses, (left, right), self._contact)
+
+
+def _stretches(contact: Any) -> list[Interval]:
+    try:
+        pairs = [(float(a), float(b)) for a, b in contact]
+    except (TypeError, ValueError) as error:
+        raise GeometryError("contact must be a list of pairs (x_left, x_right) in m") from error
+    for a, b in pairs:
+        if not (math.isfinite(a) and math.isfinite(b) and a <= b):
+            raise GeometryError(f"a stretch of contact must be finite with left <= right, got ({a:g}, {b:g}) m")
+    return pairs
 
 
 def _points(points: Any, count: int) -> FloatArray:

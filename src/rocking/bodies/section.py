@@ -262,6 +262,7 @@ class Section(Body):
             The scaled section, about its own origin.
         """
         size, density = checks.positive("size", size), checks.positive("density", density)
+        checks.length("size of the scaled body", self._size * size)
         left, right = self._local_feet
         return self._copy(
             lambda ring: ring * size,

@@ -142,4 +142,4 @@ def _split(words: str, origin: FloatArray) -> tuple[str, str]:
     if not match:
         return words, ""
     x, y = float(match[2]) + origin[0], float(match[3]) + origin[1]
-    return match[1], f" near x = {x:.6g} m, y = {y:.6g} m"
+    return match[1], f" near x = {x:.9g} m, y = {y:.9g} m"

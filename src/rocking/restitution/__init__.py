@@ -9,7 +9,7 @@ from rocking.restitution.identities import IdentityCheck, identity_report
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.implied import Implication, implied
 from rocking.restitution.interface import Interface
-from rocking.restitution.ked import Ked
+from rocking.restitution.ked import Ked, projected_moment
 from rocking.restitution.ledger import EnergyLedger, energy_ledger
 from rocking.restitution.model import Flag, InertiaModel, Restitution, RestitutionModel
 from rocking.restitution.plastic_winkler import PlasticWinkler
@@ -39,5 +39,6 @@ __all__ = [
     "implied",
     "model",
     "models",
+    "projected_moment",
     "register",
 ]

@@ -38,6 +38,11 @@ class ImpactGeometry:
     spread_x: FloatArray
     spread_y: FloatArray
 
+    def __post_init__(self) -> None:
+        """Let plain numbers stand for arrays."""
+        for name in self.__slots__:
+            object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=np.float64))
+
     @classmethod
     def of_body(cls, body: Body, onto: Foot) -> "ImpactGeometry":
         """Return the impact of a body onto one of its feet.

@@ -6,6 +6,7 @@ from typing import ClassVar
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
+from rocking.errors import UnknownModelError
 from rocking.restitution.model import RestitutionModel
 
 
@@ -24,6 +25,8 @@ class Interface(RestitutionModel):
     ------
     InvalidValueError
         If eta is outside (0, 1].
+    UnknownModelError
+        If `model` is not a model object.
 
     Examples
     --------
@@ -42,6 +45,9 @@ class Interface(RestitutionModel):
 
     def __post_init__(self) -> None:
         """Refuse a factor that would create energy, and wrap once only."""
+        wrapped: object = self.model
+        if not isinstance(wrapped, RestitutionModel):
+            raise UnknownModelError(f"an interface factor wraps a model object, got {wrapped!r:.60}")
         checks.within("eta", self.eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
         for words in ("assumptions", "domain", "known_defects", "inertia_only"):
             object.__setattr__(self, words, getattr(self.model, words))

@@ -1,5 +1,6 @@
 """What every restitution model is: a coefficient for an impact, and an honest account of where it comes from."""
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
 from enum import Enum
@@ -14,6 +15,7 @@ from rocking.errors import InvalidValueError
 from rocking.restitution.impact import ImpactGeometry
 
 _PIECE = 16384
+_FLATTEST, _TALLEST = 1e-18, 1e18
 
 
 class Flag(Enum):
@@ -212,8 +214,11 @@ class RestitutionModel(ABC):
         # pieces that stay in the cache: checks and arithmetic cost less than moving the data
         for start in range(0, flat.size, _PIECE):
             piece = flat[start : start + _PIECE]
-            checks.all_positive("slenderness_ratio", piece, whole=ratios)
-            result[start : start + _PIECE] = self.raw_of_slenderness(piece)
+            checks.all_within("slenderness_ratio", piece, _FLATTEST, _TALLEST, whole=ratios)
+            raw = self.raw_of_slenderness(piece)
+            if not math.isfinite(float(raw.sum())):
+                raise InvalidValueError(f"coefficient of model {self.name} must be finite for every slenderness")
+            result[start : start + _PIECE] = raw
         return result.reshape(ratios.shape)
 
     @property

@@ -14,8 +14,9 @@ from rocking.restitution.model import InertiaModel
 # The contact ends exponentially: once the tip is this slow, relative to the start, nothing more happens.
 _AT_REST = 1e-14
 _TOLERANCE = 1e-13
-_LARGEST_BATCH = 64
-_DEGREE = 47
+_LARGEST_BATCH = 128
+_DEGREE = 80
+_REACH = float(np.log(100.0))
 
 
 @dataclass(frozen=True)
@@ -58,12 +59,29 @@ class PlasticWinkler(InertiaModel):
         """
         lever = geometry.new_lever
         kappa, back = np.broadcast_arrays(lever**2 / geometry.base_gyration, geometry.old_lever / lever)
-        if kappa.size > _LARGEST_BATCH and (back == 1.0).all() and kappa.max() <= 3.0:
-            return np.asarray(np.exp(kappa * _loss_of_rectangle()(kappa)))
         flat = np.column_stack([kappa.ravel(), back.ravel()])
         different, place = np.unique(flat, axis=0, return_inverse=True)
         values = [_whole_base(k, b) for k, b in different.tolist()]
         return np.array(values)[place].reshape(kappa.shape)
+
+    def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
+        """Return the coefficients of homogeneous rectangles; many of them from an interpolant.
+
+        Parameters
+        ----------
+        slenderness : ndarray
+            Slenderness ratios h/b [-].
+
+        Returns
+        -------
+        ndarray
+            Of the same shape [-].
+        """
+        place = np.log(slenderness)
+        inside = np.abs(place) <= _REACH
+        if np.unique(slenderness).size <= _LARGEST_BATCH or not inside.all():
+            return super().raw_of_slenderness(slenderness)
+        return np.asarray(1.0 / (1.0 + np.exp(-_log_odds()(place))))
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
         """Coefficient of a body, over the stretches of its base that touch.
@@ -92,24 +110,25 @@ def _whole_base(kappa: float, back: float) -> float:
 
 
 @lru_cache(maxsize=1)
-def _loss_of_rectangle() -> np.polynomial.Chebyshev:
-    # ln(r) / kappa is analytic on 0 < kappa < 3, the range of all homogeneous rectangles
-    return np.polynomial.Chebyshev.interpolate(
-        lambda kappa: np.array([np.log(_whole_base(k, 1.0)) / k for k in kappa.tolist()]),
-        _DEGREE,
-        domain=[0.0, 3.0],
-    )
+def _log_odds() -> np.polynomial.Chebyshev:
+    # ln(r / (1 - r)) against ln(h/b) is smooth, and straight at both ends: r ~ (h/b)^2 and 1 - r ~ (h/b)^-2
+    def odds(place: FloatArray) -> FloatArray:
+        r = PlasticWinkler().of_geometry(ImpactGeometry.of_slenderness(np.exp(place)))
+        return np.asarray(np.log(r / (1.0 - r)))
+
+    return np.polynomial.Chebyshev.interpolate(odds, _DEGREE, domain=[-_REACH, _REACH])
 
 
 def _impact(kappa: float, back: float, patches: FloatArray) -> float:
     """Velocity ratio for levers in units of the new one; kappa = m b_new^2 / (I_C + m h^2)."""
     from scipy.integrate import solve_ivp
 
-    if not patches.size or patches[-1, 1] < 1.0 - 1e-12:
-        patches = np.vstack([patches.reshape(-1, 2), [1.0, 1.0]])
-    if (patches[:, 1] - patches[:, 0]).sum() <= 1e-9 * (1.0 + back):
+    total = float((patches[:, 1] - patches[:, 0]).sum())
+    if total <= 1e-9 * (1.0 + back):
         # feet without area: the whole impulse acts at the new one (Housner)
         return (1.0 - kappa * back) / (1.0 + kappa)
+
+    end = min(float(patches[-1, 1]), 1.0)
 
     def bed(_: float, state: FloatArray) -> FloatArray:
         v, omega, y, theta = state
@@ -117,10 +136,11 @@ def _impact(kappa: float, back: float, patches: FloatArray) -> float:
         near = np.minimum(near, far)
         force = float((theta * (far**2 - near**2) / 2.0 - y * (far - near)).sum())
         moment = float((theta * (far**3 - near**3) / 3.0 - y * (far**2 - near**2) / 2.0).sum())
-        return np.array([force, -kappa * moment, v, omega])
+        # the stiffness of the bed only scales time: a contact of any size then takes about as long
+        return np.array([force / total, -kappa * moment / total, v, omega])
 
     def tip(_: float, state: FloatArray) -> float:
-        return float(state[1] - state[0] - _AT_REST)
+        return float(end * state[1] - state[0] - _AT_REST)
 
     def stop(_: float, state: FloatArray) -> float:
         return float(state[1] - 1e-9)
@@ -129,4 +149,5 @@ def _impact(kappa: float, back: float, patches: FloatArray) -> float:
     start = np.array([-back, 1.0, 0.0, 0.0])
     run = solve_ivp(bed, (0.0, 1e4), start, "DOP853", rtol=_TOLERANCE, atol=1e-16, events=[tip, stop])
     stopped = run.t_events is not None and len(run.t_events[1]) > 0
-    return 0.0 if stopped else float(run.y[1, -1])
+    # the bed leaves the body turning about its end; from there it steps onto the foot (Housner)
+    return 0.0 if stopped else float(run.y[1, -1]) * (1.0 + kappa * end) / (1.0 + kappa)

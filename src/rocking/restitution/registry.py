@@ -105,27 +105,34 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
     >>> model("0.98*shifted-impulse:k=0.6").label
     '0.98*shifted-impulse:k=0.6'
     """
+    eta = _factor(eta)
     if isinstance(which, str):
         found, factor = _parsed(which, parameters)
-        eta = checks.number("eta", eta) * factor
+        eta *= factor
     elif isinstance(which, RestitutionModel):
         if parameters:
             raise UnknownModelError(f"a model object takes no further parameters, got {', '.join(parameters)}")
         found = which
     else:
         raise UnknownModelError(f"a restitution model is a name or a RestitutionModel object, got {which!r:.60}")
-    return found if eta == 1.0 else Interface(found, eta=checks.number("eta", eta))
+    return found if eta == 1.0 else Interface(found, eta=eta)
+
+
+def _factor(eta: Any) -> float:
+    return checks.within("eta", eta, 0.0, 1.0, open_low=True, hint="the interface factor can only lose energy")
 
 
 def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, float]:
     factor, star, rest = words.partition("*")
-    eta = _value("eta", factor) if star else 1.0
+    eta = _factor(_value("eta", factor)) if star else 1.0
     name, _, tail = (rest if star else words).strip().partition(":")
     given = dict(parameters)
     for item in filter(None, tail.split(",")):
         key, equals, value = item.partition("=")
         if not equals:
             raise UnknownModelError(f"write parameters as name:k=0.6, got {words!r}")
+        if key.strip() in given:
+            raise UnknownModelError(f"{key.strip()} is given twice for model {words!r}")
         given[key.strip()] = _value(key.strip(), value)
     if name not in _MODELS:
         raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(_MODELS)}")

@@ -48,7 +48,10 @@ class ShiftedImpulse(InertiaModel):
         "the resultant of all contact impulses passes through one known point of the base",
     )
     domain = "0 <= k <= 1; the body stops (r = 0) where 3 k >= 1 + 4 (h/b)^2 for a rectangle"
-    known_defects = ("k is not predicted: it has to be measured or fitted",)
+    known_defects = (
+        "k is not predicted: it has to be measured or fitted",
+        "for asymmetric feet a small k (below 1/2) can break the energy bound",
+    )
     inertia_only = True
 
     def __post_init__(self) -> None:

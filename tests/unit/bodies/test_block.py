@@ -52,9 +52,7 @@ def test_from_angle():
     assert block.slenderness_angle == pytest.approx(0.3, rel=1e-14)
     assert block.semi_diagonal == pytest.approx(2.5, rel=1e-14)
     assert (block.density, block.depth) == (1000.0, 2.0)
-    with pytest.raises(
-        InvalidValueError, match=r"slenderness_angle must be in \(0, pi/2\) rad, got 14; degrees\?"
-    ):
+    with pytest.raises(InvalidValueError, match=r"slenderness_angle must be in \(0, pi/2\) rad, got 14; degrees\?"):
         rk.Block.from_angle(14.0, 2.5)
     for angle in (0.0, -0.1, 0.5 * math.pi, float("nan"), "0.3"):
         with pytest.raises(InvalidValueError, match="slenderness_angle must be"):
@@ -68,15 +66,11 @@ def test_from_angle():
 def test_bad_sizes(name, value):
     """Sizes that are no length are refused; the message starts with the name and holds a range or the
     value."""
-    with pytest.raises(
-        InvalidValueError, match=rf"^{name} must be .*(number|finite|> 0|in \[1e-09, 1e\+09\])"
-    ):
+    with pytest.raises(InvalidValueError, match=rf"^{name} must be .*(number|finite|> 0|in \[1e-09, 1e\+09\])"):
         rk.Block(**{"width": 1.0, "height": 2.0, name: value})
 
 
-@pytest.mark.parametrize(
-    "value", [0, -5.0, float("nan"), float("inf"), "concrete", None, True, 1e10], ids=repr
-)
+@pytest.mark.parametrize("value", [0, -5.0, float("nan"), float("inf"), "concrete", None, True, 1e10], ids=repr)
 def test_bad_densities(value):
     """Densities that are none are refused by name."""
     with pytest.raises(InvalidValueError, match=r"^density must be "):

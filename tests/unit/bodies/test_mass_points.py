@@ -69,9 +69,7 @@ def test_feet_that_are_none(feet):
         rk.MassPoints(POINTS, MASSES, feet)
 
 
-@pytest.mark.parametrize(
-    "contact", [[(0, "a")], [(0.0, np.nan)], [(0.5, -0.5)], [1.0], "ab", [(0, 1, 2)], 3], ids=repr
-)
+@pytest.mark.parametrize("contact", [[(0, "a")], [(0.0, np.nan)], [(0.5, -0.5)], [1.0], "ab", [(0, 1, 2)], 3], ids=repr)
 def test_contact_that_is_none(contact):
     """Contact stretches that are no pairs of growing numbers are refused when they are given, not when
     used."""

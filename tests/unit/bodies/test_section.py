@@ -31,9 +31,7 @@ def test_rings_are_normalised(outline, hole):
     assert section.mass == pytest.approx(5.0 * 2400.0, rel=1e-14)
     reference = rk.coefficient_of_restitution(rk.Section([rk.Region(BOX, 2400.0, [HOLE])]), "ked")
     assert rk.coefficient_of_restitution(section, "ked") == pytest.approx(reference, rel=1e-14)
-    assert reference != pytest.approx(
-        rk.coefficient_of_restitution(rk.Section([rk.Region(BOX)]), "ked"), rel=1e-6
-    )
+    assert reference != pytest.approx(rk.coefficient_of_restitution(rk.Section([rk.Region(BOX)]), "ked"), rel=1e-6)
 
 
 def test_users_arrays_are_not_touched_nor_shared():
@@ -195,14 +193,10 @@ def test_overlaps_are_refused(others):
 def test_touching_regions_pass(shift):
     """Regions that share edges, corners or fill a hole make one body with the sum of the masses."""
     low, high = box(shift, 0, shift + 1, 0.3), box(shift + 0.1, 0.3, shift + 0.9, 2.3, 2.0)
-    assert rk.Section([low, high]).mass == pytest.approx(
-        0.3 + 3.2, rel=1e-9
-    )  # coordinates rounded 1e6 m away
+    assert rk.Section([low, high]).mass == pytest.approx(0.3 + 3.2, rel=1e-9)  # coordinates rounded 1e6 m away
     hole = [(shift + 0.2, 0.1), (shift + 0.4, 0.1), (shift + 0.4, 0.2), (shift + 0.2, 0.2)]
     plug = rk.Region(hole, 5.0)
-    assert rk.Section([box(shift, 0, shift + 1, 0.3, 1.0, [hole]), plug]).mass == pytest.approx(
-        0.38, rel=1e-7
-    )
+    assert rk.Section([box(shift, 0, shift + 1, 0.3, 1.0, [hole]), plug]).mass == pytest.approx(0.38, rel=1e-7)
 
 
 @pytest.mark.parametrize(
@@ -217,15 +211,11 @@ def test_no_regions(regions):
 # --- ground and feet ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("dy", "words"), [(0.1, "floats above"), (-0.1, "reaches below"), (5.0, "floats above")]
-)
+@pytest.mark.parametrize(("dy", "words"), [(0.1, "floats above"), (-0.1, "reaches below"), (5.0, "floats above")])
 def test_ground(dy, words):
     """A body that floats or sinks is refused with its lowest point and what to pass instead."""
     outline = [(x, y + dy) for x, y in BOX]
-    with pytest.raises(
-        GeometryError, match=rf"the body {words} the ground: .*y = {dy:.9g} m.*pass ground={dy:.9g}"
-    ):
+    with pytest.raises(GeometryError, match=rf"the body {words} the ground: .*y = {dy:.9g} m.*pass ground={dy:.9g}"):
         rk.Section.from_points(outline)
     assert rk.Section.from_points(outline, ground=dy).centre == pytest.approx((1.0, 1.5 + dy))
 

@@ -73,7 +73,7 @@ PARAMETERS = {
     "k array": ("shifted-impulse", {"k": np.array([0.5, 0.6])}, InvalidValueError, "k must be one number"),
     "k None": ("shifted-impulse", {"k": None}, InvalidValueError, "k must be a number"),
     "q inf": ("distributed-impulse", {"q": float("inf")}, InvalidValueError, "q must be finite"),
-    "q negative": ("distributed-impulse", {"q": -1e-9}, InvalidValueError, r"q must be in \[0, inf\)"),
+    "q negative": ("distributed-impulse", {"q": -1e-9}, InvalidValueError, r"q must be in \[0, 1e\+06\]"),
     "q NaN": ("distributed-impulse", {"q": float("nan")}, InvalidValueError, "q must be finite"),
     "r above 1": (
         "fixed",
@@ -155,9 +155,7 @@ def test_text_forms():
     assert rk.coefficient_of_restitution(BLOCK, "shifted-impulse", k=0.6, eta=0.98) == pytest.approx(
         expected, rel=1e-15
     )
-    assert rk.coefficient_of_restitution(BLOCK, "0.5*ked", eta=0.5) == pytest.approx(
-        0.25 * Ked().coefficient(BLOCK)
-    )
+    assert rk.coefficient_of_restitution(BLOCK, "0.5*ked", eta=0.5) == pytest.approx(0.25 * Ked().coefficient(BLOCK))
     assert expected != pytest.approx(ShiftedImpulse(k=0.6).coefficient(BLOCK))
 
 
@@ -234,9 +232,7 @@ def test_own_model_that_returns_no_number_for_arrays(value):
 def test_interface():
     """The wrapper multiplies by eta, per body and for arrays, and tells of the model inside."""
     wrapped = Interface(ShiftedImpulse(k=0.6), eta=0.9)
-    assert wrapped.coefficient(BLOCK) == pytest.approx(
-        0.9 * ShiftedImpulse(k=0.6).coefficient(BLOCK), rel=1e-15
-    )
+    assert wrapped.coefficient(BLOCK) == pytest.approx(0.9 * ShiftedImpulse(k=0.6).coefficient(BLOCK), rel=1e-15)
     inside = ShiftedImpulse(k=0.6).of_slenderness([0.3, 3.0])
     assert wrapped.of_slenderness([0.3, 3.0]) == pytest.approx(0.9 * inside, rel=1e-15)
     assert wrapped.label == "0.9*shifted-impulse:k=0.6"

@@ -61,9 +61,8 @@ def read_body(path: str | Path, *, units: str | None = None) -> Body:
             return body_from_toml(text)
         return _drawing(path, suffix, text, units)
     except RockingError as error:
-        if str(error).startswith(path.name):
-            raise
-        raise BodyFileError(f"{path.name}: {error}") from error
+        words = str(error)
+        raise BodyFileError(words if words.startswith(path.name) else f"{path.name}: {words}") from error
 
 
 def body_from_toml(text: str) -> Body:
@@ -86,7 +85,8 @@ def body_from_toml(text: str) -> Body:
 
     Examples
     --------
-    >>> body_from_toml('units = "cm"\\n[block]\\nwidth = 50\\nheight = 200').slenderness_ratio
+    >>> lines = ['units = "cm"', "[block]", "width = 50", "height = 200"]
+    >>> body_from_toml(chr(10).join(lines)).slenderness_ratio
     4.0
     """
     try:
@@ -178,12 +178,14 @@ def _sentence(error: "ValidationError") -> str:
 
 
 def _near(first: "ErrorDetails") -> str:
+    from pydantic import BaseModel
+
     from rocking.bodies.formats import schema
 
     known = {
         field
         for table in vars(schema).values()
-        if isinstance(table, type) and issubclass(table, schema.BaseModel)
+        if isinstance(table, type) and issubclass(table, BaseModel)
         for field in table.model_fields
     }
     close = difflib.get_close_matches(str(first["loc"][-1]), sorted(known), n=1)

@@ -42,14 +42,15 @@ def regions_from_dxf(path: Path, density: float = DEFAULT_DENSITY, *, units: str
         If the file cannot be read, states no unit or another, or holds no closed ring.
     """
     try:
-        import ezdxf
+        from ezdxf.filemanagement import readfile
+        from ezdxf.lldxf.const import DXFError
     except ImportError as error:
         raise MissingExtraError("DXF files need ezdxf: pip install 'rocking[dxf]'") from error
     try:
-        drawing = ezdxf.readfile(path)
+        drawing = readfile(path)
         entities = list(drawing.modelspace())
         stated = _UNITS.get(int(drawing.header.get("$INSUNITS", 0)))
-    except (ezdxf.DXFError, OSError, ValueError, UnicodeDecodeError) as error:
+    except (DXFError, OSError, ValueError, UnicodeDecodeError) as error:
         raise BodyFileError(f"{path.name}: not a DXF file that can be read: {error}") from error
     if stated and units and stated != units:
         raise BodyFileError(f"{path.name}: the drawing states {stated}, units={units!r} was given")

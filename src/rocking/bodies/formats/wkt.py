@@ -73,11 +73,13 @@ def regions_of(geometry: "BaseGeometry", density: float, units: str) -> list[Reg
     BodyFileError
         If it holds anything but polygons, or nothing.
     """
+    import shapely
+
     scale = checks.length_unit(units)
-    if geometry.geom_type == "Polygon" and not geometry.is_empty:
+    if isinstance(geometry, shapely.Polygon) and not geometry.is_empty:
         rings = [np.array(ring.coords)[:, :2] * scale for ring in (geometry.exterior, *geometry.interiors)]
         return [Region(rings[0], density, rings[1:])]
-    if geometry.geom_type in ("MultiPolygon", "GeometryCollection") and not geometry.is_empty:
+    if isinstance(geometry, (shapely.MultiPolygon, shapely.GeometryCollection)) and not geometry.is_empty:
         return [region for part in geometry.geoms for region in regions_of(part, density, units)]
     what = "an empty geometry" if geometry.is_empty else f"a {geometry.geom_type}"
     raise BodyFileError(f"a body is made of polygons, got {what}")
