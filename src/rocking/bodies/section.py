@@ -198,6 +198,72 @@ class Section(Body):
         """
         return cls.from_points(shapes.ellipse(width, height, sides), **options)
 
+    @classmethod
+    def from_wkt(cls, text: str, density: Any = DEFAULT_DENSITY, **options: Any) -> "Section":
+        """Return the section that well-known text describes.
+
+        Parameters
+        ----------
+        text : str
+            POLYGON, MULTIPOLYGON or GEOMETRYCOLLECTION of those.
+        density : float or sequence of float
+            One density for all polygons, or one for each [kg/m3].
+        **options
+            As for `rocking.bodies.formats.section_from_wkt`.
+
+        Returns
+        -------
+        Section
+            The body.
+        """
+        from rocking.bodies.formats.wkt import section_from_wkt
+
+        return section_from_wkt(text, density, **options)
+
+    @classmethod
+    def from_geojson(cls, source: Any, density: float = DEFAULT_DENSITY, **options: Any) -> "Section":
+        """Return the section that GeoJSON describes.
+
+        Parameters
+        ----------
+        source : str or dict
+            Text or parsed.
+        density : float
+            Density of what has no property ``density`` of its own [kg/m3].
+        **options
+            As for `rocking.bodies.formats.section_from_geojson`.
+
+        Returns
+        -------
+        Section
+            The body.
+        """
+        from rocking.bodies.formats.geojson import section_from_geojson
+
+        return section_from_geojson(source, density, **options)
+
+    @classmethod
+    def from_dxf(cls, path: Any, density: float = DEFAULT_DENSITY, **options: Any) -> "Section":
+        """Return the section that a DXF drawing shows.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+        density : float
+            Density of everything, where ``layers`` does not say [kg/m3].
+        **options
+            As for `rocking.bodies.formats.section_from_dxf`.
+
+        Returns
+        -------
+        Section
+            The body.
+        """
+        from rocking.bodies.formats.dxf import section_from_dxf
+
+        return section_from_dxf(path, density, **options)
+
     @property
     def depth(self) -> float:
         """Depth out of the plane [m]."""

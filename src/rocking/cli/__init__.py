@@ -17,13 +17,21 @@ def main(arguments: Sequence[str] | None = None) -> None:
     SystemExit
         Always.
     """
+    from typer.exceptions import TyperException
+
     from rocking.cli.application import application
     from rocking.errors import RockingError
 
+    words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        code = application()(args=arguments, prog_name="rocking", standalone_mode=True)
+        # without arguments the help is the answer
+        code = application()(args=words or ["--help"], prog_name="rocking", standalone_mode=False)
     except RockingError as error:
         print(f"rocking: {error}", file=sys.stderr)
+        sys.exit(2)
+    except TyperException as error:
+        message = error.format_message() if hasattr(error, "format_message") else str(error)
+        print(f"rocking: {message}; see rocking --help", file=sys.stderr)
         sys.exit(2)
     except OSError as error:
         print(f"rocking: {error.strerror or error}: {error.filename or ''}".rstrip(": "), file=sys.stderr)

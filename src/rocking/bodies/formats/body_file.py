@@ -1,192 +1,194 @@
-"""Body files: TOML with a unit and one shape, or a drawing in WKT, GeoJSON or DXF."""
+"""The TOML body file: one table says what the body is, and `units` is never left out.
 
-import difflib
+.. code-block:: toml
+
+    units = "cm"
+    [section]
+    feet = [5, 75]
+    [[section.region]]
+    outline = [[0, 0], [80, 0], [80, 200], [0, 200]]
+    density = 2400        # kg/m3, whatever the units
+"""
+
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking import checks
 from rocking.bodies.block import Block
-from rocking.bodies.body import Body
+from rocking.bodies.body import DEFAULT_DENSITY, Body
 from rocking.bodies.formats.dxf import regions_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson
+from rocking.bodies.formats.source import blamed, check_count, read_text
 from rocking.bodies.formats.wkt import regions_from_wkt
+from rocking.bodies.formats.words import sentence
 from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
-from rocking.errors import BodyFileError, RockingError
+from rocking.checks import length_unit
+from rocking.errors import BodyFileError
 
 if TYPE_CHECKING:
-    from pydantic import ValidationError
-    from pydantic_core import ErrorDetails
+    from rocking.bodies.formats import body_schema as schema
 
-    from rocking.bodies.formats.schema import BodyFile
-
-LARGEST_FILE = 64 * 2**20
-"""Body files beyond this size are refused [bytes]."""
-
-SUFFIXES = (".toml", ".wkt", ".geojson", ".json", ".dxf")
+LARGEST_TOML = 16 * 2**20
+"""Larger TOML files are refused [byte]: large outlines belong in WKT, GeoJSON or DXF."""
 
 
-def read_body(path: str | Path, *, units: str | None = None) -> Body:
-    """Read a body from a file.
-
-    Parameters
-    ----------
-    path : str or Path
-        ``.toml`` body file, or a drawing: ``.wkt``, ``.geojson``, ``.json``, ``.dxf``.
-    units : str, optional
-        Unit of the drawing (m, cm, mm, ft, in); needed for WKT and GeoJSON, and for DXF files that state none. A TOML
-        file states its own.
-
-    Returns
-    -------
-    Body
-        The body, standing on the lowest point of its drawing.
-
-    Raises
-    ------
-    BodyFileError
-        If the file cannot be read as a body; the message names file and cause.
-    """
-    path = Path(path)
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise BodyFileError(f"{path.name}: a body file ends in {', '.join(SUFFIXES)}")
-    text = "" if suffix == ".dxf" else _text(path)
-    try:
-        if suffix == ".toml":
-            if units is not None:
-                raise BodyFileError("a TOML body file states its own units")
-            return body_from_toml(text)
-        return _drawing(path, suffix, text, units)
-    except RockingError as error:
-        words = str(error)
-        raise BodyFileError(words if words.startswith(path.name) else f"{path.name}: {words}") from error
-
-
-def body_from_toml(text: str) -> Body:
-    """Return the body that a TOML text describes.
+def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body:
+    r"""Return the body that the text of a body file describes.
 
     Parameters
     ----------
     text : str
-        TOML with ``units`` and one of the tables block, trapezoid, ellipse, regular_polygon, section, mass_points.
+        TOML.
+    name : str
+        Name that errors show.
+    folder : str or Path, optional
+        Folder of the GeoJSON and DXF files that the text names; without it, text cannot name files.
 
     Returns
     -------
     Body
-        The body [m].
+        Block, Section or MassPoints.
 
     Raises
     ------
     BodyFileError
-        If the text is not TOML, or a key or value is not allowed.
+        If the text is not TOML, a key is unknown or missing, or a value is not of the kind or in the range
+        that its key needs.
+    GeometryError
+        If the shapes do not describe a body.
+    InvalidValueError
+        If a size or a density is beyond what a body can have.
+    MissingExtraError
+        If the text names a DXF file and ezdxf is not installed.
 
     Examples
     --------
-    >>> lines = ['units = "cm"', "[block]", "width = 50", "height = 200"]
-    >>> body_from_toml(chr(10).join(lines)).slenderness_ratio
+    >>> body_from_toml('units = "cm"\n[block]\nwidth = 50\nheight = 200').slenderness_ratio
     4.0
     """
+    with blamed(name):
+        document = _validated(_parsed(text))
+        scale = length_unit(document.units)
+        if document.block:
+            return _block(document.block, scale)
+        if document.mass_points:
+            return _mass_points(document.mass_points, scale)
+        if document.section:
+            return _section(document.section, document.units, None if folder is None else Path(folder))
+        return _shape(document, scale)
+
+
+def _parsed(text: Any) -> dict[str, Any]:
+    if not isinstance(text, str):
+        raise BodyFileError(f"a body file must be text, got {type(text).__name__}")
+    if len(text) > LARGEST_TOML:
+        raise BodyFileError(f"is longer than {LARGEST_TOML / 2**20:g} MiB; put large outlines in WKT, GeoJSON or DXF")
     try:
-        plain = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise BodyFileError(f"not TOML: {error}") from error
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:  # its words name line and column
+        raise BodyFileError(f"is not TOML: {error}") from error
+    except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
+        raise BodyFileError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
+
+
+def _validated(given: dict[str, Any]) -> "schema.Document":
     from pydantic import ValidationError
 
-    from rocking.bodies.formats.schema import BodyFile
+    from rocking.bodies.formats.body_schema import Document
 
     try:
-        described = BodyFile.model_validate(plain)
+        return Document.model_validate(given)
     except ValidationError as error:
-        raise BodyFileError(_sentence(error)) from error
-    tables = described.tables
-    if len(tables) != 1:
-        found = " and ".join(f"[{name}]" for name in tables) or "none"
-        raise BodyFileError(f"a body file holds one shape, [block], [section] or another; got {found}")
-    return _built(described)
+        raise BodyFileError(sentence(error, given.get("units"))) from error
 
 
-def _text(path: Path) -> str:
+def _block(table: "schema.BlockTable", scale: float) -> Body:
+    with blamed("block"):
+        body = Block(width=table.width * scale, height=table.height * scale, **_options(table, scale))
+        feet = _pair(table.feet, scale)
+        return body if feet is None else body.with_feet(*feet)
+
+
+def _shape(document: "schema.Document", scale: float) -> Section:
+    if table := document.trapezoid:
+        make, sizes = Section.from_trapezoid, (table.base, table.top, table.height, table.lean)
+        with blamed("trapezoid"):
+            return make(*(size * scale for size in sizes), feet=_pair(table.feet, scale), **_options(table, scale))
+    if ellipse := document.ellipse:
+        with blamed("ellipse"):
+            size = (ellipse.width * scale, ellipse.height * scale, ellipse.sides)
+            return Section.from_ellipse(*size, feet=_pair(ellipse.feet, scale), **_options(ellipse, scale))
+    assert document.regular_polygon is not None  # the schema lets exactly one table through
+    polygon = document.regular_polygon
+    with blamed("regular_polygon"):
+        feet = _pair(polygon.feet, scale)
+        return Section.from_regular_polygon(
+            polygon.sides, polygon.radius * scale, feet=feet, **_options(polygon, scale)
+        )
+
+
+def _options(table: "schema.Shape", scale: float) -> dict[str, float]:
+    options = {} if table.density is None else {"density": table.density}
+    return options if table.depth is None else options | {"depth": table.depth * scale}
+
+
+def _mass_points(table: "schema.MassPointsTable", scale: float) -> MassPoints:
+    contact = None if table.contact is None else [(a * scale, b * scale) for a, b in table.contact]
+    check_count(len(table.points))
+    with blamed("mass_points"):
+        for i, (a, b) in enumerate(table.contact or ()):
+            if not a < b:
+                raise BodyFileError(f"contact[{i}] must run from left to right, got [{a:g}, {b:g}]")
+        points = [(x * scale, y * scale) for x, y in table.points]
+        return MassPoints(points, table.masses, (table.feet[0] * scale, table.feet[1] * scale), contact)
+
+
+def _section(table: "schema.SectionTable", units: str, folder: Path | None) -> Section:
+    scale = length_unit(units)
+    regions: list[Region] = []
+    for i, part in enumerate(table.region):
+        with blamed(f"section.region[{i}]"):
+            regions += _regions(part, units, folder)
+        check_count(sum(len(ring) for region in regions for ring in region.rings))
+    with blamed("section"):
+        depth = 1.0 if table.depth is None else table.depth * scale
+        return Section(regions, _pair(table.feet, scale), depth=depth, ground=table.ground * scale)
+
+
+def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> list[Region]:
+    density = DEFAULT_DENSITY if table.density is None else table.density
+    own = table.units or units
+    if table.wkt is not None:
+        return regions_from_wkt(table.wkt, density, units=own, name="wkt")
+    if table.geojson is not None:
+        path = _beside(folder, table.geojson)
+        with blamed(path.name):
+            text = read_text(path)
+        return regions_from_geojson(text, density, units=own, name=path.name)
+    if table.dxf is not None:
+        return regions_from_dxf(_beside(folder, table.dxf), density, units=own, layers=table.layers)
+    scale = length_unit(units)
+    outline, *holes = (
+        [(x * scale, y * scale) for x, y in ring] for ring in (table.outline or [], *(table.holes or ()))
+    )
+    return [Region(outline, density, holes)]  # type: ignore[arg-type]
+
+
+def _beside(folder: Path | None, name: str) -> Path:
+    """Return the path of a file that a body file names: below its own folder, wherever the text came from."""
+    if folder is None:
+        raise BodyFileError(f"names the file {name!r}, but text without a folder cannot name files")
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise BodyFileError(f"{path.name}: larger than {LARGEST_FILE // 2**20} MiB")
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise BodyFileError(f"{path.name}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise BodyFileError(f"{path.name}: not a text file in UTF-8") from error
+        root = folder.resolve()
+        path = (root / name).resolve()
+    except (OSError, ValueError, RuntimeError) as error:
+        raise BodyFileError(f"the file name {name!r} cannot be used") from error
+    if not path.is_relative_to(root):
+        raise BodyFileError(f"the file {name!r} must lie in the folder of the body file or below it")
+    return path
 
 
-def _drawing(path: Path, suffix: str, text: str, units: str | None) -> Body:
-    if suffix == ".dxf":
-        regions = regions_from_dxf(path, units=units)
-    elif units is None:
-        raise BodyFileError("a drawing states no unit; give one of m, cm, mm, ft, in")
-    elif suffix == ".wkt":
-        regions = regions_from_wkt(text, units=units)
-    else:
-        regions = regions_from_geojson(text, units=units)
-    return Section(regions, ground=min(float(region.outline[:, 1].min()) for region in regions))
-
-
-def _built(described: "BodyFile") -> Body:
-    scale = checks.length_unit(described.units)
-    ((name, table),) = described.tables.items()
-    options: dict[str, Any] = {}
-    if getattr(table, "depth", None) is not None:
-        options["depth"] = table.depth * scale
-    if getattr(table, "feet", None) is not None:
-        options["feet"] = (table.feet[0] * scale, table.feet[1] * scale)
-    if name == "mass_points":
-        return MassPoints([(x * scale, y * scale) for x, y in table.points], table.masses, options["feet"])
-    if name == "section":
-        regions = [region for part in table.region for region in _regions(part, described.units, scale)]
-        return Section(regions, ground=table.ground * scale, **options)
-    options["density"] = table.density
-    if name == "block":
-        return Block(width=table.width * scale, height=table.height * scale, **options)
-    if name == "trapezoid":
-        sizes = (table.base * scale, table.top * scale, table.height * scale, table.lean * scale)
-        return Section.from_trapezoid(*sizes, **options)
-    if name == "ellipse":
-        return Section.from_ellipse(table.width * scale, table.height * scale, table.sides, **options)
-    return Section.from_regular_polygon(table.sides, table.radius * scale, **options)
-
-
-def _regions(part: Any, units: str, scale: float) -> list[Region]:
-    if (part.outline is None) == (part.wkt is None):
-        raise BodyFileError("section.region needs either an outline or wkt")
-    if part.wkt is not None:
-        return regions_from_wkt(part.wkt, part.density, units=units)
-    rings = [[(x * scale, y * scale) for x, y in ring] for ring in (part.outline, *part.holes)]
-    return [Region(rings[0], part.density, rings[1:])]
-
-
-def _sentence(error: "ValidationError") -> str:
-    first = error.errors(include_url=False)[0]
-    place = ".".join(str(part) for part in first["loc"])
-    if first["type"] == "extra_forbidden":
-        return f"unknown key {place!r}{_near(first)}"
-    if first["type"] == "missing":
-        hint = ' = "m", "cm", "mm", "ft" or "in": units are never guessed' if place == "units" else ""
-        return f"{place}{hint} is missing" if not hint else f"{place} is missing: write {place}{hint}"
-    value = first.get("input")
-    shown = repr(value) if len(repr(value)) <= 40 else repr(value)[:37] + "..."
-    return f"{place}: {first['msg'][0].lower()}{first['msg'][1:]}, got {shown}"
-
-
-def _near(first: "ErrorDetails") -> str:
-    from pydantic import BaseModel
-
-    from rocking.bodies.formats import schema
-
-    known = {
-        field
-        for table in vars(schema).values()
-        if isinstance(table, type) and issubclass(table, BaseModel)
-        for field in table.model_fields
-    }
-    close = difflib.get_close_matches(str(first["loc"][-1]), sorted(known), n=1)
-    return f"; did you mean {close[0]!r}?" if close else ""
+def _pair(values: list[float] | None, scale: float) -> tuple[float, float] | None:
+    return None if values is None else (values[0] * scale, values[1] * scale)

@@ -1,102 +1,285 @@
-"""Regions from DXF: closed polylines and circles; rings inside rings are holes."""
+"""DXF drawings through ezdxf: closed polylines, circles and ellipses of the model space.
+
+Texts, dimensions, hatches and points are passed over; every other entity on a layer that is read is refused, so that
+no part of a body goes missing unseen.
+"""
 
 import math
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Unpack
 
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
+from rocking.bodies.formats.curves import closed_ellipse, closed_polyline
+from rocking.bodies.formats.rings import nested
+from rocking.bodies.formats.source import Placement, blamed, check_count, checked_file
+from rocking.bodies.formats.words import suggestion
 from rocking.bodies.region import Region
-from rocking.conventions import FloatArray
+from rocking.bodies.section import Section
+from rocking.conventions import LENGTH_UNITS, FloatArray
 from rocking.errors import BodyFileError, MissingExtraError
 
-_UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
-_SAGITTA = 1e-4
-"""Arcs become chords that stray this little from them, relative to the radius."""
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+
+INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
+"""Codes of the header variable $INSUNITS (DXF reference, HEADER section) that this package has units for."""
+
+CHORD_SHARE = 1e-5
+"""Default chord tolerance, as a share of the curve's larger dimension [-]."""
+
+_PASSED_OVER = frozenset(
+    [
+        "TEXT",
+        "MTEXT",
+        "ATTDEF",
+        "DIMENSION",
+        "ARC_DIMENSION",
+        "LARGE_RADIAL_DIMENSION",
+        "LEADER",
+        "MULTILEADER",
+        "MLEADER",
+        "TOLERANCE",
+        "POINT",
+        "HATCH",
+        "VIEWPORT",
+        "RAY",
+        "XLINE",
+        "IMAGE",
+        "WIPEOUT",
+        "ACAD_TABLE",
+    ]
+)
+_Curve = tuple[str, str, FloatArray]
 
 
-def regions_from_dxf(path: Path, density: float = DEFAULT_DENSITY, *, units: str | None = None) -> list[Region]:
-    """Return the regions that the closed polylines and circles of a DXF file enclose.
+def section_from_dxf(
+    path: str | Path,
+    density: float = DEFAULT_DENSITY,
+    *,
+    units: str | None = None,
+    layers: Mapping[str, float] | None = None,
+    chord_tolerance: float | None = None,
+    **placement: Unpack[Placement],
+) -> Section:
+    """Return the section that a DXF drawing shows.
 
     Parameters
     ----------
-    path : Path
-        DXF file.
+    path : str or Path
+        The file.
     density : float
-        Density of all regions [kg/m3].
-    units : str, optional
-        Unit of the drawing; needed if the file states none, refused if it states another.
+        Density of everything, where `layers` does not say [kg/m3].
+    units : {"m", "cm", "mm", "ft", "in"}, optional
+        Unit of the drawing; needed if the file does not state one ($INSUNITS), refused if it contradicts the file.
+    layers : mapping of str to float, optional
+        Layers to read and the density of each [kg/m3]; by default all layers are read, with `density`.
+    chord_tolerance : float, optional
+        Largest distance between an arc and the chords that replace it [m]; by default 1e-5 of the curve's size.
+    **placement
+        ``feet`` [m], ``depth`` [m] and ``ground`` [m], as for `Section`; always in m.
+
+    Returns
+    -------
+    Section
+        The body.
+
+    Raises
+    ------
+    BodyFileError
+        If the file is not a DXF drawing of closed curves, or its unit is unknown or contradicted.
+    GeometryError
+        If the curves do not describe a body.
+    InvalidValueError
+        If a density, the unit or the tolerance is refused.
+    MissingExtraError
+        If ezdxf is not installed.
+    """
+    regions = regions_from_dxf(path, density, units=units, layers=layers, chord_tolerance=chord_tolerance)
+    with blamed(Path(path).name):
+        return Section(regions, **placement)
+
+
+def regions_from_dxf(
+    path: str | Path,
+    density: float = DEFAULT_DENSITY,
+    *,
+    units: str | None = None,
+    layers: Mapping[str, float] | None = None,
+    chord_tolerance: float | None = None,
+) -> list[Region]:
+    """Return the polygons that a DXF drawing shows.
+
+    Rings inside others are holes, by the even-odd rule: among all rings, or layer by layer if `layers` is given,
+    so that an inlay is drawn as a hole on one layer and as an outline on another.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    density : float
+        Density of everything, where `layers` does not say [kg/m3].
+    units : {"m", "cm", "mm", "ft", "in"}, optional
+        Unit of the drawing; needed if the file does not state one ($INSUNITS), refused if it contradicts the file.
+    layers : mapping of str to float, optional
+        Layers to read and the density of each [kg/m3]; by default all layers are read, with `density`.
+    chord_tolerance : float, optional
+        Largest distance between an arc and the chords that replace it [m]; by default 1e-5 of the curve's size.
 
     Returns
     -------
     list of Region
-        Outer rings with the rings directly inside them as holes [m].
+        Layer by layer, in the order of the drawing.
 
     Raises
     ------
+    BodyFileError
+        If the file is not a DXF drawing of closed curves, or its unit is unknown or contradicted.
+    GeometryError
+        If a curve crosses itself or another.
+    InvalidValueError
+        If a density, the unit or the tolerance is refused.
     MissingExtraError
         If ezdxf is not installed.
-    BodyFileError
-        If the file cannot be read, states no unit or another, or holds no closed ring.
     """
+    path = Path(path)
+    with blamed(path.name):
+        drawing = _opened(path)
+        scale = LENGTH_UNITS[_unit(drawing, units)]
+        if chord_tolerance is not None:
+            chord_tolerance = checks.length("chord_tolerance", chord_tolerance) / scale
+        groups: dict[str | None, list[_Curve]] = {} if layers is None else {layer: [] for layer in layers}
+        vertices = 0
+        for name, layer, ring in _curves(drawing, layers, chord_tolerance):
+            groups.setdefault(None if layers is None else layer, []).append((name, layer, ring * scale))
+            vertices += len(ring)
+            check_count(vertices)
+        if not any(groups.values()):
+            raise BodyFileError("holds no closed polyline, circle or ellipse")
+        return [region for layer, curves in groups.items() for region in _regions(layer, curves, density, layers)]
+
+
+def _regions(
+    layer: str | None, curves: list[_Curve], density: float, layers: Mapping[str, float] | None
+) -> list[Region]:
+    if not curves:
+        raise BodyFileError(f"layer {layer!r} holds no closed polyline, circle or ellipse")
+    value = density if layers is None or layer is None else checks.density(f"density of layer {layer!r}", layers[layer])
+    return [Region(ring, value, holes) for ring, holes in nested([c[2] for c in curves], [c[0] for c in curves])]
+
+
+def _opened(path: Path) -> "Drawing":
     try:
-        from ezdxf.filemanagement import readfile
-        from ezdxf.lldxf.const import DXFError
+        import ezdxf
     except ImportError as error:
-        raise MissingExtraError("DXF files need ezdxf: pip install 'rocking[dxf]'") from error
+        raise MissingExtraError("reading DXF needs ezdxf: pip install rocking[dxf]") from error
     try:
-        drawing = readfile(path)
-        entities = list(drawing.modelspace())
-        stated = _UNITS.get(int(drawing.header.get("$INSUNITS", 0)))
-    except (DXFError, OSError, ValueError, UnicodeDecodeError) as error:
-        raise BodyFileError(f"{path.name}: not a DXF file that can be read: {error}") from error
-    if stated and units and stated != units:
-        raise BodyFileError(f"{path.name}: the drawing states {stated}, units={units!r} was given")
-    if not (stated or units):
-        raise BodyFileError(f"{path.name}: the drawing states no unit; give units='mm' or another")
-    scale = checks.length_unit(units or stated)
-    rings = [ring * scale for ring in map(_ring, entities) if ring is not None]
-    if not rings:
-        raise BodyFileError(f"{path.name}: no closed polyline or circle in the drawing")
-    return _nested(rings, density)
+        return ezdxf.readfile(str(checked_file(path)))  # type: ignore[attr-defined]
+    except BodyFileError:
+        raise
+    except OSError as error:
+        raise BodyFileError("is not a DXF file") from error
+    except Exception as error:  # ezdxf lets whatever a damaged file provokes pass
+        raise BodyFileError(f"is a damaged DXF file ({type(error).__name__})") from error
 
 
-def _ring(entity: Any) -> FloatArray | None:
-    kind = entity.dxftype()
-    if kind == "CIRCLE":
-        count = math.ceil(math.pi / math.acos(1.0 - _SAGITTA))
-        angle = 2.0 * math.pi * np.arange(count) / count
-        centre, radius = entity.dxf.center, float(entity.dxf.radius)
-        return np.column_stack([centre.x + radius * np.cos(angle), centre.y + radius * np.sin(angle)])
-    if kind not in ("LWPOLYLINE", "POLYLINE") or not entity.is_closed:
-        return None
-    from ezdxf.path import make_path
-
-    path = make_path(entity)
-    low, high = path.control_vertices()[0], path.control_vertices()[0]
-    size = max((abs(v.x - low.x) + abs(v.y - high.y) for v in path.control_vertices()), default=1.0)
-    points = [(v.x, v.y) for v in path.flattening(_SAGITTA * max(size, 1e-12))]
-    return np.array(points, dtype=np.float64)
+def _unit(drawing: "Drawing", asked: str | None) -> str:
+    if asked is not None:
+        checks.length_unit(asked)
+    code = drawing.header.get("$INSUNITS", 0)
+    if code == 0:
+        if asked is None:
+            raise BodyFileError(f"states no unit ($INSUNITS is 0); give units=, one of {', '.join(LENGTH_UNITS)}")
+        return asked
+    if code not in INSUNITS:
+        raise BodyFileError(f"states a unit ($INSUNITS is {code}) other than {', '.join(LENGTH_UNITS)}")
+    stated = INSUNITS[code]
+    if asked is not None and asked != stated:
+        raise BodyFileError(f'states that it is drawn in {stated} ($INSUNITS is {code}), but units = "{asked}"')
+    return stated
 
 
-def _nested(rings: list[FloatArray], density: float) -> list[Region]:
-    import shapely
-
-    shapes = [shapely.Polygon(ring) for ring in rings]
-    depth = [
-        sum(i != j and other.contains(inner.representative_point()) for j, other in enumerate(shapes))
-        for i, inner in enumerate(shapes)
-    ]
-    regions = []
-    for i, outer in enumerate(shapes):
-        if depth[i] % 2:
+def _curves(drawing: "Drawing", layers: Mapping[str, float] | None, tolerance: float | None) -> Iterator[_Curve]:
+    known = {layer.dxf.name for layer in drawing.layers}
+    entities = list(drawing.modelspace())
+    known |= {entity.dxf.layer for entity in entities}
+    for layer in layers or ():
+        if layer not in known:
+            raise BodyFileError(f"has no layer {layer!r}{suggestion(layer, sorted(known))}")
+    for entity in entities:
+        layer, kind = entity.dxf.layer, entity.dxftype()
+        if kind in _PASSED_OVER or (layers is not None and layer not in layers):
             continue
-        holes = [
-            rings[j]
-            for j, inner in enumerate(shapes)
-            if depth[j] == depth[i] + 1 and outer.contains(inner.representative_point())
-        ]
-        regions.append(Region(rings[i], density, holes))
-    return regions
+        name = f"{kind} {entity.dxf.handle} on layer {layer!r}"
+        if kind not in _READERS:
+            raise BodyFileError(f"{name} is not a closed outline; join it into a closed polyline, or choose layers")
+        with blamed(name):
+            try:
+                yield name, layer, _READERS[kind](entity, tolerance)
+            except (ArithmeticError, AttributeError, LookupError, TypeError) as error:
+                raise BodyFileError(f"is damaged ({type(error).__name__})") from error
+
+
+def _circle(entity: Any, tolerance: float | None) -> FloatArray:
+    radius = checks.positive("radius", entity.dxf.radius)
+    _check_plane(entity)
+    centre = _flat(entity.ocs().to_wcs(entity.dxf.center))
+    return closed_ellipse(centre, complex(radius), 1j * radius, tolerance or CHORD_SHARE * 2.0 * radius)
+
+
+def _ellipse(entity: Any, tolerance: float | None) -> FloatArray:
+    _check_plane(entity)
+    if abs(abs(entity.dxf.end_param - entity.dxf.start_param) - 2.0 * math.pi) > 1e-9:
+        raise BodyFileError("is an arc of an ellipse, not a closed one")
+    major = _flat(entity.dxf.major_axis)
+    ratio = checks.within("ratio of the axes", abs(entity.dxf.ratio), 0.0, 1.0, open_low=True)
+    size = checks.positive("major axis", abs(major))
+    return closed_ellipse(_flat(entity.dxf.center), major, 1j * major * ratio, tolerance or CHORD_SHARE * 2.0 * size)
+
+
+def _lwpolyline(entity: Any, tolerance: float | None) -> FloatArray:
+    vertices = [(complex(x, y), bulge) for x, y, bulge in entity.get_points("xyb")]
+    return _polyline(entity, vertices, bool(entity.closed), tolerance)
+
+
+def _old_polyline(entity: Any, tolerance: float | None) -> FloatArray:
+    if entity.get_mode() not in {"AcDb2dPolyline", "AcDb3dPolyline"}:
+        raise BodyFileError("is a mesh, not an outline")
+    if entity.dxf.flags & 6:  # curve-fit and spline-fit
+        raise BodyFileError("is a fitted curve; explode it into arcs")
+    vertices = [(_flat(v.dxf.location), float(v.dxf.bulge)) for v in entity.vertices]
+    return _polyline(entity, vertices, bool(entity.is_closed), tolerance)
+
+
+def _polyline(entity: Any, vertices: list[tuple[complex, float]], closed: bool, tolerance: float | None) -> FloatArray:
+    if len(vertices) < 2:
+        raise BodyFileError("has less than two vertices")
+    if not closed and vertices[0][0] == vertices[-1][0]:
+        closed, vertices = True, vertices[:-1]
+    if not closed:
+        raise BodyFileError("is open; close it")
+    points = [point for point, _ in vertices]
+    x, y = [p.real for p in points], [p.imag for p in points]
+    size = max(max(x) - min(x), max(y) - min(y))
+    if not (math.isfinite(size) and size > 0.0):
+        raise BodyFileError("must have finite, different vertices")
+    ring = closed_polyline(points, [bulge for _, bulge in vertices], tolerance or CHORD_SHARE * size)
+    if _check_plane(entity) < 0.0:  # seen from below: the object coordinates run the other way (DXF reference, OCS)
+        ring[:, 0] *= -1.0
+    return ring
+
+
+def _check_plane(entity: Any) -> float:
+    normal = entity.dxf.extrusion
+    if not (abs(normal.x) <= 1e-9 and abs(normal.y) <= 1e-9 and normal.z != 0.0):
+        raise BodyFileError("does not lie in the x-y plane")
+    return float(normal.z)
+
+
+def _flat(point: Any) -> complex:
+    x, y = checks.number("x", point.x), checks.number("y", point.y)
+    return complex(x, y)
+
+
+_READERS = {"CIRCLE": _circle, "ELLIPSE": _ellipse, "LWPOLYLINE": _lwpolyline, "POLYLINE": _old_polyline}

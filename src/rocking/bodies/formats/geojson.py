@@ -1,83 +1,220 @@
-"""Regions from GeoJSON: polygons, features with a density property, and collections of them."""
+"""GeoJSON (RFC 7946) as a drawing: polygons in a plane, y up, with a density as a property.
+
+Coordinate reference systems are not interpreted: RFC 7946 means longitude and latitude in degrees, but a body is
+drawn in lengths. Positions are taken as (x, y) in `units`, and a ``crs`` member is ignored.
+"""
 
 import json
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, NoReturn, Unpack
 
+import numpy as np
+
+from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
-from rocking.bodies.formats.wkt import regions_of
+from rocking.bodies.formats.source import Placement, blamed, check_count
 from rocking.bodies.region import Region
+from rocking.bodies.section import Section
+from rocking.conventions import FloatArray
 from rocking.errors import BodyFileError
 
+DEEPEST = 16
+"""Collections nested deeper are refused."""
 
-def regions_from_geojson(
-    source: str | dict[str, Any], density: float = DEFAULT_DENSITY, *, units: str = "m"
-) -> list[Region]:
-    """Return the polygons of a GeoJSON text or object.
+_Found = tuple[str, list[Any], float]
 
-    Coordinates are lengths in the plane of the body; coordinate reference systems are not interpreted.
+
+def section_from_geojson(
+    source: str | Mapping[str, Any],
+    density: float = DEFAULT_DENSITY,
+    *,
+    units: str = "m",
+    name: str = "GeoJSON",
+    **placement: Unpack[Placement],
+) -> Section:
+    """Return the section that GeoJSON describes; coordinate reference systems are not interpreted.
 
     Parameters
     ----------
     source : str or dict
-        GeoJSON.
+        Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection, as text or parsed; y up.
     density : float
-        Density of features without a ``density`` property [kg/m3].
-    units : str
-        Unit of the coordinates: m, cm, mm, ft or in.
+        Density of what has no property ``density`` of its own [kg/m3].
+    units : {"m", "cm", "mm", "ft", "in"}
+        Unit of the coordinates; never degrees.
+    name : str
+        Name that errors show.
+    **placement
+        ``feet`` [m], ``depth`` [m] and ``ground`` [m], as for `Section`; always in m.
 
     Returns
     -------
-    list of Region
-        One a polygon [m].
+    Section
+        The body.
 
     Raises
     ------
     BodyFileError
-        If it is not GeoJSON, or holds anything but polygons.
+        If it is not GeoJSON, or is not made of plane polygons.
     GeometryError
-        If a polygon is not valid.
+        If the polygons do not describe a body.
+    InvalidValueError
+        If a density or the unit is refused.
 
     Examples
     --------
-    >>> square = {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]]}
-    >>> regions_from_geojson(square, density=2700.0)[0].density
-    2700.0
+    >>> square = {"type": "Polygon", "coordinates": [[[0, 0], [2, 0], [2, 2], [0, 2], [0, 0]]]}
+    >>> section_from_geojson({"type": "Feature", "properties": {"density": 2000.0}, "geometry": square}).mass
+    8000.0
     """
-    if isinstance(source, str):
-        try:
-            source = json.loads(source)
-        except (json.JSONDecodeError, RecursionError) as error:
-            raise BodyFileError(f"not GeoJSON: {error}") from error
-    return _regions(source, density, units)
+    regions = regions_from_geojson(source, density, units=units, name=name)
+    with blamed(name):
+        return Section(regions, **placement)
 
 
-def _regions(thing: Any, density: float, units: str) -> list[Region]:
-    if not isinstance(thing, dict) or not isinstance(thing.get("type"), str):
-        raise BodyFileError('not GeoJSON: an object with a "type" is needed')
-    if thing["type"] == "FeatureCollection":
-        return [region for part in _list(thing, "features") for region in _regions(part, density, units)]
-    if thing["type"] == "Feature":
-        properties = thing.get("properties") or {}
-        own = properties.get("density", density) if isinstance(properties, dict) else density
-        return _regions(thing.get("geometry"), own, units)
-    if thing["type"] == "GeometryCollection":
-        return [region for part in _list(thing, "geometries") for region in _regions(part, density, units)]
-    return _geometry(thing, density, units)
+def regions_from_geojson(
+    source: str | Mapping[str, Any],
+    density: float = DEFAULT_DENSITY,
+    *,
+    units: str = "m",
+    name: str = "GeoJSON",
+) -> list[Region]:
+    """Return the polygons that GeoJSON describes; coordinate reference systems are not interpreted.
+
+    Parameters
+    ----------
+    source : str or dict
+        Polygon, MultiPolygon, Feature, FeatureCollection or GeometryCollection, as text or parsed; y up.
+    density : float
+        Density of what has no property ``density`` of its own [kg/m3].
+    units : {"m", "cm", "mm", "ft", "in"}
+        Unit of the coordinates; never degrees.
+    name : str
+        Name that errors show.
+
+    Returns
+    -------
+    list of Region
+        In the order of the file.
+
+    Raises
+    ------
+    BodyFileError
+        If it is not GeoJSON, or is not made of plane polygons.
+    GeometryError
+        If a polygon crosses itself or a hole lies outside.
+    InvalidValueError
+        If a density or the unit is refused.
+
+    Examples
+    --------
+    >>> regions_from_geojson('{"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 1], [0, 0]]]}')[0].density
+    2400.0
+    """
+    with blamed(name):
+        scale = checks.length_unit(units)
+        given = _parsed(source) if isinstance(source, str) else source
+        regions, vertices = [], 0
+        for where, coordinates, value in _polygons(given, "", density, 0):
+            with blamed(where):
+                rings = [_ring(ring, f"coordinates[{i}]") for i, ring in enumerate(coordinates)]
+                vertices += sum(map(len, rings))
+                check_count(vertices)
+                outline, *holes = (ring * scale for ring in rings)
+                regions.append(Region(outline, value, holes))
+        if not regions:
+            raise BodyFileError("holds no polygon")
+        return regions
 
 
-def _list(thing: dict[str, Any], key: str) -> list[Any]:
-    parts = thing.get(key)
-    if not isinstance(parts, list) or not parts:
-        raise BodyFileError(f'not GeoJSON: {thing["type"]} needs a list "{key}"')
-    return parts
-
-
-def _geometry(thing: dict[str, Any], density: float, units: str) -> list[Region]:
-    import shapely
-    from shapely.geometry import shape
-
+def _parsed(text: str) -> Any:
     try:
-        geometry = shape(thing)
-    except (shapely.errors.ShapelyError, AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
-        raise BodyFileError(f"not a GeoJSON geometry: {error}") from error
-    return regions_of(geometry, density, units)
+        return json.loads(text, parse_constant=_refuse_constant)
+    except json.JSONDecodeError as error:
+        raise BodyFileError(f"is not JSON: {error}") from error
+    except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
+        raise BodyFileError(f"is not JSON that can be read: {str(error).partition(';')[0]}") from error
+
+
+def _refuse_constant(word: str) -> NoReturn:
+    raise BodyFileError(f"holds {word}; every number must be finite")
+
+
+def _polygons(thing: Any, where: str, density: Any, depth: int) -> Iterator[_Found]:
+    """Walk down to the polygons, with the place for errors and the density that applies."""
+    if depth > DEEPEST:
+        raise BodyFileError(f"is nested more than {DEEPEST} collections deep")
+    kind = _member(thing, "type", where)
+    if kind == "FeatureCollection":
+        yield from _each(thing, "features", where, density, depth)
+    elif kind == "GeometryCollection":
+        yield from _each(thing, "geometries", where, density, depth)
+    elif kind == "Feature":
+        own = _own_density(thing.get("properties"), where, density)
+        yield from _polygons(_member(thing, "geometry", where), _join(where, "geometry"), own, depth + 1)
+    elif kind == "Polygon":
+        yield where or kind, _list(thing, "coordinates", where), density
+    elif kind == "MultiPolygon":
+        for i, rings in enumerate(_list(thing, "coordinates", where)):
+            place = _join(where, f"coordinates[{i}]")
+            if not isinstance(rings, (list, tuple)) or not rings:
+                raise BodyFileError(f"{place} must be a list of rings, got {_short(rings)}")
+            yield place, list(rings), density
+    else:
+        raise BodyFileError(
+            f"{_join(where, 'type')} must be Polygon, MultiPolygon, Feature, FeatureCollection or "
+            f"GeometryCollection, got {_short(kind)}"
+        )
+
+
+def _each(thing: Any, key: str, where: str, density: Any, depth: int) -> Iterator[_Found]:
+    for i, part in enumerate(_list(thing, key, where)):
+        yield from _polygons(part, _join(where, f"{key}[{i}]"), density, depth + 1)
+
+
+def _own_density(properties: Any, where: str, default: Any) -> Any:
+    if properties is None:
+        return default
+    if not isinstance(properties, Mapping):
+        raise BodyFileError(f"{_join(where, 'properties')} must be an object, got {_short(properties)}")
+    own = properties.get("density")
+    return default if own is None else checks.density(_join(where, "properties.density"), own)
+
+
+def _ring(positions: Any, name: str) -> FloatArray:
+    if not isinstance(positions, (list, tuple)) or len(positions) < 4:
+        raise BodyFileError(f"{name} must be a ring of at least 4 positions, the last one equal to the first")
+    points = [_position(p, f"{name}[{i}]") for i, p in enumerate(positions)]
+    if points[0] != points[-1]:
+        raise BodyFileError(f"{name} must end at its first position (RFC 7946, 3.1.6), got {points[-1]}")
+    return np.array(points, dtype=np.float64)
+
+
+def _position(position: Any, name: str) -> tuple[float, float]:
+    if not isinstance(position, (list, tuple)) or len(position) != 2:
+        raise BodyFileError(f"{name} must be a position [x, y] in the plane, got {_short(position)}")
+    return checks.number(f"{name}[0]", position[0]), checks.number(f"{name}[1]", position[1])
+
+
+def _member(thing: Any, key: str, where: str) -> Any:
+    if not isinstance(thing, Mapping):
+        raise BodyFileError(f"{where or 'the document'} must be a GeoJSON object, got {_short(thing)}")
+    if key not in thing:
+        raise BodyFileError(f"{where or 'the document'} has no member {key!r}; is it GeoJSON?")
+    return thing[key]
+
+
+def _list(thing: Any, key: str, where: str) -> list[Any]:
+    value = _member(thing, key, where)
+    if not isinstance(value, (list, tuple)) or not value:
+        raise BodyFileError(f"{_join(where, key)} must be a list that is not empty, got {_short(value)}")
+    return list(value)
+
+
+def _join(where: str, key: str) -> str:
+    return f"{where}.{key}" if where else key
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,85 +1,171 @@
-"""Regions from WKT: POLYGON, MULTIPOLYGON and collections of them."""
+"""Well-known text (OGC 06-103r4, clause 7): POLYGON, MULTIPOLYGON, and collections of them."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
+from rocking.bodies.formats.source import Placement, blamed, check_count
 from rocking.bodies.region import Region
+from rocking.bodies.section import Section
+from rocking.checks import length_unit
 from rocking.errors import BodyFileError
 
 if TYPE_CHECKING:
+    from shapely import Polygon
     from shapely.geometry.base import BaseGeometry
 
+DEEPEST = 16
+"""Collections nested deeper are refused, before GEOS would run out of stack."""
 
-def regions_from_wkt(text: str, density: float = DEFAULT_DENSITY, *, units: str = "m") -> list[Region]:
-    """Return the polygons of a WKT text.
+
+def section_from_wkt(
+    text: str,
+    density: float | Sequence[float] = DEFAULT_DENSITY,
+    *,
+    units: str = "m",
+    name: str = "WKT",
+    **placement: Unpack[Placement],
+) -> Section:
+    """Return the section that well-known text describes.
 
     Parameters
     ----------
     text : str
-        WKT.
-    density : float
-        Density of all of them [kg/m3].
-    units : str
-        Unit of the coordinates: m, cm, mm, ft or in.
+        POLYGON with holes, MULTIPOLYGON, or GEOMETRYCOLLECTION of those; y up.
+    density : float or sequence of float
+        One density for all polygons, or one for each in order [kg/m3].
+    units : {"m", "cm", "mm", "ft", "in"}
+        Unit of the coordinates.
+    name : str
+        Name that errors show.
+    **placement
+        ``feet`` [m], ``depth`` [m] and ``ground`` [m], as for `Section`; always in m.
 
     Returns
     -------
-    list of Region
-        One a polygon [m].
+    Section
+        The body.
 
     Raises
     ------
     BodyFileError
-        If the text is not WKT, or holds anything but polygons.
+        If the text is not WKT, or is not made of plane polygons.
     GeometryError
-        If a polygon is not valid.
+        If the polygons do not describe a body.
+    InvalidValueError
+        If a density or the unit is refused.
 
     Examples
     --------
-    >>> len(regions_from_wkt("POLYGON ((0 0, 1 0, 1 2, 0 2, 0 0))"))
-    1
+    >>> section_from_wkt("POLYGON ((0 0, 80 0, 80 200, 0 200, 0 0))", units="cm").centre
+    (0.4, 1.0)
     """
-    import shapely
-
-    try:
-        geometry = shapely.from_wkt(text)
-    except (shapely.errors.GEOSException, TypeError, ValueError) as error:
-        raise BodyFileError(f"not WKT: {str(error).strip().splitlines()[0]}") from error
-    return regions_of(geometry, density, units)
+    regions = regions_from_wkt(text, density, units=units, name=name)
+    with blamed(name):
+        return Section(regions, **placement)
 
 
-def regions_of(geometry: "BaseGeometry", density: float, units: str) -> list[Region]:
-    """Return the polygons of a shapely geometry.
+def regions_from_wkt(
+    text: str,
+    density: float | Sequence[float] = DEFAULT_DENSITY,
+    *,
+    units: str = "m",
+    name: str = "WKT",
+) -> list[Region]:
+    """Return the polygons that well-known text describes.
 
     Parameters
     ----------
-    geometry : shapely geometry
-        Polygon, MultiPolygon or a collection of them.
-    density : float
-        Density [kg/m3].
-    units : str
+    text : str
+        POLYGON with holes, MULTIPOLYGON, or GEOMETRYCOLLECTION of those; y up.
+    density : float or sequence of float
+        One density for all polygons, or one for each in order [kg/m3].
+    units : {"m", "cm", "mm", "ft", "in"}
         Unit of the coordinates.
+    name : str
+        Name that errors show.
 
     Returns
     -------
     list of Region
-        One a polygon [m].
+        In the order of the text.
 
     Raises
     ------
     BodyFileError
-        If it holds anything but polygons, or nothing.
+        If the text is not WKT, or is not made of plane polygons.
+    GeometryError
+        If a polygon crosses itself or a hole lies outside.
+    InvalidValueError
+        If a density or the unit is refused.
+
+    Examples
+    --------
+    >>> len(regions_from_wkt("MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)), ((2 0, 3 0, 3 1, 2 0)))", [2400.0, 7850.0]))
+    2
     """
+    with blamed(name):
+        scale = length_unit(units)
+        polygons = _polygons(_geometry(text))
+        regions = []
+        for i, (polygon, value) in enumerate(zip(polygons, _densities(density, len(polygons)), strict=True)):
+            with blamed(f"polygon {i}"):
+                outline, *holes = (np.asarray(r.coords)[:, :2] * scale for r in (polygon.exterior, *polygon.interiors))
+                regions.append(Region(outline, value, holes))
+        return regions
+
+
+def _geometry(text: Any) -> "BaseGeometry":
     import shapely
 
-    scale = checks.length_unit(units)
-    if isinstance(geometry, shapely.Polygon) and not geometry.is_empty:
-        rings = [np.array(ring.coords)[:, :2] * scale for ring in (geometry.exterior, *geometry.interiors)]
-        return [Region(rings[0], density, rings[1:])]
-    if isinstance(geometry, (shapely.MultiPolygon, shapely.GeometryCollection)) and not geometry.is_empty:
-        return [region for part in geometry.geoms for region in regions_of(part, density, units)]
-    what = "an empty geometry" if geometry.is_empty else f"a {geometry.geom_type}"
-    raise BodyFileError(f"a body is made of polygons, got {what}")
+    if not isinstance(text, str) or not text.strip():
+        raise BodyFileError("has no text; it must be a POLYGON, MULTIPOLYGON or GEOMETRYCOLLECTION")
+    if "\0" in text:
+        raise BodyFileError("is not WKT: it holds a NUL character")
+    if _depth(text) > DEEPEST:
+        raise BodyFileError(f"is nested more than {DEEPEST} brackets deep")
+    try:
+        with np.errstate(all="ignore"):  # the coordinates are checked afterwards, by name
+            geometry: BaseGeometry = shapely.from_wkt(text.strip())
+    except (shapely.errors.ShapelyError, NotImplementedError, UnicodeError) as error:
+        raise BodyFileError(f"is not WKT: {_one_line(error)}") from error
+    if geometry.has_z or getattr(geometry, "has_m", False):
+        raise BodyFileError("has z or m coordinates; a section is plane, give x and y only")
+    check_count(int(shapely.get_num_coordinates(geometry)))
+    return geometry
+
+
+def _polygons(geometry: "BaseGeometry") -> "list[Polygon]":
+    if geometry.geom_type in {"MultiPolygon", "GeometryCollection"}:
+        found = [polygon for part in geometry.geoms for polygon in _polygons(part)]  # type: ignore[attr-defined]
+        if not found:
+            raise BodyFileError(f"the {geometry.geom_type.upper()} is empty")
+        return found
+    if geometry.geom_type != "Polygon":
+        raise BodyFileError(f"a {geometry.geom_type.upper()} encloses no area; a body is made of POLYGONs")
+    if geometry.is_empty:
+        raise BodyFileError("the POLYGON is empty")
+    return [geometry]  # type: ignore[list-item]
+
+
+def _densities(density: Any, count: int) -> Sequence[float]:
+    if isinstance(density, str) or not isinstance(density, (Sequence, np.ndarray)):
+        return [density] * count  # whatever it is, Region judges it
+    if len(density) != count:
+        raise BodyFileError(f"has {count} polygon(s), but {len(density)} densities were given")
+    return density
+
+
+def _depth(text: str) -> int:
+    deepest = depth = 0
+    for bracket in (c for c in text if c in "()"):
+        depth += 1 if bracket == "(" else -1
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def _one_line(error: Exception) -> str:
+    words = " ".join(str(error).split()).split("Exception: ", 1)[-1]
+    return words if len(words) <= 120 else words[:117] + "..."

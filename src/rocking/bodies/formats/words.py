@@ -1,0 +1,105 @@
+"""Words for errors: the nearest known word, and pydantic's errors as one sentence."""
+
+import difflib
+import reprlib
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from rocking.conventions import LENGTH_UNITS
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+    from pydantic_core import ErrorDetails
+
+_MUST_BE = {
+    "float_type": "must be a number",
+    "finite_number": "must be a finite number",
+    "greater_than": "must be a number > {gt:g}",
+    "greater_than_equal": "must be a number >= {ge:g}",
+    "less_than_equal": "must be a number <= {le:g}",
+    "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "string_type": "must be text",
+    "list_type": "must be a list",
+    "dict_type": "must be a table",
+    "model_type": "must be a table",
+    "literal_error": "must be one of {expected}",
+}
+_UNITS = {"density": "kg/m3", "masses": "kg", "layers": "kg/m3", "sides": ""}
+_SHOWN = reprlib.Repr()
+_SHOWN.maxstring = _SHOWN.maxother = 60
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """Return what to say after an unknown word: the nearest known one and all that are allowed.
+
+    Parameters
+    ----------
+    word : str
+        The unknown word.
+    known : iterable of str
+        The words that are allowed.
+
+    Returns
+    -------
+    str
+        The end of a sentence.
+
+    Examples
+    --------
+    >>> suggestion("heigth", ["height", "width"])
+    '; did you mean height? Allowed: height, width'
+    """
+    known = list(known)
+    near = difflib.get_close_matches(word[:60], known, n=1)
+    allowed = ", ".join(known[:30])
+    return f"; did you mean {near[0]}? Allowed: {allowed}" if near else f"; allowed: {allowed}"
+
+
+def sentence(error: "ValidationError", units: Any) -> str:
+    """Return a validation error as one sentence with key path, value and allowed range.
+
+    Parameters
+    ----------
+    error : ValidationError
+        What pydantic found.
+    units : Any
+        Unit of length that the file states, or whatever stands there.
+
+    Returns
+    -------
+    str
+        The first problem, and how many more there are.
+    """
+    problems = error.errors(include_url=False)
+    more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+    return _first(problems[0], units) + more
+
+
+def _first(problem: "ErrorDetails", units: Any) -> str:
+    path, kind, context = _path(problem["loc"]), problem["type"], problem.get("ctx", {})
+    if kind == "missing":
+        return _missing(path)
+    if kind in {"unknown_key", "contradiction"}:
+        return f"{path}: {problem['msg']}" if path else problem["msg"]
+    if kind in {"too_short", "too_long"}:
+        bound = f"at least {context['min_length']}" if kind == "too_short" else f"at most {context['max_length']}"
+        return f"{path} must have {bound} entries, got {context['actual_length']}"
+    words = _MUST_BE[kind].format(**context) if kind in _MUST_BE else f"is refused ({problem['msg']})"
+    unit = _unit(problem["loc"], units) if "number" in words else ""
+    return f"{path} {words}{unit}, got {_SHOWN.repr(problem['input'])}"
+
+
+def _missing(path: str) -> str:
+    if path == "units":
+        return f'units is missing: add units = "m" or another of {", ".join(LENGTH_UNITS)}; units are never guessed'
+    return f"{path} is missing"
+
+
+def _path(loc: tuple[int | str, ...]) -> str:
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in loc).lstrip(".")
+
+
+def _unit(loc: tuple[int | str, ...], units: Any) -> str:
+    unit = next((_UNITS[part] for part in loc if isinstance(part, str) and part in _UNITS), units)
+    return f" [{unit}]" if isinstance(unit, str) and unit in {*LENGTH_UNITS, *_UNITS.values()} - {""} else ""

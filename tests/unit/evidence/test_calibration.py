@@ -1,0 +1,112 @@
+"""The calibrated default: does it recover what it should, and do its intervals cover what they claim."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from rocking import Block
+from rocking.evidence.calibration import NAMES, calibrate, calibrate_on, interval_for
+from rocking.evidence.coefficient_table import coefficient_table, outside_evidence
+from rocking.evidence.likelihood import fit_scatter, scatter
+from rocking.evidence.measurements import all_measurements
+from rocking.restitution import Fixed, Housner, Interface, Ked, ShiftedImpulse
+
+
+def simulated(eta, k, s, gamma, seed, count=1):
+    """Measurements drawn from known parameters at the published slendernesses."""
+    data = all_measurements()
+    data = data.rows(np.tile(np.arange(len(data)), count))
+    mean = eta * ShiftedImpulse(k).of_slenderness(data.slenderness)
+    r = mean + scatter(mean, s, gamma) * np.random.default_rng(seed).normal(size=len(data))
+    return dataclasses.replace(data, coefficient=r, low=r - 5e-4, high=r + 5e-4)
+
+
+def test_recovers_known_parameters():
+    """From 156 simulated rows eta and k come back within 3 posterior standard deviations, and those are small."""
+    facts = calibrate_on(simulated(0.98, 0.55, 0.12, 0.8, seed=3, count=4)).summary
+    for name, true in (("eta", 0.98), ("k", 0.55)):
+        assert abs(facts[name]["mean"] - true) < 3.0 * facts[name]["sd"]
+    assert facts["k"]["sd"] < 0.02
+
+
+def test_intervals_cover():
+    """95 % intervals from 39 simulated rows cover new rows of the same law in 93 to 97 % (40 repetitions)."""
+    inside = total = 0
+    for seed in range(40):
+        prediction = calibrate_on(simulated(0.985, 0.57, 0.12, 0.8, seed)).predict(all_measurements().slenderness)
+        new = simulated(0.985, 0.57, 0.12, 0.8, seed + 1000).coefficient
+        inside += int(((prediction.low <= new) & (new <= prediction.high)).sum())
+        total += new.size
+    assert 0.93 < inside / total < 0.97
+
+
+def test_half_the_interval_does_not_cover():
+    """Negative control: intervals half as wide cover far less than 93 %."""
+    prediction = calibrate().predict(all_measurements().slenderness)
+    half = 0.25 * (prediction.high - prediction.low)
+    new = simulated(0.985, 0.555, 0.117, 0.79, 5).coefficient
+    assert (np.abs(new - prediction.coefficient) <= half).mean() < 0.85
+
+
+def test_posterior_lies_inside_its_grid():
+    """The posterior vanishes at the ends of its grid for eta and k: the grid does not cut it."""
+    for name in ("eta", "k"):
+        _, weight = calibrate().marginals[name]
+        assert max(weight[0], weight[-1]) < 1e-3 * weight.max()
+
+
+def test_posterior_near_least_squares():
+    """eta and k lie near the least-squares fit of physics.md 1.8 (k = .568, eta = .9859), within 2 sd."""
+    facts = calibrate().summary
+    assert abs(facts["k"]["mean"] - 0.568) < 2.0 * facts["k"]["sd"]
+    assert abs(facts["eta"]["mean"] - 0.9859) < 2.0 * facts["eta"]["sd"]
+    assert set(facts) == set(NAMES)
+
+
+def test_same_numbers_every_time():
+    """Calibration has no random number: two runs agree to the last bit; draws depend on their seed alone."""
+    first, second = calibrate_on(all_measurements()), calibrate_on(all_measurements())
+    assert (first.samples == second.samples).all()
+    assert (first.draw(5, seed=1) == second.draw(5, seed=1)).all()
+    assert (first.draw(50, seed=1) != first.draw(50, seed=2)).any()
+
+
+def test_growing_scatter_beats_constant():
+    """A scatter that grows with the loss fits better than a constant one, by more than 8 in log-likelihood."""
+    data = all_measurements()
+    mean = Interface(ShiftedImpulse(0.568), eta=0.986).of_slenderness(data.slenderness)
+    from rocking.evidence.likelihood import interval_log_likelihood
+
+    best = fit_scatter(data, mean)[2]
+    sizes = np.linspace(0.004, 0.05, 60)[:, None]
+    constant = interval_log_likelihood(data.low, data.high, mean, np.broadcast_to(sizes, (60, len(data)))).sum(axis=1)
+    assert best - constant.max() > 8.0
+
+
+def test_prediction_of_a_body_is_that_of_its_slenderness():
+    """Block and slenderness give one prediction; it lies within [0, 1] also for flat and for tall blocks."""
+    one = calibrate().predict(Block(width=1.0, height=4.0))
+    assert one.coefficient == pytest.approx(float(calibrate().predict([4.0]).coefficient[0]))
+    wide = calibrate().predict([0.3, 1.0, 50.0])
+    assert (wide.low >= 0.0).all()
+    assert (wide.high <= 1.0).all()
+
+
+@pytest.mark.parametrize("model", [Housner(), Ked(), Fixed(r=0.9)])
+def test_interval_of_any_model(model):
+    """Each model's interval holds its own coefficient; Housner's, which misses most, is the widest."""
+    block = Block(width=1.0, height=3.0)
+    found = interval_for(model, block)
+    assert found.low < found.coefficient < found.high
+    housner = interval_for(Housner(), block)
+    assert found.high - found.low <= housner.high - housner.low
+
+
+def test_table_of_a_body():
+    """The table of a body holds every model; a squat body is told to lie outside the evidence, and Housner stops."""
+    rows = {row.name: row for row in coefficient_table(Block(width=1.0, height=0.5))}
+    assert rows["housner"].coefficient == 0.0
+    assert any("stops" in warning for warning in rows["housner"].warnings)
+    assert any("outside the measured range" in warning for warning in rows["calibrated"].warnings)
+    assert outside_evidence(Block(width=1.0, height=4.0)) == ""

@@ -1,0 +1,109 @@
+"""Pictures: what is drawn is what was given, labelled with units, the same bytes every time."""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from rocking import Block, MassPoints, Section
+from rocking.errors import RockingError
+from rocking.evidence.calibration import calibrate
+from rocking.evidence.coefficient_table import coefficient_table
+from rocking.evidence.league import league
+from rocking.evidence.measurements import datasets
+from rocking.plots import body_picture, coefficient_picture, figure_2, figure_3, figure_7, figure_8, hero, save, write
+from rocking.plots.paper import paper_figures
+from rocking.restitution import Ked, energy_ledger
+
+
+@pytest.mark.parametrize("name", paper_figures())
+def test_every_axis_is_labelled_with_its_unit(name):
+    """Each visible axis of each figure of the report has a label that ends in a unit."""
+    figure = paper_figures()[name](league(), calibrate())
+    for axes in figure.axes:
+        for label, axis in ((axes.get_xlabel(), axes.xaxis), (axes.get_ylabel(), axes.yaxis)):
+            if axes.axison and axis.get_visible() and label:
+                assert label.rstrip().endswith("]")
+    shown = [axes for axes in figure.axes if axes.axison]
+    assert all(axes.get_xlabel() or axes.get_ylabel() for axes in shown)
+
+
+def test_figure_3_draws_the_data():
+    """Points of Figure 3 are those of Table 2, and the error bars are |r_r - r_e|, as in the paper."""
+    data = datasets()["table2"]
+    container = figure_3().axes[0].containers[0]
+    x, y = container[0].get_data()
+    assert (np.asarray(x) == data.slenderness).all()
+    assert (np.asarray(y) == data.coefficient).all()
+    segments = np.array(container[2][0].get_segments())
+    reach = np.abs(Ked().of_slenderness(data.slenderness) - data.coefficient)
+    assert 0.5 * np.ptp(segments[:, :, 1], axis=1) == pytest.approx(reach)
+    assert 0.5 * np.ptp(segments[:, :, 1], axis=1) != pytest.approx(0.9 * reach)
+
+
+def test_figure_7_and_8_hold_every_block():
+    """All 27 blocks appear once per model, none beyond the axes."""
+    for figure, count in ((figure_7(), 9), (figure_8(), 9)):
+        for axes in figure.axes:
+            low, high = axes.get_ylim()
+            for line in axes.lines:
+                y = np.asarray(line.get_ydata(), dtype=float)
+                if y.size == count:
+                    assert ((y >= low) & (y <= high)).all()
+
+
+def test_figure_2_prints_the_shares():
+    """Titles of Figure 2 give the shares of the ledger; landing on the other foot of a block gives the same."""
+    block = Block(width=1.0, height=2.0)
+    for onto in ("left", "right"):
+        titles = [axes.get_title() for axes in figure_2(block, onto=onto).axes[:4]]
+        for title, share in zip(titles, energy_ledger(block, onto=onto).shares.values(), strict=True):
+            assert f"{100.0 * share:.1f} %" in title
+    assert "80.0 %" in titles[1]  # cos^2 alpha at h/b = 2
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        Block(width=0.001, height=0.004),
+        Block(width=25.0, height=100.0),
+        Section.from_points([(1e6, 0.0), (1e6 + 1.0, 0.0), (1e6 + 0.8, 3.0)]),
+        Section.from_trapezoid(1.0, 0.5, 2.0, holes=[[(0.4, 0.5), (0.6, 0.5), (0.5, 1.0)]]),
+        MassPoints([(0.0, 2.0), (0.3, 1.0)], [1.0, 2.0], feet=(-1.0, 1.0)),
+    ],
+    ids=["1 mm", "100 m", "far away", "hole", "mass points"],
+)
+def test_bodies_of_any_kind_are_drawn(body, tmp_path):
+    """Small, large, far, hollow and lumped bodies are drawn inside their axes, to files."""
+    figure = body_picture(body)
+    low, high = figure.axes[0].get_xlim()
+    assert low < body.feet[0] < body.feet[1] < high
+    assert write(figure, tmp_path / "body.png").stat().st_size > 5000
+    table = coefficient_picture(body, coefficient_table(body, onto="left"), onto="left")
+    assert write(table, tmp_path / "table.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_files_come_out_the_same(tmp_path):
+    """Two savings give identical bytes; the SVG is XML and refers to nothing outside."""
+    first, second = tmp_path / "a", tmp_path / "b"
+    for folder in (first, second):
+        folder.mkdir()
+        save(figure_3(), folder, "figure")
+    for kind in ("png", "svg"):
+        assert (first / f"figure.{kind}").read_bytes() == (second / f"figure.{kind}").read_bytes()
+    root = ET.parse(first / "figure.svg").getroot()
+    links = [value for each in root.iter() for key, value in each.attrib.items() if key.endswith("href")]
+    assert all(link.startswith("#") for link in links)
+
+
+def test_formats_that_are_none(tmp_path):
+    """Another suffix, or a folder that does not exist, is refused in our own words."""
+    with pytest.raises(RockingError, match=r"\.png, \.svg or \.pdf"):
+        write(figure_3(), tmp_path / "figure.bmp")
+    with pytest.raises(RockingError, match="cannot write"):
+        write(figure_3(), tmp_path / "missing" / "figure.png")
+
+
+def test_hero():
+    """The README's picture builds."""
+    assert len(hero().axes) == 5
