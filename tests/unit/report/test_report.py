@@ -4,7 +4,10 @@ from rocking.report.document import Document, Paragraph, Picture, Section, Table
 from rocking.report.html import render_html
 from rocking.report.pdf import render_pdf
 
-SVG = '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" width="10" height="10"><g id="a"><use href="#a"/></g></svg>'
+SVG = (
+    '<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" width="10" height="10">'
+    '<g id="a"><use href="#a"/></g></svg>'
+)
 WORDS = "<script>alert(1)</script> #strong[x] $x$ \\ & *b* @cite"
 
 

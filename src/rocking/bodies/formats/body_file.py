@@ -118,8 +118,8 @@ def _shape(document: "schema.Document", scale: float) -> Section:
             return make(*(size * scale for size in sizes), feet=_pair(table.feet, scale), **_options(table, scale))
     if ellipse := document.ellipse:
         with blamed("ellipse"):
-            size = (ellipse.width * scale, ellipse.height * scale, ellipse.sides)
-            return Section.from_ellipse(*size, feet=_pair(ellipse.feet, scale), **_options(ellipse, scale))
+            width, height, feet = ellipse.width * scale, ellipse.height * scale, _pair(ellipse.feet, scale)
+            return Section.from_ellipse(width, height, sides=ellipse.sides, feet=feet, **_options(ellipse, scale))
     assert document.regular_polygon is not None  # the schema lets exactly one table through
     polygon = document.regular_polygon
     with blamed("regular_polygon"):
@@ -129,7 +129,7 @@ def _shape(document: "schema.Document", scale: float) -> Section:
         )
 
 
-def _options(table: "schema.Shape", scale: float) -> dict[str, float]:
+def _options(table: "schema.Shape", scale: float) -> dict[str, Any]:
     options = {} if table.density is None else {"density": table.density}
     return options if table.depth is None else options | {"depth": table.depth * scale}
 
@@ -173,7 +173,7 @@ def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> li
     outline, *holes = (
         [(x * scale, y * scale) for x, y in ring] for ring in (table.outline or [], *(table.holes or ()))
     )
-    return [Region(outline, density, holes)]  # type: ignore[arg-type]
+    return [Region(outline, density, holes)]
 
 
 def _beside(folder: Path | None, name: str) -> Path:

@@ -36,6 +36,11 @@ def blamed(where: str) -> Iterator[None]:
     None
         Nothing; an error keeps its class.
 
+    Raises
+    ------
+    RockingError
+        What was raised inside, with the place in front; a missing extra as it is.
+
     Examples
     --------
     >>> with blamed("pier.toml"):

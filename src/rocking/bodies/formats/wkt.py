@@ -150,12 +150,12 @@ def _polygons(geometry: "BaseGeometry") -> "list[Polygon]":
     return [geometry]  # type: ignore[list-item]
 
 
-def _densities(density: Any, count: int) -> Sequence[float]:
+def _densities(density: Any, count: int) -> list[Any]:
     if isinstance(density, str) or not isinstance(density, (Sequence, np.ndarray)):
         return [density] * count  # whatever it is, Region judges it
     if len(density) != count:
         raise BodyFileError(f"has {count} polygon(s), but {len(density)} densities were given")
-    return density
+    return list(density)
 
 
 def _depth(text: str) -> int:
