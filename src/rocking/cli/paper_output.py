@@ -78,7 +78,7 @@ def show(result: Reproduction) -> None:
     )
     console.print(_league(result))
     console.print("\nVerdict", style="bold")
-    console.print(_indented(result.verdict))
+    console.print(_indented(result.verdict), soft_wrap=False)
 
 
 @contextmanager

@@ -69,6 +69,7 @@ def with_interface(model: RestitutionModel) -> Contender:
     """
 
     def fit(data: DataSet) -> RestitutionModel:
+        """Fit the factor by least squares."""
         return Interface(model, eta=_best_eta(model.of_slenderness(data.slenderness), data.coefficient))
 
     return Contender(f"eta*{model.name}", ("eta",), fit)
@@ -99,6 +100,7 @@ def family(
     """
 
     def fitted(value: float, data: DataSet) -> tuple[RestitutionModel, float]:
+        """Return the model at a value of its parameter, and its misfit."""
         model = make(value)
         r = model.of_slenderness(data.slenderness)
         factor = _best_eta(r, data.coefficient) if eta else 1.0
@@ -106,6 +108,7 @@ def family(
         return (Interface(model, eta=factor) if eta else model), misfit
 
     def fit(data: DataSet) -> RestitutionModel:
+        """Find the parameter by bounded least squares."""
         from scipy.optimize import minimize_scalar
 
         found = minimize_scalar(

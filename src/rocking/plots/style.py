@@ -76,6 +76,7 @@ def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
 
     @wraps(draw)
     def styled(*args: P.args, **options: P.kwargs) -> T:
+        """Draw in the style."""
         with _style():
             return draw(*args, **options)
 

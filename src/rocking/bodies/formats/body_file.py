@@ -12,8 +12,11 @@
 
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
+import numpy as np
+
+from rocking.bodies import shapes
 from rocking.bodies.block import Block
 from rocking.bodies.body import DEFAULT_DENSITY, Body
 from rocking.bodies.formats.dxf import regions_from_dxf
@@ -25,6 +28,7 @@ from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.checks import length_unit
+from rocking.conventions import FloatArray
 from rocking.errors import BodyFileError
 
 if TYPE_CHECKING:
@@ -32,6 +36,11 @@ if TYPE_CHECKING:
 
 LARGEST_TOML = 16 * 2**20
 """Larger TOML files are refused [byte]: large outlines belong in WKT, GeoJSON or DXF."""
+
+
+class _Options(TypedDict, total=False):
+    density: float
+    depth: float
 
 
 def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Body:
@@ -112,26 +121,29 @@ def _block(table: "schema.BlockTable", scale: float) -> Body:
 
 
 def _shape(document: "schema.Document", scale: float) -> Section:
-    if table := document.trapezoid:
-        make, sizes = Section.from_trapezoid, (table.base, table.top, table.height, table.lean)
+    if trapezoid := document.trapezoid:
         with blamed("trapezoid"):
-            return make(*(size * scale for size in sizes), feet=_pair(table.feet, scale), **_options(table, scale))
+            sizes = (trapezoid.base, trapezoid.top, trapezoid.height, trapezoid.lean)
+            return _standing(shapes.trapezoid(*(size * scale for size in sizes)), trapezoid, scale)
     if ellipse := document.ellipse:
         with blamed("ellipse"):
-            width, height, feet = ellipse.width * scale, ellipse.height * scale, _pair(ellipse.feet, scale)
-            return Section.from_ellipse(width, height, sides=ellipse.sides, feet=feet, **_options(ellipse, scale))
-    assert document.regular_polygon is not None  # the schema lets exactly one table through
+            outline = shapes.ellipse(ellipse.width * scale, ellipse.height * scale, ellipse.sides)
+            return _standing(outline, ellipse, scale)
     polygon = document.regular_polygon
+    assert polygon is not None  # the schema lets exactly one table through
     with blamed("regular_polygon"):
-        feet = _pair(polygon.feet, scale)
-        return Section.from_regular_polygon(
-            polygon.sides, polygon.radius * scale, feet=feet, **_options(polygon, scale)
-        )
+        return _standing(shapes.regular_polygon(polygon.sides, polygon.radius * scale), polygon, scale)
 
 
-def _options(table: "schema.Shape", scale: float) -> dict[str, Any]:
-    options = {} if table.density is None else {"density": table.density}
-    return options if table.depth is None else options | {"depth": table.depth * scale}
+def _standing(outline: FloatArray, table: "schema.Shape", scale: float) -> Section:
+    return Section.from_points(outline, feet=_pair(table.feet, scale), **_options(table, scale))
+
+
+def _options(table: "schema.Shape", scale: float) -> "_Options":
+    options: _Options = {} if table.density is None else {"density": table.density}
+    if table.depth is not None:
+        options["depth"] = table.depth * scale
+    return options
 
 
 def _mass_points(table: "schema.MassPointsTable", scale: float) -> MassPoints:
@@ -170,9 +182,7 @@ def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> li
     if table.dxf is not None:
         return regions_from_dxf(_beside(folder, table.dxf), density, units=own, layers=table.layers)
     scale = length_unit(units)
-    outline, *holes = (
-        [(x * scale, y * scale) for x, y in ring] for ring in (table.outline or [], *(table.holes or ()))
-    )
+    outline, *holes = (np.array(ring) * scale for ring in (table.outline or [], *(table.holes or ())))
     return [Region(outline, density, holes)]
 
 

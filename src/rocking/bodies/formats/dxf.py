@@ -29,28 +29,9 @@ INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
 CHORD_SHARE = 1e-5
 """Default chord tolerance, as a share of the curve's larger dimension [-]."""
 
-_PASSED_OVER = frozenset(
-    [
-        "TEXT",
-        "MTEXT",
-        "ATTDEF",
-        "DIMENSION",
-        "ARC_DIMENSION",
-        "LARGE_RADIAL_DIMENSION",
-        "LEADER",
-        "MULTILEADER",
-        "MLEADER",
-        "TOLERANCE",
-        "POINT",
-        "HATCH",
-        "VIEWPORT",
-        "RAY",
-        "XLINE",
-        "IMAGE",
-        "WIPEOUT",
-        "ACAD_TABLE",
-    ]
-)
+_TEXTS = ("TEXT", "MTEXT", "ATTDEF", "LEADER", "MULTILEADER", "MLEADER", "TOLERANCE", "ACAD_TABLE")
+_DIMENSIONS = ("DIMENSION", "ARC_DIMENSION", "LARGE_RADIAL_DIMENSION")
+_PASSED_OVER = frozenset((*_TEXTS, *_DIMENSIONS, "POINT", "HATCH", "VIEWPORT", "RAY", "XLINE", "IMAGE", "WIPEOUT"))
 _Curve = tuple[str, str, FloatArray]
 
 
@@ -171,11 +152,11 @@ def _regions(
 
 def _opened(path: Path) -> "Drawing":
     try:
-        import ezdxf
+        from ezdxf.filemanagement import readfile
     except ImportError as error:
         raise MissingExtraError("reading DXF needs ezdxf: pip install rocking[dxf]") from error
     try:
-        return ezdxf.readfile(str(checked_file(path)))  # type: ignore[attr-defined]
+        return readfile(str(checked_file(path)))
     except BodyFileError:
         raise
     except OSError as error:

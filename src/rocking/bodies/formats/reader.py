@@ -8,10 +8,12 @@ from typing import Unpack
 
 from rocking.bodies.body import DEFAULT_DENSITY, Body
 from rocking.bodies.formats.body_file import LARGEST_TOML, body_from_toml
-from rocking.bodies.formats.dxf import section_from_dxf
-from rocking.bodies.formats.geojson import section_from_geojson
+from rocking.bodies.formats.dxf import regions_from_dxf
+from rocking.bodies.formats.geojson import regions_from_geojson
 from rocking.bodies.formats.source import Placement, blamed, read_text
-from rocking.bodies.formats.wkt import section_from_wkt
+from rocking.bodies.formats.wkt import regions_from_wkt
+from rocking.bodies.region import Region
+from rocking.bodies.section import Section
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import BodyFileError
 
@@ -75,7 +77,8 @@ def read_body(
     density : float, optional
         Density of what has none of its own in a WKT, GeoJSON or DXF file [kg/m3]; plain concrete if not given.
     **placement
-        ``feet`` [m], ``depth`` [m] and ``ground`` [m] for WKT, GeoJSON and DXF, as for `Section`.
+        ``feet`` [m], ``depth`` [m] and ``ground`` [m] for WKT, GeoJSON and DXF, as for `Section`; a drawing stands
+        on its lowest point if ``ground`` is not given.
 
     Returns
     -------
@@ -129,18 +132,25 @@ def _wkt(request: Request) -> Body:
     name = request.path.name
     with blamed(name):
         units, text = request.needed_units(), read_text(request.path)
-    return section_from_wkt(text, request.some_density, units=units, name=name, **request.placement)
+    return _standing(regions_from_wkt(text, request.some_density, units=units, name=name), request)
 
 
 def _geojson(request: Request) -> Body:
     name = request.path.name
     with blamed(name):
         units, text = request.needed_units(), read_text(request.path)
-    return section_from_geojson(text, request.some_density, units=units, name=name, **request.placement)
+    return _standing(regions_from_geojson(text, request.some_density, units=units, name=name), request)
 
 
 def _dxf(request: Request) -> Body:
-    return section_from_dxf(request.path, request.some_density, units=request.units, **request.placement)
+    return _standing(regions_from_dxf(request.path, request.some_density, units=request.units), request)
+
+
+def _standing(regions: list[Region], request: Request) -> Section:
+    lowest = min(float(region.outline[:, 1].min()) for region in regions)
+    placement: Placement = {"ground": lowest, **request.placement}
+    with blamed(request.path.name):
+        return Section(regions, **placement)
 
 
 FORMATS: dict[str, Callable[[Request], Body]] = {

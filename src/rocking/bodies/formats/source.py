@@ -34,7 +34,12 @@ def blamed(where: str) -> Iterator[None]:
     Yields
     ------
     None
-        Nothing; an error keeps its class.
+        Nothing.
+
+    Raises
+    ------
+    RockingError
+        The same error, of the same class, with the place in front.
 
     Raises
     ------

@@ -1,0 +1,154 @@
+"""Damaged files give a body or a RockingError, and nothing else."""
+
+import json
+import random
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from rocking.bodies.body import Body
+from rocking.bodies.formats import body_from_toml, read_body, section_from_geojson, section_from_wkt
+from rocking.errors import RockingError
+
+EXAMPLES = Path(__file__).parents[3] / "examples" / "bodies"
+TOML = [path.read_text(encoding="utf-8") for path in sorted(EXAMPLES.glob("*.toml"))] + [
+    'units = "m"\n[mass_points]\npoints = [[0, 1], [0.5, 2]]\nmasses = [1, 2.5]\nfeet = [-1, 1]\ncontact = [[-1, 0]]',
+    'units = "in"\nname = "x"\n[block]\nwidth = 10\nheight = 20.5\ndensity = 1e3\nfeet = [1, 9]',
+    'units = "ft"\n[ellipse]\nwidth = 1\nheight = 2\nsides = 12',
+    'units = "m"\n[[section.region]]\nwkt = "POLYGON ((0 0, 1 0, 1 2, 0 2, 0 0))"',
+]
+WKT = [(EXAMPLES / "transformer_cabinet.wkt").read_text(encoding="utf-8"), "MULTIPOLYGON (((0 0, 1 0, 1 2, 0 0)))"]
+RING = [[0, 0], [1, 0], [1.5, 2], [0, 2], [0, 0]]
+SQUARE = {"type": "Polygon", "coordinates": [RING, [[0.2, 0.5], [0.8, 0.5], [0.5, 1], [0.2, 0.5]]]}
+FEATURE = {"type": "Feature", "properties": {"density": 2400.0}, "geometry": SQUARE}
+GEOJSON = [json.dumps(SQUARE), json.dumps({"type": "FeatureCollection", "features": [FEATURE]})]
+
+TOKEN = re.compile(r"[\w.+-]+|\s+|.", re.DOTALL)
+STRANGE = [
+    "nan",
+    "inf",
+    "-inf",
+    "1e400",
+    "-1",
+    "0",
+    "true",
+    "null",
+    '"x"',
+    "[]",
+    "{}",
+    "1979-05-27",
+    "9" * 5000,
+    "1e308",
+]
+STRANGE += [
+    "-0.0",
+    "5e-324",
+    "\0",
+    "\ud7ff",
+    "units",
+    "width",
+    "EMPTY",
+    "Z",
+    "(",
+    "))",
+    "[[",
+    "Infinity",
+    "0x1F",
+    "1_0",
+]
+
+
+def mutated(text, rng):
+    """Return the text with bytes flipped, cut off, or tokens swapped, repeated, dropped or replaced."""
+    kind = rng.randrange(4)
+    if kind == 0:
+        data = bytearray(text.encode())
+        for _ in range(rng.randint(1, 4)):
+            data[rng.randrange(len(data))] ^= 1 << rng.randrange(8)
+        return data.decode("utf-8", "replace")
+    if kind == 1:
+        return text[: rng.randrange(len(text))]
+    tokens = TOKEN.findall(text)
+    for _ in range(rng.randint(1, 3)):
+        i, j = rng.randrange(len(tokens)), rng.randrange(len(tokens))
+        if kind == 2:
+            tokens[i], tokens[j] = tokens[j], tokens[i]
+        else:
+            tokens[i] = rng.choice([*STRANGE, "", tokens[i] * 2])
+    return "".join(tokens)
+
+
+READERS = {
+    "toml": (body_from_toml, TOML),
+    "wkt": (lambda text: section_from_wkt(text, units="mm"), WKT),
+    "geojson": (section_from_geojson, GEOJSON),
+}
+
+
+def outcomes(read, texts, count, seed):
+    """Return how many mutations gave a body, a refusal of ours, and anything else."""
+    rng = random.Random(seed)
+    bodies, refused, leaks = 0, 0, []
+    for _ in range(count):
+        text = mutated(rng.choice(texts), rng)
+        try:
+            assert isinstance(read(text), Body)
+            bodies += 1
+        except RockingError as error:
+            refused += 1
+            if "\n" in str(error):
+                leaks.append(("more than one line", str(error)[:200], text[:200]))
+        except Exception as error:  # noqa: BLE001 - what must not happen is counted
+            leaks.append((type(error).__name__, str(error)[:200], text[:200]))
+    return bodies, refused, leaks
+
+
+@pytest.mark.parametrize("kind", READERS)
+def test_mutations(kind):
+    """Two thousand mutations a format: bodies and our own one-line refusals, no other error, both kinds occurring."""
+    read, texts = READERS[kind]
+    assert all(isinstance(read(text), Body) for text in texts)
+    bodies, refused, leaks = outcomes(read, texts, 2000, seed=11)
+    assert leaks == []
+    assert min(bodies, refused) > 50
+
+
+def test_a_reader_without_guards_leaks():
+    """Negative control: readers that trust the text let errors of others through."""
+    from rocking import Block
+
+    def naive_toml(text):
+        return Block(**tomllib.loads(text)["block"])
+
+    def naive_json(text):
+        from shapely.geometry import shape
+
+        return shape(json.loads(text))
+
+    assert len(outcomes(naive_toml, TOML, 200, seed=11)[2]) > 100
+    assert len(outcomes(naive_json, GEOJSON, 200, seed=11)[2]) > 100
+
+
+def test_mutated_dxf(tmp_path):
+    """Three hundred damaged drawings: a body or a refusal of ours."""
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new("R12")
+    space = drawing.modelspace()
+    space.add_polyline2d([(0, 0), (1, 0), (1, 3), (0, 3)], close=True)
+    space.add_circle((0.5, 1.5), 0.2)
+    path = tmp_path / "x.dxf"
+    drawing.saveas(path)
+    text = path.read_text()
+    at = text.index("ENTITIES")
+    rng = random.Random(3)
+    kinds = {"body": 0, "refused": 0}
+    for _ in range(300):
+        path.write_bytes((text[:at] + mutated(text[at:], rng)).encode("utf-8", "replace"))
+        try:
+            assert isinstance(read_body(path, units="m"), Body)
+            kinds["body"] += 1
+        except RockingError:
+            kinds["refused"] += 1
+    assert min(kinds.values()) > 10
