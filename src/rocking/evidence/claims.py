@@ -201,8 +201,8 @@ def _housner_worse_when_squat() -> Claim:
         "3.1",
         "the deviation from the classical model grows as the slenderness decreases",
         HOLDS if falling == steps.size else IN_PART if falling > 0.7 * steps.size else FAILS,
-        f"r_e - r_H falls in {falling} of {steps.size} steps up to slenderness 6; correlation of its size with h/b in S, "
-        f"M, L {', '.join(f'{value:.2f}' for value in trends)}",
+        f"r_e - r_H falls in {falling} of {steps.size} steps up to slenderness 6; correlation of its size with h/b in "
+        f"S, M, L {', '.join(f'{value:.2f}' for value in trends)}",
         "sign of every step of r_e - r_H up to slenderness 6; in part above 70 %",
     )
 

@@ -81,7 +81,7 @@ def test_layers(drawn):
     assert section.mass == pytest.approx(2000.0 * 2.25 + 11000.0 * 0.75)
     with pytest.raises(BodyFileError, match="has no layer 'stne'; did you mean stone"):
         Section.from_dxf(path, layers={"stne": 2000.0})
-    with pytest.raises(BodyFileError, match="layer 'notes'.* is not a closed outline"):
+    with pytest.raises(BodyFileError, match=r"layer 'notes'.* is not a closed outline"):
         Section.from_dxf(path, layers={"stone": 2000.0, "notes": 1.0})
     with pytest.raises(RockingError, match=r"density of layer 'stone' must be > 0"):
         Section.from_dxf(path, layers={"stone": -1.0})

@@ -140,7 +140,7 @@ def polygon(*positions):
 
 
 GEOJSON = {
-    "not JSON": ("{", "is not GeoJSON: Expecting property name.*line 1 column 2"),
+    "not JSON": ("{", "is not JSON: Expecting property name.*line 1 column 2"),
     "NaN": ('{"type": NaN}', "holds NaN"),
     "digits": ("9" * 5000, "cannot|can be read"),
     "brackets": ("[" * 100_000, "can be read"),

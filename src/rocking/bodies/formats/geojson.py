@@ -131,9 +131,9 @@ def _parsed(text: str) -> Any:
     try:
         return json.loads(text, parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:
-        raise BodyFileError(f"is not GeoJSON: {error}") from error
+        raise BodyFileError(f"is not JSON: {error}") from error
     except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
-        raise BodyFileError(f"is not GeoJSON that can be read: {str(error).partition(';')[0]}") from error
+        raise BodyFileError(f"is not JSON that can be read: {str(error).partition(';')[0]}") from error
 
 
 def _refuse_constant(word: str) -> NoReturn:

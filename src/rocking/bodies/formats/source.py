@@ -39,11 +39,6 @@ def blamed(where: str) -> Iterator[None]:
     Raises
     ------
     RockingError
-        The same error, of the same class, with the place in front.
-
-    Raises
-    ------
-    RockingError
         What was raised inside, with the place in front; a missing extra as it is.
 
     Examples
