@@ -14,6 +14,10 @@ from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
 
 
+HEAVIEST = 1e36
+"""No point is heavier than this [kg]: sums and moments stay far from overflow."""
+
+
 class MassPoints(Body):
     """A rigid body lumped into points, for instance from a mesh.
 
@@ -53,6 +57,8 @@ class MassPoints(Body):
         contact: Sequence[tuple[float, float]] | None = None,
     ) -> None:
         self.masses = np.atleast_1d(checks.positive_array("masses", masses, "kg"))
+        if self.masses.max(initial=0.0) > HEAVIEST:
+            raise GeometryError(f"masses must not exceed {HEAVIEST:g} kg, got {self.masses.max():g}; wrong unit?")
         if self.masses.ndim != 1:
             raise GeometryError(f"masses must be a list of numbers, got an array of shape {self.masses.shape}")
         self.points = _points(points, len(self.masses))
@@ -162,8 +168,11 @@ def _stretches(contact: Any) -> list[Interval]:
 
 def _points(points: Any, count: int) -> FloatArray:
     try:
-        result = np.array(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+        given = np.asarray(points)
+        if given.dtype.kind not in "iuf":
+            raise TypeError("not numbers")
+        result = given.astype(np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
         raise GeometryError("points must be a list of (x, y) in m") from error
     if result.shape != (count, 2) or count == 0:
         raise GeometryError(f"points must have shape ({count}, 2), one (x, y) per mass, got {result.shape}")

@@ -22,7 +22,7 @@ class Section(Body):
     Parameters
     ----------
     regions : sequence of Region
-        The polygons [m]; they may touch but not overlap.
+        The polygons [m]; they may touch but not overlap, and move as one rigid body even where they do not touch.
     feet : (float, float), optional
         Positions of the left and right foot on the ground [m]; by default the ends of the base.
     depth : float

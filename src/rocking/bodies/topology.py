@@ -35,9 +35,12 @@ def ring(name: str, points: Any) -> FloatArray:
         If these are not at least three different finite points.
     """
     try:
-        vertices = np.array(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise GeometryError(f"{name} must be a list of (x, y) points in m") from error
+        given = np.asarray(points)
+        if given.dtype.kind not in "iuf":
+            raise TypeError("not numbers")
+        vertices = given.astype(np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise GeometryError(f"{name} must be a list of (x, y) points in m, all numbers") from error
     if vertices.ndim != 2 or vertices.shape[1:] != (2,):
         raise GeometryError(f"{name} must be a list of (x, y) points, got an array of shape {vertices.shape}")
     finite = np.isfinite(vertices).all(axis=1)

@@ -69,7 +69,7 @@ def coefficient_picture(body: Body, rows: Sequence[CoefficientRow], *, onto: Foo
         axes[2].plot([ratio], [row.coefficient], marker="D", markersize=4, linestyle="none", color=_color(row))
     slenderness_axis(axes[2])
     axes[2].set_ylabel("coefficient of restitution r [-]")
-    axes[2].set_title("this body (diamonds) among 39 measurements", loc="left")
+    axes[2].set_title("diamonds: this body", loc="left")
     axes[2].legend(loc="lower right")
     return figure
 
@@ -87,7 +87,7 @@ def _rows(axes: "Axes", rows: Sequence[CoefficientRow], onto: Foot) -> None:
     axes.grid(axis="y", color=PALE, linewidth=0.5)
     axes.tick_params(axis="y", length=0)
     axes.set_xlabel("coefficient of restitution r [-]")
-    axes.set_title(f"landing on the {onto} foot, 95 % interval", loc="left")
+    axes.set_title(f"onto the {onto} foot, 95 % interval", loc="left")
 
 
 def _color(row: CoefficientRow) -> str:

@@ -52,7 +52,8 @@ def figure_2(body: Body | None = None, *, onto: Foot = "right", angular_velocity
     figure, axes = new_figure(DOUBLE, 0.85 + 1.3 * shape, columns=4, sharey=True)
     x, y = _grid(body)
     fields = _energy(body, ledger, x, y)
-    top = max(float(field.max()) for field in fields.values())
+    inside = density_at(body, x, y) > 0.0
+    top = max(float(field[inside].max()) for field in fields.values())
     for panel, stage in zip(axes, STAGES, strict=True):
         image = _panel(panel, body, ledger, stage, (x, y, fields[stage]), top)
     bar = figure.colorbar(image, ax=axes, shrink=0.8, aspect=30, pad=0.01)
