@@ -11,8 +11,7 @@ from rocking import checks
 from rocking.bodies.body import Body, Interval
 from rocking.bodies.moments import PlaneMoments
 from rocking.conventions import FloatArray
-from rocking.errors import GeometryError
-
+from rocking.errors import GeometryError, InvalidValueError
 
 HEAVIEST = 1e36
 """No point is heavier than this [kg]: sums and moments stay far from overflow."""
@@ -168,11 +167,8 @@ def _stretches(contact: Any) -> list[Interval]:
 
 def _points(points: Any, count: int) -> FloatArray:
     try:
-        given = np.asarray(points)
-        if given.dtype.kind not in "iuf":
-            raise TypeError("not numbers")
-        result = given.astype(np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
+        result = checks.real_array("points", points)
+    except InvalidValueError as error:
         raise GeometryError("points must be a list of (x, y) in m") from error
     if result.shape != (count, 2) or count == 0:
         raise GeometryError(f"points must have shape ({count}, 2), one (x, y) per mass, got {result.shape}")

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.checks import LARGEST, SMALLEST
 from rocking.conventions import FloatArray
-from rocking.errors import GeometryError
+from rocking.errors import GeometryError, InvalidValueError
 
 # Neighbouring regions share edges that rounding may cross: overlaps below this share of the smaller area pass.
 OVERLAP_TOLERANCE = 1e-9
@@ -35,11 +36,8 @@ def ring(name: str, points: Any) -> FloatArray:
         If these are not at least three different finite points.
     """
     try:
-        given = np.asarray(points)
-        if given.dtype.kind not in "iuf":
-            raise TypeError("not numbers")
-        vertices = given.astype(np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
+        vertices = checks.real_array(name, points)
+    except InvalidValueError as error:
         raise GeometryError(f"{name} must be a list of (x, y) points in m, all numbers") from error
     if vertices.ndim != 2 or vertices.shape[1:] != (2,):
         raise GeometryError(f"{name} must be a list of (x, y) points, got an array of shape {vertices.shape}")
