@@ -40,6 +40,9 @@ def cor(
         Path | None,
         typer.Option(help="Draw the body against the published data (.png, .svg, .pdf).", rich_help_panel=_OUTPUT),
     ] = None,
+    stages: Annotated[
+        Path | None, typer.Option(help="Draw the three energy stages of KED over the body.", rich_help_panel=_OUTPUT)
+    ] = None,
 ) -> None:
     """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
     from rocking.cli import cor_output
@@ -69,9 +72,11 @@ def cor(
         cor_output.write_csv(answer, csv)
     if picture is not None:
         cor_output.draw(answer, picture)
+    if stages is not None:
+        cor_output.draw_stages(answer, stages)
     if as_json:
         print(cor_output.as_json(answer))
     else:
         cor_output.show(answer)
-        for path in filter(None, (csv, picture)):
+        for path in filter(None, (csv, picture, stages)):
             print(f"wrote {path}")

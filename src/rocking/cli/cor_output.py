@@ -12,7 +12,7 @@ from rocking.bodies import Body
 from rocking.conventions import FEET, Foot
 from rocking.errors import InvalidValueError
 from rocking.evidence.coefficient_table import CoefficientRow, coefficient_table, default_models, outside_evidence
-from rocking.restitution import IdentityCheck, RestitutionModel, identity_report
+from rocking.restitution import IdentityCheck, RestitutionModel, energy_ledger, identity_report
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +111,10 @@ def show(answer: Answer) -> None:
     console.print(
         "k: implied impulse position over half base; loss: share of kinetic energy; friction: needed at impact."
     )
+    for foot in answer.tables:
+        shares = energy_ledger(answer.body, onto=foot).shares
+        kept = ", ".join(f"{100.0 * share:.1f} % {stage}" for stage, share in shares.items())
+        console.print(f"KED's kinetic energy onto the {foot} foot: {kept}.", markup=False)
     for name, report in answer.identities.items():
         broken = [check for check in report if not check.holds]
         console.print(f"\n{name}: {'keeps all identities' if not broken else 'breaks identities'}", style="bold")
@@ -143,6 +147,7 @@ def as_json(answer: Answer) -> str:
                 "gravity_m_s2": answer.gravity,
                 "sides": {foot: _side_facts(answer, foot) for foot in FEET},
             },
+            "ked_energy_shares": {foot: energy_ledger(body, onto=foot).shares for foot in answer.tables},
             "coefficients": {foot: [row.as_dict() for row in rows] for foot, rows in answer.tables.items()},
             "identities": {
                 name: {check.name: check.holds for check in report} for name, report in answer.identities.items()
@@ -183,18 +188,26 @@ def draw(answer: Answer, path: Path) -> None:
         What `Answer.of` computed.
     path : Path
         File to write; its suffix says the format.
-
-    Raises
-    ------
-    InvalidValueError
-        If the suffix is not .png, .svg or .pdf.
     """
-    if path.suffix not in (".png", ".svg", ".pdf"):
-        raise InvalidValueError(f"a picture is .png, .svg or .pdf, got {path.name!r}")
     from rocking.plots import coefficient_picture, write
 
     foot, rows = next(reversed(answer.tables.items()))
     write(coefficient_picture(answer.body, rows, onto=foot), path)
+
+
+def draw_stages(answer: Answer, path: Path) -> None:
+    """Draw the three stages of KED over the body.
+
+    Parameters
+    ----------
+    answer : Answer
+        What `Answer.of` computed.
+    path : Path
+        File to write; its suffix says the format.
+    """
+    from rocking.plots import figure_2, write
+
+    write(figure_2(answer.body, onto=next(reversed(answer.tables))), path)
 
 
 def _same(left: tuple[CoefficientRow, ...], right: tuple[CoefficientRow, ...]) -> bool:

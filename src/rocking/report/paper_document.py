@@ -7,6 +7,7 @@ from rocking.evidence.league import LeagueRow
 from rocking.evidence.measurements import BANDS, GROUPS
 from rocking.evidence.tables import Entry, TableRow
 from rocking.report.document import Cell, Document, Paragraph, Picture, Section, Table, cell
+from rocking.report.error_tables import error_blocks
 from rocking.report.provenance import made_with
 from rocking.report.reproduction import Reproduction
 
@@ -66,6 +67,7 @@ def paper_document(result: Reproduction) -> Document:
             Section("Calibrated default", _calibration(result)),
             Section("Tables", [_paper_table(title, rows) for title, rows in result.tables.items()]),
             Section("Figures", [Paragraph(NO_FIGURE_4), *(Picture(*figure) for figure in FIGURES)]),
+            Section("Correlations and error zones", error_blocks()),
             Section("Errata", _errata(result)),
         ],
         made_with(),

@@ -55,11 +55,14 @@ def test_cor_options(capsys, tmp_path):
     )
     picture = tmp_path / "body.svg"
     words = ["--model", f"{own}:Mine", "--model", "ked", "--identities", "--eta", "0.9", "--picture", picture]
+    words += ["--stages", tmp_path / "stages.png"]
     code, out, err = run(capsys, "cor", "--width", 100, "--height", 400, "--unit", "cm", "--onto", "left", *words)
     assert (code, err) == (0, "")
     assert "0.450000" in out
     assert f"{0.9 * 0.9473668350323697:.6f}" in out
     assert "coincident pivots: violated" in out
+    assert "94.1 % stage 1" in out  # cos^2 alpha at h/b = 4 is 16/17
+    assert (tmp_path / "stages.png").stat().st_size > 10_000
     assert picture.read_text(encoding="utf-8").startswith("<?xml")
     code, out, _ = run(capsys, "cor", "--angle", 0.2449786631, "--semi-diagonal", 2, "--model", "housner", "--json")
     assert json.loads(out)["body"]["sides"]["left"]["slenderness_ratio"] == pytest.approx(4.0)
