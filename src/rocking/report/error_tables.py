@@ -22,8 +22,8 @@ def error_blocks() -> list[Paragraph | Table]:
     """
     return [
         Paragraph(
-            "Relative errors are |r_e - r| / r_e, as in the paper; zone I is below 1 %, II from 1 to 5 %, III above. The "
-            "true r_H are used. Pearson's correlation hardly tells the models apart; Lin's concordance does."
+            "Relative errors are |r_e - r| / r_e, as in the paper; zone I is below 1 %, II from 1 to 5 %, III above. "
+            "The true r_H are used. Pearson's correlation hardly tells the models apart; Lin's concordance does."
         ),
         Table(
             "Correlation, concordance and zones",
