@@ -259,7 +259,7 @@ def all_positive(name: str, values: FloatArray, unit: str = "-", whole: FloatArr
     raise InvalidValueError(f"{name} must be finite and > 0{_in(unit)}, got {whole[bad]:g}{where}")
 
 
-def all_within(name: str, values: FloatArray, low: float, high: float, whole: FloatArray) -> None:
+def all_within(name: str, values: FloatArray, low: float, high: float, whole: FloatArray) -> float:
     """Refuse an array that holds anything but numbers between two positive ends.
 
     Parameters
@@ -273,13 +273,21 @@ def all_within(name: str, values: FloatArray, low: float, high: float, whole: Fl
     whole : ndarray
         The array that the piece is from, so that the index in the error is the user's.
 
+    Returns
+    -------
+    float
+        The least of them, which has been found on the way.
+
     Raises
     ------
     InvalidValueError
         Naming the first bad value and its index.
     """
-    if not values.size or (values.min() >= low and values.max() <= high):
-        return
+    if not values.size:
+        return high
+    least = float(values.min())
+    if least >= low and values.max() <= high:
+        return least
     all_positive(name, whole)
     bad = tuple(int(i) for i in np.argwhere((whole < low) | (whole > high))[0])
     raise InvalidValueError(f"{name} must be in [{low:g}, {high:g}], got {whole[bad]:g}")

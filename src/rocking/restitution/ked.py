@@ -81,7 +81,12 @@ class Ked(RestitutionModel):
         ndarray
             Of the same shape [-].
         """
-        return ked_integrals.coefficient_of_rectangle(slenderness)
+        out = np.empty(np.shape(slenderness))
+        ked_integrals.fill_rectangles(slenderness, float(np.min(slenderness, initial=1.0)), out)
+        return out
+
+    def _fill(self, slenderness: FloatArray, least: float, out: FloatArray) -> None:
+        ked_integrals.fill_rectangles(slenderness, least, out)
 
 
 @singledispatch
@@ -112,8 +117,7 @@ def projected_moment(body: Body, onto: Foot) -> float:
 
 @projected_moment.register
 def _(body: Block, onto: Foot) -> float:
-    ratio = ked_integrals.coefficient_of_rectangle(np.array([body.slenderness_ratio]))
-    return float(ratio[0]) ** 2 * body.side(onto).moment_of_inertia
+    return Ked().raw_coefficient(body, onto) ** 2 * body.side(onto).moment_of_inertia
 
 
 @projected_moment.register

@@ -12,41 +12,38 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _GAUSS_BEYOND = 5.0
 
 
-def coefficient_of_rectangle(slenderness: FloatArray) -> FloatArray:
-    """Return KED's coefficient for homogeneous rectangles (Eq. 17, Mao et al. 2024, in closed form).
+def fill_rectangles(ratio: FloatArray, least: float, out: FloatArray) -> None:
+    """Write KED's coefficients of homogeneous rectangles (Eq. 17, Mao et al. 2024, in closed form).
 
     ``r^2 = N/D`` with ``N/B^4 = l^3/12 - l/4 + atan(l)/4 + (l^4/4) atan(1/l)`` and ``D/B^4 = l (1 + l^2)/3``.
 
     Parameters
     ----------
-    slenderness : ndarray
+    ratio : ndarray
         Slenderness ratios l = h/b > 0 [-].
-
-    Returns
-    -------
-    ndarray
-        r, relative error below 3e-14 [-].
+    least : float
+        The least of them, or less [-].
+    out : ndarray
+        Of the same shape; receives r, relative error below 3e-14 [-].
     """
     # N/D in partial fractions, t = 1/l: r^2 = 1/4 + (3 pi t/8 - 1) / (1 + l^2) + 3/4 atan(t) (l - t)
-    ratio = np.asarray(slenderness)
     t = np.divide(1.0, ratio, out=np.empty(ratio.shape))
-    result = np.subtract(ratio, t, out=np.empty(ratio.shape))
+    np.subtract(ratio, t, out=out)
     room = np.arctan(t, out=np.empty(ratio.shape))
     with np.errstate(over="ignore", invalid="ignore"):
-        result *= room
-        result *= 0.75
+        out *= room
+        out *= 0.75
         np.multiply(ratio, ratio, out=room)
         room += 1.0
         t *= 0.375 * np.pi
         t -= 1.0
         t /= room
-        result += t
-        result += 0.25
-        np.sqrt(result, out=result)
-    if ratio.size and ratio.min() < _SERIES_BELOW:
+        out += t
+        out += 0.25
+        np.sqrt(out, out=out)
+    if least < _SERIES_BELOW:
         squat = ratio < _SERIES_BELOW
-        result[squat] = _series(ratio[squat])
-    return result
+        out[squat] = _series(ratio[squat])
 
 
 def _series(t: FloatArray) -> FloatArray:

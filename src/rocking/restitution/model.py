@@ -214,12 +214,16 @@ class RestitutionModel(ABC):
         # pieces that stay in the cache: checks and arithmetic cost less than moving the data
         for start in range(0, flat.size, _PIECE):
             piece = flat[start : start + _PIECE]
-            checks.all_within("slenderness_ratio", piece, _FLATTEST, _TALLEST, whole=ratios)
-            raw = self.raw_of_slenderness(piece)
-            if not math.isfinite(float(raw.sum())):
-                raise InvalidValueError(f"coefficient of model {self.name} must be finite for every slenderness")
-            result[start : start + _PIECE] = raw
+            least = checks.all_within("slenderness_ratio", piece, _FLATTEST, _TALLEST, whole=ratios)
+            self._fill(piece, least, result[start : start + _PIECE])
         return result.reshape(ratios.shape)
+
+    def _fill(self, slenderness: FloatArray, least: float, out: FloatArray) -> None:
+        """Write the coefficients of a piece, the least slenderness of which is known; a quick model writes in place."""
+        raw = self.raw_of_slenderness(slenderness)
+        if not math.isfinite(float(raw.sum())):
+            raise InvalidValueError(f"coefficient of model {self.name} must be finite for every slenderness")
+        out[...] = raw
 
     @property
     def parameters(self) -> dict[str, float]:
