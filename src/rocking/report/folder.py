@@ -117,7 +117,12 @@ def as_plain(result: Reproduction, document: Document | None = None) -> dict[str
             for title, rows in result.tables.items()
         },
         "league": [row.as_dict() for row in result.league],
-        "calibration": {"model": result.calibration.model().label, **result.calibration.summary},
+        "calibration": {
+            "model": result.calibration.model().label,
+            **result.calibration.summary,
+            "covered_one_by_one": [result.coverage.one_by_one, result.coverage.rows],
+            "covered_by_data_set": {name: list(counts) for name, counts in result.coverage.by_group.items()},
+        },
         "provenance": document.provenance if document else made_with(),
     }
 

@@ -242,8 +242,7 @@ def _calibration(result: Reproduction) -> list[Paragraph | Table | Picture]:
         Paragraph(
             f"The default is {result.calibration.model().label}: an interface factor times the shifted impulse. Its "
             "interval is the posterior predictive one for a single measured body, with a scatter s (1 - r)^gamma. "
-            "Left out one by one, 36 of the 39 measurements fall into their 95 % intervals; a whole data set left out, "
-            "fewer do (8 of 12 of Table 1): a new interface is less certain than the interval says."
+            f"{result.coverage.sentence}"
         ),
         Table("Posterior", ["parameter", "meaning", "mean", "sd", "2.5 %", "97.5 %"], rows, stem="calibration"),
         Picture("calibration", "Posterior of eta and k, and the predictive band with all measurements."),

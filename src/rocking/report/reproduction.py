@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from rocking.evidence.calibration import Calibration, calibrate
 from rocking.evidence.claims import Claim, claims
+from rocking.evidence.coverage import Coverage, coverage
 from rocking.evidence.errata import Erratum, errata
 from rocking.evidence.league import LeagueRow, league
 from rocking.evidence.tables import TableRow, recomputed
@@ -33,6 +34,8 @@ class Reproduction:
         Every model against every measurement.
     calibration : Calibration
         The calibrated default.
+    coverage : Coverage
+        How its intervals cover what they have not seen.
     verdict : tuple of str
         What the evidence says, in words.
     """
@@ -42,6 +45,7 @@ class Reproduction:
     errata: tuple[Erratum, ...]
     league: tuple[LeagueRow, ...]
     calibration: Calibration
+    coverage: Coverage
     verdict: tuple[str, ...]
 
 
@@ -55,4 +59,4 @@ def reproduce() -> Reproduction:
     """
     standings = league()
     tables = {title: tuple(row for name in names for row in recomputed(name)) for title, names in TABLES.items()}
-    return Reproduction(tables, claims(), errata(), standings, calibrate(), verdict(standings))
+    return Reproduction(tables, claims(), errata(), standings, calibrate(), coverage(), verdict(standings))

@@ -8,6 +8,7 @@ import pytest
 from rocking import Block
 from rocking.evidence.calibration import NAMES, calibrate, calibrate_on, interval_for
 from rocking.evidence.coefficient_table import coefficient_table, outside_evidence
+from rocking.evidence.coverage import coverage
 from rocking.evidence.likelihood import fit_scatter, scatter
 from rocking.evidence.measurements import all_measurements
 from rocking.restitution import Fixed, Housner, Interface, Ked, ShiftedImpulse
@@ -101,6 +102,19 @@ def test_interval_of_any_model(model):
     assert found.low < found.coefficient < found.high
     housner = interval_for(Housner(), block)
     assert found.high - found.low <= housner.high - housner.low
+
+
+def test_coverage_of_what_was_not_seen():
+    """Leaving rows out on one grid is the same as calibrating without them; Table 1 is covered worse than nominal."""
+    data = all_measurements()
+    found = coverage(data)
+    assert found.rows == 39
+    assert 35 <= found.one_by_one <= 39  # binomial: 95 % of 39 is 37, with a standard deviation of 1.4
+    assert found.by_group["table1"][0] / 12 < 0.95 <= found.by_group["L"][0] / 9
+    table1 = np.array([group == "table1" for group in data.group])
+    prediction = calibrate_on(data.rows(~table1)).predict(data.slenderness[table1])
+    inside = (prediction.low <= data.coefficient[table1]) & (data.coefficient[table1] <= prediction.high)
+    assert abs(int(inside.sum()) - found.by_group["table1"][0]) <= 1  # intervals from samples, shares from the grid
 
 
 def test_table_of_a_body():
