@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.evidence.agreement import relative_error
 from rocking.evidence.measurements import DataSet, datasets
-from rocking.plots.curves import curve, points, slenderness_axis
+from rocking.plots.curves import curve, slenderness_axis
 from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, MODEL_STYLE, SINGLE, in_journal_style, new_figure
 from rocking.restitution import model
 
@@ -28,21 +28,9 @@ def figure_3() -> "Figure":
         One panel.
     """
     figure, (axes,) = new_figure(SINGLE, 2.7)
-    data = datasets()["table2"]
     for name in _PAIR:
         curve(axes, name, 1.5, 9.0)
-    reach = np.abs(model("ked").of_slenderness(data.slenderness) - data.coefficient)
-    axes.errorbar(
-        data.slenderness,
-        data.coefficient,
-        yerr=reach,
-        linestyle="none",
-        marker="s",
-        color=INK,
-        capsize=2.0,
-        elinewidth=0.8,
-        label="Table 2, means",
-    )
+    _with_distance_to_ked(axes, datasets()["table2"], "s", "Table 2, means", 0.0)
     slenderness_axis(axes)
     axes.set_ylabel("coefficient of restitution r [-]")
     axes.set_ylim(0.55, 1.02)
@@ -52,22 +40,40 @@ def figure_3() -> "Figure":
 
 @in_journal_style
 def figure_5() -> "Figure":
-    """Draw slenderness against r for the groups S, M and L.
+    """Draw slenderness against r for the groups S, M and L; bars are |r_r - r_e|, as in Figure 3.
 
     Returns
     -------
     matplotlib.figure.Figure
-        One panel.
+        One panel; S and L are moved sideways a little, so that the bars can be told apart.
     """
-    figure, (axes,) = new_figure(SINGLE, 2.7)
+    figure, (axes,) = new_figure(SINGLE, 2.9)
     for name in _PAIR:
         curve(axes, name, 1.3, 10.2)
-    for group in ("S", "M", "L"):
-        points(axes, datasets()[group], group, label=f"group {group}")
+    for group, aside in (("S", -0.09), ("M", 0.0), ("L", 0.09)):
+        _with_distance_to_ked(axes, datasets()[group], str(GROUP_STYLE[group]["marker"]), f"group {group}", aside)
     slenderness_axis(axes)
     axes.set_ylabel("coefficient of restitution r [-]")
     axes.legend(loc="lower right")
     return figure
+
+
+def _with_distance_to_ked(axes: "Axes", data: DataSet, marker: str, label: str, aside: float) -> None:
+    reach = np.abs(model("ked").of_slenderness(data.slenderness) - data.coefficient)
+    axes.errorbar(
+        data.slenderness + aside,
+        data.coefficient,
+        yerr=reach,
+        linestyle="none",
+        marker=marker,
+        markersize=3.5,
+        color=INK,
+        markerfacecolor=INK if aside == 0.0 else "white",
+        markeredgewidth=0.7,
+        capsize=1.5,
+        elinewidth=0.7,
+        label=label,
+    )
 
 
 @in_journal_style

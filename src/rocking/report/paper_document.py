@@ -30,7 +30,7 @@ FIGURES = (
         "Figure 3. Slenderness against r: both models and Table 2; bars are |r_r - r_e|, as in the paper.",
         False,
     ),
-    ("figure_5", "Figure 5. The same for the groups S, M and L of Table 3.", False),
+    ("figure_5", "Figure 5. The same for the groups S, M and L of Table 3; S and L are moved sideways by 0.09.", False),
     (
         "figure_6",
         "Figure 6. Relative errors of both models, Table 2, with zones I (< 1 %), II (1-5 %), III (> 5 %).",
