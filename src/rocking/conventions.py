@@ -23,6 +23,20 @@ FEET: Final[tuple[Foot, Foot]] = ("left", "right")
 LENGTH_UNITS: Final[dict[str, float]] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Length of one unit in metres; units are always named, never guessed."""
 
+ACCELERATION_UNITS: Final[dict[str, float]] = {
+    "m/s2": 1.0,
+    "cm/s2": 0.01,
+    "mm/s2": 0.001,
+    "gal": 0.01,
+    "g": g,
+    "g/10": 0.1 * g,
+    "mg": 0.001 * g,
+}
+"""One unit of acceleration in m/s2; `g/10` is what BHRC files hold, `mg` is a thousandth of g."""
+
+VELOCITY_UNITS: Final[dict[str, float]] = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001}
+"""One unit of velocity in m/s."""
+
 
 def opposite(foot: Foot) -> Foot:
     """Return the other foot.

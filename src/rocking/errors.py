@@ -25,5 +25,9 @@ class BodyFileError(RockingError):
     """A body file (TOML, WKT, GeoJSON, DXF) cannot be read as a body."""
 
 
+class RecordError(RockingError):
+    """A ground-motion file cannot be read: not recognised, ambiguous, damaged, or at odds with its own header."""
+
+
 class MissingExtraError(RockingError, ImportError):
     """A feature needs an optional dependency that is not installed."""

@@ -1,0 +1,1 @@
+"""Reading ground-motion files and writing them, one format a file."""

@@ -1,0 +1,173 @@
+"""Numbers in fixed columns or between blanks, with the line named where one is damaged."""
+
+import math
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.motions.formats.source import Source
+
+# what float() takes beyond plain decimal numbers (nan, infinity, 1_000) is damage in a record
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d{1,3})?")
+
+
+def number(source: Source, line: int, word: str, what: str = "number") -> float:
+    """Return one number.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for the error.
+    line : int
+        Index of the line.
+    word : str
+        The characters.
+    what : str
+        What it should be, for the error.
+
+    Returns
+    -------
+    float
+        Finite.
+
+    Raises
+    ------
+    RecordError
+        If the characters are not one finite decimal number.
+    """
+    text = word.strip()
+    if not _NUMBER.fullmatch(text):
+        raise source.error(line, f"{what} expected, found {text[:40]!r}")
+    value = float(text.replace("D", "e").replace("d", "e"))
+    if not math.isfinite(value):
+        raise source.error(line, f"{what} is beyond all range: {text[:40]!r}")
+    return value
+
+
+def whole(source: Source, line: int, word: str, what: str, least: int = 0) -> int:
+    """Return one whole number.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for the error.
+    line : int
+        Index of the line.
+    word : str
+        The characters.
+    what : str
+        What it should be, for the error.
+    least : int
+        Smallest that makes sense.
+
+    Returns
+    -------
+    int
+        The number.
+
+    Raises
+    ------
+    RecordError
+        If the characters are not one whole number of at least `least`.
+    """
+    text = word.strip()
+    if not re.fullmatch(r"[+-]?\d{1,9}", text) or int(text) < least:
+        raise source.error(line, f"{what} expected, found {text[:40]!r}")
+    return int(text)
+
+
+def free(source: Source, first: int, last: int, columns: int | None = None) -> FloatArray:
+    """Return the numbers between blanks on some lines.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    first, last : int
+        Lines from `first` up to but not including `last`; blank ones are passed over.
+    columns : int, optional
+        Numbers that every line must hold.
+
+    Returns
+    -------
+    ndarray
+        All of them in order, of shape (n,) or (lines, columns).
+
+    Raises
+    ------
+    RecordError
+        If a word is not a number or a line holds another count.
+    """
+    rows: list[float] = []
+    for line in range(first, last):
+        words = source.lines[line].split()
+        if columns is not None and words and len(words) != columns:
+            raise source.error(line, f"{columns} numbers expected, found {len(words)}")
+        rows.extend(number(source, line, word) for word in words)
+    found = np.array(rows, dtype=np.float64)
+    return found if columns is None else found.reshape(-1, columns)
+
+
+def fixed(source: Source, first: int, count: int, per_line: int, width: int) -> tuple[FloatArray, int]:
+    """Return `count` numbers in columns of fixed width, which need no blank between them.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    first : int
+        Line of the first number.
+    count : int
+        How many there must be.
+    per_line : int
+        Numbers on a full line.
+    width : int
+        Characters of a number.
+
+    Returns
+    -------
+    values : ndarray, shape (count,)
+        The numbers.
+    next_line : int
+        The line after them.
+
+    Raises
+    ------
+    RecordError
+        If a line is missing, too short, too long, or a column is not a number.
+    """
+    values: list[float] = []
+    line = first
+    while len(values) < count:
+        if line >= len(source.lines):
+            raise source.error(None, f"{count} samples expected, the file ends after {len(values)}")
+        text = source.lines[line].rstrip()
+        wanted = min(per_line, count - len(values))
+        if len(text) > wanted * width or len(text) <= (wanted - 1) * width:
+            raise source.error(line, f"{wanted} columns of {width} characters expected, found {len(text)} characters")
+        values.extend(number(source, line, text[k * width : (k + 1) * width]) for k in range(wanted))
+        line += 1
+    return np.array(values, dtype=np.float64), line
+
+
+def in_columns(values: Sequence[float] | FloatArray, per_line: int, form: str) -> list[str]:
+    """Return lines of numbers, for writers.
+
+    Parameters
+    ----------
+    values : sequence of float
+        The numbers.
+    per_line : int
+        Numbers on a line.
+    form : str
+        Format of one number, such as ``"{:15.7E}"``.
+
+    Returns
+    -------
+    list of str
+        The lines.
+    """
+    words = [form.format(value) for value in values]
+    return ["".join(words[start : start + per_line]) for start in range(0, len(words), per_line)]

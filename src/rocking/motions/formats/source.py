@@ -1,0 +1,86 @@
+"""The file that a reader looks at: bytes, lines, and the error that names file and line."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from rocking.errors import RecordError
+
+LARGEST_FILE = 256 * 1024 * 1024
+"""Larger files are refused [bytes]."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file's name and content.
+
+    Parameters
+    ----------
+    name : str
+        Name for messages.
+    content : bytes
+        What is in it.
+    """
+
+    name: str
+    content: bytes
+
+    @classmethod
+    def of_path(cls, path: Path) -> "Source":
+        """Read a file, within limits.
+
+        Parameters
+        ----------
+        path : Path
+            The file.
+
+        Returns
+        -------
+        Source
+            Its content.
+
+        Raises
+        ------
+        RecordError
+            If it is missing, no plain file, empty or larger than 256 MiB.
+        """
+        if not path.is_file():
+            raise RecordError(f"{path}: {'not a plain file' if path.exists() else 'no such file'}")
+        try:
+            size = path.stat().st_size
+            if size > LARGEST_FILE:
+                raise RecordError(f"{path}: {size} bytes, more than the {LARGEST_FILE} that are read")
+            content = path.read_bytes()
+        except OSError as error:
+            raise RecordError(f"{path}: {error.strerror or error}") from error
+        if not content.strip():
+            raise RecordError(f"{path}: the file is empty")
+        return cls(path.name, content)
+
+    @cached_property
+    def is_text(self) -> bool:
+        """Whether it looks like text: no NUL among its bytes."""
+        return b"\0" not in self.content
+
+    @cached_property
+    def lines(self) -> list[str]:
+        """Lines without their ends; CR, LF, CR LF and CR CR LF all end one."""
+        text = self.content.decode("latin-1")
+        return text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+    def error(self, line: int | None, cause: str) -> RecordError:
+        """Return the error for a line, to be raised.
+
+        Parameters
+        ----------
+        line : int, optional
+            Index of the line, from 0; shown from 1.
+        cause : str
+            What is wrong with it.
+
+        Returns
+        -------
+        RecordError
+            ``name, line 5: cause``.
+        """
+        return RecordError(f"{self.name}{'' if line is None else f', line {line + 1}'}: {cause}")

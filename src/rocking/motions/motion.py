@@ -1,0 +1,182 @@
+"""A ground motion: accelerations at equal steps, straight lines between them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.motions.segments import Segments
+
+LARGEST_ACCELERATION = 1e6
+"""No ground moves harder than this [m/s2]: a larger number is a wrong unit or a damaged file."""
+
+SHORTEST_STEP, LONGEST_STEP = 1e-9, 1e3
+"""Allowed range of the time step [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class GroundMotion:
+    """Acceleration of the ground, horizontal and if known vertical.
+
+    The first sample is at time zero; between samples the acceleration is a straight line, before the first and after
+    the last one it is zero.
+
+    Parameters
+    ----------
+    acceleration : array_like
+        Horizontal acceleration, positive to the right [m/s2].
+    time_step : float
+        Step between samples [s].
+    vertical : array_like, optional
+        Vertical acceleration, positive upwards, of the same length [m/s2].
+    name : str
+        What to call it in titles and tables.
+    metadata : mapping of str to str
+        What the file or the generator said about it.
+    provenance : tuple of str
+        Where it comes from and what was done to it since, one sentence each.
+
+    Raises
+    ------
+    InvalidValueError
+        If a sample is not finite or beyond 1e6 m/s2, there are fewer than two, the step is not above zero, or the
+        vertical part has another length.
+
+    Examples
+    --------
+    >>> motion = GroundMotion([0.0, 1.0, -2.0, 0.0], time_step=0.1)
+    >>> motion.peak, round(motion.duration, 12)
+    (2.0, 0.3)
+    """
+
+    acceleration: FloatArray
+    time_step: float
+    vertical: FloatArray | None = None
+    name: str = "ground motion"
+    metadata: Mapping[str, str] = field(default_factory=dict)
+    provenance: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check, copy and freeze the samples."""
+        step = checks.within("time_step", self.time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
+        object.__setattr__(self, "time_step", step)
+        object.__setattr__(self, "acceleration", _samples("acceleration", self.acceleration))
+        if self.vertical is not None:
+            vertical = _samples("vertical", self.vertical)
+            if vertical.size != self.acceleration.size:
+                raise InvalidValueError(
+                    f"vertical must have as many samples as acceleration, {self.acceleration.size}, got {vertical.size}"
+                )
+            object.__setattr__(self, "vertical", vertical)
+        object.__setattr__(self, "metadata", MappingProxyType({str(k): str(v) for k, v in self.metadata.items()}))
+        object.__setattr__(self, "provenance", tuple(str(line) for line in self.provenance))
+
+    def __len__(self) -> int:
+        """Number of samples."""
+        return int(self.acceleration.size)
+
+    def __repr__(self) -> str:
+        """Name, samples, step and peak."""
+        both = "" if self.vertical is None else ", with vertical"
+        return f"<GroundMotion {self.name!r}: {len(self)} samples at {self.time_step:g} s, peak {self.peak:.4g} m/s2{both}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        """State that can be pickled: a mapping proxy cannot."""
+        return {**self.__dict__, "metadata": dict(self.metadata)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Restore, with the metadata read-only again."""
+        self.__dict__.update(state)
+        object.__setattr__(self, "metadata", MappingProxyType(state["metadata"]))
+        self.acceleration.setflags(write=False)
+        if self.vertical is not None:
+            self.vertical.setflags(write=False)
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last sample [s]."""
+        return (len(self) - 1) * self.time_step
+
+    @property
+    def time(self) -> FloatArray:
+        """Times of the samples [s]."""
+        return np.arange(len(self)) * self.time_step
+
+    @property
+    def peak(self) -> float:
+        """Peak ground acceleration, horizontal [m/s2]."""
+        return float(np.abs(self.acceleration).max())
+
+    @property
+    def peak_vertical(self) -> float:
+        """Peak of the vertical acceleration, zero if there is none [m/s2]."""
+        return 0.0 if self.vertical is None else float(np.abs(self.vertical).max())
+
+    def segments(self) -> Segments:
+        """Return the motion as the polynomials that it is made of: one straight line a step.
+
+        Returns
+        -------
+        Segments
+            Of degree 1.
+        """
+        return Segments.between_samples(self.time_step, self.acceleration, self.vertical)
+
+    def changed(self, what: str, **fields: Any) -> "GroundMotion":
+        """Return a copy with some fields replaced and a line added to its provenance.
+
+        Parameters
+        ----------
+        what : str
+            What was done, as a sentence.
+        **fields
+            New values of the constructor's parameters.
+
+        Returns
+        -------
+        GroundMotion
+            The new motion.
+        """
+        return replace(self, provenance=(*self.provenance, what), **fields)
+
+    def scaled(self, factor: float) -> "GroundMotion":
+        """Return the motion with both components multiplied by a factor.
+
+        Parameters
+        ----------
+        factor : float
+            May be negative, which turns the motion round [-].
+
+        Returns
+        -------
+        GroundMotion
+            The scaled motion.
+
+        Examples
+        --------
+        >>> GroundMotion([0.0, 1.0], 0.1).scaled(-3.0).acceleration.tolist()
+        [-0.0, -3.0]
+        """
+        factor = checks.number("factor", factor)
+        vertical = None if self.vertical is None else self.vertical * factor
+        what = f"multiplied by {factor!r}"
+        return self.changed(what, acceleration=self.acceleration * factor, vertical=vertical)
+
+
+def _samples(name: str, values: Any) -> FloatArray:
+    given = np.array(checks.real_array(name, values, "m/s2"), dtype=np.float64)
+    if given.ndim != 1 or given.size < 2:
+        raise InvalidValueError(f"{name} must be a row of at least 2 samples [m/s2], got shape {given.shape}")
+    bad = np.flatnonzero(~(np.abs(given) <= LARGEST_ACCELERATION))
+    if bad.size:
+        raise InvalidValueError(
+            f"{name} must be finite and within {LARGEST_ACCELERATION:g} m/s2, "
+            f"got {given[bad[0]]:g} at index {bad[0]}; wrong unit or damaged?"
+        )
+    given.setflags(write=False)
+    return given

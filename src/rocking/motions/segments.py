@@ -1,0 +1,114 @@
+"""What an engine integrates: a motion as polynomials on equal stretches of time."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from rocking.conventions import FloatArray
+
+SMOOTH_DEGREE = 7
+"""Degree of the polynomials that stand for a smooth pulse; with 32 of them a period they agree to rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Acceleration of the ground as polynomials of the time within each stretch.
+
+    Parameters
+    ----------
+    step : float
+        Duration of a stretch [s].
+    horizontal : ndarray, shape (n, degree + 1)
+        Coefficients of ``a(tau) = c[0] + c[1] tau + ...`` with ``tau`` from 0 to 1 over the stretch [m/s2].
+    vertical : ndarray, shape (n, degree + 1), optional
+        The same for the vertical acceleration [m/s2].
+
+    Examples
+    --------
+    >>> Segments.between_samples(0.1, np.array([0.0, 1.0, -2.0])).horizontal.tolist()
+    [[0.0, 1.0], [1.0, -3.0]]
+    """
+
+    step: float
+    horizontal: FloatArray
+    vertical: FloatArray | None = None
+
+    @classmethod
+    def between_samples(cls, step: float, horizontal: FloatArray, vertical: FloatArray | None = None) -> "Segments":
+        """Return the straight lines between samples.
+
+        Parameters
+        ----------
+        step : float
+            Step between samples [s].
+        horizontal : ndarray, shape (n + 1,)
+            Samples [m/s2].
+        vertical : ndarray, shape (n + 1,), optional
+            Samples [m/s2].
+
+        Returns
+        -------
+        Segments
+            Of degree 1.
+        """
+        return cls(step, _lines(horizontal), None if vertical is None else _lines(vertical))
+
+    @classmethod
+    def of_function(cls, acceleration: Callable[[FloatArray], FloatArray], duration: float, count: int) -> "Segments":
+        """Return polynomials that agree with a smooth function to rounding, if there are enough of them.
+
+        Parameters
+        ----------
+        acceleration : callable
+            Acceleration at times from 0 to `duration` [m/s2].
+        duration : float
+            Duration [s].
+        count : int
+            Number of stretches.
+
+        Returns
+        -------
+        Segments
+            Of degree 7: interpolation in Chebyshev points.
+        """
+        n = SMOOTH_DEGREE + 1
+        nodes = np.cos(np.pi * (np.arange(n) + 0.5) / n)
+        step = duration / count
+        values = acceleration(((np.arange(count)[:, None] + 0.5 * (1.0 + nodes)) * step).ravel()).reshape(count, n)
+        weights = 2.0 / n * np.cos(np.outer(np.arange(n), np.pi * (np.arange(n) + 0.5) / n))
+        weights[0] *= 0.5
+        # two stages: the small high coefficients come first, so that their rounding stays small
+        return cls(step, np.ascontiguousarray(values @ weights.T @ _SHIFTED))
+
+    @property
+    def count(self) -> int:
+        """Number of stretches."""
+        return int(self.horizontal.shape[0])
+
+    @property
+    def degree(self) -> int:
+        """Degree of the polynomials."""
+        return int(self.horizontal.shape[1]) - 1
+
+    @property
+    def duration(self) -> float:
+        """Duration of all stretches [s]."""
+        return self.count * self.step
+
+
+def _lines(samples: FloatArray) -> FloatArray:
+    return np.column_stack([samples[:-1], np.diff(samples)])
+
+
+def _shifted_chebyshev(n: int) -> FloatArray:
+    """Return T_k(2 tau - 1) in powers of tau, one polynomial a row; all entries are integers."""
+    rows = np.zeros((n, n))
+    for k in range(n):
+        series = np.polynomial.Polynomial(chebyshev.cheb2poly(np.eye(n)[k][: k + 1]))
+        rows[k, : k + 1] = series(np.polynomial.Polynomial([-1.0, 2.0])).coef
+    return rows
+
+
+_SHIFTED = _shifted_chebyshev(SMOOTH_DEGREE + 1)
