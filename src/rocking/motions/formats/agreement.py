@@ -1,9 +1,12 @@
 """Where a header states the number of samples, the peak, the unit or the step, the data must agree."""
 
+import math
+
 import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS, FloatArray
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RecordError
+from rocking.motions.formats.record import Record
 from rocking.motions.formats.source import Source
 
 
@@ -115,3 +118,165 @@ def step_between_samples(source: Source, stated: float | None, asked: float | No
     if not 1e-6 <= step <= 10.0:
         raise source.error(None, f"time step must be in [1e-6, 10] s, got {step:g}")
     return float(step)
+
+
+def check_end(source: Source, first: int) -> None:
+    """Refuse anything but blank lines from some line to the end of the file.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    first : int
+        Line from which on nothing may follow.
+
+    Raises
+    ------
+    RecordError
+        If something does; its line is named.
+    """
+    for line in range(first, len(source.lines)):
+        # Ctrl-Z padded files to whole blocks under CP/M and DOS
+        if source.lines[line].strip(" \t\r\x1a"):
+            raise source.error(line, "nothing may follow the last sample, found more; wrong count in the header?")
+
+
+def check_peak_time(source: Source, stated: float, values: FloatArray, step: float, rounding: float) -> None:
+    """Refuse a file whose largest value is not where its header states it.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for the error.
+    stated : float
+        Time of the peak by the header, within one step [s].
+    values : ndarray
+        The samples, the first one at time zero.
+    step : float
+        Step between samples [s].
+    rounding : float
+        Largest difference between equal peaks that rounding in the file explains.
+
+    Raises
+    ------
+    RecordError
+        If the values around that time are all smaller than the largest.
+    """
+    largest = np.abs(values)
+    at = stated / step
+    near = largest[max(0, math.ceil(at - 1.01)) : max(0, math.floor(at + 1.01) + 1)] if 0.0 <= at < 1e9 else largest[:0]
+    if not near.size or near.max() < largest.max() - rounding:
+        found = float(largest.argmax()) * step
+        raise source.error(None, f"the header states the peak at {stated:g} s, the data have it at {found:g} s")
+
+
+def check_duration(source: Source, stated: float, count: int, step: float, rounding: float) -> None:
+    """Refuse a file whose stated duration is not that of its samples.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for the error.
+    stated : float
+        Duration by the header: of all steps, or from the first sample to the last [s].
+    count : int
+        Number of samples.
+    step : float
+        Step between samples [s].
+    rounding : float
+        Half a unit of the last digit of `stated` [s].
+
+    Raises
+    ------
+    RecordError
+        If they differ by more than one step and the rounding.
+    """
+    if not (count - 1) * step - 1.001 * rounding - 1e-9 <= stated <= count * step + 1.001 * rounding + 1e-9:
+        raise source.error(
+            None, f"the header states a duration of {stated:g} s, {count} samples at {step:g} s last {count * step:g} s"
+        )
+
+
+def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
+    """Return the step of a time column that is uniform to the rounding of its digits.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for the error.
+    times : ndarray, shape (n,)
+        Times as printed [s].
+    unit : float
+        One unit of the last printed digit [s].
+
+    Returns
+    -------
+    float
+        The step; the shortest decimal number that fits the column [s].
+
+    Raises
+    ------
+    RecordError
+        If there are fewer than two times, they are unevenly spaced, or they have too few digits to tell.
+    """
+    if times.size < 2:
+        raise source.error(None, f"at least 2 samples are needed, found {times.size}")
+    steps = times.size - 1
+    mean = float(times[-1] - times[0]) / steps
+    if not 1e-6 <= mean <= 10.0:
+        raise source.error(None, f"time step must be in [1e-6, 10] s, got {mean:g}; is the first column a time?")
+    # beyond rounding or cutting at the last digit, times that went through single precision are accepted
+    slack = unit + 1.2e-7 * float(np.abs(times).max())
+    if slack > 0.26 * mean:
+        raise source.error(None, f"the times have too few digits to tell their step of about {mean:g} s")
+    off = np.abs(times - times[0] - mean * np.arange(times.size))
+    worst = int(off.argmax())
+    if off[worst] > slack:
+        raise source.error(
+            None,
+            f"the times are not evenly spaced: sample {worst + 1} at {times[worst]:g} s is {off[worst]:.3g} s off the "
+            f"even step of {mean:g} s; resample it first, or a line is missing",
+        )
+    rounded = (round(mean, digits) for digits in range(1, 10))
+    return next((step for step in rounded if step > 0.0 and abs(step - mean) * steps <= slack), mean)
+
+
+def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[FloatArray]:
+    """Return the samples of a record in the one unit that a format holds, for writers.
+
+    Parameters
+    ----------
+    record : Record
+        What to write.
+    title : str
+        Name of the format, for the error.
+    unit : str, optional
+        Unit of the format; that of the first component if it holds any.
+    most : int
+        Largest number of components it holds.
+
+    Returns
+    -------
+    list of ndarray
+        Samples of each component.
+
+    Raises
+    ------
+    RecordError
+        If there is no component, there are more, or one is not a row of at least 2 finite samples in a known unit.
+    """
+    if not 1 <= len(record.components) <= most:
+        raise RecordError(f"{title} holds 1 to {most} components a file, got {len(record.components)}")
+    rows = []
+    unit = unit or record.components[0].unit
+    for part in record.components:
+        values = np.asarray(part.acceleration, dtype=np.float64)
+        if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
+            raise RecordError(f"component {part.name!r:.60} must be a row of at least 2 finite samples")
+        if part.unit not in ACCELERATION_UNITS:
+            raise RecordError(f"unit must be one of {', '.join(ACCELERATION_UNITS)}, got {part.unit!r:.60}")
+        if not 1e-6 <= part.time_step <= 10.0:
+            raise RecordError(f"time step must be in [1e-6, 10] s, got {part.time_step!r:.60}")
+        same = ACCELERATION_UNITS[part.unit] == ACCELERATION_UNITS[unit]
+        rows.append(values if same else values * (ACCELERATION_UNITS[part.unit] / ACCELERATION_UNITS[unit]))
+    return rows

@@ -171,3 +171,60 @@ def in_columns(values: Sequence[float] | FloatArray, per_line: int, form: str) -
     """
     words = [form.format(value) for value in values]
     return ["".join(words[start : start + per_line]) for start in range(0, len(words), per_line)]
+
+
+def one_line(text: object, width: int) -> str:
+    """Return text that fits on one line of a header, for writers.
+
+    Parameters
+    ----------
+    text : object
+        What to write.
+    width : int
+        Largest number of characters.
+
+    Returns
+    -------
+    str
+        Latin-1 characters without line ends; others become question marks.
+
+    Examples
+    --------
+    >>> one_line("El Centro\\r\\n 1940", 12)
+    'El Centro 19'
+    """
+    plain = " ".join(str(text).split()).encode("latin-1", "replace").decode("latin-1")
+    return "".join(mark if mark.isprintable() else "?" for mark in plain)[:width].strip()
+
+
+def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
+    """Return how many numbers a line holds and how wide they are, by a Fortran format.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for the error.
+    line : int
+        Index of the line that states it.
+    word : str
+        The format, such as ``(8F10.5)`` or ``10I8``.
+
+    Returns
+    -------
+    per_line, width : int
+        Numbers on a full line and characters of each.
+
+    Raises
+    ------
+    RecordError
+        If it is no such format.
+
+    Examples
+    --------
+    >>> fortran_form(Source("a.v1", b"x"), 0, "(8F10.5)")
+    (8, 10)
+    """
+    found = re.fullmatch(r"\(?(?:1P,?)?(\d{1,3})[FEGI](\d{1,2})(?:\.\d{1,2})?\)?", word.strip().upper())
+    if found is None or not int(found[1]) or not int(found[2]):
+        raise source.error(line, f"a format such as (8F10.5) expected, found {word.strip()[:40]!r}")
+    return int(found[1]), int(found[2])

@@ -1,8 +1,29 @@
 """Names of the record formats; a new one is one file and one line here."""
 
+from importlib import import_module
+
+from rocking.errors import InvalidValueError
 from rocking.motions.formats.record_format import RecordFormat
 
-_HOMES: dict[str, tuple[str, str]] = {}
+LAST_RESORT = "columns"
+"""Numbers without a header say nothing about themselves: tried only where no other format recognises a file."""
+
+_HOMES: dict[str, tuple[str, str]] = {
+    "peer": ("peer", "Peer"),
+    "esm": ("esm", "Esm"),
+    "cosmos": ("cosmos", "Cosmos"),
+    "csmip-v1": ("csmip_v1", "CsmipV1"),
+    "csmip-v2": ("csmip_v2", "CsmipV2"),
+    "smc-usgs": ("smc_usgs", "SmcUsgs"),
+    "smc-boore": ("smc_boore", "SmcBoore"),
+    "knet": ("knet", "Knet"),
+    "cwa": ("cwa", "Cwa"),
+    "geonet-v2a": ("geonet", "GeonetV2A"),
+    "bhrc": ("bhrc", "Bhrc"),
+    "miniseed": ("miniseed", "MiniSeed"),
+    "sac": ("sac", "Sac"),
+    LAST_RESORT: ("columns", "Columns"),
+}
 
 
 def formats() -> dict[str, RecordFormat]:
@@ -13,6 +34,38 @@ def formats() -> dict[str, RecordFormat]:
     dict of str to RecordFormat
         In the order in which they are tried.
     """
-    from importlib import import_module
+    return {name: _load(name) for name in _HOMES}
 
-    return {name: getattr(import_module(f"rocking.motions.formats.{module}"), kind)() for name, (module, kind) in _HOMES.items()}
+
+def format_named(name: str) -> RecordFormat:
+    """Return one record format.
+
+    Parameters
+    ----------
+    name : str
+        Its name, such as ``"peer"``.
+
+    Returns
+    -------
+    RecordFormat
+        The format.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is none of that name; the error lists the names.
+
+    Examples
+    --------
+    >>> format_named("peer").states_unit
+    True
+    """
+    if not isinstance(name, str) or name not in _HOMES:
+        raise InvalidValueError(f"format must be one of {', '.join(_HOMES)}, got {name!r:.60}")
+    return _load(name)
+
+
+def _load(name: str) -> RecordFormat:
+    module, kind = _HOMES[name]
+    made: RecordFormat = getattr(import_module(f"rocking.motions.formats.{module}"), kind)()
+    return made

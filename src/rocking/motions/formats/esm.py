@@ -1,0 +1,209 @@
+"""ESM, the European strong-motion database: DYNA 1.2 ASCII, 64 lines of ``KEY: value`` and one value a line."""
+
+import re
+from typing import ClassVar
+
+from rocking.conventions import FloatArray
+from rocking.motions.formats.agreement import (
+    acceleration_unit,
+    check_count,
+    check_duration,
+    check_peak,
+    check_peak_time,
+    in_unit,
+    step_between_samples,
+)
+from rocking.motions.formats.numbers import free, number, one_line, whole
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+_KEY = re.compile(r"([A-Z][A-Z0-9_/^]*):(?:\s(.*))?")
+_MOST_KEYS = 200
+_UNITS = {"cm/s^2": "cm/s2", "cm/s2": "cm/s2", "m/s^2": "m/s2", "mm/s^2": "mm/s2", "g": "g", "mg": "mg", "gal": "gal"}
+_KEPT = {
+    "event": "EVENT_NAME",
+    "station": "STATION_CODE",
+    "station name": "STATION_NAME",
+    "network": "NETWORK",
+    "channel": "STREAM",
+    "event date": "EVENT_DATE_YYYYMMDD",
+    "event time": "EVENT_TIME_HHMMSS",
+    "magnitude Mw": "MAGNITUDE_W",
+    "magnitude ML": "MAGNITUDE_L",
+    "epicentral distance km": "EPICENTRAL_DISTANCE_KM",
+    "processing": "PROCESSING",
+    "filter": "FILTER_TYPE",
+    "low cut Hz": "LOW_CUT_FREQUENCY_HZ",
+    "high cut Hz": "HIGH_CUT_FREQUENCY_HZ",
+    "baseline": "BASELINE_CORRECTION",
+}
+# the keys of DYNA 1.2 in their order; a writer leaves blank what it does not know
+_KEYS = (
+    "EVENT_NAME EVENT_ID EVENT_DATE_YYYYMMDD EVENT_TIME_HHMMSS EVENT_LATITUDE_DEGREE EVENT_LONGITUDE_DEGREE EVENT_DEPTH_KM "
+    "HYPOCENTER_REFERENCE MAGNITUDE_W MAGNITUDE_W_REFERENCE MAGNITUDE_L MAGNITUDE_L_REFERENCE FOCAL_MECHANISM NETWORK "
+    "STATION_CODE STATION_NAME STATION_LATITUDE_DEGREE STATION_LONGITUDE_DEGREE STATION_ELEVATION_M LOCATION SENSOR_DEPTH_M "
+    "VS30_M/S SITE_CLASSIFICATION_EC8 MORPHOLOGIC_CLASSIFICATION EPICENTRAL_DISTANCE_KM EARTHQUAKE_BACKAZIMUTH_DEGREE "
+    "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS DATE_TIME_FIRST_SAMPLE_PRECISION SAMPLING_INTERVAL_S NDATA DURATION_S STREAM "
+    "UNITS INSTRUMENT INSTRUMENT_ANALOG/DIGITAL INSTRUMENTAL_FREQUENCY_HZ INSTRUMENTAL_DAMPING FULL_SCALE_G "
+    "N_BIT_DIGITAL_CONVERTER PGA_CM/S^2 TIME_PGA_S BASELINE_CORRECTION FILTER_TYPE FILTER_ORDER LOW_CUT_FREQUENCY_HZ "
+    "HIGH_CUT_FREQUENCY_HZ LATE/NORMAL_TRIGGERED DATABASE_VERSION HEADER_FORMAT DATA_TYPE PROCESSING "
+    "DATA_TIMESTAMP_YYYYMMDD_HHMMSS DATA_LICENSE DATA_CITATION DATA_CREATOR ORIGINAL_DATA_MEDIATOR_CITATION "
+    "ORIGINAL_DATA_MEDIATOR ORIGINAL_DATA_CREATOR_CITATION ORIGINAL_DATA_CREATOR USER1 USER2 USER3 USER4 USER5"
+).split()
+
+
+class Esm(RecordFormat):
+    """ESM / ITACA ASCII files with a DYNA 1.2 header."""
+
+    name: ClassVar[str] = "esm"
+    title: ClassVar[str] = "ESM ASCII (DYNA 1.2), European strong-motion database"
+    suffixes: ClassVar[tuple[str, ...]] = (".asc",)
+    notes: ClassVar[str] = (
+        "Verified on one real file of acceleration in cm/s^2. Count, duration, peak and time of the peak are checked against "
+        "the header. Velocity, displacement and spectra (DATA_TYPE) are refused."
+    )
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether the header has the keys of DYNA.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if so.
+        """
+        if not source.is_text or not source.lines[0].startswith("EVENT_NAME:"):
+            return False
+        head = [text.partition(":")[0] for text in source.lines[:_MOST_KEYS]]
+        return "NDATA" in head or "SAMPLING_INTERVAL_S" in head
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the record, of one component.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            Refused unless it is the header's.
+        time_step : float, optional
+            Refused unless it is the header's [s].
+
+        Returns
+        -------
+        Record
+            Component named by its stream, such as HNN.
+
+        Raises
+        ------
+        RecordError
+            If it is damaged, at odds with its own header, or not acceleration.
+        """
+        keys = _header(source)
+        _check_kind(source, keys)
+        step = step_between_samples(source, _number(source, keys, "SAMPLING_INTERVAL_S"), time_step)
+        at, word = _value(source, keys, "NDATA")
+        count = whole(source, at, word, "number of samples", 2)
+        at, word = _value(source, keys, "UNITS")
+        if word.lower() not in _UNITS:
+            raise source.error(at, f"UNITS must be one of {', '.join(_UNITS)}, found {word[:40]!r}")
+        unit = acceleration_unit(source, _UNITS[word.lower()], units)
+        values = free(source, len(keys), len(source.lines), 1)[:, 0]
+        check_count(source, count, values.size)
+        peak = _check_peaks(source, keys, values, step, unit)
+        metadata = {name: keys[key][1] for name, key in _KEPT.items() if key in keys and keys[key][1]}
+        part = Component(metadata.get("channel", "acceleration"), values, unit, step, peak)
+        return Record(self.name, (part,), "\n".join(source.lines[: len(keys)]), metadata)
+
+    def write(self, record: Record) -> bytes:
+        """Return the content of an ESM file, in cm/s^2 with 6 decimals.
+
+        Parameters
+        ----------
+        record : Record
+            One component.
+
+        Returns
+        -------
+        bytes
+            The content.
+
+        Raises
+        ------
+        RecordError
+            If there is more than one component, or a sample is not finite.
+        """
+        (values,) = in_unit(record, self.name, "cm/s2", 1)
+        values = values.round(6)
+        part = record.components[0]
+        largest = int(abs(values).argmax())
+        stated = {
+            **{key: one_line(record.metadata.get(name, ""), 200) for name, key in _KEPT.items()},
+            "SAMPLING_INTERVAL_S": f"{part.time_step:.9f}",
+            "NDATA": str(values.size),
+            "DURATION_S": f"{values.size * part.time_step:.6f}",
+            "STREAM": one_line(part.name, 40),
+            "UNITS": "cm/s^2",
+            "PGA_CM/S^2": f"{values[largest]:.6f}",
+            "TIME_PGA_S": f"{largest * part.time_step:.6f}",
+            "HEADER_FORMAT": "DYNA 1.2",
+            "DATA_TYPE": "ACCELERATION",
+        }
+        lines = [f"{key}: {stated.get(key, '')}" for key in _KEYS] + [f"{value:.6f}" for value in values]
+        return ("\n".join(lines) + "\n").encode("latin-1")
+
+
+def _header(source: Source) -> dict[str, tuple[int, str]]:
+    keys: dict[str, tuple[int, str]] = {}
+    for line, text in enumerate(source.lines[:_MOST_KEYS] if source.is_text else []):
+        found = _KEY.fullmatch(text.rstrip())
+        if found is None:
+            break
+        if found[1] in keys:
+            raise source.error(line, f"{found[1]} is stated twice")
+        keys[found[1]] = (line, (found[2] or "").strip())
+    if not keys:
+        raise source.error(0, "a header of lines KEY: value expected")
+    if keys.get("HEADER_FORMAT", (0, ""))[1] == "DYNA 1.2" and len(keys) != len(_KEYS):
+        raise source.error(len(keys), f"a DYNA 1.2 header has {len(_KEYS)} lines KEY: value, found {len(keys)}")
+    return keys
+
+
+def _value(source: Source, keys: dict[str, tuple[int, str]], key: str) -> tuple[int, str]:
+    if key not in keys:
+        raise source.error(None, f"the header has no line {key}")
+    return keys[key]
+
+
+def _number(source: Source, keys: dict[str, tuple[int, str]], key: str) -> float | None:
+    line, word = keys.get(key, (0, ""))
+    return number(source, line, word, key) if word else None
+
+
+def _check_kind(source: Source, keys: dict[str, tuple[int, str]]) -> None:
+    line, kind = _value(source, keys, "DATA_TYPE")
+    if kind.upper() != "ACCELERATION":
+        raise source.error(line, f"only ACCELERATION can be read, DATA_TYPE is {kind[:40]!r}; take the .ACC. file")
+
+
+def _check_peaks(
+    source: Source, keys: dict[str, tuple[int, str]], values: FloatArray, step: float, unit: str
+) -> float | None:
+    duration = _number(source, keys, "DURATION_S")
+    if duration is not None:
+        digits = len(keys["DURATION_S"][1].partition(".")[2])
+        check_duration(source, duration, values.size, step, 0.5 * 10.0**-digits)
+    peak = _number(source, keys, "PGA_CM/S^2")
+    if unit not in {"cm/s2", "gal"} or peak is None:
+        return None
+    rounding = 1.1 * 10.0 ** -len(keys["PGA_CM/S^2"][1].partition(".")[2])
+    check_peak(source, peak, values, rounding, "PGA_CM/S^2")
+    at = _number(source, keys, "TIME_PGA_S")
+    if at is not None:
+        check_peak_time(source, at, values, step, rounding)
+    return abs(peak)

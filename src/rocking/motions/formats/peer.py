@@ -1,0 +1,185 @@
+"""PEER AT2: accelerations in g behind a header of four lines, or a freer one that ends in the same line."""
+
+import re
+from typing import ClassVar
+
+from rocking.conventions import FloatArray
+from rocking.motions.formats.agreement import acceleration_unit, check_count, check_end, in_unit, step_between_samples
+from rocking.motions.formats.numbers import free, in_columns, number, one_line, whole
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+_LONGEST_HEADER = 60
+_KEYED = re.compile(r"\bNPTS\s*=.*\bDT\s*=|\bDT\s*=.*\bNPTS\s*=", re.IGNORECASE)
+_OLD = re.compile(r"\s*(\S+)\s+(\S+)\s+NPTS\s*,\s*DT\s*(?:\(?SEC\)?)?[\s,.]*", re.IGNORECASE)
+_UNIT = re.compile(r"\bUNITS?\s+(?:OF|ARE|IS|IN)\s*:?\s*(\(?[^\s,;.]*)", re.IGNORECASE)
+_IN_WORDS = re.compile(r"(\d+)\s+points\s+at\s+equal\s+spacing\s+of\s+(\d*\.\d+)\s*sec", re.IGNORECASE)
+_END = re.compile(r"\s*\*+\s*End\s+Data\s*\*+\s*", re.IGNORECASE)
+_DATE = re.compile(r"\b\d{1,2}/\d{1,2}/\d{2,4}\b")
+
+
+class Peer(RecordFormat):
+    """PEER strong-motion database, before and after NGA."""
+
+    name: ClassVar[str] = "peer"
+    title: ClassVar[str] = "PEER AT2, Pacific Earthquake Engineering Research Center"
+    suffixes: ClassVar[tuple[str, ...]] = (".at2",)
+    notes: ClassVar[str] = (
+        "Verified on seven real files of four header variants. `DT=` before `NPTS` and the `NPTS, DT` line without keys "
+        "follow published examples. The format states no peak: only the number of samples can be checked."
+    )
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether a line near the top states NPTS and DT.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if so.
+        """
+        return source.is_text and _size_line(source) is not None
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the record, of one component.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            Refused unless it is g, or the header does not speak of units at all.
+        time_step : float, optional
+            Refused unless it is the header's [s].
+
+        Returns
+        -------
+        Record
+            Component named by its azimuth or direction, or "acceleration".
+
+        Raises
+        ------
+        RecordError
+            If it is damaged, at odds with its own header, or not in g.
+        """
+        line = _size_line(source) if source.is_text else None
+        if line is None:
+            raise source.error(None, "no line with NPTS and DT near the top; not a PEER file")
+        header = source.lines[: line + 1]
+        count, stated = _size(source, line)
+        step = step_between_samples(source, stated, time_step)
+        unit = acceleration_unit(source, _unit(source, header), units)
+        _check_words(source, header, count, step)
+        values = _values(source, line + 1)
+        check_count(source, count, values.size)
+        metadata, name = _who(header)
+        return Record(self.name, (Component(name, values, unit, step),), "\n".join(header), metadata)
+
+    def write(self, record: Record) -> bytes:
+        """Return the content of a PEER file, in g with 8 digits.
+
+        Parameters
+        ----------
+        record : Record
+            One component.
+
+        Returns
+        -------
+        bytes
+            The content.
+
+        Raises
+        ------
+        RecordError
+            If there is more than one component, or a sample is not finite.
+        """
+        (values,) = in_unit(record, self.name, "g", 1)
+        part = record.components[0]
+        who = [one_line(record.metadata.get(key, "unknown"), 60).replace(",", " ") for key in ("event", "date", "station")]
+        lines = [
+            "STRONG MOTION RECORD IN THE PEER FORMAT",
+            ", ".join([*who, one_line(part.name, 20).replace(",", " ")]),
+            "ACCELERATION TIME SERIES IN UNITS OF G",
+            f"NPTS= {values.size}, DT= {part.time_step:.12g} SEC",
+            *in_columns(values, 5, "{:16.7E}"),
+        ]
+        return ("\n".join(lines) + "\n").encode("latin-1")
+
+
+def _size_line(source: Source) -> int | None:
+    for line, text in enumerate(source.lines[:_LONGEST_HEADER]):
+        if len(text) < 400 and (_KEYED.search(text) or _OLD.fullmatch(text)):
+            return line
+    return None
+
+
+def _size(source: Source, line: int) -> tuple[int, float]:
+    text = source.lines[line]
+    old = _OLD.fullmatch(text)
+    if old:
+        words = {"NPTS": old[1], "DT": old[2]}
+    else:
+        words = dict(re.findall(r"\b(NPTS|DT)\s*=\s*([^\s,]+)", text.upper()))
+        rest = re.sub(r"\b(NPTS|DT)\s*=\s*[^\s,]+", "", text.upper())
+        if len(words) != 2 or rest.upper().count("=") or not re.fullmatch(r"[\s,.]*(SEC(ONDS?)?)?[\s,.]*", rest):
+            raise source.error(line, f"NPTS= and DT= expected once each, found {text.strip()[:60]!r}")
+    return whole(source, line, words["NPTS"], "number of samples", 2), number(source, line, words["DT"], "time step")
+
+
+def _unit(source: Source, header: list[str]) -> str | None:
+    found: str | None = None
+    for line, text in enumerate(header):
+        for stated in _UNIT.findall(text):
+            if stated.strip("()").upper() != "G":
+                raise source.error(line, f"PEER accelerations are in g, the header states {stated[:20]!r}")
+            found = "g"
+    return found
+
+
+def _check_words(source: Source, header: list[str], count: int, step: float) -> None:
+    for line, text in enumerate(header):
+        for points, spacing in _IN_WORDS.findall(text):
+            if whole(source, line, points, "number of points") != count or abs(float(spacing) - step) > 1e-9:
+                raise source.error(line, f"{points} points at {spacing} s stated here, {count} at {step:g} s below")
+
+
+def _values(source: Source, first: int) -> FloatArray:
+    after = len(source.lines)
+    columns, short = 0, False
+    for line in range(first, len(source.lines)):
+        if _END.fullmatch(source.lines[line]):
+            check_end(source, line + 1)
+            after = line
+            break
+        words = len(source.lines[line].split())
+        columns = columns or words
+        if words and (short or words > columns):
+            raise source.error(line, f"{columns} numbers a line but for the last one expected; line missing or damaged?")
+        short = short or 0 < words < columns
+    if not columns:
+        raise source.error(None, "no sample after the header")
+    return free(source, first, after)
+
+
+def _who(header: list[str]) -> tuple[dict[str, str], str]:
+    """Split ``event date, station, component``, which only files with the usual four lines have."""
+    metadata = {"title": header[0].strip()} if len(header) > 1 else {}
+    found = re.search(r"\bHP\s*=\s*(\S+)\s*Hz\s+LP\s*=\s*(\S+)\s*Hz", " ".join(header), re.IGNORECASE)
+    if found:
+        metadata["filter"] = f"high-pass {found[1]} Hz, low-pass {found[2]} Hz"
+    if len(header) != 4:
+        return metadata, "acceleration"
+    parts = [part.strip() for part in re.sub(r"\([^()]*\)", "", header[1]).split(",")]
+    date = _DATE.search(header[1])
+    if date:
+        metadata["date"] = date[0]
+    metadata["event"] = re.sub(r"\s+\d{1,2}/\d.*", "", parts[0])
+    places = [part for part in parts[1:-1] if part and not _DATE.fullmatch(part)]
+    if places or (len(parts) == 2 and parts[0]):
+        metadata["station"] = ", ".join(places) or metadata["event"]
+    return {key: value for key, value in metadata.items() if value}, (parts[-1] if len(parts) > 1 else "") or "acceleration"

@@ -1,0 +1,241 @@
+"""SMC as the U.S. Geological Survey distributes it: 8 columns of 10 characters, with no blanks between numbers.
+
+Checked on accelerograms of the 1989 Loma Prieta and 2002 Denali earthquakes. 11 lines of text, 48 whole numbers of
+width 10, 50 real numbers of width 15, lines of comment that begin with ``|``, samples.
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.errors import RecordError
+from rocking.motions.formats import agreement, numbers
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+TEXTS, WHOLES, REALS = 11, 6, 10
+_NO_REAL = 1.7e38
+_NO_WHOLE = -32768
+_HIGH_PRECISION = 8
+_KINDS = {0: "unknown", 1: "uncorrected accelerogram", 2: "corrected accelerogram"}
+_OTHER = {3: "velocity", 4: "displacement", 5: "response spectra", 6: "Fourier amplitude spectra"}
+
+
+@dataclass(frozen=True)
+class _Header:
+    """The numbers before the samples; an absent one is None."""
+
+    kind: int
+    whole: list[int | None]
+    real: list[float | None]
+    first: int  # line of the first sample
+
+
+class SmcUsgs(RecordFormat):
+    """SMC with 8 columns of 10 characters."""
+
+    name: ClassVar[str] = "smc-usgs"
+    title: ClassVar[str] = "SMC of the U.S. Geological Survey, 8 columns of 10 characters"
+    suffixes: ClassVar[tuple[str, ...]] = (".smc",)
+    notes: ClassVar[str] = (
+        "Accelerations are in cm/s2 by the format's definition. Velocities, displacements, spectra and unevenly spaced "
+        "samples are refused."
+    )
+    _per_line: ClassVar[int] = 8
+    _width: ClassVar[int] = 10
+    _decimals: ClassVar[int] = 4
+    _precision: ClassVar[int] = _NO_WHOLE
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether the lines of numbers stand where SMC has them, with this variant's mark of precision.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if this format should read it.
+        """
+        if not source.is_text or len(source.lines) < TEXTS + WHOLES + REALS + 1:
+            return False
+        rows = [line.rstrip() for line in source.lines[TEXTS : TEXTS + WHOLES + REALS]]
+        if not re.match(r" ?\d [A-Z]", source.lines[0]):
+            return False
+        if not all(re.fullmatch(r"[ \d-]{80}", row) for row in rows[:WHOLES]):
+            return False
+        if not all(re.fullmatch(r"( *[+-]?\d*\.\d+E[+-]\d\d){5}", row) for row in rows[WHOLES:]):
+            return False
+        return (rows[WHOLES - 1][60:70].strip() == str(_HIGH_PRECISION)) == (self._precision == _HIGH_PRECISION)
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the accelerogram.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            If given, it must be cm/s2 or gal.
+        time_step : float, optional
+            If given, it must be the file's [s].
+
+        Returns
+        -------
+        Record
+            One component.
+
+        Raises
+        ------
+        RecordError
+            If it holds no evenly spaced accelerations, is damaged, or is at odds with its own header.
+        """
+        if not self.recognises(source):
+            raise source.error(
+                None, f"no {self.name} file: the 16 lines of numbers after 11 lines of text are not there"
+            )
+        header = _header(source)
+        rate, count = header.real[1], header.whole[16]
+        if rate is None:
+            raise source.error(TEXTS + WHOLES, "no sampling rate: samples at uneven times are not supported")
+        if count is None or count < 2:
+            raise source.error(TEXTS + 2, f"number of samples must be at least 2, found {count}")
+        if not rate > 0.0:
+            raise source.error(TEXTS + WHOLES, f"sampling rate must be above zero, found {rate:g}")
+        unit = agreement.acceleration_unit(source, "cm/s2", units)
+        step = agreement.step_between_samples(source, 1.0 / rate, time_step)
+        values, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
+        agreement.check_end(source, after)
+        stated = self._check_peaks(source, header, values, rate)
+        component = Component(_orientation(header), values, unit, step, stated)
+        raw = "\n".join(source.lines[: header.first])
+        return Record(self.name, (component,), raw, _metadata(source, header))
+
+    def write(self, record: Record) -> bytes:
+        """Return an SMC file.
+
+        Parameters
+        ----------
+        record : Record
+            One component; its samples are converted to cm/s2, and those below 1e-9 cm/s2 become zero.
+
+        Returns
+        -------
+        bytes
+            The content.
+
+        Raises
+        ------
+        RecordError
+            If there are several components, or a sample is 1e10 cm/s2 or more.
+        """
+        component = agreement.only_component(record)
+        given = agreement.samples_in(component, "cm/s2")
+        words = [self._word(value) for value in given.tolist()]
+        values = np.array([float(word) for word in words])
+        whole, real = [_NO_WHOLE] * 48, [_NO_REAL] * 50
+        whole[15], whole[16], whole[46] = 1, len(words), self._precision
+        if re.fullmatch(r"\d{1,3}", component.name):
+            whole[13] = int(component.name)
+        rate = 1.0 / component.time_step
+        real[1] = rate
+        real[28:32] = [values.argmax() / rate, values.max(), values.argmin() / rate, values.min()]
+        text = ["*"] * TEXTS
+        kind = next((code for code, name in _KINDS.items() if name == record.metadata.get("kind")), 2)
+        text[0] = f"{kind} {_KINDS[kind].upper()}"
+        text[3] = _one_line(record.metadata.get("event", "*"))
+        text[5] = _one_line(record.metadata.get("station", "*"))
+        lines = [line.ljust(80) for line in text]
+        lines += numbers.in_columns(whole, 8, "{:10d}")
+        lines += ["".join(_fortran(value) for value in real[k : k + 5]) for k in range(0, 50, 5)]
+        lines.append("|")
+        lines += ["".join(words[k : k + self._per_line]) for k in range(0, len(words), self._per_line)]
+        return ("\n".join(lines) + "\n").encode("ascii", "replace")
+
+    def _check_peaks(self, source: Source, header: _Header, values: FloatArray, rate: float) -> float | None:
+        extremes = [header.real[29], header.real[31]]
+        for what, when, stated, found in (
+            ("maximum", header.real[28], extremes[0], float(values.max())),
+            ("minimum", header.real[30], extremes[1], float(values.min())),
+        ):
+            if stated is None:
+                continue
+            # half a unit of the samples' last digit, and as much for the header's seven
+            rounding = abs(stated) * (0.51 * 10.0**-self._decimals + 6e-7)
+            agreement.check_stated(source, stated, found, rounding, what)
+            at = round(when * rate) if when is not None and abs(when) * rate < 1e9 else 0
+            if when is not None and not (0 <= at < values.size and abs(values[at] - stated) <= rounding):
+                raise source.error(None, f"the header states a {what} of {stated:g} at {when:g} s, the data do not")
+        known = [abs(value) for value in extremes if value is not None]
+        return max(known) if len(known) == 2 else None
+
+    def _word(self, value: float) -> str:
+        if abs(value) <= 1e-9:
+            value = 0.0
+        mantissa, exponent = f"{value:.{self._decimals}E}".split("E")
+        if not -9 <= int(exponent) <= 9:
+            raise RecordError(f"SMC holds accelerations below 1e10 cm/s2, got {value:g}; wrong unit?")
+        return f"{mantissa}E{int(exponent):+d}".rjust(self._width)
+
+
+def _header(source: Source) -> _Header:
+    kind = int(source.lines[0].split()[0])
+    if kind not in _KINDS:
+        raise source.error(0, f"no accelerogram but {_OTHER.get(kind, f'kind {kind}')}: accelerations are needed")
+    wholes = _grid(source.lines[TEXTS : TEXTS + WHOLES], 8, 10)
+    whole: list[int | None] = []
+    for place, word in enumerate(wholes):
+        found = numbers.whole(source, TEXTS + place // 8, word, "whole number", least=-999_999_999)
+        whole.append(None if found == _NO_WHOLE else found)
+    first_real = TEXTS + WHOLES
+    real: list[float | None] = []
+    for place, word in enumerate(_grid(source.lines[first_real : first_real + REALS], 5, 15)):
+        amount = numbers.number(source, first_real + place // 5, word)
+        real.append(None if math.isclose(amount, _NO_REAL, rel_tol=1e-6) else amount)
+    comments, after = whole[15] or 0, first_real + REALS
+    for line in range(after, after + max(comments, 0)):
+        if line >= len(source.lines) or not source.lines[line].startswith("|"):
+            raise source.error(None, f"the header states {comments} lines of comment, one of them is missing")
+    return _Header(kind, whole, real, after + max(comments, 0))
+
+
+def _grid(lines: Sequence[str], per_line: int, width: int) -> list[str]:
+    return [line[k * width : (k + 1) * width] for line in lines for k in range(per_line)]
+
+
+def _orientation(header: _Header) -> str:
+    if header.whole[12] in {0, 180}:
+        return "up" if header.whole[12] == 0 else "down"
+    return "unnamed" if header.whole[13] is None else str(header.whole[13])
+
+
+def _metadata(source: Source, header: _Header) -> dict[str, str]:
+    stated = {
+        "kind": _KINDS[header.kind],
+        "event": source.lines[3],
+        "station": re.sub(r"component=.*", "", source.lines[5]),
+        "instrument": source.lines[7],
+        "azimuth": "" if header.whole[13] is None else str(header.whole[13]),
+    }
+    return {key: " ".join(text.split()) for key, text in stated.items() if text.strip(" *")}
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())[:79] or "*"
+
+
+def _fortran(value: float) -> str:
+    """Return a number as Fortran's E15.7 prints it."""
+    if value == 0.0:
+        return "0.0000000E+00".rjust(15)
+    mantissa, exponent = f"{value:.6E}".split("E")
+    sign, digits = ("-", mantissa[1:]) if mantissa.startswith("-") else ("", mantissa)
+    return f"{sign}0.{digits.replace('.', '')}E{int(exponent) + 1:+03d}".rjust(15)

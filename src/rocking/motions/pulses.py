@@ -1,0 +1,419 @@
+"""Pulses by name; each returns an object that knows its acceleration, velocity and displacement at any instant.
+
+`amplitude` is the peak ground acceleration a_p [m/s2] and `period` the period T_p of the sinusoid [s], whatever part
+of it the pulse lasts.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from rocking import checks
+from rocking.errors import InvalidValueError, UnknownModelError
+from rocking.motions.pulse import Pulse
+from rocking.motions.rickers import Ricker
+from rocking.motions.sinusoids import Sinusoids
+
+__all__ = [
+    "antisymmetric_ricker",
+    "catalogue",
+    "cosine",
+    "half_cosine",
+    "half_sine",
+    "harmonic",
+    "mavroeidis_papageorgiou",
+    "pulse",
+    "rectangular",
+    "ricker",
+    "sine",
+    "type_a",
+    "type_b",
+    "type_c",
+]
+
+
+def rectangular(amplitude: float, duration: float) -> Sinusoids:
+    """Return a constant acceleration.
+
+    Parameters
+    ----------
+    amplitude : float
+        Acceleration [m/s2].
+    duration : float
+        How long it lasts [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+
+    Examples
+    --------
+    >>> rectangular(2.0, 0.5).velocity(0.5).item()
+    1.0
+    """
+    amplitude, duration = _amplitude(amplitude), checks.positive("duration", duration, "s")
+    return Sinusoids(
+        f"rectangular pulse, {amplitude:.3g} m/s2, {duration:.3g} s",
+        ((amplitude, 0.0, 0.5 * math.pi),),
+        duration,
+        abs(amplitude),
+    )
+
+
+def half_sine(amplitude: float, period: float) -> Sinusoids:
+    """Return half a period of a sine: ``a_p sin(2 pi t / T_p)`` up to T_p / 2.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p of the whole sine [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("half-sine pulse", amplitude, period, 0.0, 0.5)
+
+
+def sine(amplitude: float, period: float) -> Sinusoids:
+    """Return one period of a sine: ``a_p sin(2 pi t / T_p)``.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+
+    Examples
+    --------
+    >>> pulse = sine(amplitude=3.0, period=0.8)
+    >>> round(pulse.acceleration(0.2).item(), 12), round(pulse.velocity(0.8).item(), 12)
+    (3.0, 0.0)
+    """
+    return _windowed("sine pulse", amplitude, period, 0.0, 1.0)
+
+
+def half_cosine(amplitude: float, period: float) -> Sinusoids:
+    """Return half a period of a cosine: ``a_p cos(2 pi t / T_p)`` up to T_p / 2.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p of the whole cosine [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("half-cosine pulse", amplitude, period, 0.5 * math.pi, 0.5)
+
+
+def cosine(amplitude: float, period: float) -> Sinusoids:
+    """Return one period of a cosine: ``a_p cos(2 pi t / T_p)``.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("cosine pulse", amplitude, period, 0.5 * math.pi, 1.0)
+
+
+def type_a(amplitude: float, period: float) -> Sinusoids:
+    """Return a forward pulse, type A of Makris and Chang (2000): the ground ends displaced; a whole sine.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("type A pulse", amplitude, period, 0.0, 1.0)
+
+
+def type_b(amplitude: float, period: float) -> Sinusoids:
+    """Return a forward-and-back pulse, type B of Makris and Chang (2000): the ground comes back; a whole cosine.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p [s].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    return _windowed("type B pulse", amplitude, period, 0.5 * math.pi, 1.0)
+
+
+def type_c(amplitude: float, period: float, n: int = 1) -> Sinusoids:
+    """Return a pulse of n main cycles in displacement, type C_n of Makris and Chang (2000).
+
+    ``a_p cos(2 pi t / T_p + phi)`` up to ``(n + 1/2 - phi / pi) T_p``; phi makes velocity and displacement end at
+    zero: ``cos[(2n + 1) pi - phi] + [(2n + 1) pi - 2 phi] sin phi - cos phi = 0``.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p [s].
+    n : int
+        Number of cycles, from 1.
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+
+    Raises
+    ------
+    InvalidValueError
+        If n is not a whole number from 1 to 1000.
+    """
+    if isinstance(n, bool) or not isinstance(n, int) or not 1 <= n <= 1000:
+        raise InvalidValueError(f"n must be a whole number in [1, 1000], got {n!r}")
+    phase = _closing_phase(n)
+    return _windowed(f"type C{n} pulse", amplitude, period, 0.5 * math.pi + phase, n + 0.5 - phase / math.pi)
+
+
+def ricker(amplitude: float, period: float) -> Ricker:
+    """Return the symmetric Ricker wavelet, the second derivative of a Gaussian.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p [s].
+
+    Returns
+    -------
+    Ricker
+        The pulse, its middle at 2 T_p.
+    """
+    return Ricker(_amplitude(amplitude), _period(period), "symmetric")
+
+
+def antisymmetric_ricker(amplitude: float, period: float) -> Ricker:
+    """Return the antisymmetric Ricker wavelet, the third derivative of a Gaussian.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p [s].
+
+    Returns
+    -------
+    Ricker
+        The pulse, its middle at 2.5 T_p.
+    """
+    return Ricker(_amplitude(amplitude), _period(period), "antisymmetric")
+
+
+def mavroeidis_papageorgiou(velocity: float, period: float, cycles: float = 1.5, phase: float = 0.0) -> Sinusoids:
+    """Return the near-fault pulse of Mavroeidis and Papageorgiou (2003), BSSA 93:1099, DOI 10.1785/0120020100.
+
+    Its velocity is ``(A / 2) [1 + cos(2 pi f t / gamma)] cos(2 pi f t + nu)`` for ``|t| <= gamma / (2 f)``; here time
+    zero is the start of the pulse.
+
+    Parameters
+    ----------
+    velocity : float
+        Amplitude A of the velocity [m/s].
+    period : float
+        Prevailing period 1 / f [s].
+    cycles : float
+        gamma: how many zero crossings the velocity has; at least 1 [-].
+    phase : float
+        nu: 0 for a symmetric, pi / 2 for an antisymmetric velocity [rad].
+
+    Returns
+    -------
+    Sinusoids
+        The pulse.
+    """
+    velocity, period = checks.number("velocity", velocity, "m/s"), _period(period)
+    cycles = checks.within("cycles", cycles, 1.0, 1000.0)
+    phase = checks.number("phase", phase, "rad")
+    main = 2.0 * math.pi / period
+    # the product of cosines is a sum of three; the start of the pulse, t = -gamma / (2 f), becomes time zero
+    waves = tuple(
+        (-velocity * share * frequency, frequency, phase - frequency * 0.5 * cycles * period)
+        for share, frequency in ((0.5, main), (0.25, main * (1.0 + 1.0 / cycles)), (0.25, main * (1.0 - 1.0 / cycles)))
+    )
+    title = f"Mavroeidis-Papageorgiou pulse, {velocity:.3g} m/s, {period:.3g} s"
+    bare = Sinusoids(title, waves, cycles * period, 0.0)
+    return Sinusoids(title, waves, cycles * period, _largest(bare))
+
+
+def harmonic(amplitude: float, period: float, cycles: float, phase: float = 0.0) -> Sinusoids:
+    """Return many periods of a sine: ``a_p sin(2 pi t / T_p + phase)``.
+
+    Parameters
+    ----------
+    amplitude : float
+        Peak acceleration a_p [m/s2].
+    period : float
+        Period T_p [s].
+    cycles : float
+        Number of periods, at least one half [-].
+    phase : float
+        Phase at time zero [rad].
+
+    Returns
+    -------
+    Sinusoids
+        The motion.
+    """
+    cycles = checks.within("cycles", cycles, 0.5, 1e5)
+    return _windowed("harmonic motion", amplitude, period, checks.number("phase", phase, "rad"), cycles)
+
+
+def catalogue() -> dict[str, Callable[..., Pulse]]:
+    """Return every pulse by the name that the command line knows it by.
+
+    Returns
+    -------
+    dict of str to callable
+        Name to function.
+
+    Examples
+    --------
+    >>> sorted(catalogue())[:3]
+    ['antisymmetric-ricker', 'cosine', 'half-cosine']
+    """
+    return {function.__name__.replace("_", "-"): function for function in _ALL}
+
+
+def pulse(words: str) -> Pulse:
+    """Return a pulse from one word, as the command line takes it.
+
+    Parameters
+    ----------
+    words : str
+        ``name:parameter=value,parameter=value``.
+
+    Returns
+    -------
+    Pulse
+        The pulse.
+
+    Raises
+    ------
+    UnknownModelError
+        If there is no such pulse, or a parameter is unknown or missing.
+    InvalidValueError
+        If a value is not a number in its range.
+
+    Examples
+    --------
+    >>> pulse("sine:amplitude=3,period=0.8").duration
+    0.8
+    """
+    name, _, tail = words.partition(":")
+    known = catalogue()
+    if name not in known:
+        raise UnknownModelError(f"no pulse named {name!r}; there are {', '.join(sorted(known))}")
+    given: dict[str, Any] = {}
+    for item in filter(None, tail.split(",")):
+        key, equals, value = (part.strip() for part in item.partition("="))
+        if not equals or key in given:
+            raise UnknownModelError(f"write a pulse as sine:amplitude=3,period=0.8, got {words!r}")
+        try:
+            given[key] = int(value) if key == "n" else float(value)
+        except ValueError as error:
+            raise InvalidValueError(f"{key} must be a number, got {value!r}") from error
+    try:
+        return known[name](**given)
+    except TypeError as error:
+        names = ", ".join(known[name].__annotations__.keys() - {"return"})
+        raise UnknownModelError(f"pulse {name!r} takes {names}; got {', '.join(given) or 'none'}") from error
+
+
+_ALL: tuple[Callable[..., Pulse], ...] = (
+    rectangular,
+    half_sine,
+    sine,
+    half_cosine,
+    cosine,
+    type_a,
+    type_b,
+    type_c,
+    ricker,
+    antisymmetric_ricker,
+    mavroeidis_papageorgiou,
+    harmonic,
+)
+
+
+def _windowed(title: str, amplitude: float, period: float, phase: float, cycles: float) -> Sinusoids:
+    amplitude, period = _amplitude(amplitude), _period(period)
+    name = f"{title}, {abs(amplitude):.3g} m/s2, {period:.3g} s"
+    bare = Sinusoids(name, ((amplitude, 2.0 * math.pi / period, phase),), cycles * period, abs(amplitude))
+    return bare
+
+
+def _amplitude(value: Any) -> float:
+    return checks.within("amplitude", value, -1e6, 1e6, unit="m/s2")
+
+
+def _period(value: Any) -> float:
+    return checks.within("period", value, 1e-6, 1e6, unit="s")
+
+
+def _closing_phase(n: int) -> float:
+    turns = (2 * n + 1) * math.pi
+
+    def gap(phase: float) -> float:
+        return math.cos(turns - phase) + (turns - 2.0 * phase) * math.sin(phase) - math.cos(phase)
+
+    low, high = 0.0, 0.25 * math.pi
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if gap(middle) < 0.0 else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _largest(bare: Sinusoids) -> float:
+    """Return the largest acceleration: the best of many instants, then a parabola through its neighbours."""
+    import numpy as np
+
+    times = np.linspace(0.0, bare.duration, 4096 + 1)
+    size = np.abs(bare.acceleration(times))
+    k = int(size.argmax())
+    if not 0 < k < size.size - 1:
+        return float(size[k])
+    fine = np.linspace(times[k - 1], times[k + 1], 4096 + 1)
+    return float(np.abs(bare.acceleration(fine)).max())
