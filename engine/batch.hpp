@@ -1,0 +1,88 @@
+// What goes into the engine and what comes out: plain arrays, one entry a history.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace rocking {
+
+enum Outcome : std::int8_t { kNoUplift = 0, kRocked = 1, kOverturned = 2, kFailed = 3 };
+enum Status : std::int8_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyImpacts = 3 };
+enum EventKind : std::int8_t { kUplift = 0, kImpact = 1, kRest = 2 };
+
+// One ground motion within the common array of coefficients.
+struct Shake {
+    std::int64_t first;     // index of its first number
+    std::int64_t segments;  // number of stretches
+    double step;            // duration of a stretch [s]
+    std::int64_t block;     // index of its first block in the bounds
+};
+
+// Least and largest accelerations within blocks of stretches, and from each block to the end [m/s2].
+struct Bounds {
+    double low, high, vertical_low;
+    double later_low, later_high, later_vertical_low;
+};
+constexpr int kBlock = 32;
+
+// The motions of a batch. Degree 1: samples one after another, pairs (horizontal, vertical) where there is a vertical
+// part. Degree 7: coefficients of the stretches one after another.
+struct Motions {
+    const double* data;
+    int degree;
+    bool vertical;
+    std::vector<Shake> shakes;
+    std::vector<Bounds> bounds;
+    int stride() const { return degree == 1 ? (vertical ? 2 : 1) : degree + 1; }
+    void find_bounds();
+};
+
+// How an impact changes the velocity: r = r_side * table(speed), or r_side * quantile(random number).
+enum class LawKind : int { constant = 0, of_speed = 1, random = 2 };
+struct Law {
+    LawKind kind = LawKind::constant;
+    std::vector<double> at, value;
+    std::uint64_t seed = 0;
+    double largest = 1.0;
+};
+
+struct Event {
+    double time, before, after, coefficient;
+    EventKind kind;
+    std::int8_t side;
+};
+
+// Where a single history writes its samples and events.
+struct Trace {
+    double* rotation;
+    double* velocity;
+    std::vector<Event> events;
+};
+
+struct Rows {
+    std::int64_t count;
+    const double *alpha_right, *alpha_left, *p_right, *p_left, *r_right, *r_left;
+    const double *scale, *rotation, *velocity;
+    const std::int64_t *motion, *key;
+    // results
+    std::int8_t *outcome, *status, *side;
+    double *peak, *peak_time, *peak_velocity, *overturning_time, *first_uplift, *error;
+    std::int64_t *impacts, *uplifts;
+};
+
+struct Settings {
+    double gravity;
+    double longest_step;  // p * step of a Taylor expansion [-]
+    double rest;          // speed over p alpha below which impacts may be summed up to rest [-]
+    std::int64_t most_impacts;
+    bool linear;
+    int order;
+    bool to_the_ground;   // follow an overturning body until it lies
+};
+
+struct Work {
+    std::int64_t steps = 0;  // Taylor steps of active lanes
+    std::int64_t sweeps = 0; // steps of all lanes together
+    std::int64_t events = 0; // visits to the lane-by-lane part
+};
+
+}  // namespace rocking

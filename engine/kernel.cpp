@@ -1,0 +1,31 @@
+// One set of kernels for one instruction set; compiled once for each, with ROCKING_ISA naming it.
+#include "kernel.hpp"
+#include "table.hpp"
+
+namespace rocking {
+namespace ROCKING_ISA {
+
+// Two registers of AVX-512 or four of AVX2 are 16 lanes; a single history takes one register.
+constexpr int kMany = 16 / Pack::width;
+
+Run kernel_for(bool single, const Choice& c) {
+    if (c.order == 8) {
+        if (c.degree == 7) {
+            if (c.linear) return single ? run_rows<1, 8, 7, false, true> : run_rows<kMany, 8, 7, false, true>;
+            return single ? run_rows<1, 8, 7, false, false> : run_rows<kMany, 8, 7, false, false>;
+        }
+        if (c.vertical) {
+            if (c.linear) return single ? run_rows<1, 8, 1, true, true> : run_rows<kMany, 8, 1, true, true>;
+            return single ? run_rows<1, 8, 1, true, false> : run_rows<kMany, 8, 1, true, false>;
+        }
+        if (c.linear) return single ? run_rows<1, 8, 1, false, true> : run_rows<kMany, 8, 1, false, true>;
+        return single ? run_rows<1, 8, 1, false, false> : run_rows<kMany, 8, 1, false, false>;
+    }
+    if (c.linear || c.vertical) return nullptr;
+    if (c.order == 6) return c.degree == 7 ? run_rows<kMany, 6, 7, false, false> : run_rows<kMany, 6, 1, false, false>;
+    if (c.order == 4) return c.degree == 7 ? run_rows<kMany, 4, 7, false, false> : run_rows<kMany, 4, 1, false, false>;
+    return nullptr;
+}
+
+}  // namespace ROCKING_ISA
+}  // namespace rocking

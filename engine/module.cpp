@@ -1,0 +1,255 @@
+// The door to Python: arrays in, arrays out, threads over chunks of rows with the interpreter lock released.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+#include "table.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace rocking {
+
+template <class T>
+using In = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+template <class T>
+using Out = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+void Motions::find_bounds() {
+    bounds.clear();
+    const int hop = stride();
+    for (Shake& shake : shakes) {
+        shake.block = static_cast<std::int64_t>(bounds.size());
+        const std::int64_t blocks = (shake.segments + kBlock - 1) / kBlock;
+        for (std::int64_t b = 0; b < blocks; ++b) {
+            Bounds found{1e300, -1e300, 1e300, 0, 0, 0};
+            const std::int64_t stop = std::min(shake.segments, (b + 1) * kBlock);
+            for (std::int64_t k = b * kBlock; k < stop + (degree == 1); ++k) {
+                const double* a = data + shake.first + k * hop;
+                double low = a[0], high = a[0];
+                if (degree > 1)
+                    for (int j = 1; j <= degree; ++j) (a[j] < 0.0 ? low : high) += a[j];
+                found.low = std::min(found.low, low);
+                found.high = std::max(found.high, high);
+                found.vertical_low = vertical ? std::min(found.vertical_low, a[1]) : 0.0;
+            }
+            bounds.push_back(found);
+        }
+        double low = 0.0, high = 0.0, vertical_low = 0.0;
+        for (std::int64_t b = blocks; b-- > 0;) {
+            Bounds& found = bounds[shake.block + b];
+            found.later_low = low = std::min(low, found.low);
+            found.later_high = high = std::max(high, found.high);
+            found.later_vertical_low = vertical_low = std::min(vertical_low, found.vertical_low);
+        }
+    }
+}
+
+static std::vector<std::string> instruction_sets() {
+    std::vector<std::string> found;
+#if defined(ROCKING_X86)
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+        found.push_back("avx512");
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found.push_back("avx2");
+#endif
+    found.push_back("plain");
+    return found;
+}
+
+static Run kernel(const std::string& isa, bool single, const Choice& choice) {
+    const auto known = instruction_sets();
+    if (std::find(known.begin(), known.end(), isa) == known.end())
+        throw std::invalid_argument("this processor has no " + isa);
+    Run run = nullptr;
+#if defined(ROCKING_X86)
+    if (isa == "avx512") run = avx512::kernel_for(single, choice);
+    if (isa == "avx2") run = avx2::kernel_for(single, choice);
+#endif
+    if (isa == "plain") run = plain::kernel_for(single, choice);
+    if (!run) throw std::invalid_argument("no kernel for this order, degree and model");
+    return run;
+}
+
+// The motions of a campaign, looked through once.
+struct Library {
+    Motions motions;
+    In<double> keep;
+
+    Library(In<double> data, int degree, bool vertical, In<std::int64_t> first, In<std::int64_t> segments, In<double> step)
+        : keep(data) {
+        if (degree != 1 && degree != 7) throw std::invalid_argument("degree must be 1 or 7");
+        if (degree == 7 && vertical) throw std::invalid_argument("a smooth motion has no vertical part");
+        if (first.size() != segments.size() || first.size() != step.size())
+            throw std::invalid_argument("first, segments and step must be of one length");
+        motions.data = data.data();
+        motions.degree = degree;
+        motions.vertical = vertical;
+        if (data.size() >= (std::size_t(1) << 31)) throw std::invalid_argument("more than 2^31 numbers in one library");
+        const auto size = static_cast<std::int64_t>(data.size());
+        const int hop = motions.stride(), extra = degree == 1 ? hop : 0;
+        for (std::size_t k = 0; k < first.size(); ++k) {
+            const Shake shake{first(k), segments(k), step(k), 0};
+            if (shake.first < 0 || shake.segments < 1 || shake.segments > size || !(shake.step > 0.0) ||
+                shake.first + shake.segments * hop + extra > size)
+                throw std::invalid_argument("a motion lies outside the data");
+            motions.shakes.push_back(shake);
+        }
+        motions.find_bounds();
+    }
+};
+
+static Law law_of(int kind, In<double> at, In<double> value, std::uint64_t seed) {
+    Law law;
+    law.kind = static_cast<LawKind>(kind);
+    law.at.assign(at.data(), at.data() + at.size());
+    law.value.assign(value.data(), value.data() + value.size());
+    law.seed = seed;
+    if (law.kind != LawKind::constant) {
+        if (law.at.empty() || law.at.size() != law.value.size()) throw std::invalid_argument("a law needs a table");
+        law.largest = *std::max_element(law.value.begin(), law.value.end());
+    }
+    return law;
+}
+
+// A dictionary of arrays as rows; the lengths are checked here, the values in the kernel.
+static Rows rows_of(const nb::dict& in, const nb::dict& out) {
+    Rows rows{};
+    rows.count = -1;
+    auto same = [&](std::size_t n) {
+        if (rows.count >= 0 && static_cast<std::size_t>(rows.count) != n) throw std::invalid_argument("rows of unequal length");
+        rows.count = static_cast<std::int64_t>(n);
+    };
+    auto number = [&](const char* name) {
+        auto a = nb::cast<In<double>>(in[name]);
+        same(a.size());
+        return a.data();
+    };
+    auto index = [&](const char* name) {
+        auto a = nb::cast<In<std::int64_t>>(in[name]);
+        same(a.size());
+        return a.data();
+    };
+    rows.alpha_right = number("alpha_right");
+    rows.alpha_left = number("alpha_left");
+    rows.p_right = number("p_right");
+    rows.p_left = number("p_left");
+    rows.r_right = number("r_right");
+    rows.r_left = number("r_left");
+    rows.scale = number("scale");
+    rows.rotation = number("rotation");
+    rows.velocity = number("velocity");
+    rows.motion = index("motion");
+    rows.key = index("key");
+    auto small = [&](const char* name) {
+        auto a = nb::cast<Out<std::int8_t>>(out[name]);
+        same(a.size());
+        return a.data();
+    };
+    auto real = [&](const char* name) {
+        auto a = nb::cast<Out<double>>(out[name]);
+        same(a.size());
+        return a.data();
+    };
+    auto count = [&](const char* name) {
+        auto a = nb::cast<Out<std::int64_t>>(out[name]);
+        same(a.size());
+        return a.data();
+    };
+    rows.outcome = small("outcome");
+    rows.status = small("status");
+    rows.side = small("side");
+    rows.peak = real("peak_rotation");
+    rows.peak_time = real("peak_time");
+    rows.peak_velocity = real("peak_velocity");
+    rows.overturning_time = real("overturning_time");
+    rows.first_uplift = real("first_uplift");
+    rows.error = real("error");
+    rows.impacts = count("impacts");
+    rows.uplifts = count("uplifts");
+    return rows;
+}
+
+static Settings settings_of(double gravity, double longest_step, double rest, std::int64_t most_impacts, bool linear, int order, bool ground) {
+    if (!(gravity > 0.0) || !(longest_step > 0.0) || !(rest >= 0.0) || most_impacts < 1)
+        throw std::invalid_argument("settings must be positive");
+    return {gravity, longest_step, rest, most_impacts, linear, order, ground};
+}
+
+static nb::dict run_batch(const Library& library, const nb::dict& in, const nb::dict& out, int kind, In<double> at, In<double> value,
+                          std::uint64_t seed, double gravity, double longest_step, double rest, std::int64_t most_impacts,
+                          bool linear, int order, int threads, std::int64_t chunk, const std::string& isa) {
+    const Rows rows = rows_of(in, out);
+    const Law law = law_of(kind, at, value, seed);
+    const Settings set = settings_of(gravity, longest_step, rest, most_impacts, linear, order, false);
+    const Motions& m = library.motions;
+    const Run run = kernel(isa, false, {order, m.degree, m.vertical, linear});
+    if (chunk < 1 || threads < 1) throw std::invalid_argument("threads and chunk must be at least 1");
+    Work total;
+    {
+        nb::gil_scoped_release release;
+        std::atomic<std::int64_t> next{0}, steps{0}, sweeps{0}, events{0};
+        auto labour = [&] {
+            for (std::int64_t from; (from = next.fetch_add(chunk)) < rows.count;) {
+                const Work work = run(m, law, rows, set, nullptr, from, std::min(from + chunk, rows.count));
+                steps += work.steps;
+                sweeps += work.sweeps;
+                events += work.events;
+            }
+        };
+        std::vector<std::thread> crew;
+        for (int k = 1; k < threads; ++k) crew.emplace_back(labour);
+        labour();
+        for (std::thread& worker : crew) worker.join();
+        total.steps = steps;
+        total.sweeps = sweeps;
+        total.events = events;
+    }
+    nb::dict work;
+    work["steps"] = total.steps;
+    work["sweeps"] = total.sweeps;
+    work["events"] = total.events;
+    return work;
+}
+
+static nb::list run_single(const Library& library, const nb::dict& in, const nb::dict& out, int kind, In<double> at, In<double> value,
+                           std::uint64_t seed, double gravity, double longest_step, double rest, std::int64_t most_impacts,
+                           bool linear, bool to_the_ground, Out<double> rotation, Out<double> velocity, const std::string& isa) {
+    const Rows rows = rows_of(in, out);
+    const Law law = law_of(kind, at, value, seed);
+    const Settings set = settings_of(gravity, longest_step, rest, most_impacts, linear, 8, to_the_ground);
+    const Motions& m = library.motions;
+    if (rows.count != 1 || rows.motion[0] < 0 || rows.motion[0] >= static_cast<std::int64_t>(m.shakes.size()))
+        throw std::invalid_argument("one row of a known motion expected");
+    const auto need = static_cast<std::size_t>(m.shakes[rows.motion[0]].segments + 1);
+    if (rotation.size() != need || velocity.size() != need) throw std::invalid_argument("room for the samples expected");
+    Trace trace{rotation.data(), velocity.data(), {}};
+    trace.rotation[0] = rows.rotation[0];
+    trace.velocity[0] = rows.velocity[0];
+    kernel(isa, true, {8, m.degree, m.vertical, linear})(m, law, rows, set, &trace, 0, 1);
+    nb::list events;
+    for (const Event& e : trace.events)
+        events.append(nb::make_tuple(e.time, static_cast<int>(e.kind), static_cast<int>(e.side), e.before, e.after, e.coefficient));
+    return events;
+}
+
+}  // namespace rocking
+
+NB_MODULE(_engine, m) {
+    using namespace rocking;
+    m.doc() = "Taylor steps of many rocking histories side by side.";
+    nb::class_<Library>(m, "Library")
+        .def(nb::init<In<double>, int, bool, In<std::int64_t>, In<std::int64_t>, In<double>>(), "data"_a, "degree"_a,
+             "vertical"_a, "first"_a, "segments"_a, "step"_a);
+    m.def("instruction_sets", &instruction_sets);
+    m.def("run_batch", &run_batch, "library"_a, "rows"_a, "results"_a, "kind"_a, "at"_a, "value"_a, "seed"_a, "gravity"_a,
+          "longest_step"_a, "rest"_a, "most_impacts"_a, "linear"_a, "order"_a, "threads"_a, "chunk"_a, "isa"_a);
+    m.def("run_single", &run_single, "library"_a, "rows"_a, "results"_a, "kind"_a, "at"_a, "value"_a, "seed"_a, "gravity"_a,
+          "longest_step"_a, "rest"_a, "most_impacts"_a, "linear"_a, "to_the_ground"_a, "rotation"_a, "velocity"_a, "isa"_a);
+}

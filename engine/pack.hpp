@@ -1,0 +1,135 @@
+// A few doubles that are worked on at once: one AVX-512 or AVX2 register, or four plain numbers.
+// Every operation is the same on every lane, and fused multiply-adds are written, never left to the compiler, so that
+// a history comes out in the same bits whatever lane it runs in.
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+#if defined(ROCKING_AVX512) || defined(ROCKING_AVX2)
+#include <immintrin.h>
+#endif
+
+namespace rocking {
+namespace ROCKING_ISA {
+
+#if defined(ROCKING_AVX512)
+
+struct Mask {
+    __mmask8 m;
+    unsigned bits() const { return m; }
+};
+inline Mask operator|(Mask a, Mask b) { return {static_cast<__mmask8>(a.m | b.m)}; }
+inline Mask operator&(Mask a, Mask b) { return {static_cast<__mmask8>(a.m & b.m)}; }
+inline Mask operator!(Mask a) { return {static_cast<__mmask8>(~a.m)}; }
+
+struct Pack {
+    static constexpr int width = 8;
+    __m512d r;
+    Pack() = default;
+    Pack(__m512d v) : r(v) {}
+    Pack(double v) : r(_mm512_set1_pd(v)) {}
+    static Pack load(const double* p) { return _mm512_load_pd(p); }
+    void store(double* p) const { _mm512_store_pd(p, r); }
+    static Pack gather(const double* base, Pack index) {
+        return _mm512_i32gather_pd(_mm512_cvtpd_epi32(index.r), base, 8);
+    }
+};
+inline Pack operator+(Pack a, Pack b) { return _mm512_add_pd(a.r, b.r); }
+inline Pack operator-(Pack a, Pack b) { return _mm512_sub_pd(a.r, b.r); }
+inline Pack operator*(Pack a, Pack b) { return _mm512_mul_pd(a.r, b.r); }
+inline Pack fma(Pack a, Pack b, Pack c) { return _mm512_fmadd_pd(a.r, b.r, c.r); }
+inline Pack fnma(Pack a, Pack b, Pack c) { return _mm512_fnmadd_pd(a.r, b.r, c.r); }
+inline Pack abs(Pack a) { return _mm512_abs_pd(a.r); }
+inline Pack min(Pack a, Pack b) { return _mm512_min_pd(a.r, b.r); }
+inline Pack max(Pack a, Pack b) { return _mm512_max_pd(a.r, b.r); }
+inline Mask operator<(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.r, b.r, _CMP_LT_OQ)}; }
+inline Mask operator>(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.r, b.r, _CMP_GT_OQ)}; }
+inline Mask operator>=(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.r, b.r, _CMP_GE_OQ)}; }
+inline Mask operator==(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.r, b.r, _CMP_EQ_OQ)}; }
+inline Pack select(Mask m, Pack yes, Pack no) { return _mm512_mask_blend_pd(m.m, no.r, yes.r); }
+#define ROCKING_SCALAR_FMA(a, b, c) __builtin_fma(a, b, c)
+
+#elif defined(ROCKING_AVX2)
+
+struct Mask {
+    __m256d m;
+    unsigned bits() const { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
+};
+inline Mask operator|(Mask a, Mask b) { return {_mm256_or_pd(a.m, b.m)}; }
+inline Mask operator&(Mask a, Mask b) { return {_mm256_and_pd(a.m, b.m)}; }
+inline Mask operator!(Mask a) { return {_mm256_xor_pd(a.m, _mm256_castsi256_pd(_mm256_set1_epi64x(-1)))}; }
+
+struct Pack {
+    static constexpr int width = 4;
+    __m256d r;
+    Pack() = default;
+    Pack(__m256d v) : r(v) {}
+    Pack(double v) : r(_mm256_set1_pd(v)) {}
+    static Pack load(const double* p) { return _mm256_load_pd(p); }
+    void store(double* p) const { _mm256_store_pd(p, r); }
+    static Pack gather(const double* base, Pack index) {
+        return _mm256_i32gather_pd(base, _mm256_cvtpd_epi32(index.r), 8);
+    }
+};
+inline Pack operator+(Pack a, Pack b) { return _mm256_add_pd(a.r, b.r); }
+inline Pack operator-(Pack a, Pack b) { return _mm256_sub_pd(a.r, b.r); }
+inline Pack operator*(Pack a, Pack b) { return _mm256_mul_pd(a.r, b.r); }
+inline Pack fma(Pack a, Pack b, Pack c) { return _mm256_fmadd_pd(a.r, b.r, c.r); }
+inline Pack fnma(Pack a, Pack b, Pack c) { return _mm256_fnmadd_pd(a.r, b.r, c.r); }
+inline Pack abs(Pack a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.r); }
+inline Pack min(Pack a, Pack b) { return _mm256_min_pd(a.r, b.r); }
+inline Pack max(Pack a, Pack b) { return _mm256_max_pd(a.r, b.r); }
+inline Mask operator<(Pack a, Pack b) { return {_mm256_cmp_pd(a.r, b.r, _CMP_LT_OQ)}; }
+inline Mask operator>(Pack a, Pack b) { return {_mm256_cmp_pd(a.r, b.r, _CMP_GT_OQ)}; }
+inline Mask operator>=(Pack a, Pack b) { return {_mm256_cmp_pd(a.r, b.r, _CMP_GE_OQ)}; }
+inline Mask operator==(Pack a, Pack b) { return {_mm256_cmp_pd(a.r, b.r, _CMP_EQ_OQ)}; }
+inline Pack select(Mask m, Pack yes, Pack no) { return _mm256_blendv_pd(no.r, yes.r, m.m); }
+#define ROCKING_SCALAR_FMA(a, b, c) __builtin_fma(a, b, c)
+
+#else
+
+struct Mask {
+    bool m[4];
+    unsigned bits() const { return m[0] | m[1] << 1 | m[2] << 2 | m[3] << 3; }
+};
+#define ROCKING_EACH for (int i = 0; i < 4; ++i)
+inline Mask operator|(Mask a, Mask b) { ROCKING_EACH a.m[i] = a.m[i] || b.m[i]; return a; }
+inline Mask operator&(Mask a, Mask b) { ROCKING_EACH a.m[i] = a.m[i] && b.m[i]; return a; }
+inline Mask operator!(Mask a) { ROCKING_EACH a.m[i] = !a.m[i]; return a; }
+
+struct Pack {
+    static constexpr int width = 4;
+    double r[4];
+    Pack() = default;
+    Pack(double v) { ROCKING_EACH r[i] = v; }
+    static Pack load(const double* p) { Pack a; ROCKING_EACH a.r[i] = p[i]; return a; }
+    void store(double* p) const { ROCKING_EACH p[i] = r[i]; }
+    static Pack gather(const double* base, Pack index) {
+        Pack a; ROCKING_EACH a.r[i] = base[static_cast<std::int64_t>(index.r[i])]; return a;
+    }
+};
+#if defined(__FP_FAST_FMA)
+#define ROCKING_SCALAR_FMA(a, b, c) std::fma(a, b, c)
+#else
+#define ROCKING_SCALAR_FMA(a, b, c) ((a) * (b) + (c))
+#endif
+inline Pack operator+(Pack a, Pack b) { ROCKING_EACH a.r[i] += b.r[i]; return a; }
+inline Pack operator-(Pack a, Pack b) { ROCKING_EACH a.r[i] -= b.r[i]; return a; }
+inline Pack operator*(Pack a, Pack b) { ROCKING_EACH a.r[i] *= b.r[i]; return a; }
+inline Pack fma(Pack a, Pack b, Pack c) { ROCKING_EACH a.r[i] = ROCKING_SCALAR_FMA(a.r[i], b.r[i], c.r[i]); return a; }
+inline Pack fnma(Pack a, Pack b, Pack c) { ROCKING_EACH a.r[i] = ROCKING_SCALAR_FMA(-a.r[i], b.r[i], c.r[i]); return a; }
+inline Pack abs(Pack a) { ROCKING_EACH a.r[i] = std::fabs(a.r[i]); return a; }
+inline Pack min(Pack a, Pack b) { ROCKING_EACH a.r[i] = a.r[i] < b.r[i] ? a.r[i] : b.r[i]; return a; }
+inline Pack max(Pack a, Pack b) { ROCKING_EACH a.r[i] = a.r[i] > b.r[i] ? a.r[i] : b.r[i]; return a; }
+inline Mask operator<(Pack a, Pack b) { Mask m; ROCKING_EACH m.m[i] = a.r[i] < b.r[i]; return m; }
+inline Mask operator>(Pack a, Pack b) { Mask m; ROCKING_EACH m.m[i] = a.r[i] > b.r[i]; return m; }
+inline Mask operator>=(Pack a, Pack b) { Mask m; ROCKING_EACH m.m[i] = a.r[i] >= b.r[i]; return m; }
+inline Mask operator==(Pack a, Pack b) { Mask m; ROCKING_EACH m.m[i] = a.r[i] == b.r[i]; return m; }
+inline Pack select(Mask m, Pack yes, Pack no) { ROCKING_EACH no.r[i] = m.m[i] ? yes.r[i] : no.r[i]; return no; }
+
+#endif
+
+inline double fma(double a, double b, double c) { return ROCKING_SCALAR_FMA(a, b, c); }
+
+}  // namespace ROCKING_ISA
+}  // namespace rocking
