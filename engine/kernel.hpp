@@ -42,13 +42,15 @@ inline double interpolated(const std::vector<double>& at, const std::vector<doub
     return value[k - 1] + (value[k] - value[k - 1]) * ((x - at[k - 1]) / (at[k] - at[k - 1]));
 }
 
+#define ROCKING_LANES ROCKING_UNROLL for (int j = 0; j < U; ++j)
+
 template <int U, int N, int D, bool Z, bool L>
 class Kernel {
-    static constexpr int W = U * Pack::width;
+    static constexpr int P = Pack::width, W = U * P;
 
     // state of the lanes; unused ones stay at rest on stretch zero
     alignas(64) double u[W], v[W], tau[W], len[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], idx[W], last[W],
-        stride[W], err[W], fastest[W];
+        stride[W], err[W], fastest[W], gate[W];
     alignas(64) double terms[N + 1][W];
 
     struct Side {
@@ -93,18 +95,104 @@ class Kernel {
     const Side& here(int i) const { return lanes[i].sides[lanes[i].side > 0 ? 0 : 1]; }
 
     static int lowest(unsigned long bits) {
+#if defined(__GNUC__)
+        return __builtin_ctzl(bits);
+#else
         int i = 0;
         while (!(bits >> i & 1)) ++i;
         return i;
+#endif
     }
 
     // ---- all lanes at once ------------------------------------------------------------------------------------------
 
+    // One Taylor step of every lane; those that need a visit keep their state until they have had it.
     void sweep() {
         work.steps += active;
         ++work.sweeps;
+        Pack u0[U], v0[U], t0[U], h[U], i0[U], b[D + 1][U], z[2][U], S[N + 1][U], C[N + 1][U], V[N + 1][U], q[U];
+        ROCKING_LANES {
+            u0[j] = Pack::load(u + j * P);
+            v0[j] = Pack::load(v + j * P);
+            t0[j] = Pack::load(tau + j * P);
+            h[j] = Pack::load(len + j * P);
+            i0[j] = Pack::load(idx + j * P);
+            q[j] = Pack::load(kappa + j * P) * (h[j] * h[j]);
+            V[0][j] = v0[j] * h[j];
+        }
+        forcing(i0, t0, h, b, z);
+        ROCKING_LANES {
+            if (L) S[0][j] = u0[j];
+            else sine_cosine(u0[j], S[0][j], C[0][j]);
+        }
+        ROCKING_UNROLL
+        for (int k = 0; k < N; ++k) {
+            const Pack inverse(1.0 / (k + 1));
+            ROCKING_LANES {
+                Pack f = Z ? fma(z[0][j], S[k][j], S[k][j]) : S[k][j];
+                if (Z && k > 0) f = fma(z[1][j], S[k - 1][j], f);
+                if (L) {
+                    if (k <= D) f = f + b[k][j];
+                } else {
+                    ROCKING_UNROLL
+                    for (int m = 0; m <= (k < D ? k : D); ++m) f = fma(b[m][j], C[k - m][j], f);
+                }
+                V[k + 1][j] = f * (q[j] * inverse);
+            }
+            if (k + 1 == N) break;
+            ROCKING_LANES {
+                if (L) {
+                    S[k + 1][j] = V[k][j] * inverse;
+                } else {
+                    Pack s = V[0][j] * C[k][j], c = V[0][j] * S[k][j];
+                    ROCKING_UNROLL
+                    for (int m = 1; m <= k; ++m) {
+                        s = fma(V[m][j], C[k - m][j], s);
+                        c = fma(V[m][j], S[k - m][j], c);
+                    }
+                    S[k + 1][j] = s * inverse;
+                    C[k + 1][j] = c * Pack(-1.0 / (k + 1));
+                }
+            }
+        }
         unsigned long flagged = 0;
-        for (int k = 0; k < U; ++k) flagged |= static_cast<unsigned long>(step(k * Pack::width)) << (k * Pack::width);
+        ROCKING_LANES {
+            const int at = j * P;
+            const Pack zero(0.0);
+            Pack v1 = V[0][j], du = V[N][j] * Pack(1.0 / (N + 1)), sag = max(zero - V[1][j], zero) * Pack(0.125);
+            ROCKING_UNROLL
+            for (int k = 1; k <= N; ++k) v1 = v1 + V[k][j];
+            ROCKING_UNROLL
+            for (int k = N; k-- > 0;) du = fma(V[k][j], Pack(1.0 / (k + 1)), du);
+            ROCKING_UNROLL
+            for (int k = 2; k <= N; ++k) sag = fma(max(zero - V[k][j], zero), Pack(1.0 / (k + 1)), sag);
+            const Pack u1 = u0[j] + du;
+            v1 = v1 / h[j];
+
+            // With y = y0 + c1 x + c2 x^2 + ..., y >= min(y0, y1) - c2+ / 4 - c3+ - ...: between its ends a step can
+            // only sag by its convex terms. A step that starts at y = 0 is divided by its known zero first.
+            const Pack y0 = Pack::load(alpha + at) - u0[j], y1 = y0 - du;
+            const Mask clear = (min(y0, y1) > sag) | ((y0 == zero) & (min(zero - V[0][j], y1) > sag));
+            const Mask turning = (v0[j] < zero) & (v1 >= zero) & (fma(Pack(4.0), sag, y0 - V[0][j]) > Pack::load(peak + at));
+            const Mask beyond = (u1 < Pack::load(gate + at)) | ((u1 < zero) & (u0[j] >= zero));
+            const Pack t1 = t0[j] + h[j];
+            const Mask done = t1 >= Pack(kWhole);
+            const Pack t2 = select(done, zero, t1), i1 = select(done, i0[j] + Pack::load(stride + at), i0[j]);
+            const Mask visit = !clear | beyond | turning | (done & (i1 >= Pack::load(last + at)));
+            flagged |= static_cast<unsigned long>(visit.bits()) << at;
+
+            select(visit, u0[j], u1).store(u + at);
+            select(visit, v0[j], v1).store(v + at);
+            select(visit, t0[j], t2).store(tau + at);
+            select(visit, h[j], min(Pack::load(sub + at), Pack(1.0) - t2)).store(len + at);
+            select(visit, i0[j], i1).store(idx + at);
+            (Pack::load(err + at) + abs(V[N][j])).store(err + at);
+            const Pack top = Pack::load(fastest + at);
+            select(visit, top, max(top, abs(v1))).store(fastest + at);
+            ROCKING_UNROLL
+            for (int k = 0; k <= N; ++k) V[k][j].store(&terms[k][at]);
+        }
+        if (trace && lanes[0].row >= 0 && !(flagged & 1) && tau[0] == 0.0) sample(0);
         while (flagged) {
             const int i = lowest(flagged);
             flagged &= flagged - 1;
@@ -114,104 +202,38 @@ class Kernel {
         }
     }
 
-    // One Taylor step of the lanes from `at`; returns those that need a visit, which keep their state.
-    unsigned step(int at) {
-        const Pack u0 = Pack::load(u + at), v0 = Pack::load(v + at), t0 = Pack::load(tau + at), h = Pack::load(len + at);
-        const Pack i0 = Pack::load(idx + at);
-        Pack b[D + 1], z[2];
-        forcing(at, i0, t0, h, b, z);
-
-        Pack S[N + 1], C[N + 1], V[N + 1];
-        const Pack kh = Pack::load(kappa + at) * (h * h);
-        V[0] = v0 * h;
-        if (L) S[0] = u0;
-        else sine_cosine(u0, S[0], C[0]);
-        for (int k = 0; k < N; ++k) {
-            const Pack inverse(1.0 / (k + 1));
-            Pack f = Z ? fma(z[0], S[k], S[k]) : S[k];
-            if (Z && k > 0) f = fma(z[1], S[k - 1], f);
-            if (L) {
-                if (k <= D) f = f + b[k];
-            } else {
-                for (int j = 0; j <= (k < D ? k : D); ++j) f = fma(b[j], C[k - j], f);
-            }
-            V[k + 1] = f * (kh * inverse);
-            if (k + 1 == N) break;
-            if (L) {
-                S[k + 1] = V[k] * inverse;
-            } else {
-                Pack s = V[0] * C[k], c = V[0] * S[k];
-                for (int j = 1; j <= k; ++j) {
-                    s = fma(V[j], C[k - j], s);
-                    c = fma(V[j], S[k - j], c);
-                }
-                S[k + 1] = s * inverse;
-                C[k + 1] = c * Pack(-1.0 / (k + 1));
-            }
-        }
-        Pack u1 = u0, v1 = V[0], reach = abs(V[0]);
-        for (int k = 1; k <= N; ++k) v1 = v1 + V[k];
-        Pack du = V[N] * Pack(1.0 / (N + 1));
-        for (int k = N; k-- > 0;) du = fma(V[k], Pack(1.0 / (k + 1)), du);
-        u1 = u0 + du;
-        for (int k = 1; k <= N; ++k) reach = fma(abs(V[k]), Pack(1.0 / (k + 1)), reach);
-        const Mask whole = h == Pack(1.0);
-        if (whole.bits() != (1u << Pack::width) - 1) v1 = divided(v1, h);
-
-        const Pack y0 = Pack::load(alpha + at) - u0;
-        const Pack t1 = t0 + h;
-        const Mask done = t1 >= Pack(kWhole);
-        const Pack i1 = select(done, i0 + Pack::load(stride + at), i0);
-        const Mask clear = (y0 - reach) > Pack(0.0);
-        const Mask turning = (v0 < Pack(0.0)) & (v1 >= Pack(0.0)) & (y0 + reach > Pack::load(peak + at));
-        const Mask visit = !clear | (u1 < Pack(0.0)) | turning | (done & (i1 >= Pack::load(last + at)));
-        const unsigned bits = visit.bits();
-        if (bits)
-            for (int k = 0; k <= N; ++k) V[k].store(&terms[k][at]);
-
-        const Pack t2 = select(done, Pack(0.0), t1);
-        select(visit, u0, u1).store(u + at);
-        select(visit, v0, v1).store(v + at);
-        select(visit, t0, t2).store(tau + at);
-        select(visit, h, min(Pack::load(sub + at), Pack(1.0) - t2)).store(len + at);
-        select(visit, i0, i1).store(idx + at);
-        (Pack::load(err + at) + abs(V[N])).store(err + at);
-        const Pack top = Pack::load(fastest + at);
-        select(visit, top, max(top, abs(v1))).store(fastest + at);
-        if (trace && at == 0 && lanes[0].row >= 0 && !(bits & 1) && tau[0] == 0.0) sample(0);
-        return bits;
-    }
-
-    static Pack divided(Pack a, Pack b) {
-        alignas(64) double x[Pack::width], y[Pack::width];
-        a.store(x);
-        b.store(y);
-        for (int i = 0; i < Pack::width; ++i) x[i] /= y[i];
-        return Pack::load(x);
-    }
-
     // Series of the ground's acceleration over the step: s a_x / g in b, a_z / g in z.
-    void forcing(int at, Pack i0, Pack t0, Pack h, Pack* b, Pack* z) const {
-        const Pack c = Pack::load(ca + at);
+    void forcing(const Pack* i0, const Pack* t0, const Pack* h, Pack (*b)[U], Pack (*z)[U]) const {
         const double* data = motions.data;
-        if (D == 1) {
-            constexpr int hop = Z ? 2 : 1;
-            const Pack a = Pack::gather(data, i0), da = Pack::gather(data + hop, i0) - a;
-            b[0] = c * fma(da, t0, a);
-            b[1] = c * (da * h);
-            if (Z) {
-                const Pack w = Pack::load(cz + at), q = Pack::gather(data + 1, i0), dq = Pack::gather(data + hop + 1, i0) - q;
-                z[0] = w * fma(dq, t0, q);
-                z[1] = w * (dq * h);
-            }
-        } else {
-            for (int k = 0; k <= D; ++k) b[k] = c * Pack::gather(data + k, i0);
-            for (int k = 0; k < D; ++k)  // Taylor shift to t0
-                for (int j = D; j-- > k;) b[j] = fma(t0, b[j + 1], b[j]);
-            Pack power = h;
-            for (int k = 1; k <= D; ++k) {
-                b[k] = b[k] * power;
-                power = power * h;
+        ROCKING_LANES {
+            const Pack c = Pack::load(ca + j * P);
+            if (D == 1) {
+                constexpr int hop = Z ? 2 : 1;
+                const Pack a = Pack::gather(data, i0[j]), da = Pack::gather(data + hop, i0[j]) - a;
+                b[0][j] = c * fma(da, t0[j], a);
+                b[1][j] = c * (da * h[j]);
+                if (Z) {
+                    const Pack w = Pack::load(cz + j * P);
+                    const Pack g = Pack::gather(data + 1, i0[j]), dg = Pack::gather(data + hop + 1, i0[j]) - g;
+                    z[0][j] = w * fma(dg, t0[j], g);
+                    z[1][j] = w * (dg * h[j]);
+                }
+            } else {
+                Pack p[D + 1];
+                ROCKING_UNROLL
+                for (int k = 0; k <= D; ++k) p[k] = c * Pack::gather(data + k, i0[j]);
+                ROCKING_UNROLL
+                for (int k = 0; k < D; ++k) {  // Taylor shift to t0
+                    ROCKING_UNROLL
+                    for (int m = D; m-- > k;) p[m] = fma(t0[j], p[m + 1], p[m]);
+                }
+                Pack power = h[j];
+                b[0][j] = p[0];
+                ROCKING_UNROLL
+                for (int k = 1; k <= D; ++k) {
+                    b[k][j] = p[k] * power;
+                    power = power * h[j];
+                }
             }
         }
     }
@@ -240,7 +262,7 @@ class Kernel {
         double sum = 0.0;
         for (int k = 0; k <= N; ++k) {
             V[k] = terms[k][i];
-            c[k + 1] = -V[k] / (k + 1);
+            c[k + 1] = -V[k] * (1.0 / (k + 1));
             sum += std::fabs(V[k]);
         }
         c[0] = alpha[i] - u[i];
@@ -264,6 +286,7 @@ class Kernel {
     }
 
     void note_peak(int i, const double* c, double upto) {
+        if (c[1] < 0.0) return;
         double slopes[N + 2];
         for (int k = 0; k <= N; ++k) slopes[k] = (k + 1) * c[k + 1];
         int skip = 0;
@@ -355,12 +378,12 @@ class Kernel {
         if (u1 < 0.0) {
             const bool lies = alpha[i] - u1 >= kHalfPi && (!L || beyond_return(i));
             if (lies || (!set.to_the_ground && beyond_return(i))) return overturned(i);
+            gate[i] = set.to_the_ground ? 0.0 : u1 - 0.02;  // look again a degree further out
         }
         if (idx[i] >= last[i]) conclude(i);
     }
 
     void overturned(int i) {
-        raise_peak(i, alpha[i] - u[i], now(i, 0.0));
         finish(i, kOverturned, kGood);
     }
 
@@ -430,40 +453,91 @@ class Kernel {
         return zero > 1.0 ? 2.0 : from + zero * (1.0 - from);
     }
 
-    // After an impact with a small speed: do the impacts to come add up to rest before the body could rise again?
-    // The flights are parabolas under the least and the largest moment of the rest of the stretch; the bound is safe.
+    // Least and largest holding moment of each side over a window of time, and a bound on how fast they change with y.
+    struct Window {
+        double low[2], high[2], steepness;
+    };
+
+    bool window(int i, std::int64_t stretches, Window& w) const {
+        const Lane& lane = lanes[i];
+        const int hop = motions.stride();
+        const double* a = motions.data + static_cast<std::int64_t>(idx[i]);
+        double least = 1e300, most = -1e300, least_weight = 1.0, most_weight = 1.0;
+        if (D == 1) {
+            if (Z) {
+                const double z = lane.az * (a[1] + (a[hop + 1] - a[1]) * tau[i]);
+                least_weight = most_weight = 1.0 + z;
+            }
+            least = most = lane.ax * (a[0] + (a[hop] - a[0]) * tau[i]);
+            for (std::int64_t k = 1; k <= stretches; ++k) {
+                const double x = lane.ax * a[k * hop];
+                least = std::min(least, x);
+                most = std::max(most, x);
+                if (Z) {
+                    const double z = 1.0 + lane.az * a[k * hop + 1];
+                    least_weight = std::min(least_weight, z);
+                    most_weight = std::max(most_weight, z);
+                }
+            }
+        } else {
+            least = most = lane.ax * a[0];
+            for (int k = 1; k <= D; ++k) (lane.ax * a[k] < 0.0 ? least : most) += lane.ax * a[k];
+        }
+        for (int k = 0; k < 2; ++k) {
+            const Side& s = lane.sides[k];
+            const double sign = k == 0 ? 1.0 : -1.0, x = sign * least, y = sign * most;
+            w.low[k] = least_weight * s.sine + std::min(x, y) * s.cosine;
+            w.high[k] = most_weight * s.sine + std::max(x, y) * s.cosine;
+        }
+        w.steepness = std::fabs(most_weight) + std::max(std::fabs(least), std::fabs(most));
+        return w.low[0] > 0.0 && w.low[1] > 0.0;
+    }
+
+    // After an impact with a small speed: do the impacts to come add up to rest before the body could rise again? Their
+    // flights are bounded by those under the least and the largest moment of the time they take, so that `true` is
+    // proven and nothing is lost by not resolving them one by one.
     bool comes_to_rest(int i, double after) const {
         const Lane& lane = lanes[i];
-        const Side &s = here(i), &o = lane.sides[lane.side > 0 ? 1 : 0];
-        if (!(after <= set.rest * s.p * s.alpha)) return false;
-        double low[2], high[2];
-        for (int k = 0; k < 2; ++k) {
-            double d[D + 1];
-            holding(i, k == 0 ? 1 : -1, static_cast<std::int64_t>(idx[i]), d);
-            if (D == 1) {
-                const double a = d[0] + d[1] * tau[i], b = d[0] + d[1];
-                low[k] = std::min(a, b);
-                high[k] = std::max(a, b);
-            } else {
-                low[k] = high[k] = d[0];
-                for (int j = 1; j <= D; ++j) (d[j] < 0.0 ? low[k] : high[k]) += d[j];
-            }
-            const bool held = value_of(d, D, tau[i]) > 0.0;
-            if (k == (lane.side > 0 ? 0 : 1)) {
-                if (!held) return false;
-                if (after <= 1e-9 * s.p * s.alpha) return true;  // what is left is below all digits that count
-            }
-        }
-        if (!(low[0] > 0.0 && low[1] > 0.0)) return false;
-        const double speeding = std::max(high[0] / low[0], high[1] / low[1]);
+        const Side& s = here(i);
+        const double unit = s.p * s.alpha;
+        if (!(after <= set.rest * unit)) return false;
+        double d[D + 1];
+        holding(i, lane.side, static_cast<std::int64_t>(idx[i]), d);
+        const double held = value_of(d, D, tau[i]);
+        if (!(held > 0.0)) return false;
+        if (after <= 1e-9 * unit) return true;  // what is left is below all digits that count
+        const double left = 1.0 - tau[i];
+        Window w;
+        if (!window(i, 1, w)) return false;
+        const double first = time_to_rest(i, after, w) / lane.step;
+        if (first <= left) return true;
+        const std::int64_t stretches = static_cast<std::int64_t>(1.5 * first - left) + 2;
+        if (D > 1 || !(first < 40.0) || idx[i] + stretches * motions.stride() > last[i]) return false;
+        if (!window(i, stretches, w)) return false;
+        return time_to_rest(i, after, w) / lane.step <= left + static_cast<double>(stretches - 1);
+    }
+
+    // Longest time that the flights to come can take in all under the moments of a window; infinite if unknown.
+    double time_to_rest(int i, double after, Window w) const {
+        const Lane& lane = lanes[i];
+        const int k = lane.side > 0 ? 0 : 1, o = 1 - k;
+        const Side &s = lane.sides[k], &t = lane.sides[o];
         const double r_here = law.kind == LawKind::constant ? s.r : s.r * law.largest;
-        const double r_there = law.kind == LawKind::constant ? o.r : o.r * law.largest;
-        const double ratio = r_here * r_there * speeding;
-        if (!(ratio < 1.0)) return false;
-        const int k = lane.side > 0 ? 0 : 1;
-        const double there = r_there * std::sqrt(speeding);
-        const double total = 2.0 * after * (1.0 / (s.p * s.p * low[k]) + there / (o.p * o.p * low[1 - k])) / (1.0 - ratio);
-        return total <= (1.0 - tau[i]) * lane.step;
+        const double r_there = law.kind == LawKind::constant ? t.r : t.r * law.largest;
+        const double never = std::numeric_limits<double>::infinity();
+        double speed = after;
+        for (int side : {k, o}) {  // a higher flight meets a moment that differs by its steepness times the height
+            const double p2 = lane.sides[side].p * lane.sides[side].p, height = speed * speed / (p2 * w.low[side]);
+            const double change = height * w.steepness;
+            if (!(change < 0.5 * w.low[side])) return never;
+            w.low[side] -= change;
+            w.high[side] += change;
+            speed *= r_there * std::sqrt(w.high[side] / w.low[side]);
+        }
+        const double gain_here = std::sqrt(w.high[k] / w.low[k]), gain_there = std::sqrt(w.high[o] / w.low[o]);
+        const double ratio = r_here * r_there * gain_here * gain_there;
+        if (!(ratio < 1.0)) return never;
+        return 2.0 * after * (1.0 / (s.p * s.p * w.low[k]) + r_there * gain_here / (t.p * t.p * w.low[o])) / (1.0 - ratio);
     }
 
     // At rest: find where the ground next lifts the body, skipping blocks in which it cannot.
@@ -547,7 +621,6 @@ class Kernel {
 
     void falls(int i, double when) {
         lanes[i].over_time = when;
-        raise_peak(i, std::max(here(i).alpha, u[i] < 0.0 ? alpha[i] - u[i] : 0.0), now(i, 0.0));
         finish(i, kOverturned, kGood);
     }
 
@@ -574,12 +647,12 @@ class Kernel {
         Lane& lane = lanes[i];
         const std::int64_t row = lane.row;
         const double nan = std::numeric_limits<double>::quiet_NaN();
-        const bool good = status == kGood;
+        const bool good = status == kGood, down = outcome == kOverturned;
         rows.outcome[row] = outcome;
         rows.status[row] = status;
         rows.side[row] = outcome == kOverturned ? static_cast<std::int8_t>(lane.side) : 0;
-        rows.peak[row] = good ? lane.peak_signed : nan;
-        rows.peak_time[row] = good ? lane.peak_time : nan;
+        rows.peak[row] = down ? lane.side * kHalfPi : good ? lane.peak_signed : nan;  // it lies at a quarter turn
+        rows.peak_time[row] = down ? lane.over_time : good ? lane.peak_time : nan;
         rows.peak_velocity[row] = good ? fastest[i] / lane.step : nan;
         rows.overturning_time[row] = outcome == kOverturned ? lane.over_time : nan;
         rows.first_uplift[row] = lane.first_uplift;
@@ -593,7 +666,7 @@ class Kernel {
     void idle(int i) {
         lanes[i].row = -1;
         u[i] = 0.0;
-        v[i] = tau[i] = kappa[i] = ca[i] = cz[i] = idx[i] = stride[i] = err[i] = fastest[i] = 0.0;
+        v[i] = tau[i] = kappa[i] = ca[i] = cz[i] = idx[i] = stride[i] = err[i] = fastest[i] = gate[i] = 0.0;
         len[i] = sub[i] = alpha[i] = peak[i] = 1.0;
         last[i] = std::numeric_limits<double>::infinity();
     }

@@ -9,6 +9,14 @@
 #include <immintrin.h>
 #endif
 
+#if defined(__clang__)
+#define ROCKING_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define ROCKING_UNROLL _Pragma("GCC unroll 16")
+#else
+#define ROCKING_UNROLL
+#endif
+
 namespace rocking {
 namespace ROCKING_ISA {
 
@@ -37,6 +45,7 @@ struct Pack {
 inline Pack operator+(Pack a, Pack b) { return _mm512_add_pd(a.r, b.r); }
 inline Pack operator-(Pack a, Pack b) { return _mm512_sub_pd(a.r, b.r); }
 inline Pack operator*(Pack a, Pack b) { return _mm512_mul_pd(a.r, b.r); }
+inline Pack operator/(Pack a, Pack b) { return _mm512_div_pd(a.r, b.r); }
 inline Pack fma(Pack a, Pack b, Pack c) { return _mm512_fmadd_pd(a.r, b.r, c.r); }
 inline Pack fnma(Pack a, Pack b, Pack c) { return _mm512_fnmadd_pd(a.r, b.r, c.r); }
 inline Pack abs(Pack a) { return _mm512_abs_pd(a.r); }
@@ -74,6 +83,7 @@ struct Pack {
 inline Pack operator+(Pack a, Pack b) { return _mm256_add_pd(a.r, b.r); }
 inline Pack operator-(Pack a, Pack b) { return _mm256_sub_pd(a.r, b.r); }
 inline Pack operator*(Pack a, Pack b) { return _mm256_mul_pd(a.r, b.r); }
+inline Pack operator/(Pack a, Pack b) { return _mm256_div_pd(a.r, b.r); }
 inline Pack fma(Pack a, Pack b, Pack c) { return _mm256_fmadd_pd(a.r, b.r, c.r); }
 inline Pack fnma(Pack a, Pack b, Pack c) { return _mm256_fnmadd_pd(a.r, b.r, c.r); }
 inline Pack abs(Pack a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.r); }
@@ -116,6 +126,7 @@ struct Pack {
 inline Pack operator+(Pack a, Pack b) { ROCKING_EACH a.r[i] += b.r[i]; return a; }
 inline Pack operator-(Pack a, Pack b) { ROCKING_EACH a.r[i] -= b.r[i]; return a; }
 inline Pack operator*(Pack a, Pack b) { ROCKING_EACH a.r[i] *= b.r[i]; return a; }
+inline Pack operator/(Pack a, Pack b) { ROCKING_EACH a.r[i] /= b.r[i]; return a; }
 inline Pack fma(Pack a, Pack b, Pack c) { ROCKING_EACH a.r[i] = ROCKING_SCALAR_FMA(a.r[i], b.r[i], c.r[i]); return a; }
 inline Pack fnma(Pack a, Pack b, Pack c) { ROCKING_EACH a.r[i] = ROCKING_SCALAR_FMA(-a.r[i], b.r[i], c.r[i]); return a; }
 inline Pack abs(Pack a) { ROCKING_EACH a.r[i] = std::fabs(a.r[i]); return a; }

@@ -20,17 +20,22 @@ inline double slope_of(const double* c, int degree, double x) {
     return y;
 }
 
-// Zero between low and high, where the polynomial changes sign from plus to minus.
-inline double polished(const double* c, int degree, double low, double high) {
-    double x = 0.5 * (low + high);
+// Zero between low and high, where the polynomial changes sign from plus to minus; Newton from a guess, bracketed.
+// `bend` bounds half the second derivative.
+inline double polished(const double* c, int degree, double low, double high, double x, double bend) {
     for (int round = 0; round < 200; ++round) {
-        const double y = value_of(c, degree, x);
+        double y = c[degree], slope = 0.0;
+        for (int k = degree; k-- > 0;) {
+            slope = fma(slope, x, y);
+            y = fma(y, x, c[k]);
+        }
         if (y == 0.0) return x;
         (y > 0.0 ? low : high) = x;
-        const double slope = slope_of(c, degree, x);
         double next = x - y / slope;
-        if (!(next > low && next < high)) next = 0.5 * (low + high);
-        if (std::fabs(next - x) <= 2.3e-16 * std::fabs(x) || next == low || next == high) return next;
+        if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+        const double move = std::fabs(next - x);
+        // Newton's next error is at most move^2 * bend / |slope|
+        if (move <= 4.5e-16 * x || move * move * bend <= 1e-17 * std::fabs(slope) * x) return next;
         x = next;
     }
     return x;
@@ -41,6 +46,19 @@ inline double first_zero(const double* c, int degree) {
     double rest = 0.0;
     for (int k = 1; k <= degree; ++k) rest += std::fabs(c[k]);
     if (c[0] > rest) return 2.0;
+    // falling all the way: at most one zero, and a parabola is a good guess
+    double bend = 0.0;
+    for (int k = 2; k <= degree; ++k) bend += k * std::fabs(c[k]);
+    double half_curve = 0.0;
+    for (int k = 2; k <= degree; ++k) half_curve += 0.5 * k * (k - 1) * std::fabs(c[k]);
+    if (-c[1] > bend) {
+        const double end = value_of(c, degree, 1.0);
+        if (end > 0.0) return 2.0;
+        if (end == 0.0) return 1.0;
+        const double root = c[1] * c[1] - 4.0 * c[0] * (degree > 1 ? c[2] : 0.0);
+        const double guess = root > 0.0 ? 2.0 * c[0] / (std::sqrt(root) - c[1]) : 0.5;
+        return polished(c, degree, 0.0, 1.0, guess < 1.0 ? guess : 0.5, half_curve);
+    }
 
     struct Piece {
         double low, high, b[kLargestDegree + 1];
@@ -73,7 +91,9 @@ inline double first_zero(const double* c, int degree) {
             if (piece.b[degree] == 0.0 && piece.high == 1.0 && piece.b[degree - 1] > 0.0) return 1.0;
             continue;
         }
-        if (changes == 1 && piece.b[0] > 0.0) return polished(c, degree, piece.low, piece.high);
+        if (changes == 1 && piece.b[0] > 0.0) {
+            return polished(c, degree, piece.low, piece.high, 0.5 * (piece.low + piece.high), half_curve);
+        }
         const double middle = 0.5 * (piece.low + piece.high);
         if (depth + 2 > 48 || piece.high - piece.low < 1e-14) {
             if (piece.b[degree] < 0.0) return middle;

@@ -29,7 +29,6 @@ inline void sine_cosine_reduced(Number x, Number& sine, Number& cosine) {
 }
 
 inline void sine_cosine(Pack x, Pack& sine, Pack& cosine) {
-    if (!(abs(x) > Pack(0.78539816339744830962)).bits()) return sine_cosine_reduced(x, sine, cosine);
     const Pack magic(6755399441055744.0);  // 1.5 * 2^52: adding and subtracting it rounds to a whole number
     const Pack k = fma(x, Pack(0.63661977236758134308), magic) - magic;
     Pack r = fnma(k, Pack(1.57079632679489655800), x);

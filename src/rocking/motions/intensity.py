@@ -63,11 +63,6 @@ def peak_ground_acceleration(motion: GroundMotion) -> float:
     -------
     float
         PGA [m/s2].
-
-    Examples
-    --------
-    >>> peak_ground_acceleration(GroundMotion([0.0, 1.0, -3.0], 0.1))
-    3.0
     """
     return motion.peak
 

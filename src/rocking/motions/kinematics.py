@@ -99,11 +99,35 @@ def largest_displacement(motion: GroundMotion) -> float:
     v, u = ground_velocity(motion), ground_displacement(motion)
     start, rise = a[:-1], np.diff(a)
     inside = [u]
-    for tau in _roots(0.5 * h * rise, h * start, v[:-1]):
+    for tau in quadratic_roots(0.5 * h * rise, h * start, v[:-1]):
         # outside (0, 1) the ends of the step are the extremes, and these are in u already
         t = np.where((tau > 0.0) & (tau < 1.0), tau, 0.0)
         inside.append(u[:-1] + h * t * (v[:-1] + h * t * (0.5 * start + rise * t / 6.0)))
     return _largest(*inside)
+
+
+def quadratic_roots(second: FloatArray, first: FloatArray, zeroth: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the real roots of many quadratic equations, without cancellation.
+
+    Parameters
+    ----------
+    second, first, zeroth : ndarray
+        Coefficients of ``second t^2 + first t + zeroth``.
+
+    Returns
+    -------
+    tuple of ndarray
+        Both roots of each; not finite where there is none.
+
+    Examples
+    --------
+    >>> one, other = quadratic_roots(np.array([1.0]), np.array([-3.0]), np.array([2.0]))
+    >>> float(one[0]), float(other[0])
+    (2.0, 1.0)
+    """
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        q = -0.5 * (first + np.copysign(np.sqrt(first * first - 4.0 * second * zeroth), first))
+        return q / second, zeroth / q
 
 
 def _summed(increments: FloatArray) -> FloatArray:
@@ -112,10 +136,3 @@ def _summed(increments: FloatArray) -> FloatArray:
 
 def _largest(*values: FloatArray) -> float:
     return max(float(np.abs(part).max(initial=0.0)) for part in values)
-
-
-def _roots(second: FloatArray, first: FloatArray, zeroth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the real roots of second t^2 + first t + zeroth without cancellation; NaN where there are none."""
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        q = -0.5 * (first + np.copysign(np.sqrt(first * first - 4.0 * second * zeroth), first))
-        return q / second, zeroth / q

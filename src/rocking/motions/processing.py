@@ -133,9 +133,9 @@ def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) ->
     high = checks.within(
         "high", high, low, nyquist, unit="Hz", open_low=True, open_high=True, hint="low < high < Nyquist"
     )
-    if isinstance(order, bool) or not isinstance(order, int) or not 1 <= order <= 10:
+    if isinstance(order, bool) or order not in range(1, 11):
         raise InvalidValueError(f"order must be a whole number from 1 to 10, got {order!r}")
-    sections: Any = butter(order, [low, high], btype="bandpass", fs=1.0 / motion.time_step, output="sos")
+    sections: Any = butter(int(order), [low, high], btype="bandpass", fs=1.0 / motion.time_step, output="sos")
     pad = math.ceil(1.5 * order / low / motion.time_step)
 
     def filtered(part: GroundMotion) -> FloatArray:

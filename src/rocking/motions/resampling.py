@@ -67,7 +67,7 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
     factor = round(ratio)
     if abs(ratio - factor) > ROUNDING * factor:
         raise InvalidValueError(
-            f"time_step must be a whole multiple of {motion.time_step:g} s to be coarser, got {new:g} s, {ratio:g} times"
+            f"time_step must be a whole multiple of {motion.time_step:g} s if above, got {new:g} s, {ratio:g} times"
         )
     if factor > len(motion) - 1:
         raise InvalidValueError(f"time_step must leave 2 samples, at most {motion.duration:g} s, got {new:g} s")

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rocking import checks
 from rocking.errors import InvalidValueError
@@ -74,7 +73,7 @@ def rotd_pga(first: GroundMotion, second: GroundMotion, percentile: float) -> fl
     if percentile == 100.0:
         # between samples the point moves on a straight line, so that it is farthest at a sample
         return float(np.hypot(a, b).max())
-    peaks: ArrayLike = [np.abs(math.cos(t) * a + math.sin(t) * b).max() for t in ANGLES]
+    peaks = np.array([np.abs(math.cos(t) * a + math.sin(t) * b).max() for t in ANGLES])
     return float(np.percentile(peaks, percentile))
 
 

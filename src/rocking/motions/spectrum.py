@@ -10,10 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.motions.kinematics import quadratic_roots
 from rocking.motions.motion import GroundMotion
 
-POINTS_PER_PERIOD = 72
-"""Peaks are looked for at least this often a period: between, a sine hides at most (pi / 72)^2 / 2 = 0.095 %."""
+POINTS_PER_PERIOD = 36
+"""Steps are divided until there are so many points a period; between these, peaks are those of cubics."""
+
+FREE_POINTS = 288
+"""Points in the half period of free vibration: between, a sine hides at most (pi / 287)^2 / 8 = 0.0015 %."""
 
 SHORTEST_PERIOD = 0.05
 """Shortest period in time steps: below, the record says nothing about what the oscillator feels."""
@@ -60,9 +64,10 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     """Return the response spectrum of a motion.
 
     The recurrence is exact for straight lines between the samples (Nigam & Jennings 1969, DOI
-    10.1785/BSSA0590020909), here in its complex form. The only error is that of looking for peaks at single points,
-    72 or more a period: less than 0.1 %, always to the low side. Half a period of free vibration after the last
-    sample is included.
+    10.1785/BSSA0590020909), here in its complex form. The only error is that
+    of looking for peaks: within each step they are those of cubics through values and slopes, on at least 36 points
+    a period, and miss the true ones by less than 0.01 %, for periods down to 2 time steps and below. Half a period of
+    free vibration after the last sample is included.
 
     Parameters
     ----------
@@ -134,18 +139,21 @@ def _peaks(motion: GroundMotion, period: float, damping: float) -> tuple[float, 
     omega = 2.0 * math.pi / period
     rate = complex(-damping * omega, omega * math.sqrt(1.0 - damping * damping))
     states = _states(motion, rate)
+    h, a = motion.time_step, motion.acceleration
+    rise = np.diff(a)
+    parts = math.ceil(POINTS_PER_PERIOD * h / period)
     best = np.zeros(3)
-    h, start, rise = motion.time_step, motion.acceleration[:-1], np.diff(motion.acceleration)
-    parts = max(1, math.ceil(POINTS_PER_PERIOD * h / period))
-    for k in range(1, parts):
+    left = _response(states[:-1], a[:-1], rate)
+    for k in range(1, parts + 1):
         t = k * h / parts
         first, second = phi(rate * t)
-        inside = np.exp(rate * t) * states[:-1] - t * first * start - (t * t / h * second) * rise
-        best = np.maximum(best, _largest(inside, rate, omega, damping))
+        inside = np.exp(rate * t) * states[:-1] - t * first * a[:-1] - (t * t / h * second) * rise
+        right = _response(inside, a[:-1] + k / parts * rise, rate)
+        best = np.maximum(best, [_peak(*pair, h / parts) for pair in zip(left, right, strict=True)])
+        left = right
     # afterwards it swings freely: half a period holds one extreme of each
-    free = states[-1] * np.exp(rate * np.linspace(0.0, math.pi / rate.imag, 4 * POINTS_PER_PERIOD))
-    for more in (states, free):
-        best = np.maximum(best, _largest(more, rate, omega, damping))
+    free = states[-1] * np.exp(rate * np.linspace(0.0, math.pi / rate.imag, FREE_POINTS))
+    best = np.maximum(best, [np.abs(value).max() for value, _ in _response(free, np.zeros(FREE_POINTS), rate)])
     return float(best[0]), float(best[1]), float(best[2])
 
 
@@ -160,8 +168,26 @@ def _states(motion: GroundMotion, rate: complex) -> ComplexArray:
     return np.asarray(result, dtype=np.complex128)
 
 
-def _largest(states: ComplexArray, rate: complex, omega: float, damping: float) -> FloatArray:
+def _response(states: ComplexArray, ground: FloatArray, rate: complex) -> list[tuple[FloatArray, FloatArray]]:
+    """Return displacement, velocity and absolute acceleration, each with its rate of change."""
     u = states.imag / rate.imag
     v = states.real + rate.real * u
-    absolute = 2.0 * damping * omega * v + omega * omega * u
-    return np.array([np.abs(u).max(), np.abs(v).max(), np.abs(absolute).max()])
+    omega2, friction = abs(rate) ** 2, -2.0 * rate.real
+    absolute = -friction * v - omega2 * u
+    change = absolute - ground
+    return [(u, v), (v, change), (absolute, -friction * change - omega2 * v)]
+
+
+def _peak(left: tuple[FloatArray, FloatArray], right: tuple[FloatArray, FloatArray], step: float) -> float:
+    """Return the largest magnitude of cubics through values and slopes at both ends."""
+    ends = max(float(np.abs(left[0]).max()), float(np.abs(right[0]).max()))
+    # no cubic leaves the range of its ends by more than 4/27 of its slopes: most need no closer look
+    reach = np.maximum(np.abs(left[0]), np.abs(right[0])) + 4.0 / 27.0 * step * (np.abs(left[1]) + np.abs(right[1]))
+    (y, d), (z, e) = ((side[0][reach > ends], step * side[1][reach > ends]) for side in (left, right))
+    rise = z - y
+    best = ends
+    for root in quadratic_roots(3.0 * (d + e - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * d - e), d):
+        t = np.where((root > 0.0) & (root < 1.0), root, 0.0)
+        inside = y + t * (d + t * (3.0 * rise - 2.0 * d - e + t * (d + e - 2.0 * rise)))
+        best = max(best, float(np.abs(inside).max(initial=0.0)))
+    return best

@@ -189,56 +189,13 @@ def check_duration(source: Source, stated: float, count: int, step: float, round
     Raises
     ------
     RecordError
-        If they differ by more than one step and the rounding.
+        If it is neither of them to the rounding.
     """
-    if not (count - 1) * step - 1.001 * rounding - 1e-9 <= stated <= count * step + 1.001 * rounding + 1e-9:
+    off = min(abs(stated - samples * step) for samples in (count - 1, count))
+    if not off <= 1.001 * rounding + 1e-9:
         raise source.error(
             None, f"the header states a duration of {stated:g} s, {count} samples at {step:g} s last {count * step:g} s"
         )
-
-
-def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
-    """Return the step of a time column that is uniform to the rounding of its digits.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    times : ndarray, shape (n,)
-        Times as printed [s].
-    unit : float
-        One unit of the last printed digit [s].
-
-    Returns
-    -------
-    float
-        The step; the shortest decimal number that fits the column [s].
-
-    Raises
-    ------
-    RecordError
-        If there are fewer than two times, they are unevenly spaced, or they have too few digits to tell.
-    """
-    if times.size < 2:
-        raise source.error(None, f"at least 2 samples are needed, found {times.size}")
-    steps = times.size - 1
-    mean = float(times[-1] - times[0]) / steps
-    if not 1e-6 <= mean <= 10.0:
-        raise source.error(None, f"time step must be in [1e-6, 10] s, got {mean:g}; is the first column a time?")
-    # beyond rounding or cutting at the last digit, times that went through single precision are accepted
-    slack = unit + 1.2e-7 * float(np.abs(times).max())
-    if slack > 0.26 * mean:
-        raise source.error(None, f"the times have too few digits to tell their step of about {mean:g} s")
-    off = np.abs(times - times[0] - mean * np.arange(times.size))
-    worst = int(off.argmax())
-    if off[worst] > slack:
-        raise source.error(
-            None,
-            f"the times are not evenly spaced: sample {worst + 1} at {times[worst]:g} s is {off[worst]:.3g} s off the "
-            f"even step of {mean:g} s; resample it first, or a line is missing",
-        )
-    rounded = (round(mean, digits) for digits in range(1, 10))
-    return next((step for step in rounded if step > 0.0 and abs(step - mean) * steps <= slack), mean)
 
 
 def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[FloatArray]:
@@ -280,3 +237,48 @@ def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[Flo
         same = ACCELERATION_UNITS[part.unit] == ACCELERATION_UNITS[unit]
         rows.append(values if same else values * (ACCELERATION_UNITS[part.unit] / ACCELERATION_UNITS[unit]))
     return rows
+
+
+def half_digit(word: str) -> float:
+    """Return the largest error that rounding can have left in a printed number: half a unit of its last digit.
+
+    Parameters
+    ----------
+    word : str
+        The number as printed.
+
+    Returns
+    -------
+    float
+        The error, with a millionth to spare for arithmetic in the last place.
+
+    Examples
+    --------
+    >>> f"{half_digit('4.954'):.3g}", f"{half_digit('4.136E+1'):.3g}", f"{half_digit('-12'):.3g}"
+    ('0.0005', '0.005', '0.5')
+    """
+    mantissa, _, exponent = word.strip().upper().replace("D", "E").partition("E")
+    return 0.500001 * 10.0 ** min(int(exponent or "0") - len(mantissa.partition(".")[2]), 300)
+
+
+def check_stated(source: Source, stated: float, found: float, rounding: float, what: str) -> None:
+    """Refuse a file whose header states another number than its data give; signs count.
+
+    Parameters
+    ----------
+    source : Source
+        The file, for the error.
+    stated, found : float
+        The number by the header and by the data.
+    rounding : float
+        Largest difference that rounding in the file explains.
+    what : str
+        What it is.
+
+    Raises
+    ------
+    RecordError
+        If they differ by more.
+    """
+    if not abs(stated - found) <= rounding:
+        raise source.error(None, f"the header states a {what} of {stated:g}, the data have {found:g}")

@@ -39,18 +39,23 @@ _KEPT = {
     "baseline": "BASELINE_CORRECTION",
 }
 # the keys of DYNA 1.2 in their order; a writer leaves blank what it does not know
+# fmt: off
 _KEYS = (
-    "EVENT_NAME EVENT_ID EVENT_DATE_YYYYMMDD EVENT_TIME_HHMMSS EVENT_LATITUDE_DEGREE EVENT_LONGITUDE_DEGREE EVENT_DEPTH_KM "
-    "HYPOCENTER_REFERENCE MAGNITUDE_W MAGNITUDE_W_REFERENCE MAGNITUDE_L MAGNITUDE_L_REFERENCE FOCAL_MECHANISM NETWORK "
-    "STATION_CODE STATION_NAME STATION_LATITUDE_DEGREE STATION_LONGITUDE_DEGREE STATION_ELEVATION_M LOCATION SENSOR_DEPTH_M "
-    "VS30_M/S SITE_CLASSIFICATION_EC8 MORPHOLOGIC_CLASSIFICATION EPICENTRAL_DISTANCE_KM EARTHQUAKE_BACKAZIMUTH_DEGREE "
-    "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS DATE_TIME_FIRST_SAMPLE_PRECISION SAMPLING_INTERVAL_S NDATA DURATION_S STREAM "
-    "UNITS INSTRUMENT INSTRUMENT_ANALOG/DIGITAL INSTRUMENTAL_FREQUENCY_HZ INSTRUMENTAL_DAMPING FULL_SCALE_G "
-    "N_BIT_DIGITAL_CONVERTER PGA_CM/S^2 TIME_PGA_S BASELINE_CORRECTION FILTER_TYPE FILTER_ORDER LOW_CUT_FREQUENCY_HZ "
-    "HIGH_CUT_FREQUENCY_HZ LATE/NORMAL_TRIGGERED DATABASE_VERSION HEADER_FORMAT DATA_TYPE PROCESSING "
-    "DATA_TIMESTAMP_YYYYMMDD_HHMMSS DATA_LICENSE DATA_CITATION DATA_CREATOR ORIGINAL_DATA_MEDIATOR_CITATION "
-    "ORIGINAL_DATA_MEDIATOR ORIGINAL_DATA_CREATOR_CITATION ORIGINAL_DATA_CREATOR USER1 USER2 USER3 USER4 USER5"
-).split()
+    "EVENT_NAME", "EVENT_ID", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS", "EVENT_LATITUDE_DEGREE",
+    "EVENT_LONGITUDE_DEGREE", "EVENT_DEPTH_KM", "HYPOCENTER_REFERENCE", "MAGNITUDE_W", "MAGNITUDE_W_REFERENCE",
+    "MAGNITUDE_L", "MAGNITUDE_L_REFERENCE", "FOCAL_MECHANISM", "NETWORK", "STATION_CODE", "STATION_NAME",
+    "STATION_LATITUDE_DEGREE", "STATION_LONGITUDE_DEGREE", "STATION_ELEVATION_M", "LOCATION", "SENSOR_DEPTH_M",
+    "VS30_M/S", "SITE_CLASSIFICATION_EC8", "MORPHOLOGIC_CLASSIFICATION", "EPICENTRAL_DISTANCE_KM",
+    "EARTHQUAKE_BACKAZIMUTH_DEGREE", "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS", "DATE_TIME_FIRST_SAMPLE_PRECISION",
+    "SAMPLING_INTERVAL_S", "NDATA", "DURATION_S", "STREAM", "UNITS", "INSTRUMENT", "INSTRUMENT_ANALOG/DIGITAL",
+    "INSTRUMENTAL_FREQUENCY_HZ", "INSTRUMENTAL_DAMPING", "FULL_SCALE_G", "N_BIT_DIGITAL_CONVERTER", "PGA_CM/S^2",
+    "TIME_PGA_S", "BASELINE_CORRECTION", "FILTER_TYPE", "FILTER_ORDER", "LOW_CUT_FREQUENCY_HZ",
+    "HIGH_CUT_FREQUENCY_HZ", "LATE/NORMAL_TRIGGERED", "DATABASE_VERSION", "HEADER_FORMAT", "DATA_TYPE",
+    "PROCESSING", "DATA_TIMESTAMP_YYYYMMDD_HHMMSS", "DATA_LICENSE", "DATA_CITATION", "DATA_CREATOR",
+    "ORIGINAL_DATA_MEDIATOR_CITATION", "ORIGINAL_DATA_MEDIATOR", "ORIGINAL_DATA_CREATOR_CITATION",
+    "ORIGINAL_DATA_CREATOR", "USER1", "USER2", "USER3", "USER4", "USER5",
+)
+# fmt: on
 
 
 class Esm(RecordFormat):
@@ -60,8 +65,8 @@ class Esm(RecordFormat):
     title: ClassVar[str] = "ESM ASCII (DYNA 1.2), European strong-motion database"
     suffixes: ClassVar[tuple[str, ...]] = (".asc",)
     notes: ClassVar[str] = (
-        "Verified on one real file of acceleration in cm/s^2. Count, duration, peak and time of the peak are checked against "
-        "the header. Velocity, displacement and spectra (DATA_TYPE) are refused."
+        "Verified on one real file of acceleration in cm/s^2. Count, duration, peak and time of the peak are checked "
+        "against the header. Velocity, displacement and spectra (DATA_TYPE) are refused."
     )
 
     def recognises(self, source: Source) -> bool:
@@ -197,11 +202,12 @@ def _check_peaks(
     duration = _number(source, keys, "DURATION_S")
     if duration is not None:
         digits = len(keys["DURATION_S"][1].partition(".")[2])
-        check_duration(source, duration, values.size, step, 0.5 * 10.0**-digits)
+        check_duration(source, duration, values.size, step, min(0.005, 0.5 * 10.0**-digits))
     peak = _number(source, keys, "PGA_CM/S^2")
     if unit not in {"cm/s2", "gal"} or peak is None:
         return None
-    rounding = 1.1 * 10.0 ** -len(keys["PGA_CM/S^2"][1].partition(".")[2])
+    # the peak has the 6 decimals of the data; one with fewer than 3 would check nothing
+    rounding = min(1.1e-3, 1.1 * 10.0 ** -len(keys["PGA_CM/S^2"][1].partition(".")[2]))
     check_peak(source, peak, values, rounding, "PGA_CM/S^2")
     at = _number(source, keys, "TIME_PGA_S")
     if at is not None:

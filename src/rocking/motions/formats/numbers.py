@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.errors import RecordError
 from rocking.motions.formats.source import Source
 
 # what float() takes beyond plain decimal numbers (nan, infinity, 1_000) is damage in a record
@@ -174,7 +175,7 @@ def in_columns(values: Sequence[float] | FloatArray, per_line: int, form: str) -
 
 
 def one_line(text: object, width: int) -> str:
-    """Return text that fits on one line of a header, for writers.
+    r"""Return text that fits on one line of a header, for writers.
 
     Parameters
     ----------
@@ -190,7 +191,7 @@ def one_line(text: object, width: int) -> str:
 
     Examples
     --------
-    >>> one_line("El Centro\\r\\n 1940", 12)
+    >>> one_line("El Centro\r\n 1940", 12)
     'El Centro 19'
     """
     plain = " ".join(str(text).split()).encode("latin-1", "replace").decode("latin-1")
@@ -228,3 +229,40 @@ def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
     if found is None or not int(found[1]) or not int(found[2]):
         raise source.error(line, f"a format such as (8F10.5) expected, found {word.strip()[:40]!r}")
     return int(found[1]), int(found[2])
+
+
+def in_width(values: Sequence[float] | FloatArray, per_line: int, width: int, decimals: int) -> list[str]:
+    """Return lines of numbers in columns of fixed width, for writers.
+
+    Parameters
+    ----------
+    values : sequence of float
+        The numbers.
+    per_line : int
+        Numbers on a line.
+    width : int
+        Characters of a number.
+    decimals : int
+        Digits after the point.
+
+    Returns
+    -------
+    list of str
+        The lines.
+
+    Raises
+    ------
+    RecordError
+        If a number needs more characters.
+
+    Examples
+    --------
+    >>> in_width([1.0, -2.5, 3.0], 2, 6, 2)
+    ['  1.00 -2.50', '  3.00']
+    """
+    lines = in_columns(values, per_line, f"{{:{width}.{decimals}f}}")
+    full = [per_line] * (len(lines) - 1) + [len(values) - per_line * (len(lines) - 1)]
+    for text, count in zip(lines, full, strict=True):
+        if len(text) != count * width:
+            raise RecordError(f"a number does not fit into {width} characters with {decimals} decimals; wrong unit?")
+    return lines

@@ -10,7 +10,7 @@ from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
 
-_LONGEST_HEADER = 60
+_LONGEST_HEADER, _LONGEST_LINE = 60, 400
 _KEYED = re.compile(r"\bNPTS\s*=.*\bDT\s*=|\bDT\s*=.*\bNPTS\s*=", re.IGNORECASE)
 _OLD = re.compile(r"\s*(\S+)\s+(\S+)\s+NPTS\s*,\s*DT\s*(?:\(?SEC\)?)?[\s,.]*", re.IGNORECASE)
 _UNIT = re.compile(r"\bUNITS?\s+(?:OF|ARE|IS|IN)\s*:?\s*(\(?[^\s,;.]*)", re.IGNORECASE)
@@ -26,8 +26,8 @@ class Peer(RecordFormat):
     title: ClassVar[str] = "PEER AT2, Pacific Earthquake Engineering Research Center"
     suffixes: ClassVar[tuple[str, ...]] = (".at2",)
     notes: ClassVar[str] = (
-        "Verified on seven real files of four header variants. `DT=` before `NPTS` and the `NPTS, DT` line without keys "
-        "follow published examples. The format states no peak: only the number of samples can be checked."
+        "Verified on seven real files of four header variants. `DT=` before `NPTS` and the `NPTS, DT` line without "
+        "keys follow published examples. The format states no peak: only the number of samples can be checked."
     )
 
     def recognises(self, source: Source) -> bool:
@@ -100,7 +100,8 @@ class Peer(RecordFormat):
         """
         (values,) = in_unit(record, self.name, "g", 1)
         part = record.components[0]
-        who = [one_line(record.metadata.get(key, "unknown"), 60).replace(",", " ") for key in ("event", "date", "station")]
+        known = {"event": "unknown", "station": "unknown", **record.metadata}
+        who = [one_line(known[key], 60).replace(",", " ") for key in ("event", "date", "station") if key in known]
         lines = [
             "STRONG MOTION RECORD IN THE PEER FORMAT",
             ", ".join([*who, one_line(part.name, 20).replace(",", " ")]),
@@ -113,7 +114,10 @@ class Peer(RecordFormat):
 
 def _size_line(source: Source) -> int | None:
     for line, text in enumerate(source.lines[:_LONGEST_HEADER]):
-        if len(text) < 400 and (_KEYED.search(text) or _OLD.fullmatch(text)):
+        # no header has such lines, and patterns take ages over them
+        if len(text) > _LONGEST_LINE:
+            return None
+        if _KEYED.search(text) or _OLD.fullmatch(text):
             return line
     return None
 
@@ -159,7 +163,7 @@ def _values(source: Source, first: int) -> FloatArray:
         words = len(source.lines[line].split())
         columns = columns or words
         if words and (short or words > columns):
-            raise source.error(line, f"{columns} numbers a line but for the last one expected; line missing or damaged?")
+            raise source.error(line, f"{columns} numbers a line expected save on the last; missing or damaged?")
         short = short or 0 < words < columns
     if not columns:
         raise source.error(None, "no sample after the header")
@@ -182,4 +186,5 @@ def _who(header: list[str]) -> tuple[dict[str, str], str]:
     places = [part for part in parts[1:-1] if part and not _DATE.fullmatch(part)]
     if places or (len(parts) == 2 and parts[0]):
         metadata["station"] = ", ".join(places) or metadata["event"]
-    return {key: value for key, value in metadata.items() if value}, (parts[-1] if len(parts) > 1 else "") or "acceleration"
+    name = parts[-1] if len(parts) > 1 else ""
+    return {key: value for key, value in metadata.items() if value not in {"", "unknown"}}, name or "acceleration"

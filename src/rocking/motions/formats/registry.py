@@ -60,7 +60,7 @@ def format_named(name: str) -> RecordFormat:
     >>> format_named("peer").states_unit
     True
     """
-    if not isinstance(name, str) or name not in _HOMES:
+    if name not in _HOMES:
         raise InvalidValueError(f"format must be one of {', '.join(_HOMES)}, got {name!r:.60}")
     return _load(name)
 

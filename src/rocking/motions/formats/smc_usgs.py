@@ -1,6 +1,6 @@
 """SMC as the U.S. Geological Survey distributes it: 8 columns of 10 characters, with no blanks between numbers.
 
-Checked on accelerograms of the 1989 Loma Prieta and 2002 Denali earthquakes. 11 lines of text, 48 whole numbers of
+Checked on six corrected accelerograms of the 1989 Loma Prieta earthquake. 11 lines of text, 48 whole numbers of
 width 10, 50 real numbers of width 15, lines of comment that begin with ``|``, samples.
 """
 
@@ -23,6 +23,7 @@ TEXTS, WHOLES, REALS = 11, 6, 10
 _NO_REAL = 1.7e38
 _NO_WHOLE = -32768
 _HIGH_PRECISION = 8
+_WHOLES, _REALS = r"[ \d-]{80}", r"( *[+-]?\d*\.\d+E[+-]\d\d){5}"
 _KINDS = {0: "unknown", 1: "uncorrected accelerogram", 2: "corrected accelerogram"}
 _OTHER = {3: "velocity", 4: "displacement", 5: "response spectra", 6: "Fourier amplitude spectra"}
 
@@ -65,16 +66,14 @@ class SmcUsgs(RecordFormat):
         bool
             True if this format should read it.
         """
-        if not source.is_text or len(source.lines) < TEXTS + WHOLES + REALS + 1:
+        if not source.is_text or not re.match(r" ?\d [A-Z]", source.lines[0]):
             return False
-        rows = [line.rstrip() for line in source.lines[TEXTS : TEXTS + WHOLES + REALS]]
-        if not re.match(r" ?\d [A-Z]", source.lines[0]):
+        # a header of which a line is missing is still SMC: read() says what is wrong with it
+        top = [line.rstrip() for line in source.lines[1 : TEXTS + WHOLES + REALS + 3]]
+        wholes = [row for row in top if re.fullmatch(_WHOLES, row)]
+        if len(wholes) < WHOLES - 1 or sum(re.fullmatch(_REALS, row) is not None for row in top) < REALS - 1:
             return False
-        if not all(re.fullmatch(r"[ \d-]{80}", row) for row in rows[:WHOLES]):
-            return False
-        if not all(re.fullmatch(r"( *[+-]?\d*\.\d+E[+-]\d\d){5}", row) for row in rows[WHOLES:]):
-            return False
-        return (rows[WHOLES - 1][60:70].strip() == str(_HIGH_PRECISION)) == (self._precision == _HIGH_PRECISION)
+        return (wholes[-1][60:70].strip() == str(_HIGH_PRECISION)) == (self._precision == _HIGH_PRECISION)
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the accelerogram.
@@ -115,7 +114,7 @@ class SmcUsgs(RecordFormat):
         values, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
         agreement.check_end(source, after)
         stated = self._check_peaks(source, header, values, rate)
-        component = Component(_orientation(header), values, unit, step, stated)
+        component = Component(_orientation(source, header), values, unit, step, stated)
         raw = "\n".join(source.lines[: header.first])
         return Record(self.name, (component,), raw, _metadata(source, header))
 
@@ -137,8 +136,8 @@ class SmcUsgs(RecordFormat):
         RecordError
             If there are several components, or a sample is 1e10 cm/s2 or more.
         """
-        component = agreement.only_component(record)
-        given = agreement.samples_in(component, "cm/s2")
+        (given,) = agreement.in_unit(record, self.name, "cm/s2", 1)
+        component = record.components[0]
         words = [self._word(value) for value in given.tolist()]
         values = np.array([float(word) for word in words])
         whole, real = [_NO_WHOLE] * 48, [_NO_REAL] * 50
@@ -151,8 +150,9 @@ class SmcUsgs(RecordFormat):
         text = ["*"] * TEXTS
         kind = next((code for code, name in _KINDS.items() if name == record.metadata.get("kind")), 2)
         text[0] = f"{kind} {_KINDS[kind].upper()}"
-        text[3] = _one_line(record.metadata.get("event", "*"))
-        text[5] = _one_line(record.metadata.get("station", "*"))
+        text[3] = numbers.one_line(record.metadata.get("event", "*"), 79) or "*"
+        station = numbers.one_line(record.metadata.get("station", "station = unknown"), 50)
+        text[5] = f"{station} component= {numbers.one_line(component.name, 15).replace(' ', '_')}"
         lines = [line.ljust(80) for line in text]
         lines += numbers.in_columns(whole, 8, "{:10d}")
         lines += ["".join(_fortran(value) for value in real[k : k + 5]) for k in range(0, 50, 5)]
@@ -174,8 +174,13 @@ class SmcUsgs(RecordFormat):
             at = round(when * rate) if when is not None and abs(when) * rate < 1e9 else 0
             if when is not None and not (0 <= at < values.size and abs(values[at] - stated) <= rounding):
                 raise source.error(None, f"the header states a {what} of {stated:g} at {when:g} s, the data do not")
+        printed = re.search(r"pk[a-z ]*=\s*([+-]?\d+\.?\d*(?:E[+-]\d+)?)", source.lines[6])
+        if printed:
+            agreement.check_peak(source, float(printed[1]), values, agreement.half_digit(printed[1]), "pk")
         known = [abs(value) for value in extremes if value is not None]
-        return max(known) if len(known) == 2 else None
+        if len(known) == 1:
+            raise source.error(None, "the header states one extreme without the other; header lines out of order?")
+        return max(known) if known else None
 
     def _word(self, value: float) -> str:
         if abs(value) <= 1e-9:
@@ -190,6 +195,10 @@ def _header(source: Source) -> _Header:
     kind = int(source.lines[0].split()[0])
     if kind not in _KINDS:
         raise source.error(0, f"no accelerogram but {_OTHER.get(kind, f'kind {kind}')}: accelerations are needed")
+    for line in range(TEXTS, TEXTS + WHOLES + REALS):
+        row = source.lines[line].rstrip() if line < len(source.lines) else ""
+        if not re.fullmatch(_WHOLES, row) if line < TEXTS + WHOLES else len(row) != 75 or not re.fullmatch(_REALS, row):
+            raise source.error(line, "a full line of header numbers expected; a line missing, or damaged?")
     wholes = _grid(source.lines[TEXTS : TEXTS + WHOLES], 8, 10)
     whole: list[int | None] = []
     for place, word in enumerate(wholes):
@@ -211,10 +220,13 @@ def _grid(lines: Sequence[str], per_line: int, width: int) -> list[str]:
     return [line[k * width : (k + 1) * width] for line in lines for k in range(per_line)]
 
 
-def _orientation(header: _Header) -> str:
+def _orientation(source: Source, header: _Header) -> str:
     if header.whole[12] in {0, 180}:
         return "up" if header.whole[12] == 0 else "down"
-    return "unnamed" if header.whole[13] is None else str(header.whole[13])
+    if header.whole[13] is not None:
+        return str(header.whole[13])
+    printed = re.search(r"component= *(\S+)", source.lines[5])
+    return printed[1] if printed else "unnamed"
 
 
 def _metadata(source: Source, header: _Header) -> dict[str, str]:
@@ -226,10 +238,6 @@ def _metadata(source: Source, header: _Header) -> dict[str, str]:
         "azimuth": "" if header.whole[13] is None else str(header.whole[13]),
     }
     return {key: " ".join(text.split()) for key, text in stated.items() if text.strip(" *")}
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.split())[:79] or "*"
 
 
 def _fortran(value: float) -> str:

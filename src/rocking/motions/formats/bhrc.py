@@ -1,0 +1,194 @@
+"""Volume 1 files of Iran's strong-motion network (BHRC, ISMN): uncorrected accelerations in g/10.
+
+Each component: 13 lines of text, 7 lines of 14 whole numbers of width 5, 7 lines of real numbers of width 13, the
+samples, 10 of width 13 a line, and a line ``/&``. Checked on six files of the 2012 Ahar earthquake (SSA-2 recorders).
+Corrected files (Volume 2 and up) have another layout, of which no file was at hand: they are refused.
+"""
+
+import re
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.errors import RecordError
+from rocking.motions.formats import agreement, numbers
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+_TEXTS, _WHOLES, _REALS = 13, 7, 7
+_PER_LINE, _WIDTH = 10, 13
+_END = "/&"
+_VOLUME = r"\* VOL(\d)DS FILE:.*"
+_POINTS = r"NO\. OF POINTS = +(\d{1,9}) +DURATION = +(\d*\.\d+)"
+
+
+class Bhrc(RecordFormat):
+    """Iran's Volume 1, uncorrected."""
+
+    name: ClassVar[str] = "bhrc"
+    title: ClassVar[str] = "BHRC (ISMN), Iran, Volume 1"
+    suffixes: ClassVar[tuple[str, ...]] = (".v1",)
+    notes: ClassVar[str] = (
+        "Accelerations are in g/10 and uncorrected: remove their mean and correct the baseline. The file states no "
+        "peak, so a damaged sample can pass. Volume 2 is refused: its layout was not verified."
+    )
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether the text of a BHRC component stands at the top.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if this format should read it.
+        """
+        if not source.is_text:
+            return False
+        top = source.lines[: _TEXTS + 3]
+        marks = (r"\* VOL\dDS FILE", "COMP [LVT]", r"NO\. OF POINTS =", "UNITS ARE SECONDS AND G/10", "INSTR PERIOD =")
+        return sum(any(re.match(mark, line) for line in top) for mark in marks) >= 4
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the components.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            If given, it must be g/10.
+        time_step : float, optional
+            If given, it must be the file's [s].
+
+        Returns
+        -------
+        Record
+            Up to three components: L, V and T.
+
+        Raises
+        ------
+        RecordError
+            If it is damaged, at odds with its own header, or no Volume 1.
+        """
+        components: list[Component] = []
+        line = 0
+        last = len(source.lines)
+        while last and not source.lines[last - 1].strip():
+            last -= 1
+        while not components or line < last:
+            component, line = _component(source, line, units, time_step)
+            if component.name in {other.name for other in components}:
+                raise source.error(None, f"component {component.name} is there twice")
+            components.append(component)
+        lines = source.lines[:_TEXTS]
+        metadata = {
+            "file": lines[0].partition(":")[2].strip(),
+            "instrument": lines[1].partition("=")[2].strip(),
+            "event": " ".join([lines[2].strip(), *lines[8].split()]),
+            "station": lines[7].partition("Station")[0].strip(),
+            "processing": "uncorrected (Volume 1)",
+        }
+        header = "\n".join(source.lines[: _TEXTS + _WHOLES + _REALS])
+        return Record(self.name, tuple(components), header, {key: text for key, text in metadata.items() if text})
+
+    def write(self, record: Record) -> bytes:
+        """Return a Volume 1 file.
+
+        Parameters
+        ----------
+        record : Record
+            Up to three components named L, V and T.
+
+        Returns
+        -------
+        bytes
+            The content, to six digits.
+
+        Raises
+        ------
+        RecordError
+            If they have other names, or there are more than 99999 samples.
+        """
+        rows = agreement.in_unit(record, self.name, "g/10", 3)
+        names = [part.name for part in record.components]
+        if len(set(names)) != len(names) or not set(names) <= {"L", "V", "T"}:
+            raise RecordError(f"BHRC holds components L, V and T, got {', '.join(names)[:60]}")
+        lines: list[str] = []
+        for part, values in zip(record.components, rows, strict=True):
+            lines += _written(record, part, values)
+        return ("\r\n".join(lines) + "\r\n").encode("latin-1")
+
+
+def _component(source: Source, top: int, units: str | None, asked: float | None) -> tuple[Component, int]:
+    if len(source.lines) < top + _TEXTS + _WHOLES + _REALS:
+        raise source.error(
+            None, f"the header of a component has {_TEXTS + _WHOLES + _REALS} lines, the file ends in it"
+        )
+    volume = _match(source, top, _VOLUME)
+    if volume[1] != "1":
+        raise source.error(top, f"Volume {volume[1]}: only Volume 1 is read, the layout of others was not verified")
+    _match(source, top + 11, "UNITS ARE SECONDS AND G/10")
+    unit = agreement.acceleration_unit(source, "g/10", units)
+    name = _match(source, top + 6, r"COMP ([LVT])\d?")[1]
+    points = _match(source, top + 10, _POINTS)
+    count, duration = int(points[1]), float(points[2])
+    if count < 2:
+        raise source.error(top + 10, f"at least 2 points expected, found {count}")
+    repeated = source.lines[top + _TEXTS + 1][55:60]
+    agreement.check_count(source, numbers.whole(source, top + _TEXTS + 1, repeated, "number of points"), count)
+    reals = top + _TEXTS + _WHOLES
+    rate = numbers.number(source, reals + 1, source.lines[reals + 1][:13], "sampling rate")
+    step = agreement.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, asked)
+    agreement.check_duration(source, duration, count, step, agreement.half_digit(points[2]))
+    again = numbers.number(source, reals, source.lines[reals][26:39], "duration")
+    agreement.check_stated(source, again, duration, 1e-5 * duration, "duration")
+    values, line = numbers.fixed(source, reals + _REALS, count, _PER_LINE, _WIDTH)
+    if line >= len(source.lines) or source.lines[line].strip() != _END:
+        raise source.error(min(line, len(source.lines) - 1), f"{_END} expected after {count} samples")
+    azimuth = re.search(rf"Azimuth.*\b{name} +(\d+)", source.lines[top + 7])
+    return Component(name, values, unit, step, None, {"azimuth": azimuth[1]} if azimuth else {}), line + 1
+
+
+def _match(source: Source, line: int, form: str) -> re.Match[str]:
+    found = re.fullmatch(form, source.lines[line].strip())
+    if found is None:
+        raise source.error(line, f"cannot be understood: {source.lines[line].strip()[:60]!r}")
+    return found
+
+
+def _written(record: Record, part: Component, values: FloatArray) -> list[str]:
+    count = values.size
+    if count > 99_999 or np.abs(values).max() >= 1e9:
+        raise RecordError(f"BHRC holds up to 99999 samples below 1e9 g/10, got {count}")
+    known = {key: numbers.one_line(record.metadata.get(key, ""), 40) for key in ("file", "instrument", "station")}
+    azimuth = numbers.one_line(part.metadata.get("azimuth", "0"), 3)
+    lines = [f"* VOL1DS FILE:  {known['file']}", f"Inst Type = {known['instrument']}", "", "", part.name, ""]
+    lines += [f"COMP {part.name}1", f"{known['station']}  Station   Azimuth {part.name} {azimuth}", "Epicenter"]
+    lines += ["INSTR PERIOD =  .000 SEC   DAMPING =  .000", ""]
+    duration = count * part.time_step
+    lines[-1] = f"NO. OF POINTS = {count:6d}      DURATION = {duration:9.4f}"
+    lines += ["UNITS ARE SECONDS AND G/10", ""]
+    wholes = [0] * 88
+    wholes[25] = count
+    lines += numbers.in_columns(wholes, 14, "{:5d}")
+    reals = [0.0] * 38
+    reals[2], reals[6] = duration, 1.0 / part.time_step
+    lines += ["".join(_fortran(value) for value in reals[k : k + 6])[:70] for k in range(0, 38, 6)]
+    words = [_fortran(value) for value in values.tolist()]
+    lines += ["".join(words[k : k + _PER_LINE]) for k in range(0, count, _PER_LINE)]
+    return [*lines, _END]
+
+
+def _fortran(value: float) -> str:
+    """Return a number as Fortran's E13.6 prints it, without the zero before the point."""
+    if abs(value) < 1e-90:
+        return ".000000E+00".rjust(_WIDTH)
+    mantissa, exponent = f"{value:.5E}".split("E")
+    sign, digits = ("-", mantissa[1:]) if mantissa.startswith("-") else ("", mantissa)
+    return f"{sign}.{digits.replace('.', '')}E{int(exponent) + 1:+03d}".rjust(_WIDTH)

@@ -1,0 +1,238 @@
+"""CSMIP / CDMG Volume 1: uncorrected accelerograms, pairs of time and acceleration, one channel after another."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
+from rocking.motions.formats.agreement import (
+    acceleration_unit,
+    check_count,
+    check_end,
+    check_peak,
+    check_peak_time,
+    in_unit,
+    step_between_samples,
+)
+from rocking.motions.formats.columns import uniform_step
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, one_line, whole
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+Channel = tuple[list[str], str, Component]
+"""Header lines of a channel, the one with its number and direction, and its samples."""
+
+_TITLE = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.IGNORECASE)
+_TEXT_LINES, _WHOLE_LINES, _REAL_LINES = 13, 7, 7
+_EVEN = re.compile(r"\s*(\d+)\s+POINTS\b.*\bEQUALLY SPACED AT\s+(\S+?)\s*SEC\b[.,]?\s*(.*)", re.IGNORECASE)
+_UNIT = re.compile(r"(?<![\w/])(G/10|CM/SEC/SEC|CM/SEC2|GALS?|G)(?![\w/*])")
+_UNITS = {"G/10": "g/10", "CM/SEC/SEC": "cm/s2", "CM/SEC2": "cm/s2", "GAL": "gal", "GALS": "gal", "G": "g"}
+_LENGTH, _PEAK, _PEAK_TIME = 2, 6, 7
+_LONGEST_LINE = 200
+
+
+class CsmipV1(RecordFormat):
+    """CSMIP / CDMG Volume 1 files."""
+
+    name: ClassVar[str] = "csmip-v1"
+    title: ClassVar[str] = "CSMIP Volume 1 (uncorrected), California Geological Survey"
+    suffixes: ClassVar[tuple[str, ...]] = (".v1", ".raw")
+    notes: ClassVar[str] = (
+        "Written from public documentation; no real file was at hand. Uncorrected: neither baseline nor instrument. "
+        "Unevenly spaced times are refused. Count, record length, peak (to 0.001 g) and its time are checked."
+    )
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether it begins as an uncorrected accelerogram with whole numbers after 13 lines.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if so.
+        """
+        if not source.is_text or not _TITLE.match(source.lines[0]) or len(source.lines) <= _TEXT_LINES:
+            return False
+        return re.fullmatch(r"[\s\d-]{5,80}", source.lines[_TEXT_LINES]) is not None
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the record, with a component for each channel.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            Refused unless it is the header's, or the header states none.
+        time_step : float, optional
+            Refused unless it is the file's [s].
+
+        Returns
+        -------
+        Record
+            Components named by their direction, or CHAN 1 where directions repeat.
+
+        Raises
+        ------
+        RecordError
+            If it is damaged, at odds with its own header, or unevenly spaced.
+        """
+        first = 0
+        channels: list[Channel] = []
+        while not channels or (first < len(source.lines) and _TITLE.match(source.lines[first])):
+            channel, first = _channel(source, first, units, time_step)
+            channels.append(channel)
+        check_end(source, first)
+        header = "\n".join("\n".join(lines) for lines, _, _ in channels)
+        return Record(self.name, distinct_names(channels), header, names_in(channels[0][0][1:]))
+
+    def write(self, record: Record) -> bytes:
+        """Return the content of a CSMIP V1 file, in g/10 with 3 decimals.
+
+        Parameters
+        ----------
+        record : Record
+            Up to 99 components.
+
+        Returns
+        -------
+        bytes
+            The content.
+
+        Raises
+        ------
+        RecordError
+            If there are more components or a number does not fit into its column.
+        """
+        lines: list[str] = []
+        for row, values in enumerate(in_unit(record, self.name, "g/10", 99)):
+            lines += _lines(record, row, values.round(3))
+        return ("\r\n".join(lines) + "\r\n").encode("latin-1")
+
+
+def distinct_names(channels: Sequence[Channel]) -> tuple[Component, ...]:
+    """Return the components named by direction, or by channel number where directions repeat.
+
+    Parameters
+    ----------
+    channels : sequence of tuple
+        The channels.
+
+    Returns
+    -------
+    tuple of Component
+        Named.
+    """
+    found = [re.search(r"CHAN\s*(\d+)\s*:\s*(.*?)\s*(?:DEG\b.*)?$", label, re.IGNORECASE) for _, label, _ in channels]
+    numbers = [one[1] if one else str(place) for place, one in enumerate(found, 1)]
+    names = directions = [one[2].strip() if one else "" for one in found]
+    if len({name.casefold() for name in directions}) < len(channels) or "" in directions:
+        unique = len(set(numbers)) == len(channels)
+        names = [f"CHAN {n}" for n in (numbers if unique else range(1, len(channels) + 1))]
+    return tuple(
+        replace(part, name=name, metadata={"channel": chan, "direction": direction})
+        for (_, _, part), name, chan, direction in zip(channels, names, numbers, directions, strict=True)
+    )
+
+
+def names_in(texts: Sequence[str]) -> dict[str, str]:
+    """Return event and station from the text lines after the titles.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        The event stands first, its date second, the station's number fourth, its name fifth.
+
+    Returns
+    -------
+    dict of str to str
+        What is not blank.
+    """
+    station = re.search(r"STATION NO\.?\s*(\w+)", texts[3][:_LONGEST_LINE], re.IGNORECASE)
+    found = {
+        "event": texts[0].strip(),
+        "date": texts[1].split("(")[0].strip(),
+        "station number": station[1] if station else "",
+        "station": texts[4].strip(),
+    }
+    return {key: value for key, value in found.items() if value}
+
+
+def _channel(source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
+    after = first + _TEXT_LINES + _WHOLE_LINES + _REAL_LINES
+    if len(source.lines) <= after or not _TITLE.match(source.lines[first]):
+        raise source.error(first, f"UNCORRECTED ACCELEROGRAM DATA and {after - first} header lines expected")
+    header = source.lines[first:after]
+    wholes, line = fixed(source, first + _TEXT_LINES, 100, 16, 5)
+    # the last line of the reals is written full or not
+    last = -(-len(source.lines[after - 1].rstrip()) // 10)
+    figures, line = fixed(source, line, 48 + min(8, max(1, last)), 8, 10)
+    # newer files state the number of samples at place 33, older ones at 28
+    count = whole(source, first + _TEXT_LINES, f"{wholes[32] or wholes[27]:.0f}", "number of samples", 2)
+    unit = acceleration_unit(source, _unit([text[:_LONGEST_LINE] for text in header[:_TEXT_LINES]]), units)
+    even = _EVEN.fullmatch(source.lines[line][:_LONGEST_LINE])
+    if even:
+        check_count(source, count, whole(source, line, even[1], "number of samples", 2))
+        step, zero = number(source, line, even[2], "time step"), 0.0
+        form = re.search(r"\(\s*\d+[FE]\d+\.\d+\s*\)", even[3].upper())
+        per_line, width = fortran_form(source, line, form[0]) if form else (8, 9)
+        values, line = fixed(source, line + 1, count, per_line, width)
+    else:
+        pairs, line = fixed(source, line, 2 * count, 10, 7)
+        step, zero, values = uniform_step(source, pairs[::2], 0.001), float(pairs[0]), pairs[1::2].copy()
+    step = step_between_samples(source, step, time_step)
+    if line >= len(source.lines) or not source.lines[line].startswith("/&"):
+        raise source.error(min(line, len(source.lines) - 1), "END OF DATA FOR CHANNEL expected")
+    peak = _check_figures(source, figures, values, step, zero, unit)
+    return (header, header[6][:_LONGEST_LINE], Component("", values, unit, step, peak)), line + 1
+
+
+def _unit(texts: Sequence[str]) -> str | None:
+    for text in texts:
+        # the line goes on with the peak in another unit
+        found = _UNIT.search(re.split(r"MAX|\.\s", text.upper())[0]) if "UNIT" in text.upper() else None
+        if found:
+            return _UNITS[found[1]]
+    return None
+
+
+def _check_figures(
+    source: Source, figures: FloatArray, values: FloatArray, step: float, zero: float, unit: str
+) -> float | None:
+    length, peak, at = (float(figures[place]) for place in (_LENGTH, _PEAK, _PEAK_TIME))
+    lasts = zero + (values.size - 1) * step
+    if length > 0.0 and abs(length - lasts) > step + 0.06:
+        raise source.error(None, f"the header states a record of {length:g} s, the last sample is at {lasts:g} s")
+    if peak == 0.0:
+        return None
+    in_g = ACCELERATION_UNITS[unit] / g
+    check_peak(source, peak, values * in_g, 6e-4)
+    check_peak_time(source, at - zero, values * in_g, step, 6e-4)
+    return abs(peak) / in_g
+
+
+def _lines(record: Record, row: int, values: FloatArray) -> list[str]:
+    part = record.components[row]
+    times = np.arange(values.size) * part.time_step
+    largest = int(np.abs(values).argmax())
+    figures, wholes = np.zeros(50), np.zeros(100)
+    figures[[_LENGTH, _PEAK, _PEAK_TIME]] = times[-1], 0.1 * values[largest], times[largest]
+    wholes[27] = values.size
+    texts = [""] * _TEXT_LINES
+    texts[0] = "UNCORRECTED ACCELEROGRAM DATA"
+    texts[1] = one_line(record.metadata.get("event", ""), 70)
+    texts[4] = f"STATION NO. {one_line(record.metadata.get('station number', ''), 8)}"
+    texts[5] = one_line(record.metadata.get("station", ""), 70)
+    texts[6] = f"CHAN {row + 1:2d}: {one_line(part.name, 20)}"
+    texts[11] = f"UNITS OF UNCOR ACCEL ARE SEC AND G/10.     MAX  = {figures[_PEAK]:.3f} G"
+    lines = texts + in_width(wholes, 16, 5, 0) + in_width(figures, 8, 10, 3)
+    lines += in_width(np.column_stack((times, values)).ravel(), 10, 7, 3)
+    return [*lines, f"/&  ----------  END OF DATA FOR CHANNEL {row + 1:2d}  ----------"]

@@ -1,0 +1,210 @@
+"""CSMIP Volume 2: corrected accelerograms, one channel after another, each with velocity and displacement."""
+
+import re
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.motions.formats.agreement import (
+    acceleration_unit,
+    check_count,
+    check_end,
+    check_peak,
+    check_peak_time,
+    in_unit,
+    step_between_samples,
+)
+from rocking.motions.formats.csmip_v1 import Channel, distinct_names, names_in
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, one_line, whole
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+_TITLE = re.compile(r"\s*CORRECTED ACCELEROGRAM\b", re.IGNORECASE)
+_BLOCK = re.compile(
+    r"\s*(\d+)\s+POINTS OF (ACCEL|VELOC|DISPL) DATA EQUALLY SPACED AT\s+(\S+?)\s*SEC[.,]?\s*(.*)", re.IGNORECASE
+)
+_PEAK = re.compile(r"\s*PEAK\s+ACCELERATION\s*=\s*(\S+)\s+CM/SEC/SEC\s+AT\s+(\S+)\s+SEC\b.*", re.IGNORECASE)
+_POINTS = re.compile(r"\s*(\d+)\s+POINTS OF INSTRUMENT", re.IGNORECASE)
+_TEXT_LINES, _HEADER_LINES = 25, 45
+_STEP, _PEAKS = 60, {"ACCEL": (64, 65), "VELOC": (66, 67), "DISPL": (68, 69)}
+_COUNTS = {"ACCEL": 52, "VELOC": 63, "DISPL": 65}
+_ROUNDING = 6e-4
+
+
+class CsmipV2(RecordFormat):
+    """CSMIP / CDMG Volume 2, also published by CESMD and the COSMOS data centre."""
+
+    name: ClassVar[str] = "csmip-v2"
+    title: ClassVar[str] = "CSMIP Volume 2 (corrected), California Geological Survey"
+    suffixes: ClassVar[tuple[str, ...]] = (".v2",)
+    notes: ClassVar[str] = (
+        "Verified on one real file of 1983 with three channels of unequal length. Counts, peaks and times of peaks of "
+        "acceleration, velocity and displacement are checked. Newer files that state a format such as (8f10.6) follow "
+        "the public documentation; no real one was at hand."
+    )
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether it begins as a corrected accelerogram with blocks of acceleration.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if so.
+        """
+        if not source.is_text or not _TITLE.match(source.lines[0]):
+            return False
+        return any(_BLOCK.fullmatch(text) for text in source.lines[:100])
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the record, with a component for each channel.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            Refused unless it is cm/s2.
+        time_step : float, optional
+            Refused unless it is the header's [s].
+
+        Returns
+        -------
+        Record
+            Components named by their direction, such as 90 or UP, or CHAN 1 where directions repeat.
+
+        Raises
+        ------
+        RecordError
+            If it is damaged or at odds with its own header.
+        """
+        unit = acceleration_unit(source, "cm/s2", units)
+        first = 0
+        channels: list[Channel] = []
+        while not channels or (first < len(source.lines) and _TITLE.match(source.lines[first])):
+            channel, first = _channel(source, first, unit, time_step)
+            channels.append(channel)
+        check_end(source, first)
+        header = "\n".join("\n".join(lines) for lines, _, _ in channels)
+        return Record(self.name, distinct_names(channels), header, names_in(channels[0][0][2:]))
+
+    def write(self, record: Record) -> bytes:
+        """Return the content of a CSMIP V2 file, in cm/s2 with 3 decimals.
+
+        Parameters
+        ----------
+        record : Record
+            Up to 99 components.
+
+        Returns
+        -------
+        bytes
+            The content; velocity and displacement are integrated from rest.
+
+        Raises
+        ------
+        RecordError
+            If there are more components or a number does not fit into its column.
+        """
+        lines: list[str] = []
+        for row, values in enumerate(in_unit(record, self.name, "cm/s2", 99)):
+            lines += _lines(record, row, values.round(3))
+        return ("\r\n".join(lines) + "\r\n").encode("latin-1")
+
+
+def _channel(source: Source, first: int, unit: str, time_step: float | None) -> tuple[Channel, int]:
+    header = source.lines[first : first + _HEADER_LINES]
+    if len(header) < _HEADER_LINES or not _TITLE.match(header[0]):
+        raise source.error(first, f"CORRECTED ACCELEROGRAM and {_HEADER_LINES} header lines expected")
+    wholes, line = fixed(source, first + _TEXT_LINES, 100, 16, 5)
+    figures, line = fixed(source, line, 100, 8, 10)
+    step: float | None = None
+    blocks: dict[str, FloatArray] = {}
+    while line < len(source.lines) and _BLOCK.fullmatch(source.lines[line]):
+        kind, values, own, line = _block(source, line)
+        if kind in blocks or (step is not None and own != step):
+            raise source.error(line, f"{kind} stated twice, or with another step than before")
+        if not blocks:
+            step = step_between_samples(source, own, time_step)
+        _check_block(source, kind, values, own, wholes, figures)
+        blocks[kind] = values
+    if "ACCEL" not in blocks or step is None:
+        raise source.error(line, "POINTS OF ACCEL DATA EQUALLY SPACED AT ... SEC expected")
+    _check_texts(source, first, header[:_TEXT_LINES], blocks["ACCEL"], step)
+    if line >= len(source.lines) or not source.lines[line].startswith("/&"):
+        raise source.error(min(line, len(source.lines) - 1), "END OF DATA FOR CHANNEL expected")
+    part = Component("", blocks["ACCEL"], unit, step, abs(float(figures[_PEAKS["ACCEL"][1]])))
+    return (header, header[7][:200], part), line + 1
+
+
+def _block(source: Source, line: int) -> tuple[str, FloatArray, float, int]:
+    found = _BLOCK.fullmatch(source.lines[line])
+    if found is None:
+        raise source.error(line, "POINTS OF ... DATA EQUALLY SPACED AT ... SEC expected")
+    count, kind, tail = whole(source, line, found[1], "number of points", 2), found[2].upper(), found[4].upper()
+    powers = {"ACCEL": ("CM/SEC/SEC", "CM/SEC2"), "VELOC": ("CM/SEC",), "DISPL": ("CM",)}[kind]
+    stated = re.search(r"(?:UNITS?:|\bIN)\s*(CM[^\s).,]*)", tail)
+    if stated is None or stated[1] not in powers:
+        raise source.error(line, f"{kind} data must be in {powers[0]}, found {tail.strip()[:40]!r}")
+    form = re.search(r"\(\s*(\d+[FE]\d+\.\d+)\s*\)", tail)
+    per_line, width = fortran_form(source, line, form[1]) if form else (8, 10)
+    step = number(source, line, found[3], "time step")
+    values, after = fixed(source, line + 1, count, per_line, width)
+    return kind, values, step, after
+
+
+def _check_block(
+    source: Source, kind: str, values: FloatArray, step: float, wholes: FloatArray, figures: FloatArray
+) -> None:
+    check_count(source, int(wholes[_COUNTS[kind]]), values.size)
+    # the header has the step in three decimals
+    if abs(figures[_STEP] - step) > 5.1e-4:
+        raise source.error(None, f"the header states a step of {figures[_STEP]:g} s, the {kind} data one of {step:g} s")
+    at, peak = _PEAKS[kind]
+    check_peak(source, float(figures[peak]), values, _ROUNDING, f"{kind} peak")
+    check_peak_time(source, float(figures[at]), values, step, _ROUNDING)
+
+
+def _check_texts(source: Source, first: int, texts: list[str], values: FloatArray, step: float) -> None:
+    for line, text in enumerate(texts, first):
+        peak, points = _PEAK.fullmatch(text), _POINTS.match(text)
+        if peak:
+            check_peak(source, number(source, line, peak[1], "peak"), values, _ROUNDING)
+            check_peak_time(source, number(source, line, peak[2], "time"), values, step, _ROUNDING)
+        if points:
+            check_count(source, int(points[1][:9]), values.size)
+
+
+def _lines(record: Record, row: int, values: FloatArray) -> list[str]:
+    part = record.components[row]
+    step, chan = part.time_step, f"CHAN {row + 1:2d}: {one_line(part.name, 20)}"
+    moves = {"ACCEL": values}
+    moves["VELOC"] = (np.concatenate(([0.0], np.cumsum(0.5 * (values[1:] + values[:-1])))) * step).round(3)
+    speed = moves["VELOC"]
+    moves["DISPL"] = (np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1])))) * step).round(3)
+    wholes, figures = np.zeros(100), np.zeros(100)
+    figures[_STEP] = step
+    for kind, data in moves.items():
+        largest = int(np.abs(data).argmax())
+        figures[list(_PEAKS[kind])] = largest * step, data[largest]
+        wholes[_COUNTS[kind]] = data.size
+    at, peak = figures[list(_PEAKS["ACCEL"])]
+    texts = [""] * _TEXT_LINES
+    texts[0] = f"CORRECTED ACCELEROGRAM                            {chan}"
+    texts[1] = "UNCORRECTED ACCELEROGRAM DATA"
+    texts[2] = one_line(record.metadata.get("event", ""), 70)
+    texts[5] = f"STATION NO. {one_line(record.metadata.get('station number', ''), 8)}"
+    texts[6] = one_line(record.metadata.get("station", ""), 70)
+    texts[7] = chan
+    texts[17] = f"PEAK ACCELERATION = {peak:.3f} CM/SEC/SEC AT {at:.3f} SEC."
+    lines = texts + in_width(wholes, 16, 5, 0) + in_width(figures, 8, 10, 3)
+    for (kind, data), unit in zip(moves.items(), ("CM/SEC/SEC", "CM/SEC", "CM"), strict=True):
+        lines.append(f" {data.size} POINTS OF {kind} DATA EQUALLY SPACED AT {step:.9g} SEC.  (UNITS: {unit})")
+        lines += in_width(data, 8, 10, 3)
+    return [*lines, f"/&  ----------  END OF DATA FOR CHANNEL {row + 1:2d}  ----------"]

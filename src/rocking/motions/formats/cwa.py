@@ -1,0 +1,180 @@
+"""Free-field records of the Central Weather Administration, Taiwan: a header of ``#`` lines, then time and U, N, E.
+
+Checked on five files of the 2018 Hualien earthquakes.
+"""
+
+import re
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.errors import RecordError
+from rocking.motions.formats import agreement, numbers
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+_COMPONENTS = ("U", "N", "E")
+_WIDTH, _DECIMALS = 10, 3
+_SEQUENCE = "#DataSequence: Time U(+); N(+); E(+)"
+_AMPLITUDE = r"#AmplitudeMAX\. ([UNE]): *(-?\d+\.\d+) *~ *(-?\d+\.\d+)"
+
+
+class Cwa(RecordFormat):
+    """Taiwan's four columns, three components."""
+
+    name: ClassVar[str] = "cwa"
+    title: ClassVar[str] = "Central Weather Administration (CWA, CWB), Taiwan"
+    suffixes: ClassVar[tuple[str, ...]] = (".dat", ".txt")
+    notes: ClassVar[str] = (
+        "The header's DCoffset(corr) says that the recorder's offset was removed by the publisher. Both extremes of "
+        "each component are checked."
+    )
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether the file begins with the words of this header.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if this format should read it.
+        """
+        if not source.is_text:
+            return False
+        top = source.lines[:40]
+        marks = ("#Earthquake Information", "#RecordLength(sec)", "#SampleRate(Hz)", "#AmplitudeMAX.", "#DataSequence:")
+        return sum(any(line.startswith(mark) for line in top) for mark in marks) >= 4
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the three components.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            If given, it must be gal or cm/s2.
+        time_step : float, optional
+            If given, it must be the file's [s].
+
+        Returns
+        -------
+        Record
+            Components U, N and E.
+
+        Raises
+        ------
+        RecordError
+            If it is damaged or at odds with its own header.
+        """
+        first = next((k for k, line in enumerate(source.lines) if line.startswith("#Data:")), None)
+        if first is None or not source.is_text:
+            raise source.error(None, "the line #Data: is missing")
+        if "".join(source.lines[first].split()) != "#Data:4F10.3":
+            raise source.error(first, f"#Data: 4F10.3 expected, found {source.lines[first].strip()[:40]!r}")
+        said = _header(source, first)
+        if not re.match(r"gal\b", said["AmplitudeUnit"]):
+            raise source.error(None, f"the unit gal expected, found {said['AmplitudeUnit'][:40]!r}")
+        unit = agreement.acceleration_unit(source, "gal", units)
+        rate = numbers.number(source, 0, said["SampleRate(Hz)"], "sample rate")
+        seconds = numbers.number(source, 0, said["RecordLength(sec)"], "record length")
+        step = agreement.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
+        wanted = rate * seconds
+        if not 2 <= wanted < 1e9 or abs(wanted - round(wanted)) > 1e-6:
+            raise source.error(None, f"record length times rate must be a whole number of samples, found {wanted:g}")
+        last = len(source.lines)
+        while not source.lines[last - 1].strip():
+            last -= 1
+        agreement.check_count(source, round(wanted), last - first - 1)
+        values, _ = numbers.fixed(source, first + 1, 4 * round(wanted), 4, _WIDTH)
+        table = values.reshape(-1, 4)
+        late = np.flatnonzero(np.abs(table[:, 0] - table[0, 0] - np.arange(len(table)) * step) > 1.02e-3)
+        if late.size:
+            raise source.error(first + 1 + int(late[0]), f"time {table[late[0], 0]:g} s is off the step of {step:g} s")
+        peaks = _check_amplitudes(source, first, table)
+        components = tuple(
+            Component(name, table[:, k + 1].copy(), unit, step, peaks[name]) for k, name in enumerate(_COMPONENTS)
+        )
+        return Record(self.name, components, "\n".join(source.lines[: first + 1]), said)
+
+    def write(self, record: Record) -> bytes:
+        """Return a file of three components.
+
+        Parameters
+        ----------
+        record : Record
+            Components U, N and E in any order, of equal length and step.
+
+        Returns
+        -------
+        bytes
+            The content, to 0.001 gal.
+
+        Raises
+        ------
+        RecordError
+            If there are others, or a number does not fit into its columns.
+        """
+        samples = agreement.in_unit(record, self.name, "gal", 3)
+        rows = dict(zip((part.name for part in record.components), samples, strict=True))
+        steps = {part.time_step for part in record.components}
+        if set(rows) != set(_COMPONENTS) or len({row.size for row in rows.values()}) != 1 or len(steps) != 1:
+            raise RecordError(f"CWA holds U, N and E of equal length and step, got {', '.join(rows)[:60]}")
+        step = steps.pop()
+        table = np.round(np.column_stack([rows[name] for name in _COMPONENTS]), _DECIMALS) + 0.0
+        if np.abs(table).max() >= 1e5 or len(table) * step >= 1e5:
+            raise RecordError("CWA holds accelerations below 1e5 gal and times below 1e5 s; wrong unit?")
+        lines = ["#Earthquake Information"]
+        lines += [
+            f"#{key}: {numbers.one_line(record.metadata.get(key, '0'), 60)}"
+            for key in ("Origin Time(GMT+08)", "Magnitude(Ml)", "StationCode", "StationName")
+        ]
+        lines += [f"#RecordLength(sec): {len(table) * step:.12g}", f"#SampleRate(Hz): {1.0 / step:.12g}"]
+        lines.append("#AmplitudeUnit:  gal. DCoffset(corr)")
+        for name, row in zip(_COMPONENTS, table.T, strict=True):
+            lines.append(f"#AmplitudeMAX. {name}: {row.max():8.3f}~ {row.min():8.3f}")
+        lines += [_SEQUENCE, "#Data: 4F10.3 "]
+        lines += ["".join(f"{value:10.3f}" for value in (k * step, *row)) for k, row in enumerate(table.tolist())]
+        return ("\r\n".join(lines) + "\r\n").encode("latin-1")
+
+
+def _header(source: Source, first: int) -> dict[str, str]:
+    said: dict[str, str] = {}
+    for line, text in enumerate(source.lines[:first]):
+        if text.strip() and not text.startswith("#"):
+            raise source.error(line, f"header lines begin with #, found {text.strip()[:40]!r}")
+        key, colon, value = text[1:].partition(": ")
+        if colon and not key.startswith("AmplitudeMAX"):
+            if key in said:
+                raise source.error(line, f"{key[:40]!r} is stated twice")
+            said[key] = value.strip()
+    for key in ("RecordLength(sec)", "SampleRate(Hz)", "AmplitudeUnit"):
+        if key not in said:
+            raise source.error(None, f"the header line #{key}: is missing")
+    if not any(line.split() == _SEQUENCE.split() for line in source.lines[:first]):
+        raise source.error(None, f"the header line {_SEQUENCE} is missing")
+    return said
+
+
+def _check_amplitudes(source: Source, first: int, table: FloatArray) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for line, text in enumerate(source.lines[:first]):
+        if not text.startswith("#AmplitudeMAX"):
+            continue
+        stated = re.fullmatch(_AMPLITUDE, text.strip())
+        if stated is None or stated[1] in found:
+            raise source.error(line, f"both extremes of one component expected, found {text.strip()[:60]!r}")
+        row = table[:, _COMPONENTS.index(stated[1]) + 1]
+        high, low = float(stated[2]), float(stated[3])
+        agreement.check_stated(source, high, float(row.max()), agreement.half_digit(stated[2]), f"maximum {stated[1]}")
+        agreement.check_stated(source, low, float(row.min()), agreement.half_digit(stated[3]), f"minimum {stated[1]}")
+        found[stated[1]] = max(abs(high), abs(low))
+    if len(found) != len(_COMPONENTS):
+        raise source.error(None, "the extremes of U, N and E are not all stated")
+    return found

@@ -1,0 +1,195 @@
+"""K-NET and KiK-net ASCII of NIED, Japan: 17 lines of header, then counts of the recorder, 8 on a line.
+
+Counts times the scale factor are accelerations with the recorder's offset. The mean of the whole record is removed:
+the header's largest acceleration is after that, and without it peaks come out many times too large. Checked on 48 files
+of both networks.
+"""
+
+import math
+import re
+from itertools import pairwise
+from typing import ClassVar
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.errors import RecordError
+from rocking.motions.formats import agreement, numbers
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+_KEYS = (
+    "Origin Time",
+    "Lat.",
+    "Long.",
+    "Depth. (km)",
+    "Mag.",
+    "Station Code",
+    "Station Lat.",
+    "Station Long.",
+    "Station Height(m)",
+    "Record Time",
+    "Sampling Freq(Hz)",
+    "Duration Time(s)",
+    "Dir.",
+    "Scale Factor",
+    "Max. Acc. (gal)",
+    "Last Correction",
+    "Memo.",
+)
+_PER_LINE = 8
+_FULL_SCALE = 8_388_608  # counts of a 24-bit recorder
+_LARGEST_COUNT = 2**31
+_REMOVED = "mean of the whole record removed"
+
+
+class Knet(RecordFormat):
+    """K-NET and KiK-net ASCII."""
+
+    name: ClassVar[str] = "knet"
+    title: ClassVar[str] = "K-NET and KiK-net ASCII of NIED, Japan"
+    suffixes: ClassVar[tuple[str, ...]] = (".ns", ".ew", ".ud", ".ns1", ".ew1", ".ud1", ".ns2", ".ew2", ".ud2")
+    notes: ClassVar[str] = (
+        "The mean of the whole record is removed, as for the header's largest acceleration; nothing is filtered or "
+        "corrected otherwise. KiK-net directions 1 to 3 are in the borehole, 4 to 6 at the surface."
+    )
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether most of the words of the K-NET header stand at the top.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if this format should read it.
+        """
+        if not source.is_text:
+            return False
+        top = source.lines[: len(_KEYS) + 3]
+        # a damaged header must not turn the file into a nameless table of numbers
+        return sum(any(line.startswith(_KEYS[k]) for line in top) for k in (0, 10, 13, 14)) >= 3
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the accelerogram without its mean.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            If given, it must be gal or cm/s2.
+        time_step : float, optional
+            If given, it must be the file's [s].
+
+        Returns
+        -------
+        Record
+            One component.
+
+        Raises
+        ------
+        RecordError
+            If it is damaged or at odds with its own header.
+        """
+        said = _header(source)
+        unit = agreement.acceleration_unit(source, "gal", units)
+        rate = _stated(source, 10, r"(\d+(?:\.\d+)?) *Hz", said[10])[0]
+        seconds = numbers.number(source, 11, said[11], "duration")
+        step = agreement.step_between_samples(source, 1.0 / rate if rate else 0.0, time_step)
+        gal, counts_per_gal = _stated(source, 13, r"(\d+(?:\.\d*)?)\(gal\)/(\d+(?:\.\d*)?)", said[13])
+        if not gal or not counts_per_gal:
+            raise source.error(13, f"scale factor must be above zero, found {said[13][:40]!r}")
+        counts = _counts(source)
+        wanted = rate * seconds
+        if not 2 <= wanted < 1e9 or abs(wanted - round(wanted)) > 1e-6:
+            raise source.error(11, f"duration times rate must be a whole number of samples, found {wanted:g}")
+        agreement.check_count(source, round(wanted), counts.size)
+        raw = counts * (gal / counts_per_gal)
+        values = raw - raw.mean()
+        peak = numbers.number(source, 14, said[14], "largest acceleration")
+        what = "largest acceleration after removal of the mean"
+        agreement.check_peak(source, peak, values, agreement.half_digit(said[14]), what)
+        metadata = {key.strip(". "): text for key, text in zip(_KEYS, said, strict=True) if text}
+        metadata |= {"processing": _REMOVED, "mean removed": f"{raw.mean():.6g} gal"}
+        component = Component(said[12] or "unnamed", values, unit, step, abs(peak))
+        return Record(self.name, (component,), "\n".join(source.lines[: len(_KEYS)]), metadata)
+
+    def write(self, record: Record) -> bytes:
+        """Return a K-NET file with a scale factor that suits the record's peak.
+
+        Parameters
+        ----------
+        record : Record
+            One component without a mean, of a whole number of seconds at a whole number of samples a second.
+
+        Returns
+        -------
+        bytes
+            The content.
+
+        Raises
+        ------
+        RecordError
+            If the format cannot hold it.
+        """
+        (given,) = agreement.in_unit(record, self.name, "gal", 1)
+        part = record.components[0]
+        rate = round(1.0 / part.time_step)
+        if rate < 1 or abs(rate * part.time_step - 1.0) > 1e-9 or given.size % rate:
+            raise RecordError(
+                f"K-NET holds whole seconds at a whole number of samples a second, got {given.size} samples "
+                f"at {part.time_step:g} s"
+            )
+        largest = float(np.abs(given).max())
+        if largest > 1e8:
+            raise RecordError(f"K-NET holds accelerations up to 1e8 gal, got {largest:g}; wrong unit?")
+        gal = max(1, math.ceil(2.0 * largest))
+        counts = np.rint(given * (_FULL_SCALE / gal))
+        if abs(counts.mean()) > 0.5:
+            raise RecordError(f"K-NET records lose their mean when read, got a mean of {given.mean():g} gal; remove it")
+        peak = float(np.abs(counts - counts.mean()).max()) * gal / _FULL_SCALE
+        known = {key: numbers.one_line(record.metadata.get(key.strip(". "), ""), 60) for key in _KEYS}
+        known |= {"Sampling Freq(Hz)": f"{rate}Hz", "Duration Time(s)": str(given.size // rate)}
+        known |= {"Scale Factor": f"{gal}(gal)/{_FULL_SCALE}", "Max. Acc. (gal)": f"{peak:.3f}"}
+        known["Dir."] = numbers.one_line(part.name, 20)
+        lines = [f"{key:<18}{known[key]}" for key in _KEYS]
+        lines += numbers.in_columns(counts, _PER_LINE, "{:8.0f} ")
+        return ("\n".join(lines) + "\n").encode("latin-1")
+
+
+def _header(source: Source) -> list[str]:
+    if not source.is_text or len(source.lines) <= len(_KEYS):
+        raise source.error(None, f"a K-NET header of {len(_KEYS)} lines expected, found {len(source.lines)} lines")
+    for line, key in enumerate(_KEYS):
+        if not source.lines[line].startswith(key):
+            raise source.error(line, f"{key!r} expected, found {source.lines[line].strip()[:40]!r}")
+    return [source.lines[line][len(key) :].strip() for line, key in enumerate(_KEYS)]
+
+
+def _stated(source: Source, line: int, form: str, text: str) -> list[float]:
+    found = re.fullmatch(form, text)
+    if found is None:
+        raise source.error(line, f"{_KEYS[line]} cannot be understood: {text[:40]!r}")
+    return [numbers.number(source, line, word) for word in found.groups()]
+
+
+def _counts(source: Source) -> FloatArray:
+    rows = [(line, source.lines[line].split()) for line in range(len(_KEYS), len(source.lines))]
+    while rows and not rows[-1][1]:
+        rows.pop()
+    for (line, words), _ in pairwise(rows):
+        if len(words) != _PER_LINE:
+            raise source.error(line, f"{_PER_LINE} counts expected, found {len(words)}")
+    if rows and len(rows[-1][1]) > _PER_LINE:
+        raise source.error(rows[-1][0], f"at most {_PER_LINE} counts expected, found {len(rows[-1][1])}")
+    counts = [
+        numbers.whole(source, line, word, "count of the recorder", least=-_LARGEST_COUNT)
+        for line, words in rows
+        for word in words
+    ]
+    return np.array(counts, dtype=np.float64)

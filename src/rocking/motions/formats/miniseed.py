@@ -1,0 +1,205 @@
+"""The exchange format of seismology, miniSEED, through ObsPy.
+
+It holds counts of the recorder, which are no accelerations: a StationXML file, named by the user and never looked for,
+turns them into m/s2 by the overall sensitivity of the channel, after their mean is removed: it is the recorder's offset
+(0.02 g in the file that this was checked on). Whole responses are not removed: above the corner of the sensor the
+sensitivity is no longer true. Checked on one channel of the 2019 Ridgecrest earthquake.
+"""
+
+import re
+import warnings
+from io import BytesIO
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError, RecordError
+from rocking.motions.formats import agreement
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.sac import need_obspy, read_traces, trace_of
+from rocking.motions.formats.source import Source
+
+_ACCELERATION = frozenset({"M/S**2", "M/S/S", "M/(S**2)", "M/S^2"})
+_COUNTS = frozenset({"COUNTS", "COUNT"})
+
+
+class MiniSeed(RecordFormat):
+    """The miniSEED format, with the overall sensitivity of a StationXML file if one is named."""
+
+    name: ClassVar[str] = "miniseed"
+    title: ClassVar[str] = "miniSEED, version 2"
+    suffixes: ClassVar[tuple[str, ...]] = (".mseed", ".miniseed", ".ms")
+    states_unit: ClassVar[bool] = False
+    notes: ClassVar[str] = (
+        "Whole numbers are counts: use MiniSeed.with_response(stationxml_path), which also removes the offset. "
+        "Real numbers may be accelerations: say units=. Files with gaps or overlaps are refused. It needs ObsPy."
+    )
+
+    def __init__(self) -> None:
+        self._stations: Source | None = None
+
+    @classmethod
+    def with_response(cls, stationxml_path: str | Path) -> "MiniSeed":
+        """Return a reader that divides counts by the overall sensitivity of their channel.
+
+        Parameters
+        ----------
+        stationxml_path : str or Path
+            StationXML file with the channels' responses.
+
+        Returns
+        -------
+        MiniSeed
+            The reader; its records are in m/s2.
+
+        Raises
+        ------
+        RecordError
+            If there is no such file.
+        """
+        made = cls()
+        made._stations = Source.of_path(Path(stationxml_path))
+        return made
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether a miniSEED record stands at the beginning.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if this format should read it.
+        """
+        return re.match(rb"\d{6}[DRQM][ \0]", source.content) is not None
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the channels.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            Unit of acceleration of a file of real numbers; not together with a StationXML file, which says m/s2.
+        time_step : float, optional
+            If given, it must be the file's [s].
+
+        Returns
+        -------
+        Record
+            One component a channel.
+
+        Raises
+        ------
+        RecordError
+            If it is damaged, has gaps, or its samples are no accelerations for all that is known.
+        """
+        if not self.recognises(source):
+            raise source.error(None, "no miniSEED file of version 2")
+        traces = read_traces(source, "MSEED")
+        names = [trace.id for trace in traces]
+        if len(set(names)) != len(names):
+            twice = next(name for name in names if names.count(name) > 1)
+            raise source.error(None, f"channel {twice} has a gap, an overlap or a change of rate; cut it out first")
+        stations = None if self._stations is None else _inventory(self._stations)
+        components = tuple(_component(source, trace, stations, units, time_step) for trace in traces)
+        stats = traces[0].stats
+        metadata = {key: str(stats[key]) for key in ("network", "station", "starttime")}
+        header = "\n".join(str(trace) for trace in traces)
+        return Record(self.name, components, header, {key: text for key, text in metadata.items() if text})
+
+    def write(self, record: Record) -> bytes:
+        """Return a miniSEED file of real numbers, in the unit of the first component, which the file cannot state.
+
+        Parameters
+        ----------
+        record : Record
+            Components whose names differ in their first three letters.
+
+        Returns
+        -------
+        bytes
+            The content, in double precision.
+
+        Raises
+        ------
+        RecordError
+            If two components would get the same channel code.
+        """
+        rows = agreement.in_unit(record, self.name, None, 100)
+        codes = [part.name[:3] for part in record.components]
+        if len(set(codes)) != len(codes):
+            raise RecordError(f"components need different channel codes of 3 letters, got {', '.join(codes)[:60]}")
+        obspy = need_obspy("miniSEED")
+        pairs = zip(rows, record.components, strict=True)
+        stream = obspy.Stream([trace_of(values, part, record) for values, part in pairs])
+        content = BytesIO()
+        stream.write(content, format="MSEED", encoding="FLOAT64")
+        return content.getvalue()
+
+
+def _component(source: Source, trace: Any, stations: Any, units: str | None, asked: float | None) -> Component:
+    values: FloatArray = np.asarray(trace.data, dtype=np.float64)
+    if values.size < 2 or not np.isfinite(values).all():
+        raise source.error(None, f"{trace.id}: at least 2 finite samples are needed, found {values.size}")
+    step = agreement.step_between_samples(source, float(trace.stats.delta), asked)
+    name = trace.stats.channel or "unnamed"
+    if stations is None:
+        if trace.data.dtype.kind in "iu":
+            raise source.error(
+                None, f"{trace.id} holds counts, no accelerations: use MiniSeed.with_response(stationxml_path)"
+            )
+        return Component(name, values, agreement.acceleration_unit(source, None, units), step)
+    unit = agreement.acceleration_unit(source, "m/s2", units)
+    sensitivity = _sensitivity(source, trace, stations)
+    offset = float(values.mean())
+    about = {
+        "sensitivity": f"{sensitivity:.9g} counts/(m/s2)",
+        "processing": "mean of the whole record removed, divided by the overall sensitivity",
+        "mean removed": f"{offset:.9g} counts",
+    }
+    return Component(name, (values - offset) / sensitivity, unit, step, None, about)
+
+
+def _inventory(stations: Source) -> Any:
+    obspy = need_obspy("StationXML")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            return obspy.read_inventory(BytesIO(stations.content), format="STATIONXML")
+        except Exception as error:  # its layers raise nearly any class
+            raise stations.error(None, f"ObsPy cannot read it as StationXML: {str(error)[:120]}") from error
+
+
+def _sensitivity(source: Source, trace: Any, stations: Any) -> float:
+    stats = trace.stats
+    found = stations.select(
+        network=stats.network,
+        station=stats.station,
+        location=stats.location,
+        channel=stats.channel,
+        time=stats.starttime,
+    )
+    channels = [channel for network in found for station in network for channel in station]
+    if len(channels) != 1:
+        raise source.error(None, f"{trace.id} at {stats.starttime}: the StationXML has {len(channels)} such channels")
+    total = channels[0].response and channels[0].response.instrument_sensitivity
+    if not total:
+        raise source.error(None, f"{trace.id}: the StationXML states no overall sensitivity; ask for level=response")
+    before, after = ((unit or "").upper().strip() for unit in (total.input_units, total.output_units))
+    if before not in _ACCELERATION or after not in _COUNTS:
+        raise source.error(None, f"{trace.id}: sensitivity from M/S**2 to counts needed, found {before} to {after}")
+    rate = channels[0].sample_rate
+    if rate and abs(float(rate) * stats.delta - 1.0) > 1e-4:
+        raise source.error(None, f"{trace.id}: {1 / stats.delta:g} samples/s, the StationXML states {float(rate):g}")
+    value = float(total.value)
+    if not 1e-12 < abs(value) < 1e15:
+        raise InvalidValueError(f"{trace.id}: sensitivity must be within 1e-12 to 1e15 counts/(m/s2), got {value:g}")
+    return value

@@ -1,0 +1,220 @@
+"""Reading a record file of whatever format, and writing one."""
+
+import hashlib
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+
+from rocking import checks
+from rocking.conventions import ACCELERATION_UNITS
+from rocking.errors import InvalidValueError, RecordError
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.registry import LAST_RESORT, format_named, formats
+from rocking.motions.formats.source import Source
+from rocking.motions.motion import GroundMotion
+
+
+def read_record(
+    path: str | PathLike[str], format: str | None = None, units: str | None = None, time_step: float | None = None
+) -> Record:
+    r"""Return all components of a record file, in the unit of the file.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+    format : str, optional
+        Name of its format; found by content if not given.
+    units : str, optional
+        Unit of acceleration, where the file does not state it: a key of `rocking.conventions.ACCELERATION_UNITS`.
+    time_step : float, optional
+        Step between samples, where the file does not state it [s].
+
+    Returns
+    -------
+    Record
+        Components and header.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no format or unit of that name.
+    RecordError
+        If the file is missing, of no known format or of more than one, damaged, or at odds with its own header.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder, "three.txt")
+    ...     _ = path.write_text("0.00 0.0\n0.01 0.5\n0.02 -0.2\n")
+    ...     record = read_record(path, units="g")
+    >>> record.format, record.components[0].time_step, record.components[0].peak
+    ('columns', 0.01, 0.5)
+    """
+    return _read(Source.of_path(Path(path)), format, units, time_step)
+
+
+def read_motion(
+    path: str | PathLike[str],
+    format: str | None = None,
+    units: str | None = None,
+    time_step: float | None = None,
+    component: str | None = None,
+    vertical: str | None = None,
+) -> GroundMotion:
+    """Return one component of a record file as a ground motion, with a second one as its vertical part if wanted.
+
+    Parameters
+    ----------
+    path : path-like
+        The file.
+    format : str, optional
+        Name of its format; found by content if not given.
+    units : str, optional
+        Unit of acceleration, where the file does not state it: a key of `rocking.conventions.ACCELERATION_UNITS`.
+    time_step : float, optional
+        Step between samples, where the file does not state it [s].
+    component : str, optional
+        Name of the horizontal component, in any case; needed where the file has several.
+    vertical : str, optional
+        Name of the vertical component, in any case.
+
+    Returns
+    -------
+    GroundMotion
+        In m/s2; its metadata hold the raw header, its provenance the SHA-256 of the file.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no format, unit or component of that name, or a component must be named.
+    RecordError
+        If the file is missing, of no known format or of more than one, damaged, or at odds with its own header.
+    """
+    source = Source.of_path(Path(path))
+    record = _read(source, format, units, time_step)
+    level = _chosen(record, "component", component, None if vertical is None else _chosen(record, "vertical", vertical))
+    metadata = {
+        **record.metadata,
+        **level.metadata,
+        "format": record.format,
+        "unit": level.unit,
+        "component": level.name,
+        "header": record.header,
+    }
+    digest = hashlib.sha256(source.content).hexdigest()
+    told = (
+        f"read from {source.name}, SHA-256 {digest}, format {record.format}, component {level.name}, unit {level.unit}"
+    )
+    provenance = [told]
+    acceleration, upward = level.acceleration * ACCELERATION_UNITS[level.unit], None
+    if vertical is not None:
+        upright = _chosen(record, "vertical", vertical)
+        if upright.time_step != level.time_step:
+            raise source.error(None, f"steps of {level.time_step:g} s and {upright.time_step:g} s; resample one first")
+        upward = upright.acceleration * ACCELERATION_UNITS[upright.unit]
+        metadata["vertical component"] = upright.name
+        provenance.append(f"vertical part: component {upright.name}, unit {upright.unit}")
+        if upward.size != acceleration.size:
+            samples = min(upward.size, acceleration.size)
+            provenance.append(f"components of {acceleration.size} and {upward.size} samples, both cut to {samples}")
+            acceleration, upward = acceleration[:samples], upward[:samples]
+    name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(path).stem
+    return GroundMotion(acceleration, level.time_step, upward, name, metadata, tuple(provenance))
+
+
+def write_record(record: Record, path: str | PathLike[str], format: str) -> None:
+    """Write a record to a file.
+
+    Parameters
+    ----------
+    record : Record
+        What to write; a format that states its unit converts to it.
+    path : path-like
+        The file; one that exists is replaced.
+    format : str
+        Name of the format.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no format of that name.
+    RecordError
+        If the format cannot hold the record or the file cannot be written.
+    """
+    content = format_named(format).write(record)
+    try:
+        Path(path).write_bytes(content)
+    except (OSError, ValueError) as error:
+        raise RecordError(f"{path}: {getattr(error, 'strerror', None) or error}") from error
+
+
+def write_motion(motion: GroundMotion, path: str | PathLike[str], format: str, units: str = "m/s2") -> None:
+    """Write a ground motion to a file, its vertical part as a second component.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        What to write.
+    path : path-like
+        The file; one that exists is replaced.
+    format : str
+        Name of the format.
+    units : str
+        Unit of acceleration in formats that state none; the others have their own and convert to it.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no format or unit of that name.
+    RecordError
+        If the format cannot hold the motion or the file cannot be written.
+    """
+    if units not in ACCELERATION_UNITS:
+        raise InvalidValueError(f"units must be one of {', '.join(ACCELERATION_UNITS)}, got {units!r:.60}")
+    rows = {motion.metadata.get("component", "horizontal"): motion.acceleration}
+    if motion.vertical is not None:
+        rows[motion.metadata.get("vertical component", "vertical")] = motion.vertical
+    factor = ACCELERATION_UNITS[units]
+    parts = tuple(Component(name, values / factor, units, motion.time_step) for name, values in rows.items())
+    metadata: Mapping[str, str] = {"event": motion.name, **motion.metadata}
+    write_record(Record(format, parts, metadata=metadata), path, format)
+
+
+def _read(source: Source, format: str | None, units: str | None, time_step: float | None) -> Record:
+    if units is not None and units not in ACCELERATION_UNITS:
+        raise InvalidValueError(f"units must be one of {', '.join(ACCELERATION_UNITS)}, got {units!r:.60}")
+    if time_step is not None:
+        time_step = checks.positive("time_step", time_step, "s")
+    chosen = _recognised(source) if format is None else format_named(format)
+    return chosen.read(source, units, time_step)
+
+
+def _recognised(source: Source) -> RecordFormat:
+    known = formats()
+    last = known.pop(LAST_RESORT)
+    found = [one for one in known.values() if one.recognises(source)]
+    if len(found) > 1:
+        names = ", ".join(one.name for one in found)
+        raise source.error(None, f"it could be {names}; say format= one of these")
+    if found or last.recognises(source):
+        return found[0] if found else last
+    raise source.error(
+        None, f"not recognised as any of {', '.join([*known, LAST_RESORT])}; damaged, or another format?"
+    )
+
+
+def _chosen(record: Record, what: str, name: str | None, other: Component | None = None) -> Component:
+    names = [part.name for part in record.components]
+    if name is None:
+        left = [part for part in record.components if part is not other]
+        if len(record.components) > 1 or not left:
+            raise InvalidValueError(f"the file has the components {', '.join(names)}; say {what}= one of these")
+        return left[0]
+    found = [part for part in record.components if part.name.casefold() == str(name).strip().casefold()]
+    if len(found) != 1 or found[0] is other:
+        hint = "it is the vertical one already" if found and found[0] is other else f"the file has {', '.join(names)}"
+        raise InvalidValueError(f"{what} must name one component, got {name!r:.60}; {hint}")
+    return found[0]

@@ -1,0 +1,232 @@
+"""SAC, the binary format of seismology, through ObsPy.
+
+SAC says nothing of its unit, so the user must. Checked on one file of the 2019 Ridgecrest earthquake.
+"""
+
+import math
+import struct
+import warnings
+from importlib import import_module
+from io import BytesIO
+from typing import Any, ClassVar
+
+import numpy as np
+
+from rocking.errors import MissingExtraError, RecordError
+from rocking.motions.formats import agreement
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+_HEADER = 632  # bytes
+_UNDEFINED = -12345.0
+_VERSIONS = (6, 7)
+_TIME_SERIES = 1
+_OTHER = {6: "displacement", 7: "velocity"}
+
+
+class Sac(RecordFormat):
+    """SAC, evenly spaced time series."""
+
+    name: ClassVar[str] = "sac"
+    title: ClassVar[str] = "SAC, binary, version 6 or 7"
+    suffixes: ClassVar[tuple[str, ...]] = (".sac",)
+    states_unit: ClassVar[bool] = False
+    notes: ClassVar[str] = "SAC states no unit: say units=. Counts are no accelerations. It needs ObsPy."
+
+    def recognises(self, source: Source) -> bool:
+        """Return whether the version and the logical fields of a SAC header stand at their places.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        bool
+            True if this format should read it.
+        """
+        if len(source.content) < _HEADER:
+            return False
+        for order in "<>":
+            version, even = struct.unpack_from(order + "i", source.content, 304)[0], _field(source, order, 420)
+            if version in _VERSIONS and even in {0, 1} and _field(source, order, 432) in {0, 1, int(_UNDEFINED)}:
+                return True
+        return False
+
+    def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
+        """Return the time series.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+        units : str, optional
+            Unit of acceleration; needed.
+        time_step : float, optional
+            If given, it must be the file's [s].
+
+        Returns
+        -------
+        Record
+            One component.
+
+        Raises
+        ------
+        RecordError
+            If it is damaged, at odds with its own header, no acceleration, or its unit is missing.
+        """
+        if not self.recognises(source):
+            raise source.error(None, "no SAC file of version 6 or 7")
+        unit = agreement.acceleration_unit(source, None, units)
+        trace = read_traces(source, "SAC", checksize=True)[0]
+        said = trace.stats.sac
+        if said.get("iftype") != _TIME_SERIES or not said.get("leven"):
+            raise source.error(None, "an evenly spaced time series is needed")
+        if said.get("idep") in _OTHER:
+            raise source.error(None, f"accelerations are needed, the file holds {_OTHER[said['idep']]}")
+        values = np.asarray(trace.data, dtype=np.float64)
+        agreement.check_count(source, int(said["npts"]), values.size)
+        if values.size < 2 or not np.isfinite(values).all():
+            raise source.error(None, f"at least 2 finite samples are needed, found {values.size}")
+        # SAC holds single precision: 0.02 is stored as 0.0199999996
+        step = agreement.step_between_samples(source, float(f"{float(said['delta']):.7g}"), time_step)
+        known = {key: float(said.get(key, _UNDEFINED)) for key in ("b", "e", "depmin", "depmax")}
+        if not all(math.isfinite(value) for value in known.values()):
+            raise source.error(None, "the header holds numbers that are not finite")
+        if _UNDEFINED not in {known["b"], known["e"]}:
+            agreement.check_duration(source, known["e"] - known["b"], values.size, step, 1e-6 * abs(known["e"]) + 1e-4)
+        for key, found in (("depmax", float(values.max())), ("depmin", float(values.min()))):
+            if known[key] != _UNDEFINED:
+                agreement.check_stated(source, known[key], found, 1e-6 * abs(found), key)
+        peak = max(abs(known["depmax"]), abs(known["depmin"]))
+        stated = None if _UNDEFINED in {known["depmax"], known["depmin"]} else peak
+        metadata = {key: str(trace.stats[key]) for key in ("network", "station", "channel", "starttime")}
+        header = "\n".join(f"{key} = {said[key]}" for key in sorted(said))
+        name = trace.stats.channel or "unnamed"
+        return Record(self.name, (Component(name, values, unit, step, stated),), header, metadata)
+
+    def write(self, record: Record) -> bytes:
+        """Return a SAC file, in the unit of the component, which the file cannot state.
+
+        Parameters
+        ----------
+        record : Record
+            One component.
+
+        Returns
+        -------
+        bytes
+            The content, in single precision.
+
+        Raises
+        ------
+        RecordError
+            If there are several components, or a number is beyond single precision.
+        """
+        (values,) = agreement.in_unit(record, self.name, None, 1)
+        if np.abs(values).max() > 1e37:
+            raise RecordError(f"SAC holds accelerations below 1e37, got {np.abs(values).max():g}; wrong unit?")
+        part = record.components[0]
+        trace = trace_of(values.astype(np.float32), part, record)
+        content = BytesIO()
+        trace.write(content, format="SAC")
+        return content.getvalue()
+
+
+def read_traces(source: Source, form: str, **options: Any) -> list[Any]:
+    """Return the traces that ObsPy finds in a file.
+
+    Parameters
+    ----------
+    source : Source
+        The file.
+    form : str
+        ObsPy's name of the format.
+    **options
+        More for ObsPy's reader.
+
+    Returns
+    -------
+    list of obspy.Trace
+        At least one.
+
+    Raises
+    ------
+    MissingExtraError
+        If ObsPy is not installed.
+    RecordError
+        If ObsPy refuses the file, warns of damage, or finds nothing.
+    """
+    obspy = need_obspy(form)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            traces = list(obspy.read(BytesIO(source.content), format=form, **options))
+        except Exception as error:  # ObsPy raises nearly any class on damaged files
+            raise source.error(None, f"ObsPy cannot read it as {form}: {str(error)[:120]}") from error
+    if not traces:
+        raise source.error(None, f"no trace in this {form} file")
+    return traces
+
+
+def need_obspy(form: str) -> Any:
+    """Return ObsPy.
+
+    Parameters
+    ----------
+    form : str
+        What it is needed for.
+
+    Returns
+    -------
+    module
+        ObsPy.
+
+    Raises
+    ------
+    MissingExtraError
+        If it is not installed.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return import_module("obspy")
+    except ImportError as error:
+        raise MissingExtraError(f"{form} files need ObsPy: pip install rocking[obspy]") from error
+
+
+def trace_of(values: Any, part: Component, record: Record) -> Any:
+    """Return an ObsPy trace of a component, for writers.
+
+    Parameters
+    ----------
+    values : ndarray
+        Samples in the type that the file will hold.
+    part : Component
+        Its name becomes the channel if it has three letters.
+    record : Record
+        Its metadata name network and station.
+
+    Returns
+    -------
+    obspy.Trace
+        The trace.
+
+    Raises
+    ------
+    MissingExtraError
+        If ObsPy is not installed.
+    """
+    obspy = need_obspy("SAC and miniSEED")
+    trace = obspy.Trace(data=values)
+    trace.stats.delta = part.time_step
+    trace.stats.network = str(record.metadata.get("network", ""))[:2]
+    trace.stats.station = str(record.metadata.get("station", ""))[:5]
+    trace.stats.channel = part.name[:3]
+    return trace
+
+
+def _field(source: Source, order: str, at: int) -> int:
+    return int(struct.unpack_from(order + "i", source.content, at)[0])

@@ -1,0 +1,18 @@
+"""Ground motions that never were: stochastic models, each with its seed."""
+
+from rocking.motions.synthetic.kanai_tajimi import Envelope, KanaiTajimi, kanai_tajimi_motion
+from rocking.motions.synthetic.modulation import GammaModulation, modulation_from_intensity
+from rocking.motions.synthetic.point_source import PointSource, point_source_motion
+from rocking.motions.synthetic.stochastic import NonstationaryFilter, nonstationary_motion
+
+__all__ = [
+    "Envelope",
+    "GammaModulation",
+    "KanaiTajimi",
+    "NonstationaryFilter",
+    "PointSource",
+    "kanai_tajimi_motion",
+    "modulation_from_intensity",
+    "nonstationary_motion",
+    "point_source_motion",
+]

@@ -1,0 +1,191 @@
+"""Kanai-Tajimi motions: white noise at the bedrock through a layer of soil, under an envelope.
+
+Kanai (1957), Bulletin of the Earthquake Research Institute 35:309; Tajimi (1960), Proceedings of the 2nd World
+Conference on Earthquake Engineering 2:781.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.synthetic.oscillator import transition
+from rocking.motions.synthetic.sampling import described, generator, times
+
+LEAST_PHASE = 1e-3
+"""Smallest phase of the filter in one step [rad]: below, the covariance of a step drowns in rounding."""
+
+
+@dataclass(frozen=True)
+class KanaiTajimi:
+    """Soil layer as an oscillator that white noise shakes.
+
+    Parameters
+    ----------
+    density : float
+        Two-sided power spectral density S0 of the noise over circular frequency [m2/s3 per rad].
+    frequency : float
+        Natural frequency of the layer [Hz]; the default 2.5 Hz is the customary 5 pi rad/s of firm ground.
+    damping : float
+        Damping ratio of the layer, between 0 and 1; the default 0.6 is customary too [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a parameter is outside its range.
+    """
+
+    density: float
+    frequency: float = 2.5
+    damping: float = 0.6
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        object.__setattr__(self, "density", checks.positive("density", self.density, "m2/s3"))
+        object.__setattr__(self, "frequency", checks.positive("frequency", self.frequency, "Hz"))
+        damping = checks.within("damping", self.damping, 0.0, 1.0, open_low=True, open_high=True)
+        object.__setattr__(self, "damping", damping)
+
+    @property
+    def variance(self) -> float:
+        """Stationary variance of the acceleration, ``pi S0 w (1 + 4 z^2) / (2 z)`` [m2/s4]."""
+        omega = 2.0 * math.pi * self.frequency
+        return math.pi * self.density * omega * (1.0 + 4.0 * self.damping**2) / (2.0 * self.damping)
+
+    def power(self, frequency: FloatArray) -> FloatArray:
+        """Return the power spectral density of the acceleration.
+
+        Parameters
+        ----------
+        frequency : ndarray
+            Frequencies [Hz].
+
+        Returns
+        -------
+        ndarray
+            Two-sided, over circular frequency [m2/s3 per rad].
+        """
+        ratio = (frequency / self.frequency) ** 2
+        coupling = 4.0 * self.damping**2 * ratio
+        return self.density * (1.0 + coupling) / ((1.0 - ratio) ** 2 + coupling)
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """Parabola up, plateau, exponential down (Jennings, Housner & Tsai 1968).
+
+    Parameters
+    ----------
+    rise : float
+        End of the parabola; zero for none [s].
+    plateau : float
+        End of the plateau, not before the rise [s].
+    decay : float
+        Decay after it; zero for none [1/s].
+
+    Raises
+    ------
+    InvalidValueError
+        If a parameter is outside its range.
+
+    Examples
+    --------
+    >>> Envelope(2.0, 4.0, 1.0)(np.array([0.0, 1.0, 3.0, 4.0])).tolist()
+    [0.0, 0.25, 1.0, 1.0]
+    """
+
+    rise: float = 2.0
+    plateau: float = 10.0
+    decay: float = 0.3
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        object.__setattr__(self, "rise", checks.within("rise", self.rise, 0.0, math.inf, unit="s"))
+        plateau = checks.within("plateau", self.plateau, self.rise, math.inf, unit="s", hint="not before the rise")
+        object.__setattr__(self, "plateau", plateau)
+        object.__setattr__(self, "decay", checks.within("decay", self.decay, 0.0, math.inf, unit="1/s"))
+
+    def __call__(self, time: FloatArray) -> FloatArray:
+        """Return the factor, from 0 to 1, at times of at least zero."""
+        up = np.minimum(time / self.rise, 1.0) ** 2 if self.rise > 0.0 else np.ones_like(time)
+        return np.asarray(up * np.exp(-self.decay * np.maximum(time - self.plateau, 0.0)))
+
+
+def kanai_tajimi_motion(
+    layer: KanaiTajimi,
+    envelope: Envelope | None = None,
+    *,
+    seed: int,
+    time_step: float = 0.01,
+    duration: float = 20.0,
+) -> GroundMotion:
+    """Return one synthetic motion.
+
+    The layer is stationary from the start and is stepped exactly, with the exact covariance that white noise adds
+    within a step: the samples have the closed-form variance at any step. The model keeps power down to zero
+    frequency, so that velocity and displacement drift: `bandpassed` or `detrended` takes this away.
+
+    Parameters
+    ----------
+    layer : KanaiTajimi
+        The soil layer and the noise below it.
+    envelope : Envelope, optional
+        Factor over time; the default is that of `Envelope`.
+    seed : int
+        The same seed gives the same bits [-].
+    time_step : float
+        Step between samples [s].
+    duration : float
+        Duration [s].
+
+    Returns
+    -------
+    GroundMotion
+        The motion, with its parameters as metadata.
+
+    Raises
+    ------
+    InvalidValueError
+        If a parameter is outside its range, or the step is far too short or too long for the layer.
+
+    Examples
+    --------
+    >>> motion = kanai_tajimi_motion(KanaiTajimi(density=0.01), seed=7, duration=5.0)
+    >>> len(motion), motion.metadata["layer.density"]
+    (501, '0.01')
+    """
+    envelope = Envelope() if envelope is None else envelope
+    time = times(time_step, duration)
+    step = float(time[1])
+    omega = 2.0 * math.pi * layer.frequency
+    if not LEAST_PHASE <= omega * step < math.pi:
+        low, high = LEAST_PHASE / omega, math.pi / omega
+        raise InvalidValueError(f"time_step must be in [{low:g}, {high:g}) s for this layer, got {step:g}")
+    acceleration = envelope(time) * _stationary(layer, omega, step, time.size, generator(seed))
+    parameters = described(layer=layer, envelope=envelope, seed=int(seed), time_step=step, duration=duration)
+    line = f"simulated: Kanai-Tajimi filtered white noise under an envelope, seed {seed}"
+    return GroundMotion(
+        acceleration, step, name=f"synthetic, Kanai-Tajimi, seed {seed}", metadata=parameters, provenance=(line,)
+    )
+
+
+def _stationary(layer: KanaiTajimi, omega: float, step: float, count: int, random: np.random.Generator) -> FloatArray:
+    # displacement times omega, so that both states have the same variance and no correlation
+    zeta = layer.damping
+    deviation = math.sqrt(math.pi * layer.density / (2.0 * zeta * omega))
+    units = np.array([omega, 1.0])
+    move = transition(omega, zeta, step) * units[:, None] / units
+    spread = deviation * np.linalg.cholesky(np.eye(2) - move @ move.T)
+    kicks = random.standard_normal((count, 2))
+    state = deviation * kicks[0]
+    states = np.empty((count, 2))
+    states[0] = state
+    added = kicks @ spread.T
+    for i in range(1, count):
+        state = move @ state + added[i]
+        states[i] = state
+    return np.asarray(-omega * (states[:, 0] + 2.0 * zeta * states[:, 1]))

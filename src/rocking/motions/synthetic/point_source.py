@@ -1,0 +1,232 @@
+"""Stochastic point source after Boore: noise with the spectrum that a fault far away radiates.
+
+Boore (2003), Pure and Applied Geophysics 160:635, DOI 10.1007/PL00012553. Spectra here are of the acceleration in
+SI units, ``integral of a(t) exp(-2 pi i f t) dt`` [m/s].
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.synthetic.sampling import described, generator, times
+
+REFERENCE_DISTANCE = 1000.0
+"""Distance at which the source spectrum holds [m]."""
+
+PEAK_AT, LEVEL_AT_END, STRETCH = 0.2, 0.05, 2.0
+"""Window: place of its peak, level at its end, and its length over the duration of the motion."""
+
+
+@dataclass(frozen=True)
+class PointSource:
+    """Source, path and site of a stochastic point-source motion.
+
+    The defaults are of the kind that is used for western North America, without amplification by the site; they are
+    there for trying things out.
+
+    Parameters
+    ----------
+    magnitude : float
+        Moment magnitude, from 0 to 10 [-].
+    distance : float
+        Distance to the source, at least 1 km [m].
+    stress_drop : float
+        Stress parameter [Pa].
+    shear_velocity : float
+        Shear-wave velocity at the source [m/s].
+    density : float
+        Density at the source [kg/m3].
+    radiation : float
+        Radiation pattern, an average [-].
+    free_surface : float
+        Amplification by the free surface [-].
+    partition : float
+        Share of one of two horizontal components [-].
+    spreading : tuple of (float, float)
+        Pieces of the geometric spreading: distance at which each begins [m] and its exponent. The first begins
+        at 1 km, where the factor is 1.
+    quality : tuple of (float, float)
+        ``Q(f) = Q0 (f / 1 Hz)^n``: Q0 and n [-].
+    kappa : float
+        Attenuation close to the site [s].
+    path_duration : float
+        Growth of the duration with distance [s/m].
+
+    Raises
+    ------
+    InvalidValueError
+        If a parameter is outside its range.
+
+    Examples
+    --------
+    >>> source = PointSource(magnitude=6.0, distance=20e3)
+    >>> f"{source.moment:.4g} N m, {source.corner_frequency:.3f} Hz"
+    '1.122e+18 N m, 0.330 Hz'
+    """
+
+    magnitude: float
+    distance: float
+    stress_drop: float = 8e6
+    shear_velocity: float = 3500.0
+    density: float = 2800.0
+    radiation: float = 0.55
+    free_surface: float = 2.0
+    partition: float = math.sqrt(0.5)
+    spreading: tuple[tuple[float, float], ...] = ((REFERENCE_DISTANCE, -1.0), (40e3, -0.5))
+    quality: tuple[float, float] = (180.0, 0.45)
+    kappa: float = 0.04
+    path_duration: float = 5e-5
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        checks.within("magnitude", self.magnitude, 0.0, 10.0)
+        checks.within("distance", self.distance, REFERENCE_DISTANCE, 2e7, unit="m", hint="given in km?")
+        checks.within("stress_drop", self.stress_drop, 1e3, 1e9, unit="Pa", hint="1 bar is 1e5 Pa")
+        checks.within("shear_velocity", self.shear_velocity, 100.0, 1e4, unit="m/s", hint="given in km/s?")
+        checks.within("density", self.density, 500.0, 1e4, unit="kg/m3", hint="given in g/cm3?")
+        for name in ("radiation", "free_surface", "partition"):
+            checks.positive(name, getattr(self, name))
+        checks.positive("quality[0]", self.quality[0])
+        checks.within("quality[1]", self.quality[1], -2.0, 1.0)
+        checks.within("kappa", self.kappa, 0.0, 1.0, unit="s")
+        checks.within("path_duration", self.path_duration, 0.0, 1.0, unit="s/m", hint="given in s/km?")
+        starts = [checks.positive("spreading distance", start, "m") for start, _ in self.spreading]
+        if not starts or starts[0] != REFERENCE_DISTANCE or any(np.diff(starts) <= 0.0):
+            raise InvalidValueError(f"spreading must begin at 1000 m and go outwards, got distances {starts} m")
+        for _, exponent in self.spreading:
+            checks.within("spreading exponent", exponent, -5.0, 5.0)
+
+    @property
+    def moment(self) -> float:
+        """Seismic moment, ``10^(1.5 M + 16.05)`` dyn cm [N m]."""
+        return float(10.0 ** (1.5 * self.magnitude + 16.05 - 7.0))
+
+    @property
+    def corner_frequency(self) -> float:
+        """Corner frequency, ``4.9e6 beta (stress / M0)^(1/3)`` in km/s, bar and dyn cm [Hz]."""
+        return float(0.49 * self.shear_velocity * (self.stress_drop / self.moment) ** (1.0 / 3.0))
+
+    @property
+    def duration(self) -> float:
+        """Duration of the motion, of the source and of the path [s]."""
+        return 1.0 / self.corner_frequency + self.path_duration * self.distance
+
+    def geometric_spreading(self) -> float:
+        """Return the factor of geometric spreading at the distance.
+
+        Returns
+        -------
+        float
+            1 at 1 km [-].
+        """
+        starts = [start for start, _ in self.spreading]
+        factor = 1.0
+        for (start, exponent), end in zip(self.spreading, [*starts[1:], math.inf], strict=True):
+            factor *= max(min(self.distance, end) / start, 1.0) ** exponent
+        return factor
+
+    def amplitude(self, frequency: FloatArray) -> FloatArray:
+        """Return the Fourier amplitude of the acceleration.
+
+        Parameters
+        ----------
+        frequency : ndarray
+            Frequencies of at least zero [Hz].
+
+        Returns
+        -------
+        ndarray
+            Amplitude [m/s].
+        """
+        beta = self.shear_velocity
+        constant = self.radiation * self.partition * self.free_surface
+        constant /= 4.0 * math.pi * self.density * beta**3 * REFERENCE_DISTANCE
+        source = (2.0 * np.pi * frequency) ** 2 / (1.0 + (frequency / self.corner_frequency) ** 2)
+        # f / Q(f) written so that zero frequency needs no division
+        path = np.power(frequency, 1.0 - self.quality[1]) * self.distance / (self.quality[0] * beta)
+        loss = np.exp(-np.pi * (path + self.kappa * frequency))
+        return np.asarray(constant * self.moment * self.geometric_spreading() * source * loss)
+
+
+def point_source_motion(
+    source: PointSource, *, seed: int, time_step: float = 0.01, duration: float | None = None
+) -> GroundMotion:
+    """Return one synthetic motion.
+
+    White noise is windowed, its spectrum is divided by its root mean square, multiplied by that of the source, and
+    brought back. The window begins one source duration ``1 / fc`` after the start.
+
+    Parameters
+    ----------
+    source : PointSource
+        Source, path and site.
+    seed : int
+        The same seed gives the same bits [-].
+    time_step : float
+        Step between samples [s].
+    duration : float, optional
+        Duration; if not given, the window with ``1 / fc`` before and after it [s].
+
+    Returns
+    -------
+    GroundMotion
+        The motion, with its parameters as metadata.
+
+    Raises
+    ------
+    InvalidValueError
+        If the duration does not hold the window, or the step is too long for the corner frequency.
+
+    Examples
+    --------
+    >>> motion = point_source_motion(PointSource(magnitude=5.0, distance=10e3), seed=3)
+    >>> 0.1 < motion.peak < 10.0
+    True
+    """
+    lead, length = 1.0 / source.corner_frequency, STRETCH * source.duration
+    if duration is None:
+        duration = 2.0 * lead + length
+    elif checks.positive("duration", duration, "s") < lead + length:
+        raise InvalidValueError(f"duration must be at least {lead + length:g} s for this source, got {duration:g}")
+    time = times(time_step, duration)
+    step = float(time[1])
+    if source.corner_frequency * step >= 0.5:
+        raise InvalidValueError(f"time_step must be below {0.5 * lead:g} s for this source, got {step:g}")
+    noise = generator(seed).standard_normal(time.size) * window((time - lead) / length)
+    spectrum = np.fft.rfft(noise)
+    spectrum /= math.sqrt(float(np.mean(np.abs(spectrum) ** 2)))
+    target = source.amplitude(np.arange(spectrum.size, dtype=np.float64) / (time.size * step))
+    acceleration = np.fft.irfft(spectrum * target / step, time.size)
+    parameters = described(source=source, seed=int(seed), time_step=step, duration=duration)
+    line = f"simulated: stochastic point source (Boore 2003), seed {seed}"
+    return GroundMotion(
+        acceleration, step, name=f"synthetic, point source, seed {seed}", metadata=parameters, provenance=(line,)
+    )
+
+
+def window(place: FloatArray) -> FloatArray:
+    """Return the exponential window of Saragoni and Hart, as Boore uses it.
+
+    Parameters
+    ----------
+    place : ndarray
+        Time over the length of the window [-].
+
+    Returns
+    -------
+    ndarray
+        Zero before the start, 1 at the peak at 0.2, 0.05 at 1, and falling beyond [-].
+
+    Examples
+    --------
+    >>> window(np.array([0.0, 0.2, 1.0])).round(12).tolist()
+    [0.0, 1.0, 0.05]
+    """
+    power = -PEAK_AT * math.log(LEVEL_AT_END) / (1.0 + PEAK_AT * (math.log(PEAK_AT) - 1.0))
+    ratio = np.maximum(place, 0.0) / PEAK_AT
+    return np.asarray(ratio**power * np.exp(power * (1.0 - ratio)))

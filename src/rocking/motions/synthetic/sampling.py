@@ -1,0 +1,94 @@
+"""What all generators share: the seed, the grid of times and the description of the parameters."""
+
+import math
+from dataclasses import fields
+from typing import Any, SupportsIndex
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP
+
+MOST_SAMPLES = 10_000_000
+"""No synthetic motion has more samples: asking for more is a wrong unit."""
+
+
+def generator(seed: object) -> np.random.Generator:
+    """Return the random numbers of a seed.
+
+    Parameters
+    ----------
+    seed : int
+        The same seed gives the same bits [-].
+
+    Returns
+    -------
+    Generator
+        Of NumPy's default kind.
+
+    Raises
+    ------
+    InvalidValueError
+        If the seed is not a whole number of at least zero.
+    """
+    if isinstance(seed, bool) or not isinstance(seed, SupportsIndex) or int(seed) < 0:
+        raise InvalidValueError(f"seed must be a whole number of at least 0, got {seed!r}")
+    return np.random.default_rng(int(seed))
+
+
+def times(time_step: float, duration: float) -> FloatArray:
+    """Return the times of the samples, from zero to the duration.
+
+    Parameters
+    ----------
+    time_step : float
+        Step [s].
+    duration : float
+        Time of the last sample, rounded up to whole steps [s].
+
+    Returns
+    -------
+    ndarray
+        At least three times [s].
+
+    Raises
+    ------
+    InvalidValueError
+        If there would be fewer than three samples or more than ten million.
+    """
+    step = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
+    ratio = checks.positive("duration", duration, "s") / step
+    if not 1.0 + 1e-6 < ratio < MOST_SAMPLES:
+        raise InvalidValueError(
+            f"duration must be in ({step:g}, {step * MOST_SAMPLES:g}) s for steps of {step:g} s, got {duration:g}"
+        )
+    return np.arange(math.ceil(ratio - 1e-6) + 1, dtype=np.float64) * step
+
+
+def described(**parts: Any) -> dict[str, str]:
+    """Return parameters as the metadata of a motion.
+
+    Parameters
+    ----------
+    **parts
+        Numbers, or dataclasses of these, whose fields are listed one by one.
+
+    Returns
+    -------
+    dict of str to str
+        Each number with all its digits.
+
+    Examples
+    --------
+    >>> described(seed=3, time_step=0.01)
+    {'seed': '3', 'time_step': '0.01'}
+    """
+    lines: dict[str, str] = {}
+    for name, part in parts.items():
+        if hasattr(part, "__dataclass_fields__"):
+            lines |= {f"{name}.{field.name}": repr(getattr(part, field.name)) for field in fields(part)}
+        else:
+            lines[name] = repr(part)
+    return lines

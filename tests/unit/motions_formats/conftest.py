@@ -1,0 +1,33 @@
+"""Where the real records lie that are not part of the repository, and a made-up record for round trips."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rocking.motions.formats.record import Component, Record
+
+
+@pytest.fixture(scope="session")
+def shared_records() -> Path:
+    """Folder with real records; tests that need them are skipped where it is absent."""
+    beside = Path(__file__).parents[3].parent / "shared" / "data" / "ground_motions"
+    folder = Path(os.environ.get("ROCKING_GROUND_MOTIONS", beside))
+    if not folder.is_dir():
+        pytest.skip("shared ground motions are absent")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def made_up() -> Callable[..., Record]:
+    """Make records of decaying sines: names of the components, their unit, step and largest amplitude."""
+
+    def make(*names: str, unit: str = "m/s2", step: float = 0.02, scale: float = 1.0, samples: int = 61) -> Record:
+        time = np.arange(samples) * step
+        rows = [scale * np.sin((7.0 + 2.0 * k) * time) * np.exp(-time) for k in range(len(names))]
+        parts = tuple(Component(name, row, unit, step) for name, row in zip(names, rows, strict=True))
+        return Record("made up", parts, metadata={"event": "Somewhere", "station": "Cellar"})
+
+    return make

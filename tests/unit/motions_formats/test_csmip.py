@@ -1,0 +1,193 @@
+"""CSMIP volumes 1 and 2: columns without blanks, unequal channels, blocks between, and what is refused."""
+
+import numpy as np
+import pytest
+
+from rocking.errors import RecordError
+from rocking.motions.formats.csmip_v1 import CsmipV1
+from rocking.motions.formats.csmip_v2 import CsmipV2
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats.source import Source
+
+V1, V2 = CsmipV1(), CsmipV2()
+ACCEL = [0.5, -1.25, 3.0, -1234.567, -23456.789, 0.0, 0.25, 1.0, -1.0, 0.125]
+VELOC = [0.0, 0.1, -5.5, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+DISPL = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.25]
+TIMES = [0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.12]
+TENTHS = [0.01, -0.25, 3.5, -12.345, 2.0, 0.0, 0.25]
+
+
+def _block(values: list[float], per_line: int, width: int, decimals: int) -> list[str]:
+    """Lay numbers out in Fortran's manner, without the zero before the point."""
+    words = [f"{v:.{decimals}f}" for v in values]
+    bare = [word.replace("0.", ".", 1) if word.lstrip("-").startswith("0.") else word for word in words]
+    words = [f"{word:>{width}}" for word in bare]
+    return ["".join(words[k : k + per_line]) for k in range(0, len(words), per_line)]
+
+
+def _headers(
+    texts: dict[int, str], count: int, wholes: dict[int, int], reals: dict[int, float], size: int
+) -> list[str]:
+    lines = [texts.get(k, "") for k in range(count)]
+    lines += _block([wholes.get(k, 0) for k in range(100)], 16, 5, 0)
+    return lines + _block([reals.get(k, 0.0) for k in range(size)], 8, 10, 3)
+
+
+def _v2(number: int = 1, direction: str = " 90 DEG", cut: int = 10, tail: str = "(UNITS: CM/SEC/SEC)") -> list[str]:
+    texts = {
+        0: f"CORRECTED ACCELEROGRAM   36456-S4384       CHAN  {number}: {direction}     FROM",
+        1: "UNCORRECTED ACCELEROGRAM DATA",
+        2: "SOMEWHERE EARTHQUAKE",
+        3: "MAY 2, 1983 16:42 PDT   (ORIGIN: 05/02/83)",
+        5: "STATION NO. 36456   35.908N, 120.458W",
+        6: "CELLAR",
+        7: f"CHAN  {number}: {direction}",
+        15: f"  {cut} POINTS OF INSTRUMENT- AND BASELINE-CORRECTED ACCEL, VELOC AND DISPL DATA",
+        17: "PEAK ACCELERATION = -23456.789    CM/SEC/SEC  AT     .080   SEC.",
+    }
+    reals = {60: 0.02, 64: 0.08, 65: -23456.789, 66: 0.04, 67: -5.5, 68: 0.02 * (cut - 1), 69: 7.25}
+    return [
+        *_headers(texts, 25, {52: cut, 63: cut, 65: cut}, reals, 100),
+        f" {cut:5d} POINTS OF ACCEL DATA EQUALLY SPACED AT  .020 SEC.  {tail}",
+        *_block(ACCEL[:cut], 8, 10, 3),
+        f" {cut:5d} POINTS OF VELOC DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC)",
+        *_block(VELOC[:cut], 8, 10, 3),
+        f" {cut:5d} POINTS OF DISPL DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: CM)",
+        *_block([*DISPL[: cut - 1], 7.25], 8, 10, 3),
+        f"/&  ----------  END OF DATA FOR CHANNEL  {number}  ----------",
+    ]
+
+
+def _v1(number: int = 1, direction: str = "360 DEG", unit: str = "SEC AND G/10.     MAX  = -1.235 G.") -> list[str]:
+    texts = {
+        0: "UNCORRECTED ACCELEROGRAM DATA              PROCESSED: 02/28/94",
+        1: "SOMEWHERE EARTHQUAKE",
+        2: "JANUARY 17, 1994 04:31 PST",
+        4: "STATION NO. 24436   34.160N, 118.534W",
+        5: "CELLAR",
+        6: f"CHAN  {number}: {direction}",
+        11: f"UNITS OF UNCOR ACCEL ARE {unit}",
+    }
+    pairs = [number for pair in zip(TIMES, TENTHS, strict=True) for number in pair]
+    return [
+        *_headers(texts, 13, {27: 7}, {0: 0.04, 2: 0.12, 6: -1.235, 7: 0.06}, 50),
+        *_block(pairs, 10, 7, 3),
+        f"/&  ----------  END OF DATA FOR CHANNEL  {number}  ----------",
+    ]
+
+
+def _source(lines: list[str], end: str = "\r\n") -> Source:
+    return Source("hand.v", end.join(lines).encode("latin-1"))
+
+
+def test_v2_hand_made_file_with_unequal_channels() -> None:
+    """Channels of 10 and 9 samples, numbers that touch, velocity and displacement passed over, Ctrl-Z at the end."""
+    source = _source([*_v2(1), *_v2(2, "UP", 9), "\x1a" * 100])
+    assert V2.recognises(source)
+    assert not V1.recognises(source)
+    record = V2.read(source)
+    first, second = record.components
+    assert first.acceleration.tolist() == ACCEL
+    assert second.acceleration.tolist() == ACCEL[:9]
+    assert (first.name, first.unit, first.time_step, first.stated_peak) == ("90", "cm/s2", 0.02, 23456.789)
+    assert second.name == "UP"
+    assert record.metadata["event"] == "SOMEWHERE EARTHQUAKE"
+    assert record.metadata["station"] == "CELLAR"
+    assert record.metadata["station number"] == "36456"
+
+
+def test_v2_newer_line_before_the_data() -> None:
+    """Lower case and a stated Fortran format, as newer files have, are read too."""
+    lines = [text.lower() if "POINTS OF ACCEL" in text else text for text in _v2(tail="in cm/sec2. (8f10.3)")]
+    assert V2.read(_source(lines)).components[0].acceleration.tolist() == ACCEL
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("    10 POINTS OF ACCEL", "    11 POINTS OF ACCEL", "characters|header states"),
+        ("    10 POINTS OF ACCEL", "999999999 POINTS OF ACCEL", "8 columns of 10 characters expected"),
+        ("    10 POINTS OF VELOC", "     9 POINTS OF VELOC", "columns of 10 characters expected"),
+        ("  10 POINTS OF INSTRUMENT", "  12 POINTS OF INSTRUMENT", "states 12 samples, the file holds 10"),
+        ("-23456.789    CM/SEC/SEC", "-23456.889    CM/SEC/SEC", "peak of 23456.9, the data have 23456.8"),
+        ("AT     .080   SEC", "AT     .180   SEC", "states the peak at 0.18 s"),
+        ("      .040    -5.500", "      .040    -5.600", "VELOC peak of 5.6"),
+        ("     7.250      .000", "     7.350      .000", "DISPL peak of 7.35"),
+        ("ACCEL DATA EQUALLY SPACED AT  .020", "ACCEL DATA EQUALLY SPACED AT  .030", "states a step of 0.02 s"),
+        ("(UNITS: CM/SEC/SEC)", "(UNITS: CM/SEC)", "must be in CM/SEC/SEC"),
+        ("(UNITS: CM/SEC/SEC)", "", "must be in CM/SEC/SEC"),
+        ("-1234.567-23456.789", "-1234.567-23456.78B", "number expected, found '-23456.78B'"),
+        ("POINTS OF ACCEL DATA", "POINTS OF DISPL DATA", "DISPL data must be in CM"),
+        ("/&  ------", "   ------", "END OF DATA FOR CHANNEL expected"),
+    ],
+)
+def test_v2_damage_is_refused(old: str, new: str, message: str) -> None:
+    """Counts, peaks, their times, steps and units that header and data do not share are refused."""
+    text = "\n".join(_v2())
+    assert text.count(old) == 1
+    with pytest.raises(RecordError, match=message):
+        V2.read(_source([text.replace(old, new)], "\n"))
+
+
+def test_v1_hand_made_file() -> None:
+    """Pairs of time and acceleration in columns of 7 characters; the unit is g/10, the peak in the header g."""
+    source = _source([*_v1(), *_v1(2, "UP"), ""])
+    assert V1.recognises(source)
+    assert not V2.recognises(source)
+    record = V1.read(source)
+    assert [part.name for part in record.components] == ["360", "UP"]
+    part = record.components[0]
+    assert part.acceleration.tolist() == TENTHS
+    assert (part.unit, part.time_step) == ("g/10", 0.02)
+    assert part.stated_peak == pytest.approx(12.35)
+    assert record.metadata["station"] == "CELLAR"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("   .040  3.500", "   .050  3.500", "not evenly spaced"),
+        ("    0    7    0", "    0    8    0", "columns of 7 characters expected"),
+        ("      .120", "     1.120", "states a record of 1.12 s, the last sample is at 0.12 s"),
+        ("    -1.235", "    -1.335", "peak of 1.335, the data have 1.2345"),
+        ("      .060", "      .100", "states the peak at 0.1 s"),
+        ("-12.345", "-12.34S", "number expected"),
+        ("/&  ------", "   ------", "END OF DATA FOR CHANNEL expected"),
+        ("SEC AND G/10", "SEC AND WHAT", "say units="),
+        ("SEC AND G/10", "SEC AND CM/SEC/SEC", "peak of 1.235"),
+    ],
+)
+def test_v1_damage_is_refused(old: str, new: str, message: str) -> None:
+    """Uneven times, and counts, lengths, peaks and units that contradict the data, are refused."""
+    text = "\n".join(_v1())
+    assert text.count(old) == 1
+    with pytest.raises(RecordError, match=message):
+        V1.read(_source([text.replace(old, new)], "\n"))
+
+
+def test_v1_evenly_spaced_variant() -> None:
+    """A line that states an even spacing stands for the column of times."""
+    lines = _v1(unit="IN G. MAX")
+    even = [f"{v / 10:9.6f}" for v in TENTHS]
+    lines = [*lines[:27], "  7 POINTS OF DATA EQUALLY SPACED AT .020 SEC, (8F9.6)", "".join(even), lines[-1]]
+    part = V1.read(_source(lines)).components[0]
+    assert part.unit == "g"
+    np.testing.assert_allclose(part.acceleration, np.array(TENTHS) / 10.0, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize(("kind", "factor", "digit"), [(V1, 10.0 / 9.80665, 5.1e-4), (V2, 100.0, 5.1e-4)])
+def test_round_trips(kind: RecordFormat, factor: float, digit: float, made_up) -> None:
+    """Channels of unequal length come back to 3 decimals of the format's unit."""
+    whole = made_up("90", "UP")
+    parts = (whole.components[0], Component("UP", whole.components[1].acceleration[:-1], "m/s2", 0.02))
+    record = Record("x", parts, metadata=whole.metadata)
+    source = Source("w", kind.write(record))
+    again = kind.read(source)
+    assert kind.recognises(source)
+    assert [part.name for part in again.components] == ["90", "UP"]
+    assert (again.metadata["event"], again.metadata["station"]) == ("Somewhere", "Cellar")
+    for old, new in zip(parts, again.components, strict=True):
+        np.testing.assert_allclose(new.acceleration, factor * old.acceleration, atol=digit, rtol=0.0)
+    with pytest.raises(RecordError, match="does not fit"):
+        kind.write(made_up("90", scale=1e6))

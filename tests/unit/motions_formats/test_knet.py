@@ -1,0 +1,113 @@
+"""K-NET and KiK-net: counts, a scale factor, and a mean that must go."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from rocking.errors import RecordError
+from rocking.motions.formats.knet import Knet
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.source import Source
+
+# 2000 gal are 1000 counts: 2 gal a count. Mean of the counts 1010, so the accelerations are -20, 20, 60, -60 ... gal
+COUNTS = [1000, 1020, 1040, 980, 1010, 1010, 1010, 1010, 1010, 1010]
+TYPED = """\
+Origin Time       1999/12/31 19:51:00
+Lat.              41.0
+Long.             142.5
+Depth. (km)       30
+Mag.              6.2
+Station Code      ABC001
+Station Lat.      41.5267
+Station Long.     140.9244
+Station Height(m) 39
+Record Time       1999/12/31 19:51:43
+Sampling Freq(Hz) 5Hz
+Duration Time(s)  2
+Dir.              N-S
+Scale Factor      2000(gal)/1000
+Max. Acc. (gal)   60.000
+Last Correction   1999/12/31 19:51:43
+Memo.
+    1000     1020     1040      980     1010     1010     1010     1010
+    1010     1010
+"""
+
+
+def read(text: str = TYPED, **options: object) -> Record:
+    return Knet().read(Source("ABC001.NS", text.encode()), **options)  # type: ignore[arg-type]
+
+
+def test_the_mean_of_the_whole_record_is_removed() -> None:
+    """Accelerations by hand; with the mean the peak would be 2080 gal, 35 times too large."""
+    record = read()
+    (part,) = record.components
+    np.testing.assert_allclose(part.acceleration, [-20, 20, 60, -60, 0, 0, 0, 0, 0, 0], atol=1e-10)
+    assert (part.name, part.unit, part.time_step, part.stated_peak) == ("N-S", "gal", 0.2, 60.0)
+    assert record.metadata["processing"] == "mean of the whole record removed"
+    assert record.metadata["mean removed"] == "2020 gal"
+    assert record.metadata["Station Code"] == "ABC001"
+    assert 2.0 * max(COUNTS) > 34.0 * part.peak
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("60.000", "60.010", "largest acceleration"),
+        ("60.000", "2080.000", "largest acceleration"),
+        ("2000(gal)/1000", "2000(gal)/1001", "largest acceleration"),
+        ("2000(gal)/1000", "0(gal)/1000", "scale factor"),
+        ("2000(gal)/1000", "2000/1000", "Scale Factor cannot be understood"),
+        ("5Hz", "50Hz", "states 100 samples, the file holds 10"),
+        ("5Hz", "0Hz", "time step"),
+        ("5Hz", "5", "Sampling Freq"),
+        ("(s)  2", "(s)  999999999", "whole number of samples"),
+        ("(s)  2", "(s)  2.1", "whole number of samples"),
+        ("1040", "104O", "line 18"),
+        ("1040", "10 40", "line 18: 8 counts expected, found 9"),
+        ("1010\n    1010     1010\n", "1010\n    1010     1010\n     7\n", "line 19: 8 counts expected, found 2"),
+        ("Mag.              6.2\n", "", "line 5: 'Mag.' expected"),
+    ],
+)
+def test_damage_is_refused(old: str, new: str, message: str) -> None:
+    """Peak, scale, rate, duration, counts and the order of the header are checked; damage names its line."""
+    changed = TYPED.replace(old, new, 1)
+    assert changed != TYPED
+    with pytest.raises(RecordError) as caught:
+        read(changed)
+    assert message in str(caught.value)
+
+
+def test_units_that_contradict_are_refused() -> None:
+    """It is gal, which is cm/s2, and nothing else."""
+    assert read(units="cm/s2").components[0].unit == "gal"
+    with pytest.raises(RecordError, match="you say"):
+        read(units="g")
+
+
+def test_recognition() -> None:
+    """Three of four words at the top suffice, so a file that lost a line is not taken for a plain table."""
+    reader = Knet()
+    assert reader.recognises(Source("a", TYPED.encode()))
+    assert reader.recognises(Source("a", TYPED.replace("Scale Factor", "Scale").encode()))
+    assert not reader.recognises(Source("a", "\n".join(map(str, COUNTS)).encode()))
+
+
+def test_what_is_written_is_read_back() -> None:
+    """A record without mean comes back to the count of a 24-bit recorder."""
+    time = np.arange(200) * 0.01
+    given = 321.0 * np.sin(2.0 * np.pi * time)
+    (part,) = Knet().read(Source("w", Knet().write(Record("", (Component("E-W", given, "gal", 0.01),))))).components
+    np.testing.assert_allclose(part.acceleration, given, atol=321.0 * 2.0**-22)
+    assert part.name == "E-W"
+
+
+def test_what_it_cannot_hold_is_refused(made_up: Callable[..., Record]) -> None:
+    """A mean would be lost, and parts of seconds cannot be stated."""
+    with pytest.raises(RecordError, match="mean"):
+        Knet().write(Record("", (Component("a", np.array([1.0, 1.0, 1.0, 0.0]), "gal", 0.5),)))
+    with pytest.raises(RecordError, match="whole seconds"):
+        Knet().write(made_up("a"))
+    with pytest.raises(RecordError, match="wrong unit"):
+        Knet().write(Record("", (Component("a", np.array([1e9, -1e9]), "gal", 0.5),)))

@@ -1,0 +1,155 @@
+"""miniSEED through ObsPy: counts are no accelerations."""
+
+import importlib.util
+import random
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rocking.conventions import g
+from rocking.errors import InvalidValueError, MissingExtraError, RecordError
+from rocking.motions.formats.miniseed import MiniSeed
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.source import Source
+
+WITHOUT = importlib.util.find_spec("obspy") is None
+COUNTS = [1000, 3000, -1000, 1000, 2000, 0]  # mean 1000
+STATIONS = """<?xml version='1.0' encoding='UTF-8'?>
+<FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1" schemaVersion="1.1">
+ <Source>typed</Source><Created>1999-12-31T00:00:00</Created>
+ <Network code="XX"><Station code="ABC">
+  <Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Site><Name>Cellar</Name></Site>
+  <Channel code="HNE" locationCode="" startDate="1960-01-01T00:00:00">
+   <Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Depth>0.0</Depth>
+   <SampleRate>100.0</SampleRate>
+   <Response><InstrumentSensitivity><Value>2000.0</Value><Frequency>1.0</Frequency>
+    <InputUnits><Name>M/S**2</Name></InputUnits><OutputUnits><Name>COUNTS</Name></OutputUnits>
+   </InstrumentSensitivity></Response>
+  </Channel></Station></Network>
+</FDSNStationXML>
+"""
+
+
+def recorded(*rows: Any, codes: tuple[str, ...] = ("HNE",), late: float = 0.0) -> Source:
+    """A file that ObsPy writes, all rows from 1970 on or each later than the one before."""
+    obspy = pytest.importorskip("obspy")
+    stream = obspy.Stream()
+    for k, row in enumerate(rows):
+        trace = obspy.Trace(np.asarray(row))
+        trace.stats.update({"network": "XX", "station": "ABC", "channel": codes[k % len(codes)], "delta": 0.01})
+        trace.stats.starttime += k * late
+        stream.append(trace)
+    content = BytesIO()
+    stream.write(content, format="MSEED")
+    return Source("a.mseed", content.getvalue())
+
+
+def reader(folder: Path, old: str = "", new: str = "") -> MiniSeed:
+    path = folder / "stations.xml"
+    path.write_text(STATIONS.replace(old, new) if old else STATIONS, encoding="utf-8")
+    return MiniSeed.with_response(path)
+
+
+def test_recognition_needs_no_obspy() -> None:
+    """Six digits and a quality letter begin a record; a number in a text does not."""
+    assert MiniSeed().recognises(Source("a", b"000001D XX".ljust(512, b"\0")))
+    for content in (b"", b"000001", b"0000012 \n", b"12.345 D 1", b"Origin Time"):
+        assert not MiniSeed().recognises(Source("a", content))
+    with pytest.raises(RecordError, match="no miniSEED"):
+        MiniSeed().read(Source("a", b"nothing of the kind"))
+
+
+@pytest.mark.skipif(not WITHOUT, reason="ObsPy is installed")
+def test_without_obspy_the_extra_is_named() -> None:
+    """The error says what to install."""
+    with pytest.raises(MissingExtraError, match=r"pip install rocking\[obspy\]"):
+        MiniSeed().read(Source("a", b"000001D XX".ljust(512, b"\0")))
+
+
+def test_counts_alone_are_refused() -> None:
+    """Also where the user gives them a unit."""
+    source = recorded(np.array(COUNTS, dtype=np.int32))
+    for units in (None, "m/s2", "gal"):
+        with pytest.raises(RecordError, match="with_response"):
+            MiniSeed().read(source, units=units)
+
+
+def test_sensitivity_turns_counts_into_accelerations(tmp_path: Path) -> None:
+    """(count - mean) / 2000 by hand, in m/s2; with the offset the peak would be 1.5 m/s2, not 1."""
+    record = reader(tmp_path).read(recorded(np.array(COUNTS, dtype=np.int32)))
+    (part,) = record.components
+    np.testing.assert_allclose(part.acceleration, [0.0, 1.0, -1.0, 0.0, 0.5, -0.5], atol=1e-15)
+    assert (part.name, part.unit, part.time_step) == ("HNE", "m/s2", 0.01)
+    assert part.metadata["mean removed"] == "1000 counts"
+    assert record.metadata["station"] == "ABC"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("M/S**2", "M/S", "M/S to COUNTS"),
+        ("COUNTS", "V", "needed, found"),
+        ("HNE", "HNN", "has 0 such channels"),
+        ("1960-01-01", "1999-01-01", "has 0 such channels"),
+        ("<SampleRate>100.0", "<SampleRate>200.0", "states 200"),
+        ("<Value>2000.0", "<Value>0.0", "sensitivity must be within"),
+        ("</Network>", "", "cannot read it as StationXML"),
+    ],
+)
+def test_responses_that_do_not_fit_are_refused(tmp_path: Path, old: str, new: str, message: str) -> None:
+    """Unit, channel, epoch, rate and value of the sensitivity are checked."""
+    with pytest.raises((RecordError, InvalidValueError), match=message):
+        reader(tmp_path, old, new).read(recorded(np.array(COUNTS, dtype=np.int32)))
+
+
+def test_gaps_and_overlaps_are_refused() -> None:
+    """The second piece of a channel may start neither late nor early; at the right time it is joined."""
+    row = np.linspace(-1.0, 1.0, 100)
+    for late in (1.5, 0.5):
+        with pytest.raises(RecordError, match=r"XX\.ABC\.\.HNE has a gap"):
+            MiniSeed().read(recorded(row, row, late=late), units="m/s2")
+    (part,) = MiniSeed().read(recorded(row, row, late=1.0), units="m/s2").components
+    assert part.acceleration.size == 200
+
+
+def test_real_numbers_need_a_unit_and_come_back() -> None:
+    """Several channels are several components, in double precision."""
+    pytest.importorskip("obspy")
+    given = Record("", tuple(Component(name, np.sin(np.arange(90.0) + k), "g", 0.005) for k, name in enumerate("ENZ")))
+    source = Source("w", MiniSeed().write(given))
+    back = MiniSeed().read(source, units="g")
+    assert [part.name for part in back.components] == ["E", "N", "Z"]
+    for part, other in zip(back.components, given.components, strict=True):
+        np.testing.assert_array_equal(part.acceleration, other.acceleration)
+    with pytest.raises(RecordError, match="units="):
+        MiniSeed().read(source)
+    with pytest.raises(RecordError, match="channel codes"):
+        MiniSeed().write(Record("", given.components[:1] * 2))
+
+
+def test_damaged_files_give_no_other_error() -> None:
+    """200 files with flipped bits or cut short are refused, or hold finite samples."""
+    whole = recorded(np.sin(np.arange(300.0))).content
+    chance = random.Random(2)
+    for _ in range(200):
+        content = bytearray(whole)
+        content[chance.randrange(len(content) if chance.random() < 0.3 else 64)] ^= 1 << chance.randrange(8)
+        cut = chance.choice([len(content)] * 3 + [chance.randrange(len(content))])
+        try:
+            record = MiniSeed().read(Source("a", bytes(content[:cut])), units="g")
+        except RecordError:
+            continue
+        assert all(np.isfinite(part.acceleration).all() for part in record.components)
+
+
+def test_the_real_file(shared_records: Path) -> None:
+    """2019 Ridgecrest, CI.CLC HNE: 39001 samples at 0.01 s, 0.343 g by 213945 counts/(m/s2)."""
+    pytest.importorskip("obspy")
+    (path,) = (shared_records / "mseed").glob("*.mseed")
+    made = MiniSeed.with_response(shared_records / "stationxml" / "CI.CLC.xml")
+    (part,) = made.read(Source.of_path(path)).components
+    assert (part.acceleration.size, part.time_step) == (39001, 0.01)
+    assert part.peak / g == pytest.approx(0.343, abs=5e-4)

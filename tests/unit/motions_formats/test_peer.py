@@ -1,0 +1,116 @@
+"""PEER AT2: its header variants, typed by hand, and what is refused."""
+
+import numpy as np
+import pytest
+
+from rocking.errors import RecordError
+from rocking.motions.formats.peer import Peer
+from rocking.motions.formats.source import Source
+
+PEER = Peer()
+VALUES = [0.1, -0.25, 0.3, 0.0, 0.05, -0.01, 0.02]
+BODY = "  .1000000E+00 -.2500000E+00  .3000000E+00  .0000000E+00  .5000000E-01\n -.1000000E-01  .2000000E-01\n"
+TOP = "A DATABASE\nSOMEWHERE 01/17/94 1231, CELLAR, 360 (STATION 12)\nACCELERATION TIME HISTORY IN UNITS OF G\n"
+SIZE = "NPTS=  7, DT= .02000 SEC\n"
+
+
+def _source(text: str) -> Source:
+    return Source("hand.at2", text.encode("latin-1"))
+
+
+@pytest.mark.parametrize(
+    "size",
+    [
+        "NPTS=  7, DT= .02000 SEC",
+        "NPTS=   7, DT=   .0200 SEC,                     ",
+        "NPTS= 7, dt= 0.02 sec",
+        "DT= .02000 SEC, NPTS= 7",
+        "   7    0.0200    NPTS, DT",
+        "7 .02 NPTS,DT (SEC)",
+    ],
+)
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r\r\n"])
+def test_header_variants(size: str, end: str) -> None:
+    """Every way of stating size and step, and every line end, gives the same record."""
+    source = _source((TOP + size + "\n" + BODY).replace("\n", end))
+    assert PEER.recognises(source)
+    part = PEER.read(source).components[0]
+    assert (part.name, part.unit, part.time_step) == ("360", "g", 0.02)
+    assert part.acceleration.tolist() == VALUES
+
+
+def test_free_header_with_eight_columns_and_marks() -> None:
+    """A free header may stand ahead; the marks around the data are passed over."""
+    text = (
+        "Somewhere\n7 points at equal spacing of 0.02 sec\nThe units are (g)\n*** Begin data ***\n" + SIZE
+        + "0.1 -0.25 0.3 0.0 0.05 -0.01 0.02\n*** End Data ***\n\n"
+    )  # fmt: skip
+    record = PEER.read(_source(text))
+    assert record.components[0].acceleration.tolist() == VALUES
+    assert record.header.count("\n") == 4
+    with pytest.raises(RecordError, match=r"line 2: 8 points at 0.02 s stated here, 7"):
+        PEER.read(_source(text.replace("7 points", "8 points")))
+
+
+def test_metadata_and_header_are_kept() -> None:
+    """Event, date, station and filter are what the second and third lines say."""
+    record = PEER.read(_source(TOP.replace("OF G", "OF G. FILTER POINTS: HP=0.2 Hz LP=15.0 Hz") + SIZE + BODY))
+    assert record.metadata["event"] == "SOMEWHERE"
+    assert record.metadata["station"] == "CELLAR"
+    assert record.metadata["date"] == "01/17/94"
+    assert record.metadata["filter"] == "high-pass 0.2 Hz, low-pass 15.0 Hz"
+    assert record.header.startswith("A DATABASE\nSOMEWHERE")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("NPTS=  7", "NPTS=  8", "states 8 samples, the file holds 7"),
+        ("NPTS=  7", "NPTS= 999999999", "states 999999999 samples"),
+        ("NPTS=  7", "NPTS=  7x", "line 4: number of samples expected, found '7X'"),
+        ("DT= .02000", "DT= .02O00", "line 4: time step expected"),
+        ("DT= .02000", "DT= 0.0", "time step must be in"),
+        ("UNITS OF G", "UNITS OF CM/SEC/SEC", "line 3: PEER accelerations are in g"),
+        ("UNITS OF G", "UNITS OF G/10", "line 3: PEER accelerations are in g"),
+        (" IN UNITS OF G", "", "say units="),
+        ("-.2500000E+00", "-.25O0000E+00", "line 5: number expected"),
+        ("-.2500000E+00", "nan", "line 5: number expected"),
+        ("-.2500000E+00", "1e999", "line 5: number is beyond all range"),
+        ("-.2500000E+00", "", "line 6|holds 6"),
+        (".5000000E-01\n", ".5000000E-01\n\n.1\n", "line 8: 5 numbers a line expected"),
+    ],
+)
+def test_damage_is_refused(old: str, new: str, message: str) -> None:
+    """A count, step, unit or number that is damaged is refused, with its line where it has one."""
+    text = TOP + SIZE + BODY
+    assert old in text
+    with pytest.raises(RecordError, match=message):
+        PEER.read(_source(text.replace(old, new)))
+
+
+def test_velocity_is_no_acceleration() -> None:
+    """A PEER velocity file looks the same but for its unit, and is refused."""
+    text = TOP.replace("ACCELERATION TIME HISTORY IN UNITS OF G", "VELOCITY TIME SERIES IN UNITS OF CM/S")
+    with pytest.raises(RecordError, match="states 'CM/S'"):
+        PEER.read(_source(text + SIZE + BODY))
+
+
+def test_contradicting_user_is_refused() -> None:
+    """The user cannot overrule the unit or step of the file."""
+    with pytest.raises(RecordError, match="states the unit g, you say m/s2"):
+        PEER.read(_source(TOP + SIZE + BODY), units="m/s2")
+    with pytest.raises(RecordError, match=r"time step of 0.02 s, you say 0.01"):
+        PEER.read(_source(TOP + SIZE + BODY), time_step=0.01)
+
+
+def test_round_trip_converts_to_g(made_up) -> None:
+    """Writing converts m/s2 to g by 9.80665, to 8 digits."""
+    record = made_up("045", scale=3.0)
+    source = Source("w", PEER.write(record))
+    again = PEER.read(source)
+    assert PEER.recognises(source)
+    np.testing.assert_allclose(again.components[0].acceleration * 9.80665, record.components[0].acceleration, rtol=1e-7)
+    assert again.components[0].name == "045"
+    assert (again.metadata["event"], again.metadata["station"]) == ("Somewhere", "Cellar")
+    with pytest.raises(RecordError, match="holds 1 to 1 components"):
+        PEER.write(made_up("a", "b"))

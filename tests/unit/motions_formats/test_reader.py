@@ -1,0 +1,258 @@
+"""Reading whatever format a file has, choosing components, provenance, writing, and damage of every kind."""
+
+import hashlib
+import re
+from contextlib import suppress
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rocking.errors import InvalidValueError, RecordError
+from rocking.motions.formats import (
+    Component,
+    Record,
+    formats,
+    read_motion,
+    read_record,
+    write_motion,
+    write_record,
+)
+from rocking.motions.formats.source import Source
+from rocking.motions.motion import GroundMotion
+
+TEXT_FORMATS = ("peer", "esm", "cosmos", "csmip-v1", "csmip-v2")
+COLUMNS = "0.00 0.0 1.0\n0.01 0.5 2.0\n0.02 -0.2 -3.0\n"
+
+
+def _write(folder: Path, text: str, name: str = "hand.txt") -> Path:
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("name", TEXT_FORMATS)
+def test_files_are_recognised_by_content_alone(name: str, made_up, tmp_path: Path) -> None:
+    """A file under a misleading name is recognised by one format, and by no other but the last resort."""
+    path = tmp_path / "misleading.sac"
+    write_record(made_up("90"), path, name)
+    assert read_record(path).format == name
+    source = Source.of_path(path)
+    assert [one.name for one in formats().values() if one.recognises(source)] == [name]
+
+
+def test_every_format_says_who_it_is() -> None:
+    """Names in the registry are those of the formats, each with a title."""
+    for name, one in formats().items():
+        assert one.name == name
+        assert one.title
+
+
+def test_unknown_files_and_formats(tmp_path: Path) -> None:
+    """The errors list what there is."""
+    path = _write(tmp_path, "Dear reader,\nthis is no record.\n")
+    with pytest.raises(RecordError, match=r"not recognised as any of peer, esm, .*columns"):
+        read_record(path)
+    with pytest.raises(InvalidValueError, match=r"format must be one of peer, esm, .*got 'at2'"):
+        read_record(path, format="at2")
+    with pytest.raises(RecordError, match="no such file"):
+        read_record(tmp_path / "absent")
+    with pytest.raises(RecordError, match="not a plain file"):
+        read_record(tmp_path)
+    with pytest.raises(RecordError, match="the file is empty"):
+        read_record(_write(tmp_path, " \n", "empty"))
+
+
+def test_ambiguous_file_names_its_candidates(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made_up) -> None:
+    """Where two formats recognise a file, the error names both; format= decides."""
+    path = tmp_path / "two"
+    write_record(made_up("90"), path, "peer")
+    monkeypatch.setattr("rocking.motions.formats.esm.Esm.recognises", lambda self, source: True)
+    with pytest.raises(RecordError, match="could be peer, esm; say format="):
+        read_record(path)
+    assert read_record(path, format="peer").format == "peer"
+
+
+@pytest.mark.parametrize("name", [*TEXT_FORMATS, "columns", "smc-usgs", "knet", "cwa", "geonet-v2a", "bhrc"])
+def test_forced_format_refuses_foreign_content(name: str) -> None:
+    """A format forced onto text or bytes that are not its own refuses them and raises nothing else."""
+    reader = formats()[name]
+    for content in (b"Dear reader", b"\0\1\2", b"\xff" * 50, b"\n\n1", b"NPTS=1, DT=1"):
+        source = Source("foreign", content)
+        assert not reader.recognises(source) or (name, content) in {("peer", b"NPTS=1, DT=1"), ("columns", b"\n\n1")}
+        with pytest.raises(RecordError):
+            reader.read(source, "g", 0.01)
+
+
+def test_units_and_steps_are_never_guessed(tmp_path: Path) -> None:
+    """Columns need units=; a velocity unit, a negative or a non-number step are refused."""
+    path = _write(tmp_path, COLUMNS)
+    with pytest.raises(RecordError, match="say units="):
+        read_record(path)
+    with pytest.raises(InvalidValueError, match="units must be one of"):
+        read_record(path, units="cm/s")
+    for step in (-0.01, float("nan"), float("inf"), "0.01", True):
+        with pytest.raises(InvalidValueError, match="time_step"):
+            read_record(path, units="g", time_step=step)  # type: ignore[arg-type]
+
+
+def test_motion_in_si_with_provenance(tmp_path: Path) -> None:
+    """A motion is in m/s2, named after the file where the file is silent, and says where it comes from."""
+    path = _write(tmp_path, COLUMNS)
+    motion = read_motion(path, units="g", component="Column 2", vertical="COLUMN 3")
+    assert motion.acceleration.tolist() == [0.0, 0.5 * 9.80665, -0.2 * 9.80665]
+    assert motion.vertical is not None
+    assert motion.vertical.tolist() == [9.80665, 2.0 * 9.80665, -3.0 * 9.80665]
+    assert motion.time_step == 0.01
+    assert motion.name == "hand"
+    assert (motion.metadata["format"], motion.metadata["unit"], motion.metadata["component"]) == (
+        "columns",
+        "g",
+        "column 2",
+    )
+    assert motion.metadata["vertical component"] == "column 3"
+    digest = hashlib.sha256(COLUMNS.encode()).hexdigest()
+    assert motion.provenance[0] == f"read from hand.txt, SHA-256 {digest}, format columns, component column 2, unit g"
+
+
+def test_components_must_be_named(tmp_path: Path) -> None:
+    """Several components need a name; the errors list them; one component cannot be both parts."""
+    path = _write(tmp_path, COLUMNS)
+    with pytest.raises(InvalidValueError, match="has the components column 2, column 3; say component="):
+        read_motion(path, units="g")
+    with pytest.raises(InvalidValueError, match="component must name one component, got 'EW'; the file has column 2"):
+        read_motion(path, units="g", component="EW")
+    with pytest.raises(InvalidValueError, match="vertical must name one component"):
+        read_motion(path, units="g", component="column 2", vertical="Z")
+    with pytest.raises(InvalidValueError, match="it is the vertical one already"):
+        read_motion(path, units="g", component="column 2", vertical="column 2")
+
+
+def test_components_of_unequal_length_are_cut(made_up, tmp_path: Path) -> None:
+    """Both are cut to the shorter, and the provenance says so."""
+    two = made_up("90", "UP")
+    short = Component("UP", two.components[1].acceleration[:50], "m/s2", 0.02)
+    path = tmp_path / "two.v2"
+    write_record(Record("x", (two.components[0], short), metadata=two.metadata), path, "csmip-v2")
+    motion = read_motion(path, component="90", vertical="up")
+    assert motion.vertical is not None
+    assert len(motion) == motion.vertical.size == 50
+    assert motion.provenance[-1] == "components of 61 and 50 samples, both cut to 50"
+    assert motion.name == "Somewhere Cellar"
+    assert len(read_motion(path, component="90")) == 61
+    slow = Component("UP", short.acceleration, "m/s2", 0.04)
+    write_record(Record("x", (two.components[0], slow)), path, "csmip-v2")
+    with pytest.raises(RecordError, match="resample"):
+        read_motion(path, component="90", vertical="UP")
+
+
+@pytest.mark.parametrize("name", [*TEXT_FORMATS, "columns"])
+def test_motions_come_back(name: str, tmp_path: Path) -> None:
+    """A motion written and read again is the same to the digits of the format, whatever its unit."""
+    time = np.arange(200) * 0.01
+    motion = GroundMotion(3.0 * np.sin(9.0 * time), 0.01, name="A made-up one", metadata={"component": "90"})
+    path = tmp_path / "motion"
+    write_motion(motion, path, name, units="cm/s2")
+    again = read_motion(path, units="cm/s2" if name == "columns" else None)
+    # the coarsest, csmip-v1, has 0.001 g/10, half of which is 4.9e-4 m/s2
+    np.testing.assert_allclose(again.acceleration, motion.acceleration, rtol=0.0, atol=4.91e-4)
+    assert again.time_step == 0.01
+    with pytest.raises(InvalidValueError, match="units must be one of"):
+        write_motion(motion, path, name, units="furlong")
+
+
+def test_files_that_cannot_be_written(made_up, tmp_path: Path) -> None:
+    """A folder that does not exist and samples that are not finite are refused."""
+    with pytest.raises(RecordError, match="No such file"):
+        write_record(made_up("90"), tmp_path / "absent" / "x.at2", "peer")
+    bad = Record("x", (Component("90", np.array([0.0, np.nan]), "g", 0.01),))
+    for name in TEXT_FORMATS:
+        with pytest.raises(RecordError, match="finite"):
+            write_record(bad, tmp_path / "x", name)
+
+
+@pytest.mark.parametrize(
+    ("unit", "step", "message"),
+    [
+        ("furlong", 0.01, "unit must be one of"),
+        ("g", 0.0, "time step must be in"),
+        ("g", float("nan"), "time step must"),
+    ],
+)
+def test_records_without_meaning_are_not_written(unit: str, step: float, message: str, tmp_path: Path) -> None:
+    """A unit that is none, or a step that is not positive, is written by no format."""
+    record = Record("x", (Component("90", np.array([0.0, 1.0]), unit, step),))
+    for name in (*TEXT_FORMATS, "columns"):
+        with pytest.raises(RecordError, match=message):
+            write_record(record, tmp_path / "x", name)
+
+
+@pytest.mark.parametrize("filler", [b"1", b" ", b"(", b"UNITS OF ", b"CHAN 1: "])
+def test_endless_lines_do_not_hang(filler: bytes, made_up) -> None:
+    """A line of 200 000 characters in any header line is read or refused at once, not searched for ever."""
+    for name in TEXT_FORMATS:
+        content = formats()[name].write(made_up("90"))
+        lines = content.split(b"\n")
+        for place in (0, 1, 6, 7, 13):
+            longer = [*lines[:place], lines[place] + filler * (200_000 // len(filler)), *lines[place + 1 :]]
+            source = Source("endless", b"\n".join(longer))
+            start = perf_counter()
+            with suppress(RecordError, InvalidValueError):
+                formats()[name].read(source)
+            for other in formats().values():
+                other.recognises(source)
+            # a quadratic search would take minutes; a busy machine may take a second
+            assert perf_counter() - start < 5.0
+
+
+@st.composite
+def _damages(draw: st.DrawFn, content: bytes) -> bytes:
+    """Flip a byte, cut, or drop, double or swap lines, or replace a number."""
+    lines = content.split(b"\n")
+    here, there = (draw(st.integers(0, len(lines) - 1)) for _ in range(2))
+    kind = draw(st.sampled_from(["byte", "cut", "drop", "double", "swap", "number"]))
+    if kind == "byte":
+        at = draw(st.integers(0, len(content) - 1))
+        return content[:at] + bytes([draw(st.integers(0, 255))]) + content[at + 1 :]
+    if kind == "cut":
+        return content[: draw(st.integers(1, len(content)))]
+    if kind == "drop":
+        del lines[here]
+    elif kind == "double":
+        lines.insert(here, lines[there])
+    elif kind == "swap":
+        lines[here], lines[there] = lines[there], lines[here]
+    else:
+        new = draw(st.sampled_from([b"999999999", b"99999999999", b"-5", b"0", b"nan", b"1e308", b""]))
+        lines[here] = re.sub(rb"\d+", new, lines[here], count=1)
+    return b"\n".join(lines)
+
+
+@pytest.mark.parametrize("name", [*TEXT_FORMATS, "columns"])
+@given(data=st.data())
+def test_damage_of_any_kind(name: str, data: st.DataObject) -> None:
+    """A damaged file is refused by an error of the family, or is a record that its own header does not contradict."""
+    reader = formats()[name]
+    time = np.arange(40) * 0.02
+    good = Record("x", (Component("90", np.sin(7.0 * time) * np.exp(-time), "m/s2", 0.02),))
+    content = data.draw(_damages(reader.write(good)))
+    source = Source("damaged", content)
+    for other in formats().values():
+        other.recognises(source)
+    try:
+        part = reader.read(source, "m/s2" if name == "columns" else None).components[0]
+    except (RecordError, InvalidValueError):
+        return
+    assert np.isfinite(part.acceleration).all()
+    assert 2 <= part.acceleration.size <= 41
+    stated = {"peer": rb"NPTS= *(\d+)", "esm": rb"NDATA: *(\d+)", "cosmos": rb"(\d+) acceleration pts"}.get(name)
+    if stated:
+        count = re.search(stated, content)
+        assert count is not None
+        assert int(count[1]) == part.acceleration.size
+    if part.stated_peak is not None:
+        # half a unit of the last digit of peak (0.001 g) and sample (0.001 g/10), the coarsest of them
+        assert abs(part.stated_peak - part.peak) <= {"g/10": 6.1e-3}.get(part.unit, 1.1e-3)

@@ -1,0 +1,128 @@
+"""SAC through ObsPy: no unit in the file, and a peak in its header."""
+
+import importlib.util
+import random
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rocking.conventions import g
+from rocking.errors import MissingExtraError, RecordError
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.sac import Sac
+from rocking.motions.formats.source import Source
+
+WITHOUT = importlib.util.find_spec("obspy") is None
+
+
+def typed(values: list[float], order: str = "<", **numbers: float) -> bytes:
+    """A SAC file by its published layout: 70 floats, 40 integers, 192 characters, samples."""
+    floats, integers = [-12345.0] * 70, [-12345] * 40
+    floats[0], floats[1], floats[2] = numbers.get("delta", 0.02), min(values), max(values)
+    floats[5], floats[6] = 0.0, numbers.get("e", (len(values) - 1) * 0.02)
+    floats[1], floats[2] = numbers.get("depmin", floats[1]), numbers.get("depmax", floats[2])
+    integers[6], integers[9] = 6, int(numbers.get("npts", len(values)))
+    integers[15], integers[16] = int(numbers.get("iftype", 1)), int(numbers.get("idep", 8))
+    integers[35], integers[38] = int(numbers.get("leven", 1)), 1
+    text = b"ABC     " + b"-12345  " * 18 + b"-12345  " + b"HNN     " + b"XX      " + b"-12345  " * 2
+    head = struct.pack(order + "70f40i", *floats, *integers) + text
+    return head[:632].ljust(632) + struct.pack(f"{order}{len(values)}f", *values)
+
+
+VALUES = [0.0, 0.5, -1.25, 0.75, 0.25]
+
+
+def test_recognition_needs_no_obspy() -> None:
+    """Both byte orders are known by their version; text and noise are not."""
+    for order in "<>":
+        assert Sac().recognises(Source("a.sac", typed(VALUES, order)))
+    for content in (b"", b"0.01 0.02\n" * 200, bytes(700), typed(VALUES)[:600]):
+        assert not Sac().recognises(Source("a.sac", content))
+
+
+@pytest.mark.skipif(not WITHOUT, reason="ObsPy is installed")
+def test_without_obspy_the_extra_is_named() -> None:
+    """The error says what to install."""
+    with pytest.raises(MissingExtraError, match=r"pip install rocking\[obspy\]"):
+        Sac().read(Source("a.sac", typed(VALUES)), units="m/s2")
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_a_typed_file_is_read(order: str) -> None:
+    """Samples, step and peak in both byte orders; the unit is what the user says."""
+    pytest.importorskip("obspy")
+    record = Sac().read(Source("a.sac", typed(VALUES, order)), units="g")
+    (part,) = record.components
+    assert part.acceleration.tolist() == VALUES
+    assert (part.name, part.unit, part.time_step, part.stated_peak) == ("HNN", "g", 0.02, 1.25)
+
+
+def test_the_unit_is_never_guessed() -> None:
+    """Without units= it is refused."""
+    pytest.importorskip("obspy")
+    with pytest.raises(RecordError, match="units="):
+        Sac().read(Source("a.sac", typed(VALUES)))
+
+
+@pytest.mark.parametrize(
+    ("numbers", "message"),
+    [
+        ({"depmax": 0.76}, "depmax"),
+        ({"depmin": 1.25}, "depmin"),
+        ({"npts": 6}, "ObsPy cannot read"),
+        ({"npts": 2_000_000_000}, "ObsPy cannot read"),
+        ({"delta": 0.04}, "duration"),
+        ({"delta": -0.02}, "time step|ObsPy"),
+        ({"e": 1.0}, "duration"),
+        ({"iftype": 4}, "time series"),
+        ({"leven": 0}, "evenly spaced"),
+        ({"idep": 7}, "velocity"),
+        ({"depmax": float("nan")}, "not finite"),
+    ],
+)
+def test_files_at_odds_with_their_header_are_refused(numbers: dict[str, float], message: str) -> None:
+    """Both extremes, count, step, end, kind and quantity are checked."""
+    pytest.importorskip("obspy")
+    with pytest.raises(RecordError, match=message):
+        Sac().read(Source("a.sac", typed(VALUES, "<", **numbers)), units="g")
+
+
+def test_damaged_files_give_no_other_error() -> None:
+    """300 files with flipped bits or cut short are refused, or keep what their header states."""
+    pytest.importorskip("obspy")
+    chance = random.Random(1)
+    for _ in range(300):
+        content = bytearray(typed([float(np.float32(np.sin(0.3 * k))) for k in range(60)]))
+        content[chance.randrange(len(content))] ^= 1 << chance.randrange(8)
+        whole = bytes(content[: chance.choice([len(content)] * 3 + [chance.randrange(len(content))])])
+        try:
+            (part,) = Sac().read(Source("a.sac", whole), units="g").components
+        except RecordError:
+            continue
+        order = "<" if struct.unpack_from("<i", whole, 304)[0] in {6, 7} else ">"
+        low, high = struct.unpack_from(order + "2f", whole, 4)
+        if -12345.0 not in {low, high}:
+            assert part.peak == pytest.approx(max(abs(low), abs(high)), rel=2e-6)
+        assert part.acceleration.size == struct.unpack_from(order + "i", whole, 316)[0]
+
+
+def test_what_is_written_is_read_back() -> None:
+    """Single precision survives."""
+    pytest.importorskip("obspy")
+    given = Record("", (Component("HNE", np.sin(np.arange(90.0)), "mg", 0.005),), "", {"station": "ABC"})
+    (part,) = Sac().read(Source("w", Sac().write(given)), units="mg").components
+    np.testing.assert_allclose(part.acceleration, given.components[0].acceleration, rtol=6e-8)
+    assert (part.name, part.time_step) == ("HNE", 0.005)
+    with pytest.raises(RecordError, match="wrong unit"):
+        Sac().write(Record("", (Component("a", np.array([0.0, 1e38]), "g", 0.1),)))
+
+
+def test_the_real_file(shared_records: Path) -> None:
+    """2019 Ridgecrest, CJ.T001230 HNN: 15001 samples at 0.02 s; 0.00348981 g if it is m/s2."""
+    pytest.importorskip("obspy")
+    (path,) = (shared_records / "sac").glob("*.sac")
+    (part,) = Sac().read(Source.of_path(path), units="m/s2").components
+    assert (part.acceleration.size, part.time_step) == (15001, 0.02)
+    assert part.peak / g == pytest.approx(0.00348981, rel=2e-6)

@@ -1,0 +1,138 @@
+"""SMC of the U.S. Geological Survey: 8 columns of 10 characters that may touch each other."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from rocking.errors import RecordError
+from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats.smc_boore import SmcBoore
+from rocking.motions.formats.smc_usgs import SmcUsgs
+from rocking.motions.formats.source import Source
+
+NONE, BLANK = -32768, 1.7e38
+SAMPLES = [
+    " 1.5057E+0",
+    "-2.2223E+0",
+    "-1.9234E+0",
+    "-3.1562E+0",
+    "-3.2440E+0",
+    "-3.5638E+0",
+    "-5.1941E+0",
+    "-5.7933E+0",
+]
+SAMPLES += [" 0.0000E+0", " 1.0442E+2", "-7.8821E+1"]
+VALUES = [1.5057, -2.2223, -1.9234, -3.1562, -3.2440, -3.5638, -5.1941, -5.7933, 0.0, 104.42, -78.821]
+
+
+def typed(
+    kind: str = "2 CORRECTED ACCELEROGRAM",
+    count: int = 11,
+    rate: str = "  0.2000000E+03",
+    high: tuple[str, str] = ("  0.4500000E-01", "  0.1044170E+03"),
+    low: tuple[str, str] = ("  0.5000000E-01", " -0.7882104E+02"),
+    printed: str = "104.4",
+) -> list[str]:
+    """A file typed by hand after the published description of the format."""
+    text = [kind, "*", "STAT1", "     1999  12  31    0004 Somewhere", "Moment Mag=      7.1"]
+    text += [
+        "station = Cellar, 3 Main St        component=    360",
+        f"epicentral dist =     89.0       pk     =    {printed}",
+    ]
+    text += ["inst type=SMA-1      data source = USGS", "*", "*", "*"]
+    whole = [f"{NONE:10d}"] * 48
+    whole[12], whole[13], whole[15], whole[16] = f"{90:10d}", f"{360:10d}", f"{2:10d}", f"{count:10d}"
+    real = ["  0.1700000E+39"] * 50
+    real[1], real[28], real[29], real[30], real[31] = rate, *high, *low
+    lines = [line.ljust(80) for line in text]
+    lines += ["".join(whole[k : k + 8]) for k in range(0, 48, 8)] + ["".join(real[k : k + 5]) for k in range(0, 50, 5)]
+    return [*lines, "|", "|made up", "".join(SAMPLES[:8]), "".join(SAMPLES[8:])]
+
+
+def source(lines: list[str], end: str = "\n") -> Source:
+    return Source("typed.smc", (end.join(lines) + end).encode())
+
+
+def test_numbers_that_touch_are_read_by_columns() -> None:
+    """Samples, step, name, unit and peak of a typed file; splitting on blanks would find other numbers."""
+    record = SmcUsgs().read(source(typed(), "\r\n"))
+    (part,) = record.components
+    np.testing.assert_array_equal(part.acceleration, VALUES)
+    assert (part.name, part.unit, part.time_step, part.stated_peak) == ("360", "cm/s2", 0.005, 104.417)
+    assert record.metadata["kind"] == "corrected accelerogram"
+    assert "Cellar" in record.metadata["station"]
+    assert record.header.splitlines()[0].startswith("2 CORRECTED")
+    # the negative control: blanks are no separators here
+    assert len("".join(SAMPLES[:8]).split()) != 8
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"kind": "3 VELOCITY"}, "velocity"),
+        ({"kind": "5 RESPONSE SPECTRA"}, "response spectra"),
+        ({"rate": "  0.1700000E+39"}, "uneven"),
+        ({"rate": "  0.0000000E+00"}, "sampling rate"),
+        ({"count": 12}, "columns of 10 characters expected"),
+        ({"count": 10}, "columns of 10 characters expected"),
+        ({"count": 999_999_999}, "columns of 10 characters expected"),
+        ({"count": 8}, "more"),
+        ({"count": 1}, "at least 2"),
+        ({"high": ("  0.4500000E-01", "  0.1054170E+03")}, "maximum"),
+        ({"high": ("  0.4000000E-01", "  0.1044170E+03")}, "maximum"),
+        ({"low": ("  0.5000000E-01", "  0.7882104E+02")}, "minimum"),
+        ({"low": ("  0.5000000E-01", "  0.1700000E+39")}, "one extreme"),
+        ({"printed": "104.6"}, "pk"),
+    ],
+)
+def test_files_at_odds_with_their_header_are_refused(change: dict[str, object], message: str) -> None:
+    """Counts, extremes with sign and time, the printed peak, the rate and the kind are all checked."""
+    with pytest.raises(RecordError, match=message):
+        SmcUsgs().read(source(typed(**change)))  # type: ignore[arg-type]
+
+
+def test_a_damaged_sample_names_its_line() -> None:
+    """Stars, as Fortran prints numbers that do not fit, are refused with the line."""
+    lines = typed()
+    lines[29] = lines[29].replace("-1.9234E+0", "**********")
+    with pytest.raises(RecordError, match="line 30"):
+        SmcUsgs().read(source(lines))
+
+
+def test_other_units_and_steps_are_refused() -> None:
+    """What the user says must not contradict the file."""
+    with pytest.raises(RecordError, match="you say"):
+        SmcUsgs().read(source(typed()), units="g")
+    with pytest.raises(RecordError, match="you say"):
+        SmcUsgs().read(source(typed()), time_step=0.01)
+    assert SmcUsgs().read(source(typed()), units="gal", time_step=0.005).components[0].unit == "cm/s2"
+
+
+def test_it_tells_the_two_kinds_of_smc_apart_and_survives_a_missing_line() -> None:
+    """Whole number 47 decides; a file that lost a header line is still SMC, and refused by the reader."""
+    assert SmcUsgs().recognises(source(typed()))
+    assert not SmcBoore().recognises(source(typed()))
+    lost = source(typed()[1:])
+    assert not SmcUsgs().recognises(lost)  # its first line says what it is
+    shorter = source(typed()[:5] + typed()[6:])
+    assert SmcUsgs().recognises(shorter)
+    with pytest.raises(RecordError, match="header numbers expected"):
+        SmcUsgs().read(shorter)
+
+
+def test_what_is_written_is_read_back(made_up: Callable[..., Record]) -> None:
+    """A record in m/s2 comes back in cm/s2 to the five digits of the format, with its name."""
+    record = made_up("45", scale=3.0)
+    content = SmcUsgs().write(record)
+    (part,) = SmcUsgs().read(Source("written", content)).components
+    np.testing.assert_allclose(part.acceleration, 100.0 * record.components[0].acceleration, rtol=5.1e-5, atol=1e-9)
+    assert (part.name, part.time_step) == ("45", 0.02)
+
+
+def test_what_it_cannot_hold_is_refused(made_up: Callable[..., Record]) -> None:
+    """Two components, or numbers of 1e10 cm/s2, do not fit."""
+    with pytest.raises(RecordError, match="1 components"):
+        SmcUsgs().write(made_up("a", "b"))
+    with pytest.raises(RecordError, match="below 1e10"):
+        SmcUsgs().write(Record("", (Component("a", np.array([0.0, 1e10]), "cm/s2", 0.01),)))
