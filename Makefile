@@ -5,14 +5,14 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test lint bench gallery lock clean
+.PHONY: help demo test lint fuzz bench gallery lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
 	@echo "make test     set up, run linters, type checker, docstring and import checks, tests with coverage"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make gallery  run every example         make lock     pin the dependencies anew"
-	@echo "make clean    remove what was made"
+	@echo "make clean    remove what was made        make fuzz     damage record files 100000 times"
 
 $(VENV)/created:
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "rocking needs Python 3.11 or newer, this is " + sys.version)'
@@ -46,6 +46,9 @@ lint: $(VENV)/dev
 
 test: lint
 	$(BIN)/python -m pytest --cov --cov-report=term
+
+fuzz: $(VENV)/dev
+	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py -q
 
 bench: $(VENV)/dev
 	$(BIN)/python -m benchmarks

@@ -3,7 +3,9 @@
 import typer
 
 from rocking.cli.cor import cor
+from rocking.cli.formats import formats
 from rocking.cli.models import models
+from rocking.cli.motion import motion
 from rocking.cli.paper import paper
 
 
@@ -24,7 +26,7 @@ def application() -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    for command in (cor, paper, models):
+    for command in (cor, paper, models, motion, formats):
         app.command()(command)
     return app
 

@@ -227,8 +227,7 @@ def intensity_measures(motion: GroundMotion) -> dict[str, Measure]:
 
     Examples
     --------
-    >>> measures = intensity_measures(GroundMotion([0.0, 1.0, -1.0, 0.0], 0.1))
-    >>> measures["pga"]
+    >>> intensity_measures(GroundMotion([0.0, 1.0, -1.0, 0.0], 0.1))["pga"]
     Measure(name='peak ground acceleration', value=1.0, unit='m/s2')
     """
     return {

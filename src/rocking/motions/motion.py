@@ -77,13 +77,14 @@ class GroundMotion:
         object.__setattr__(self, "provenance", tuple(str(line) for line in self.provenance))
 
     def __len__(self) -> int:
-        """Number of samples."""
+        """Return the number of samples."""
         return int(self.acceleration.size)
 
     def __repr__(self) -> str:
         """Name, samples, step and peak."""
         both = "" if self.vertical is None else ", with vertical"
-        return f"<GroundMotion {self.name!r}: {len(self)} samples at {self.time_step:g} s, peak {self.peak:.4g} m/s2{both}>"
+        size = f"{len(self)} samples at {self.time_step:g} s, peak {self.peak:.4g} m/s2"
+        return f"<GroundMotion {self.name!r}: {size}{both}>"
 
     def __getstate__(self) -> dict[str, Any]:
         """State that can be pickled: a mapping proxy cannot."""

@@ -381,8 +381,7 @@ _ALL: tuple[Callable[..., Pulse], ...] = (
 def _windowed(title: str, amplitude: float, period: float, phase: float, cycles: float) -> Sinusoids:
     amplitude, period = _amplitude(amplitude), _period(period)
     name = f"{title}, {abs(amplitude):.3g} m/s2, {period:.3g} s"
-    bare = Sinusoids(name, ((amplitude, 2.0 * math.pi / period, phase),), cycles * period, abs(amplitude))
-    return bare
+    return Sinusoids(name, ((amplitude, 2.0 * math.pi / period, phase),), cycles * period, abs(amplitude))
 
 
 def _amplitude(value: Any) -> float:

@@ -82,6 +82,49 @@ class Segments:
         # two stages: the small high coefficients come first, so that their rounding stays small
         return cls(step, np.ascontiguousarray(values @ weights.T @ _SHIFTED))
 
+    def refined(self, parts: int) -> "Segments":
+        """Return the same polynomials on shorter stretches.
+
+        Parameters
+        ----------
+        parts : int
+            Stretches that each one is cut into.
+
+        Returns
+        -------
+        Segments
+            The same motion.
+        """
+        if parts <= 1:
+            return self
+        cut = _cutting(self.degree, parts)
+        pieces = [
+            None if c is None else np.ascontiguousarray(np.einsum("nk,pkj->npj", c, cut).reshape(-1, c.shape[1]))
+            for c in (self.horizontal, self.vertical)
+        ]
+        assert pieces[0] is not None
+        return Segments(self.step / parts, pieces[0], pieces[1])
+
+    def extended(self, duration: float) -> "Segments":
+        """Return the motion with rest of the ground after it, up to a duration.
+
+        Parameters
+        ----------
+        duration : float
+            Duration of all, at least [s].
+
+        Returns
+        -------
+        Segments
+            The longer motion; itself if it is long enough.
+        """
+        more = int(np.ceil((duration - self.duration) / self.step - 1e-9))
+        if more <= 0:
+            return self
+        zeros = np.zeros((more, self.degree + 1))
+        vertical = None if self.vertical is None else np.vstack([self.vertical, zeros])
+        return Segments(self.step, np.vstack([self.horizontal, zeros]), vertical)
+
     @property
     def count(self) -> int:
         """Number of stretches."""
@@ -100,6 +143,16 @@ class Segments:
 
 def _lines(samples: FloatArray) -> FloatArray:
     return np.column_stack([samples[:-1], np.diff(samples)])
+
+
+def _cutting(degree: int, parts: int) -> FloatArray:
+    """Return the matrices that rewrite powers of tau on each of `parts` equal pieces; shape (parts, k, j)."""
+    cut = np.zeros((parts, degree + 1, degree + 1))
+    for piece in range(parts):
+        inner = np.polynomial.Polynomial([piece / parts, 1.0 / parts])
+        for k in range(degree + 1):
+            cut[piece, k, : k + 1] = (inner**k).coef
+    return cut
 
 
 def _shifted_chebyshev(n: int) -> FloatArray:

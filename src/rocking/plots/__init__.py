@@ -1,8 +1,9 @@
-"""Pictures: the paper's figures, bodies, models against measurements."""
+"""Pictures: the paper's figures, bodies, models against measurements, ground motions."""
 
 from rocking.plots.body_picture import body_picture, coefficient_picture
 from rocking.plots.figure_1 import figure_1
 from rocking.plots.figure_2 import figure_2
+from rocking.plots.ground_motion import ground_motion_picture
 from rocking.plots.hero import hero
 from rocking.plots.overview import calibration_figure, league_figure, models_and_measurements
 from rocking.plots.paper_figures import figure_3, figure_5, figure_6, figure_7, figure_8, figure_9
@@ -20,6 +21,7 @@ __all__ = [
     "figure_7",
     "figure_8",
     "figure_9",
+    "ground_motion_picture",
     "hero",
     "league_figure",
     "models_and_measurements",

@@ -1,12 +1,10 @@
-"""Where a header states the number of samples, the peak, the unit or the step, the data must agree."""
+"""Where a header states the number of samples, the peak, its time or the duration, the data must agree."""
 
 import math
 
 import numpy as np
 
-from rocking.conventions import ACCELERATION_UNITS, FloatArray
-from rocking.errors import InvalidValueError, RecordError
-from rocking.motions.formats.record import Record
+from rocking.conventions import FloatArray
 from rocking.motions.formats.source import Source
 
 
@@ -53,71 +51,6 @@ def check_peak(source: Source, stated: float, values: FloatArray, rounding: floa
     found = float(np.abs(values).max())
     if not abs(abs(stated) - found) <= rounding:
         raise source.error(None, f"the header states a {what} of {abs(stated):g}, the data have {found:g}")
-
-
-def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> str:
-    """Return the unit of a file's accelerations: what it states, or what the user says where it states nothing.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    stated : str, optional
-        Unit by the file.
-    asked : str, optional
-        Unit by the user.
-
-    Returns
-    -------
-    str
-        A key of `rocking.conventions.ACCELERATION_UNITS`.
-
-    Raises
-    ------
-    InvalidValueError
-        If the user's word is no unit of acceleration.
-    RecordError
-        If neither says, or both do and differ.
-    """
-    if asked is not None and asked not in ACCELERATION_UNITS:
-        raise InvalidValueError(f"units must be one of {', '.join(ACCELERATION_UNITS)}, got {asked!r:.60}")
-    if stated is None and asked is None:
-        raise source.error(None, f"the file does not state its unit; say units= one of {', '.join(ACCELERATION_UNITS)}")
-    if stated is not None and asked is not None and ACCELERATION_UNITS[stated] != ACCELERATION_UNITS[asked]:
-        raise source.error(None, f"the file states the unit {stated}, you say {asked}")
-    return stated or asked or ""
-
-
-def step_between_samples(source: Source, stated: float | None, asked: float | None) -> float:
-    """Return the step of a file: what it states, or what the user says where it states nothing.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    stated : float, optional
-        Step by the file [s].
-    asked : float, optional
-        Step by the user [s].
-
-    Returns
-    -------
-    float
-        The step, between 1e-6 and 10 s [s].
-
-    Raises
-    ------
-    RecordError
-        If neither says, both do and differ, or it is outside that range.
-    """
-    step = stated if stated is not None else asked
-    if step is None:
-        raise source.error(None, "the file does not state its time step; say time_step= in seconds")
-    if stated is not None and asked is not None and abs(stated - asked) > 1e-9 * stated:
-        raise source.error(None, f"the file states a time step of {stated:g} s, you say {asked:g}")
-    if not 1e-6 <= step <= 10.0:
-        raise source.error(None, f"time step must be in [1e-6, 10] s, got {step:g}")
-    return float(step)
 
 
 def check_end(source: Source, first: int) -> None:
@@ -196,47 +129,6 @@ def check_duration(source: Source, stated: float, count: int, step: float, round
         raise source.error(
             None, f"the header states a duration of {stated:g} s, {count} samples at {step:g} s last {count * step:g} s"
         )
-
-
-def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[FloatArray]:
-    """Return the samples of a record in the one unit that a format holds, for writers.
-
-    Parameters
-    ----------
-    record : Record
-        What to write.
-    title : str
-        Name of the format, for the error.
-    unit : str, optional
-        Unit of the format; that of the first component if it holds any.
-    most : int
-        Largest number of components it holds.
-
-    Returns
-    -------
-    list of ndarray
-        Samples of each component.
-
-    Raises
-    ------
-    RecordError
-        If there is no component, there are more, or one is not a row of at least 2 finite samples in a known unit.
-    """
-    if not 1 <= len(record.components) <= most:
-        raise RecordError(f"{title} holds 1 to {most} components a file, got {len(record.components)}")
-    rows = []
-    unit = unit or record.components[0].unit
-    for part in record.components:
-        values = np.asarray(part.acceleration, dtype=np.float64)
-        if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
-            raise RecordError(f"component {part.name!r:.60} must be a row of at least 2 finite samples")
-        if part.unit not in ACCELERATION_UNITS:
-            raise RecordError(f"unit must be one of {', '.join(ACCELERATION_UNITS)}, got {part.unit!r:.60}")
-        if not 1e-6 <= part.time_step <= 10.0:
-            raise RecordError(f"time step must be in [1e-6, 10] s, got {part.time_step!r:.60}")
-        same = ACCELERATION_UNITS[part.unit] == ACCELERATION_UNITS[unit]
-        rows.append(values if same else values * (ACCELERATION_UNITS[part.unit] / ACCELERATION_UNITS[unit]))
-    return rows
 
 
 def half_digit(word: str) -> float:

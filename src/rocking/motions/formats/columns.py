@@ -7,11 +7,12 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats.agreement import acceleration_unit, in_unit, step_between_samples
-from rocking.motions.formats.numbers import number, one_line
+from rocking.motions.formats.number_lines import one_line
+from rocking.motions.formats.numbers import number
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
+from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, step_between_samples
 
 _MOST_COLUMNS = 4
 _LOOK = 5

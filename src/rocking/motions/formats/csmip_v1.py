@@ -8,20 +8,14 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
-from rocking.motions.formats.agreement import (
-    acceleration_unit,
-    check_count,
-    check_end,
-    check_peak,
-    check_peak_time,
-    in_unit,
-    step_between_samples,
-)
+from rocking.motions.formats.agreement import check_count, check_end, check_peak, check_peak_time
 from rocking.motions.formats.columns import uniform_step
-from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, one_line, whole
+from rocking.motions.formats.number_lines import in_width, one_line
+from rocking.motions.formats.numbers import fixed, fortran_form, number, whole
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
+from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, step_between_samples
 
 Channel = tuple[list[str], str, Component]
 """Header lines of a channel, the one with its number and direction, and its samples."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import agreement, numbers
+from rocking.motions.formats import agreement, number_lines, numbers, units_and_steps
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
@@ -81,10 +81,10 @@ class Cwa(RecordFormat):
         said = _header(source, first)
         if not re.match(r"gal\b", said["AmplitudeUnit"]):
             raise source.error(None, f"the unit gal expected, found {said['AmplitudeUnit'][:40]!r}")
-        unit = agreement.acceleration_unit(source, "gal", units)
+        unit = units_and_steps.acceleration_unit(source, "gal", units)
         rate = numbers.number(source, 0, said["SampleRate(Hz)"], "sample rate")
         seconds = numbers.number(source, 0, said["RecordLength(sec)"], "record length")
-        step = agreement.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
+        step = units_and_steps.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
         wanted = rate * seconds
         if not 2 <= wanted < 1e9 or abs(wanted - round(wanted)) > 1e-6:
             raise source.error(None, f"record length times rate must be a whole number of samples, found {wanted:g}")
@@ -121,7 +121,7 @@ class Cwa(RecordFormat):
         RecordError
             If there are others, or a number does not fit into its columns.
         """
-        samples = agreement.in_unit(record, self.name, "gal", 3)
+        samples = units_and_steps.in_unit(record, self.name, "gal", 3)
         rows = dict(zip((part.name for part in record.components), samples, strict=True))
         steps = {part.time_step for part in record.components}
         if set(rows) != set(_COMPONENTS) or len({row.size for row in rows.values()}) != 1 or len(steps) != 1:
@@ -132,7 +132,7 @@ class Cwa(RecordFormat):
             raise RecordError("CWA holds accelerations below 1e5 gal and times below 1e5 s; wrong unit?")
         lines = ["#Earthquake Information"]
         lines += [
-            f"#{key}: {numbers.one_line(record.metadata.get(key, '0'), 60)}"
+            f"#{key}: {number_lines.one_line(record.metadata.get(key, '0'), 60)}"
             for key in ("Origin Time(GMT+08)", "Magnitude(Ml)", "StationCode", "StationName")
         ]
         lines += [f"#RecordLength(sec): {len(table) * step:.12g}", f"#SampleRate(Hz): {1.0 / step:.12g}"]

@@ -14,7 +14,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import agreement, numbers
+from rocking.motions.formats import agreement, number_lines, numbers, units_and_steps
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
@@ -81,7 +81,7 @@ class GeonetV2A(RecordFormat):
         RecordError
             If it is damaged or at odds with its own header.
         """
-        unit = agreement.acceleration_unit(source, "mm/s2", units)
+        unit = units_and_steps.acceleration_unit(source, "mm/s2", units)
         components: list[Component] = []
         line = 0
         while len(components) < 3:
@@ -118,8 +118,8 @@ class GeonetV2A(RecordFormat):
         RecordError
             If there are not three, or a number does not fit into its columns.
         """
-        rows = agreement.in_unit(record, self.name, "mm/s2", 3)
-        names = [numbers.one_line(part.name, 8).partition(" ")[0] or "?" for part in record.components]
+        rows = units_and_steps.in_unit(record, self.name, "mm/s2", 3)
+        names = [number_lines.one_line(part.name, 8).partition(" ")[0] or "?" for part in record.components]
         if len(rows) != 3 or len(set(names)) != 3:
             raise RecordError(f"GeoNet holds three components of different names, got {', '.join(names)}")
         lines: list[str] = []
@@ -135,7 +135,7 @@ def _component(source: Source, top: int, unit: str, asked: float | None) -> tupl
     points = _match(source, top + 9, _POINTS)
     count, duration = int(points[1]), float(points[2])
     stated = _match(source, top + 10, _STEP)
-    step = agreement.step_between_samples(source, float(stated[1]), asked)
+    step = units_and_steps.step_between_samples(source, float(stated[1]), asked)
     name = _match(source, top + 12, r"Component +(\S+).*")[1]
     wholes, line = numbers.fixed(source, top + _TEXTS, _WHOLES * _PER_LINE, _PER_LINE, _WIDTH)
     reals, line = numbers.fixed(source, line, _REALS * _PER_LINE, _PER_LINE, _WIDTH)
@@ -171,7 +171,9 @@ def _written(record: Record, name: str, values: FloatArray, step: float) -> list
     velocity = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] + values[:-1]))])
     displacement = np.concatenate([[0.0], np.cumsum(0.5 * step * (velocity[1:] + velocity[:-1]))])
     count = values.size
-    said = {key: numbers.one_line(record.metadata.get(key, "unknown"), 60) for key in ("station", "event", "filter")}
+    said = {
+        key: number_lines.one_line(record.metadata.get(key, "unknown"), 60) for key in ("station", "event", "filter")
+    }
     lines = [f"{_TITLE} unknown", f"Site {said['station'].partition(' ')[0]}", "unknown", "Instrument unknown"]
     lines += ["Resolution: unknown", "Accelerogram unknown", "unknown", said["event"], "Epicentre unknown"]
     lines.append(f"Number of points {count:5d}    Duration {(count - 1) * step:.4f} sec")
@@ -187,6 +189,6 @@ def _written(record: Record, name: str, values: FloatArray, step: float) -> list
         lines.append(f"{what + ':':<14} peak {rounded[at]:8.{decimals}f} {of:<6} at {at * step:.4f} sec")
         blocks += ["".join(words[k : k + _PER_LINE]) for k in range(0, count, _PER_LINE)]
     wholes = [0] * 33 + [count] * 3 + [0] * 4
-    lines += numbers.in_columns(wholes, _PER_LINE, "{:8d}")
-    lines += numbers.in_columns([0.0] * 60, _PER_LINE, "{:8.2f}")
+    lines += number_lines.in_columns(wholes, _PER_LINE, "{:8d}")
+    lines += number_lines.in_columns([0.0] * 60, _PER_LINE, "{:8.2f}")
     return lines + blocks

@@ -14,7 +14,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import agreement, numbers
+from rocking.motions.formats import agreement, number_lines, numbers, units_and_steps
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
@@ -97,10 +97,10 @@ class Knet(RecordFormat):
             If it is damaged or at odds with its own header.
         """
         said = _header(source)
-        unit = agreement.acceleration_unit(source, "gal", units)
+        unit = units_and_steps.acceleration_unit(source, "gal", units)
         rate = _stated(source, 10, r"(\d+(?:\.\d+)?) *Hz", said[10])[0]
         seconds = numbers.number(source, 11, said[11], "duration")
-        step = agreement.step_between_samples(source, 1.0 / rate if rate else 0.0, time_step)
+        step = units_and_steps.step_between_samples(source, 1.0 / rate if rate else 0.0, time_step)
         gal, counts_per_gal = _stated(source, 13, r"(\d+(?:\.\d*)?)\(gal\)/(\d+(?:\.\d*)?)", said[13])
         if not gal or not counts_per_gal:
             raise source.error(13, f"scale factor must be above zero, found {said[13][:40]!r}")
@@ -137,7 +137,7 @@ class Knet(RecordFormat):
         RecordError
             If the format cannot hold it.
         """
-        (given,) = agreement.in_unit(record, self.name, "gal", 1)
+        (given,) = units_and_steps.in_unit(record, self.name, "gal", 1)
         part = record.components[0]
         rate = round(1.0 / part.time_step)
         if rate < 1 or abs(rate * part.time_step - 1.0) > 1e-9 or given.size % rate:
@@ -153,12 +153,12 @@ class Knet(RecordFormat):
         if abs(counts.mean()) > 0.5:
             raise RecordError(f"K-NET records lose their mean when read, got a mean of {given.mean():g} gal; remove it")
         peak = float(np.abs(counts - counts.mean()).max()) * gal / _FULL_SCALE
-        known = {key: numbers.one_line(record.metadata.get(key.strip(". "), ""), 60) for key in _KEYS}
+        known = {key: number_lines.one_line(record.metadata.get(key.strip(". "), ""), 60) for key in _KEYS}
         known |= {"Sampling Freq(Hz)": f"{rate}Hz", "Duration Time(s)": str(given.size // rate)}
         known |= {"Scale Factor": f"{gal}(gal)/{_FULL_SCALE}", "Max. Acc. (gal)": f"{peak:.3f}"}
-        known["Dir."] = numbers.one_line(part.name, 20)
+        known["Dir."] = number_lines.one_line(part.name, 20)
         lines = [f"{key:<18}{known[key]}" for key in _KEYS]
-        lines += numbers.in_columns(counts, _PER_LINE, "{:8.0f} ")
+        lines += number_lines.in_columns(counts, _PER_LINE, "{:8.0f} ")
         return ("\n".join(lines) + "\n").encode("latin-1")
 
 

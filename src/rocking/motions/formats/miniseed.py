@@ -16,7 +16,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, RecordError
-from rocking.motions.formats import agreement
+from rocking.motions.formats import units_and_steps
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.sac import need_obspy, read_traces, trace_of
@@ -133,7 +133,7 @@ class MiniSeed(RecordFormat):
         RecordError
             If two components would get the same channel code.
         """
-        rows = agreement.in_unit(record, self.name, None, 100)
+        rows = units_and_steps.in_unit(record, self.name, None, 100)
         codes = [part.name[:3] for part in record.components]
         if len(set(codes)) != len(codes):
             raise RecordError(f"components need different channel codes of 3 letters, got {', '.join(codes)[:60]}")
@@ -149,15 +149,15 @@ def _component(source: Source, trace: Any, stations: Any, units: str | None, ask
     values: FloatArray = np.asarray(trace.data, dtype=np.float64)
     if values.size < 2 or not np.isfinite(values).all():
         raise source.error(None, f"{trace.id}: at least 2 finite samples are needed, found {values.size}")
-    step = agreement.step_between_samples(source, float(trace.stats.delta), asked)
+    step = units_and_steps.step_between_samples(source, float(trace.stats.delta), asked)
     name = trace.stats.channel or "unnamed"
     if stations is None:
         if trace.data.dtype.kind in "iu":
             raise source.error(
                 None, f"{trace.id} holds counts, no accelerations: use MiniSeed.with_response(stationxml_path)"
             )
-        return Component(name, values, agreement.acceleration_unit(source, None, units), step)
-    unit = agreement.acceleration_unit(source, "m/s2", units)
+        return Component(name, values, units_and_steps.acceleration_unit(source, None, units), step)
+    unit = units_and_steps.acceleration_unit(source, "m/s2", units)
     sensitivity = _sensitivity(source, trace, stations)
     offset = float(values.mean())
     about = {

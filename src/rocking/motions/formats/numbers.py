@@ -2,12 +2,10 @@
 
 import math
 import re
-from collections.abc import Sequence
 
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.errors import RecordError
 from rocking.motions.formats.source import Source
 
 # what float() takes beyond plain decimal numbers (nan, infinity, 1_000) is damage in a record
@@ -153,51 +151,6 @@ def fixed(source: Source, first: int, count: int, per_line: int, width: int) -> 
     return np.array(values, dtype=np.float64), line
 
 
-def in_columns(values: Sequence[float] | FloatArray, per_line: int, form: str) -> list[str]:
-    """Return lines of numbers, for writers.
-
-    Parameters
-    ----------
-    values : sequence of float
-        The numbers.
-    per_line : int
-        Numbers on a line.
-    form : str
-        Format of one number, such as ``"{:15.7E}"``.
-
-    Returns
-    -------
-    list of str
-        The lines.
-    """
-    words = [form.format(value) for value in values]
-    return ["".join(words[start : start + per_line]) for start in range(0, len(words), per_line)]
-
-
-def one_line(text: object, width: int) -> str:
-    r"""Return text that fits on one line of a header, for writers.
-
-    Parameters
-    ----------
-    text : object
-        What to write.
-    width : int
-        Largest number of characters.
-
-    Returns
-    -------
-    str
-        Latin-1 characters without line ends; others become question marks.
-
-    Examples
-    --------
-    >>> one_line("El Centro\r\n 1940", 12)
-    'El Centro 19'
-    """
-    plain = " ".join(str(text).split()).encode("latin-1", "replace").decode("latin-1")
-    return "".join(mark if mark.isprintable() else "?" for mark in plain)[:width].strip()
-
-
 def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
     """Return how many numbers a line holds and how wide they are, by a Fortran format.
 
@@ -229,40 +182,3 @@ def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
     if found is None or not int(found[1]) or not int(found[2]):
         raise source.error(line, f"a format such as (8F10.5) expected, found {word.strip()[:40]!r}")
     return int(found[1]), int(found[2])
-
-
-def in_width(values: Sequence[float] | FloatArray, per_line: int, width: int, decimals: int) -> list[str]:
-    """Return lines of numbers in columns of fixed width, for writers.
-
-    Parameters
-    ----------
-    values : sequence of float
-        The numbers.
-    per_line : int
-        Numbers on a line.
-    width : int
-        Characters of a number.
-    decimals : int
-        Digits after the point.
-
-    Returns
-    -------
-    list of str
-        The lines.
-
-    Raises
-    ------
-    RecordError
-        If a number needs more characters.
-
-    Examples
-    --------
-    >>> in_width([1.0, -2.5, 3.0], 2, 6, 2)
-    ['  1.00 -2.50', '  3.00']
-    """
-    lines = in_columns(values, per_line, f"{{:{width}.{decimals}f}}")
-    full = [per_line] * (len(lines) - 1) + [len(values) - per_line * (len(lines) - 1)]
-    for text, count in zip(lines, full, strict=True):
-        if len(text) != count * width:
-            raise RecordError(f"a number does not fit into {width} characters with {decimals} decimals; wrong unit?")
-    return lines

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rocking.errors import MissingExtraError, RecordError
-from rocking.motions.formats import agreement
+from rocking.motions.formats import agreement, units_and_steps
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
@@ -79,7 +79,7 @@ class Sac(RecordFormat):
         """
         if not self.recognises(source):
             raise source.error(None, "no SAC file of version 6 or 7")
-        unit = agreement.acceleration_unit(source, None, units)
+        unit = units_and_steps.acceleration_unit(source, None, units)
         trace = read_traces(source, "SAC", checksize=True)[0]
         said = trace.stats.sac
         if said.get("iftype") != _TIME_SERIES or not said.get("leven"):
@@ -91,7 +91,7 @@ class Sac(RecordFormat):
         if values.size < 2 or not np.isfinite(values).all():
             raise source.error(None, f"at least 2 finite samples are needed, found {values.size}")
         # SAC holds single precision: 0.02 is stored as 0.0199999996
-        step = agreement.step_between_samples(source, float(f"{float(said['delta']):.7g}"), time_step)
+        step = units_and_steps.step_between_samples(source, float(f"{float(said['delta']):.7g}"), time_step)
         known = {key: float(said.get(key, _UNDEFINED)) for key in ("b", "e", "depmin", "depmax")}
         if not all(math.isfinite(value) for value in known.values()):
             raise source.error(None, "the header holds numbers that are not finite")
@@ -125,7 +125,7 @@ class Sac(RecordFormat):
         RecordError
             If there are several components, or a number is beyond single precision.
         """
-        (values,) = agreement.in_unit(record, self.name, None, 1)
+        (values,) = units_and_steps.in_unit(record, self.name, None, 1)
         if np.abs(values).max() > 1e37:
             raise RecordError(f"SAC holds accelerations below 1e37, got {np.abs(values).max():g}; wrong unit?")
         part = record.components[0]

@@ -14,7 +14,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import agreement, numbers
+from rocking.motions.formats import agreement, number_lines, numbers, units_and_steps
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
@@ -109,8 +109,8 @@ class SmcUsgs(RecordFormat):
             raise source.error(TEXTS + 2, f"number of samples must be at least 2, found {count}")
         if not rate > 0.0:
             raise source.error(TEXTS + WHOLES, f"sampling rate must be above zero, found {rate:g}")
-        unit = agreement.acceleration_unit(source, "cm/s2", units)
-        step = agreement.step_between_samples(source, 1.0 / rate, time_step)
+        unit = units_and_steps.acceleration_unit(source, "cm/s2", units)
+        step = units_and_steps.step_between_samples(source, 1.0 / rate, time_step)
         values, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
         agreement.check_end(source, after)
         stated = self._check_peaks(source, header, values, rate)
@@ -136,7 +136,7 @@ class SmcUsgs(RecordFormat):
         RecordError
             If there are several components, or a sample is 1e10 cm/s2 or more.
         """
-        (given,) = agreement.in_unit(record, self.name, "cm/s2", 1)
+        (given,) = units_and_steps.in_unit(record, self.name, "cm/s2", 1)
         component = record.components[0]
         words = [self._word(value) for value in given.tolist()]
         values = np.array([float(word) for word in words])
@@ -150,11 +150,11 @@ class SmcUsgs(RecordFormat):
         text = ["*"] * TEXTS
         kind = next((code for code, name in _KINDS.items() if name == record.metadata.get("kind")), 2)
         text[0] = f"{kind} {_KINDS[kind].upper()}"
-        text[3] = numbers.one_line(record.metadata.get("event", "*"), 79) or "*"
-        station = numbers.one_line(record.metadata.get("station", "station = unknown"), 50)
-        text[5] = f"{station} component= {numbers.one_line(component.name, 15).replace(' ', '_')}"
+        text[3] = number_lines.one_line(record.metadata.get("event", "*"), 79) or "*"
+        station = number_lines.one_line(record.metadata.get("station", "station = unknown"), 50)
+        text[5] = f"{station} component= {number_lines.one_line(component.name, 15).replace(' ', '_')}"
         lines = [line.ljust(80) for line in text]
-        lines += numbers.in_columns(whole, 8, "{:10d}")
+        lines += number_lines.in_columns(whole, 8, "{:10d}")
         lines += ["".join(_fortran(value) for value in real[k : k + 5]) for k in range(0, 50, 5)]
         lines.append("|")
         lines += ["".join(words[k : k + self._per_line]) for k in range(0, len(words), self._per_line)]

@@ -6,6 +6,7 @@ SI units, ``integral of a(t) exp(-2 pi i f t) dt`` [m/s].
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -91,14 +92,15 @@ class PointSource:
         checks.within("density", self.density, 500.0, 1e4, unit="kg/m3", hint="given in g/cm3?")
         for name in ("radiation", "free_surface", "partition"):
             checks.positive(name, getattr(self, name))
-        checks.positive("quality[0]", self.quality[0])
-        checks.within("quality[1]", self.quality[1], -2.0, 1.0)
+        q0, power = _pairs("quality", (self.quality,))[0]
+        checks.positive("quality[0]", q0)
+        checks.within("quality[1]", power, -2.0, 1.0)
         checks.within("kappa", self.kappa, 0.0, 1.0, unit="s")
         checks.within("path_duration", self.path_duration, 0.0, 1.0, unit="s/m", hint="given in s/km?")
-        starts = [checks.positive("spreading distance", start, "m") for start, _ in self.spreading]
-        if not starts or starts[0] != REFERENCE_DISTANCE or any(np.diff(starts) <= 0.0):
+        starts, exponents = _pairs("spreading", self.spreading).T
+        if starts[0] != REFERENCE_DISTANCE or not np.all(np.diff(starts) > 0.0):
             raise InvalidValueError(f"spreading must begin at 1000 m and go outwards, got distances {starts} m")
-        for _, exponent in self.spreading:
+        for exponent in exponents:
             checks.within("spreading exponent", exponent, -5.0, 5.0)
 
     @property
@@ -230,3 +232,10 @@ def window(place: FloatArray) -> FloatArray:
     power = -PEAK_AT * math.log(LEVEL_AT_END) / (1.0 + PEAK_AT * (math.log(PEAK_AT) - 1.0))
     ratio = np.maximum(place, 0.0) / PEAK_AT
     return np.asarray(ratio**power * np.exp(power * (1.0 - ratio)))
+
+
+def _pairs(name: str, values: Any) -> FloatArray:
+    pairs = checks.real_array(name, values)
+    if pairs.ndim != 2 or pairs.shape[1] != 2:
+        raise InvalidValueError(f"{name} must be made of pairs of numbers, got shape {pairs.shape}")
+    return pairs

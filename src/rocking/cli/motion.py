@@ -1,0 +1,60 @@
+"""`rocking motion`: what a record or a pulse is, and how strong."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+_FILE = "What the file leaves open"
+_OUTPUT = "Output"
+
+
+def motion(
+    record: Annotated[str, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")],
+    format: Annotated[
+        str | None, typer.Option(help="Format, if not found by content: see rocking formats.", rich_help_panel=_FILE)
+    ] = None,
+    units: Annotated[
+        str | None, typer.Option(help="Unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.", rich_help_panel=_FILE)
+    ] = None,
+    time_step: Annotated[float | None, typer.Option(help="Step between samples [s].", rich_help_panel=_FILE)] = None,
+    component: Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)] = None,
+    vertical: Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)] = None,
+    scale: Annotated[float | None, typer.Option(help="Factor on the acceleration.")] = None,
+    damping: Annotated[float, typer.Option(help="Damping ratio of the spectrum.")] = 0.05,
+    periods: Annotated[
+        str, typer.Option(help="Periods of the spectrum [s], with commas between.")
+    ] = "0.1,0.2,0.5,1,2,3",
+    picture: Annotated[
+        Path | None, typer.Option(help="Draw it and its spectrum (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
+    ] = None,
+    csv: Annotated[
+        Path | None,
+        typer.Option(help="Write time, acceleration, velocity, displacement.", rich_help_panel=_OUTPUT),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+) -> None:
+    """Print what a record or a pulse is, its intensity measures and its response spectrum."""
+    from rocking.cli import motion_output
+    from rocking.cli.motion_options import motion_from
+
+    subject = motion_from(
+        record,
+        format=format,
+        units=units,
+        time_step=time_step,
+        component=component,
+        vertical=vertical,
+        scale=scale,
+    )
+    answer = motion_output.Answer.of(subject, motion_output.periods_from(periods), damping)
+    if csv is not None:
+        motion_output.write_csv(answer, csv)
+    if picture is not None:
+        motion_output.draw(answer, picture)
+    if as_json:
+        print(motion_output.as_json(answer))
+    else:
+        motion_output.show(answer)
+        for path in filter(None, (csv, picture)):
+            print(f"wrote {path}")

@@ -1,0 +1,247 @@
+"""What `rocking motion` prints, writes and draws."""
+
+import csv
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray, g
+from rocking.errors import InvalidValueError
+from rocking.motions.intensity import Measure, intensity_measures
+from rocking.motions.kinematics import ground_displacement, ground_velocity
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
+from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
+from rocking.plots.traces import fine_samples, traces
+
+_MOST_PERIODS = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """One motion and what was measured on it.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion.
+    samples : GroundMotion
+        Itself, or the pulse cut finely.
+    measures : dict of str to Measure
+        Intensity measures by short name.
+    spectrum : ResponseSpectrum
+        Response at the periods asked for.
+    """
+
+    motion: GroundMotion | Pulse
+    samples: GroundMotion
+    measures: dict[str, Measure]
+    spectrum: ResponseSpectrum
+
+    @classmethod
+    def of(cls, motion: GroundMotion | Pulse, periods: Sequence[float], damping: float) -> "Answer":
+        """Measure a motion.
+
+        Parameters
+        ----------
+        motion : GroundMotion or Pulse
+            The motion.
+        periods : sequence of float
+            Periods of the spectrum [s].
+        damping : float
+            Damping ratio of the spectrum, from 0 to below 1 [-].
+
+        Returns
+        -------
+        Answer
+            Everything that is printed.
+
+        Raises
+        ------
+        InvalidValueError
+            If the motion is zero throughout, or a period or the damping is outside its range.
+        """
+        samples = fine_samples(motion)
+        spectrum = response_spectrum(samples, list(periods), damping)
+        measures = intensity_measures(samples)
+        if isinstance(motion, Pulse):
+            # these three are known from the formulas, not only from samples
+            exact = {f"pg{name[0]}": abs(value) for name, (_, value) in traces(motion).peaks.items()}
+            measures |= {key: replace(measures[key], value=value) for key, value in exact.items()}
+        return cls(motion, samples, measures, spectrum)
+
+
+def periods_from(words: str) -> list[float]:
+    """Return the periods of a spectrum from one word.
+
+    Parameters
+    ----------
+    words : str
+        Numbers above zero with commas between [s].
+
+    Returns
+    -------
+    list of float
+        The periods [s].
+
+    Raises
+    ------
+    InvalidValueError
+        If there is none, there are more than 1000, or one is not a number above zero.
+
+    Examples
+    --------
+    >>> periods_from("0.1, 0.5,1")
+    [0.1, 0.5, 1.0]
+    """
+    parts = [part.strip() for part in words.split(",") if part.strip()]
+    if not 1 <= len(parts) <= _MOST_PERIODS:
+        raise InvalidValueError(f"periods must be 1 to {_MOST_PERIODS} numbers such as 0.1,0.5,1, got {words[:60]!r}")
+    try:
+        numbers = [float(part) for part in parts]
+    except ValueError as error:
+        raise InvalidValueError(f"periods must be numbers such as 0.1,0.5,1 [s], got {words[:60]!r}") from error
+    return [checks.positive("periods", number, "s") for number in numbers]
+
+
+def show(answer: Answer) -> None:
+    """Print what it is, its intensity measures and its spectrum.
+
+    Parameters
+    ----------
+    answer : Answer
+        What `Answer.of` computed.
+    """
+    from rich.console import Console
+
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(answer.motion.name, style="bold", markup=False)
+    for word, value in _facts(answer):
+        console.print(f"  {word + ':':<12} {value}", markup=False)
+    for line in answer.samples.provenance if isinstance(answer.motion, GroundMotion) else ():
+        console.print(f"  {line}", style="dim", markup=False)
+    console.print()
+    rows = [(one.name, f"{one.value:.4g}", one.unit, _in_g(one)) for one in answer.measures.values()]
+    console.print(_table(("intensity measure", "value", "unit", ""), rows))
+    console.print()
+    spectrum = answer.spectrum
+    console.print(f"Response spectrum, {100.0 * spectrum.damping:.4g} % damping", style="bold")
+    columns = (spectrum.periods, spectrum.pseudo_acceleration, spectrum.pseudo_acceleration / g)
+    values = zip(*columns, spectrum.pseudo_velocity, spectrum.displacement, strict=True)
+    lines = [tuple(f"{value:.4g}" for value in row) for row in values]
+    console.print(_table(("T [s]", "PSA [m/s2]", "PSA [g]", "PSV [m/s]", "Sd [m]"), lines))
+
+
+def as_json(answer: Answer) -> str:
+    """Return everything as JSON.
+
+    Parameters
+    ----------
+    answer : Answer
+        What `Answer.of` computed.
+
+    Returns
+    -------
+    str
+        One object; SI units, named in the keys where a quantity has one.
+    """
+    motion, spectrum = answer.motion, answer.spectrum
+    record = isinstance(motion, GroundMotion)
+    told = motion.metadata if isinstance(motion, GroundMotion) else {}
+    facts: dict[str, Any] = {
+        "kind": "record" if record else "pulse",
+        "name": motion.name,
+        **{key: told.get(key) for key in ("format", "event", "station", "component")},
+        "vertical_component": told.get("vertical component"),
+        "file_unit": told.get("unit"),
+        "samples": len(answer.samples) if record else None,
+        "time_step_s": answer.samples.time_step if record else None,
+        "duration_s": motion.duration,
+        "provenance": list(motion.provenance) if isinstance(motion, GroundMotion) else [repr(motion)],
+        "peak_vertical_acceleration_m_s2": None if answer.samples.vertical is None else answer.samples.peak_vertical,
+        "intensity": {f"{key}_{one.unit.replace('/', '_')}": one.value for key, one in answer.measures.items()},
+        "spectrum": {
+            "damping_ratio": spectrum.damping,
+            "period_s": spectrum.periods.tolist(),
+            "psa_m_s2": spectrum.pseudo_acceleration.tolist(),
+            "psv_m_s": spectrum.pseudo_velocity.tolist(),
+            "sd_m": spectrum.displacement.tolist(),
+            "absolute_acceleration_m_s2": spectrum.absolute_acceleration.tolist(),
+        },
+    }
+    return json.dumps(facts, indent=2, allow_nan=False)
+
+
+def write_csv(answer: Answer, path: Path) -> None:
+    """Write time, acceleration, velocity and displacement at the samples, those of a pulse as its formulas give them.
+
+    Parameters
+    ----------
+    answer : Answer
+        What `Answer.of` computed.
+    path : Path
+        File to write; SI units, named in the first line.
+    """
+    motion, samples = answer.motion, answer.samples
+    columns: dict[str, FloatArray] = {"time_s": np.asarray(samples.time), "acceleration_m_s2": samples.acceleration}
+    if isinstance(motion, GroundMotion):
+        columns |= {"velocity_m_s": ground_velocity(motion), "displacement_m": ground_displacement(motion)}
+        if motion.vertical is not None:
+            columns["vertical_acceleration_m_s2"] = motion.vertical
+    else:
+        fine = traces(motion)
+        columns |= {"velocity_m_s": fine.velocity, "displacement_m": fine.displacement}
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
+
+
+def draw(answer: Answer, path: Path) -> None:
+    """Draw the motion and its spectrum.
+
+    Parameters
+    ----------
+    answer : Answer
+        What `Answer.of` computed.
+    path : Path
+        File to write; its suffix says the format.
+    """
+    from rocking.plots import ground_motion_picture, write
+
+    write(ground_motion_picture(answer.motion), path)
+
+
+def _facts(answer: Answer) -> list[tuple[str, str]]:
+    motion = answer.motion
+    if isinstance(motion, Pulse):
+        return [("kind", "pulse, known at every instant"), ("duration", f"{motion.duration:.6g} s")]
+    told = motion.metadata
+    keys = ("format", "event", "date", "station", "component", "vertical component")
+    facts = [(key.replace("vertical component", "vertical"), told[key]) for key in keys if told.get(key)]
+    facts.append(("samples", f"{len(motion)} at {motion.time_step:.6g} s, the file in {told.get('unit', 'm/s2')}"))
+    facts.append(("duration", f"{motion.duration:.6g} s"))
+    if motion.vertical is not None:
+        facts.append(("upwards", f"{motion.peak_vertical:.4g} m/s2 ({motion.peak_vertical / g:.4g} g) at most"))
+    return facts
+
+
+def _in_g(measure: Measure) -> str:
+    return f"= {measure.value / g:.4g} g" if measure.unit == "m/s2" else ""
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Any:
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for place, word in enumerate(head):
+        left = word in {"intensity measure", "unit", ""}
+        table.add_column(word.replace("[", r"\["), justify="left" if left else "right", no_wrap=place == 0)
+    for row in rows:
+        table.add_row(*row)
+    return table

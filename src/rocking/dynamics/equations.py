@@ -1,0 +1,219 @@
+r"""The equations of motion of a rocking body, and what follows from them without integrating.
+
+About the foot on which it stands, with ``s = +1`` for the right one (theta > 0), ground accelerations ``a_x`` to the
+right and ``a_z`` upwards,
+
+    theta'' = -p^2 { (1 + a_z / g) sin(alpha s - theta) + (a_x / g) cos(alpha s - theta) },
+
+and for slender bodies at small angles ``theta'' = p^2 { (1 + a_z / g) (theta - alpha s) - a_x / g }`` (Housner 1963,
+BSSA 53:403; with the vertical acceleration as an effective gravity). All functions take numbers or arrays.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+
+
+def angular_acceleration(
+    rotation: Any, side: Any, alpha: Any, p: Any, push: Any, weight: Any = 1.0, *, linear: bool = False
+) -> FloatArray:
+    """Return the angular acceleration of the body.
+
+    Parameters
+    ----------
+    rotation : array_like
+        theta [rad].
+    side : array_like
+        +1 on the right foot, -1 on the left one.
+    alpha : array_like
+        Slenderness angle of that side [rad].
+    p : array_like
+        Frequency parameter of that side [rad/s].
+    push : array_like
+        a_x / g [-].
+    weight : array_like
+        1 + a_z / g [-].
+    linear : bool
+        Slender-linear equations.
+
+    Returns
+    -------
+    ndarray
+        theta'' [rad/s2].
+
+    Examples
+    --------
+    >>> angular_acceleration(0.0, 1, 0.2, 2.0, -0.3, linear=True).round(12).item()
+    0.4
+    """
+    to_top = np.asarray(alpha) * side - rotation
+    sine, cosine = (to_top, np.ones_like(to_top)) if linear else (np.sin(to_top), np.cos(to_top))
+    return np.asarray(-np.square(p) * (np.asarray(weight) * sine + np.asarray(push) * cosine))
+
+
+def holding_moment(side: Any, alpha: Any, push: Any, weight: Any = 1.0, *, linear: bool = False) -> FloatArray:
+    """Return the moment that keeps a body at rest from turning about a foot, over m g R; it lifts where this is < 0.
+
+    Parameters
+    ----------
+    side : array_like
+        +1 for the right foot, -1 for the left one.
+    alpha : array_like
+        Slenderness angle of that side [rad].
+    push : array_like
+        a_x / g [-].
+    weight : array_like
+        1 + a_z / g [-].
+    linear : bool
+        Slender-linear equations.
+
+    Returns
+    -------
+    ndarray
+        ``(1 + a_z / g) sin(alpha) + s (a_x / g) cos(alpha)`` [-].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> round(holding_moment(-1, np.arctan(0.25), 0.25).item(), 12)
+    0.0
+    """
+    sine, cosine = (np.asarray(alpha), 1.0) if linear else (np.sin(alpha), np.cos(alpha))
+    return np.asarray(np.asarray(weight) * sine + np.asarray(side) * np.asarray(push) * cosine)
+
+
+def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: bool = False) -> FloatArray:
+    """Return kinetic and potential energy above rest, over m g R.
+
+    Parameters
+    ----------
+    rotation : array_like
+        theta or its size [rad].
+    angular_velocity : array_like
+        theta' [rad/s].
+    alpha : array_like
+        Slenderness angle of the side [rad].
+    p : array_like
+        Frequency parameter of the side [rad/s].
+    linear : bool
+        Slender-linear equations.
+
+    Returns
+    -------
+    ndarray
+        ``theta'^2 / (2 p^2) + cos(alpha - |theta|) - cos(alpha)`` [-].
+    """
+    size, angle = np.abs(rotation), np.asarray(alpha)
+    kinetic = 0.5 * np.square(np.asarray(angular_velocity) / p)
+    if linear:
+        return np.asarray(kinetic + size * (angle - 0.5 * size))
+    # cos a - cos b as a product keeps the digits of small rotations
+    return np.asarray(kinetic + 2.0 * np.sin(angle - 0.5 * size) * np.sin(0.5 * size))
+
+
+def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
+    """Return the energy that a body needs to pass over its foot, over m g R.
+
+    Parameters
+    ----------
+    alpha : array_like
+        Slenderness angle of the side [rad].
+    linear : bool
+        Slender-linear equations.
+
+    Returns
+    -------
+    ndarray
+        ``1 - cos(alpha)`` [-].
+    """
+    angle = np.asarray(alpha)
+    return np.asarray(0.5 * np.square(angle) if linear else 2.0 * np.square(np.sin(0.5 * angle)))
+
+
+def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) -> FloatArray:
+    """Return the rotation at which a freely rocking body turns round.
+
+    Parameters
+    ----------
+    energy_over_mgr : array_like
+        Energy above rest, over m g R, not above that at the top [-].
+    alpha : array_like
+        Slenderness angle of the side [rad].
+    linear : bool
+        Slender-linear equations.
+
+    Returns
+    -------
+    ndarray
+        |theta| [rad].
+
+    Examples
+    --------
+    >>> round(turning_rotation(energy(0.05, 0.0, 0.2, 3.0), 0.2).item(), 12)
+    0.05
+    """
+    angle = np.asarray(alpha)
+    left = np.maximum(energy_at_top(angle, linear=linear) - energy_over_mgr, 0.0)
+    return np.asarray(angle - (np.sqrt(2.0 * left) if linear else 2.0 * np.arcsin(np.sqrt(0.5 * left))))
+
+
+def reactions(
+    rotation: Any, angular_velocity: Any, acceleration: Any, side: Any, alpha: Any, semi_diagonal: Any,
+    horizontal: Any, vertical: Any,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the force of the ground on a rocking body, per unit mass.
+
+    Parameters
+    ----------
+    rotation, angular_velocity, acceleration : array_like
+        theta [rad], theta' [rad/s], theta'' [rad/s2].
+    side : array_like
+        +1 on the right foot, -1 on the left one.
+    alpha : array_like
+        Slenderness angle of that side [rad].
+    semi_diagonal : array_like
+        R of that side [m].
+    horizontal : array_like
+        a_x [m/s2].
+    vertical : array_like
+        g + a_z [m/s2].
+
+    Returns
+    -------
+    f_x, f_z : ndarray
+        Horizontal force, and vertical force which must stay above zero [N/kg].
+    """
+    psi = np.asarray(alpha) - np.asarray(side) * rotation
+    outward = np.asarray(side) * acceleration  # |theta|''
+    rate2 = np.square(angular_velocity)
+    f_x = horizontal + np.asarray(side) * semi_diagonal * (np.cos(psi) * outward + np.sin(psi) * rate2)
+    f_z = vertical + semi_diagonal * (np.sin(psi) * outward - np.cos(psi) * rate2)
+    return np.asarray(f_x), np.asarray(f_z)
+
+
+def friction_of_impact(height: float, old_lever: float, new_lever: float, coefficient: Any) -> FloatArray:
+    """Return the friction coefficient that an impact without slip needs: horizontal over vertical impulse.
+
+    Parameters
+    ----------
+    height : float
+        Height h of the centre of mass [m].
+    old_lever, new_lever : float
+        Horizontal distances b of the old and the new foot from the centre of mass [m].
+    coefficient : array_like
+        Coefficient of restitution r [-].
+
+    Returns
+    -------
+    ndarray
+        ``h (1 - r) / (b_old + b_new r)``; for a symmetric body (h / b) (1 - r) / (1 + r) [-].
+
+    Examples
+    --------
+    >>> round(friction_of_impact(2.0, 1.0, 1.0, 0.7).item(), 12)  # 3 lambda / (1 + 4 lambda^2)
+    0.352941176471
+    """
+    r = np.asarray(coefficient)
+    return np.asarray(height * (1.0 - r) / (old_lever + new_lever * r))

@@ -1,0 +1,80 @@
+"""One history by the fast engine, with all its samples and events."""
+
+import numpy as np
+
+from rocking.dynamics import engine
+from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.trajectory import Event, EventKind, Trajectory
+from rocking.motions.segments import Segments
+
+_OUTCOMES, _STATUSES = list(Outcome), list(Status)
+
+
+def run_fast(
+    rocker: Rocker, segments: Segments, settings: Settings, *,
+    scale: float = 1.0, key: int = 0, rotation: float = 0.0, velocity: float = 0.0,
+) -> Trajectory:
+    """Return one history by the fast engine; the numbers are those that it gives within a batch, bit for bit.
+
+    Parameters
+    ----------
+    rocker : Rocker
+        The body.
+    segments : Segments
+        The motion, of degree 1 or 7 [m/s2].
+    settings : Settings
+        How to integrate; the order is 8.
+    scale : float
+        Factor on the motion [-].
+    key : int
+        Number of the history, for random coefficients.
+    rotation, velocity : float
+        theta [rad] and theta' [rad/s] at time zero.
+
+    Returns
+    -------
+    Trajectory
+        The history.
+    """
+    library = engine.Library([segments])
+    values = {
+        "alpha_right": rocker.right.slenderness_angle, "alpha_left": rocker.left.slenderness_angle,
+        "p_right": rocker.right.frequency_parameter, "p_left": rocker.left.frequency_parameter,
+        "r_right": rocker.right.coefficient, "r_left": rocker.left.coefficient,
+        "scale": scale, "rotation": rotation, "velocity": velocity,
+    }  # fmt: skip
+    rows = {name: np.array([value]) for name, value in values.items()}
+    rows |= {"motion": np.zeros(1, np.int64), "key": np.array([key], np.int64)}
+    out = engine.empty_results(1)
+    rotations, velocities = np.zeros(segments.count + 1), np.zeros(segments.count + 1)
+    arguments = engine.common(settings, rocker.law)
+    noted = engine.module().run_single(
+        library.handle, rows, out, to_the_ground=True, rotation=rotations, velocity=velocities, **arguments
+    )
+    outcome = _OUTCOMES[out["outcome"][0]]
+    if outcome in {Outcome.OVERTURNED, Outcome.FAILED}:
+        after = _last_written(rotations, velocities)
+        rotations[after:] = velocities[after:] = np.nan
+    return Trajectory(
+        rotation=rotations,
+        angular_velocity=velocities,
+        events=[Event(t, EventKind(kind), side, before, then, r) for t, kind, side, before, then, r in noted],
+        outcome=outcome,
+        status=_STATUSES[out["status"][0]],
+        side=int(out["side"][0]),
+        peak_rotation=float(out["peak_rotation"][0]),
+        peak_time=float(out["peak_time"][0]),
+        peak_angular_velocity=float(out["peak_velocity"][0]),
+        overturning_time=float(out["overturning_time"][0]),
+        impacts=int(out["impacts"][0]),
+        uplifts=int(out["uplifts"][0]),
+        error=float(out["error"][0]),
+        engine=f"fast (Taylor, order 8, {arguments['isa']})",
+    )
+
+
+def _last_written(rotations: np.ndarray, velocities: np.ndarray) -> int:
+    moving = np.flatnonzero((rotations != 0.0) | (velocities != 0.0))
+    return int(moving[-1]) + 1 if moving.size else 1

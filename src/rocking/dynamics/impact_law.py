@@ -1,0 +1,316 @@
+"""How the coefficient of restitution may change from impact to impact: not at all, with speed, or at random."""
+
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+
+_MASK = (1 << 64) - 1
+
+
+class ImpactLaw:
+    """A factor on the coefficient of restitution of the side onto which the body lands.
+
+    Attributes
+    ----------
+    kind : int
+        0 constant, 1 a table over the speed, 2 a random number.
+    at, factors : ndarray
+        The table.
+    seed : int
+        Seed of the random numbers.
+    """
+
+    kind: ClassVar[int] = 0
+    at: FloatArray
+    factors: FloatArray
+    seed: int
+
+    @property
+    def largest(self) -> float:
+        """Largest factor it can give [-]."""
+        return float(self.factors.max())
+
+    def factor(self, speed: float, key: int, impact: int) -> float:
+        """Return the factor for an impact.
+
+        Parameters
+        ----------
+        speed : float
+            Angular velocity before the impact, without its sign [rad/s].
+        key : int
+            Number of the history.
+        impact : int
+            Impacts that the history has had before.
+
+        Returns
+        -------
+        float
+            Factor on the side's coefficient [-].
+        """
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, eq=False)
+class ConstantRestitution(ImpactLaw):
+    """The coefficient of the side, always."""
+
+    at: FloatArray = field(default_factory=lambda: np.zeros(1))
+    factors: FloatArray = field(default_factory=lambda: np.ones(1))
+    seed: int = 0
+
+    def factor(self, speed: float, key: int, impact: int) -> float:
+        """Return one.
+
+        Parameters
+        ----------
+        speed : float
+            Not used [rad/s].
+        key, impact : int
+            Not used.
+
+        Returns
+        -------
+        float
+            1.
+        """
+        return 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class SpeedRestitution(ImpactLaw):
+    """A coefficient that depends on the speed of the impact: straight lines through points, constant outside them.
+
+    Parameters
+    ----------
+    at : array_like
+        Angular velocities before the impact, without sign, increasing [rad/s].
+    factors : array_like
+        Coefficients there; factors, if `times` is given [-].
+    times : optional
+        What they multiply: a coefficient, a model or its name; 1 if not given.
+
+    Raises
+    ------
+    InvalidValueError
+        If the speeds do not increase, or a coefficient is outside [0, 1].
+
+    Examples
+    --------
+    >>> SpeedRestitution([0.0, 1.0], [0.95, 0.85]).factor(0.5, 0, 0)
+    0.9
+    """
+
+    kind: ClassVar[int] = 1
+    at: FloatArray
+    factors: FloatArray
+    times: Any = 1.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Check the points."""
+        speeds = _row("at", self.at, "rad/s")
+        if speeds[0] < 0.0 or np.any(np.diff(speeds) <= 0.0):
+            raise InvalidValueError(f"at must be speeds >= 0 that increase [rad/s], got {speeds[:4].tolist()}")
+        object.__setattr__(self, "at", speeds)
+        object.__setattr__(self, "factors", _factors(self.factors, speeds.size))
+
+    def factor(self, speed: float, key: int, impact: int) -> float:
+        """Return the coefficient at a speed.
+
+        Parameters
+        ----------
+        speed : float
+            Angular velocity before the impact, without its sign [rad/s].
+        key, impact : int
+            Not used.
+
+        Returns
+        -------
+        float
+            Coefficient or factor [-].
+        """
+        return interpolated(self.at, self.factors, speed)
+
+
+@dataclass(frozen=True, eq=False)
+class RandomRestitution(ImpactLaw):
+    """A coefficient drawn anew for every impact from a distribution, the same for the same seed, history and impact.
+
+    Parameters
+    ----------
+    factors : array_like
+        Quantiles of the distribution at equally spaced probabilities from 0 to 1 [-].
+    seed : int
+        Seed of the draws.
+    times : optional
+        What they multiply: a coefficient, a model or its name; 1 if not given.
+
+    Raises
+    ------
+    InvalidValueError
+        If the quantiles decrease or are outside [0, 1], or the seed is not a whole number from 0 to 2^64 - 1.
+
+    Examples
+    --------
+    >>> law = RandomRestitution.normal(0.9, 0.02, seed=1)
+    >>> law.factor(1.0, 0, 3) == law.factor(2.0, 0, 3) != law.factor(1.0, 0, 4)
+    True
+    """
+
+    kind: ClassVar[int] = 2
+    factors: FloatArray
+    seed: int
+    times: Any = 1.0
+    at: FloatArray = field(default_factory=lambda: np.zeros(1))
+
+    def __post_init__(self) -> None:
+        """Check quantiles and seed."""
+        quantiles = _factors(self.factors, None)
+        if np.any(np.diff(quantiles) < 0.0):
+            raise InvalidValueError("factors must be quantiles, which never decrease")
+        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed <= _MASK:
+            raise InvalidValueError(f"seed must be a whole number in [0, 2^64), got {self.seed!r}")
+        object.__setattr__(self, "factors", quantiles)
+        object.__setattr__(self, "at", np.linspace(0.0, 1.0, quantiles.size))
+
+    @classmethod
+    def normal(cls, mean: float, deviation: float, *, seed: int, times: Any = 1.0, points: int = 1025) -> "RandomRestitution":
+        """Return draws from a normal distribution cut to [0, 1].
+
+        Parameters
+        ----------
+        mean, deviation : float
+            Of the distribution before it is cut [-].
+        seed : int
+            Seed of the draws.
+        times : optional
+            What the draws multiply.
+        points : int
+            Quantiles that stand for it.
+
+        Returns
+        -------
+        RandomRestitution
+            The law.
+        """
+        from scipy.special import ndtr, ndtri
+
+        mean = checks.within("mean", mean, 0.0, 1.0)
+        deviation = checks.within("deviation", deviation, 0.0, 1.0, open_low=True)
+        low, high = ndtr((0.0 - mean) / deviation), ndtr((1.0 - mean) / deviation)
+        levels = low + (high - low) * np.linspace(0.0, 1.0, points)
+        # the normal's ends are infinite: the outermost levels stand a quarter of a step inside
+        inside = np.clip(levels, low + 0.25 * (high - low) / points, high - 0.25 * (high - low) / points)
+        return cls(np.clip(mean + deviation * ndtri(inside), 0.0, 1.0), seed, times)
+
+    @classmethod
+    def of_sample(cls, values: Any, *, seed: int, times: Any = 1.0) -> "RandomRestitution":
+        """Return draws from measured or simulated values, for instance a posterior.
+
+        Parameters
+        ----------
+        values : array_like
+            Values of the coefficient or factor [-].
+        seed : int
+            Seed of the draws.
+        times : optional
+            What the draws multiply.
+
+        Returns
+        -------
+        RandomRestitution
+            The law.
+        """
+        sample = _row("values", values, "-")
+        return cls(np.quantile(sample, np.linspace(0.0, 1.0, 1025)), seed, times)
+
+    def factor(self, speed: float, key: int, impact: int) -> float:
+        """Return the draw for an impact.
+
+        Parameters
+        ----------
+        speed : float
+            Not used [rad/s].
+        key : int
+            Number of the history.
+        impact : int
+            Impacts that the history has had before.
+
+        Returns
+        -------
+        float
+            Coefficient or factor [-].
+        """
+        return interpolated(self.at, self.factors, uniform(self.seed, key, impact))
+
+
+def interpolated(at: FloatArray, values: FloatArray, x: float) -> float:
+    """Return the value of straight lines through points, constant outside them.
+
+    Parameters
+    ----------
+    at, values : ndarray
+        The points.
+    x : float
+        Where.
+
+    Returns
+    -------
+    float
+        The value.
+    """
+    if not x > at[0]:
+        return float(values[0])
+    if x >= at[-1]:
+        return float(values[-1])
+    k = int(np.searchsorted(at, x, side="right"))
+    return float(values[k - 1] + (values[k] - values[k - 1]) * ((x - at[k - 1]) / (at[k] - at[k - 1])))
+
+
+def uniform(seed: int, key: int, impact: int) -> float:
+    """Return a number in [0, 1) that depends on seed, history and impact, on nothing else (splitmix64).
+
+    Parameters
+    ----------
+    seed : int
+        Seed.
+    key : int
+        Number of the history.
+    impact : int
+        Number of the impact.
+
+    Returns
+    -------
+    float
+        The number.
+    """
+    return (_mixed(_mixed(_mixed(seed) + key & _MASK) + impact & _MASK) >> 11) * 2.0**-53
+
+
+def _mixed(z: int) -> int:
+    z = z + 0x9E3779B97F4A7C15 & _MASK
+    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9 & _MASK
+    z = (z ^ z >> 27) * 0x94D049BB133111EB & _MASK
+    return z ^ z >> 31
+
+
+def _row(name: str, values: Any, unit: str) -> FloatArray:
+    row = np.array(checks.real_array(name, values, unit), dtype=np.float64)
+    if row.ndim != 1 or row.size < 2 or not np.isfinite(row).all():
+        raise InvalidValueError(f"{name} must be a row of at least 2 finite numbers [{unit}]")
+    row.setflags(write=False)
+    return row
+
+
+def _factors(values: Any, size: int | None) -> FloatArray:
+    row = _row("factors", values, "-")
+    if size is not None and row.size != size:
+        raise InvalidValueError(f"factors must be as many as the speeds, {size}, got {row.size}")
+    if row.min() < 0.0 or row.max() > 1.0:
+        raise InvalidValueError(f"factors must be in [0, 1], got {row.min():g} to {row.max():g}")
+    return row

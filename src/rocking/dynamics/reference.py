@@ -1,0 +1,308 @@
+"""The reference engine: Taylor steps of free order and length, one history at a time, events located to rounding.
+
+It shares no code with the fast engine: series and zeros are computed by other means (order up to 30, lengths from the
+size of the last terms, zeros by eigenvalues and Newton's method), so that each is a check on the other.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics import equations
+from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.resting import Ground, Push, comes_to_rest
+from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.taylor import first_fall, series, shifted, slope, value
+from rocking.dynamics.trajectory import Event, EventKind, Trajectory
+from rocking.motions.segments import Segments
+
+_ORDER = 30
+_WHOLE = 1.0 - 1e-13
+
+
+class _Ended(NamedTuple):
+    outcome: Outcome
+    status: Status = Status.GOOD
+
+
+class Reference:
+    """One history.
+
+    Parameters
+    ----------
+    rocker : Rocker
+        The body.
+    segments : Segments
+        The motion [m/s2].
+    settings : Settings
+        Gravity, equations, limits, tolerance.
+    scale : float
+        Factor on the motion [-].
+    key : int
+        Number of the history, for random coefficients.
+    to_the_ground : bool
+        Follow a body that falls until it lies; otherwise stop once nothing can bring it back.
+    """
+
+    def __init__(
+        self, rocker: Rocker, segments: Segments, settings: Settings, *,
+        scale: float = 1.0, key: int = 0, to_the_ground: bool = True,
+    ) -> None:
+        over_g = scale / settings.gravity
+        vertical = np.zeros_like(segments.horizontal) if segments.vertical is None else segments.vertical
+        self.push = Push(segments.step, segments.horizontal * over_g, vertical * over_g)
+        self.rocker, self.settings, self.key, self.to_the_ground = rocker, settings, key, to_the_ground
+        self.ground = Ground(rocker, self.push, linear=settings.linear)
+        self.count = segments.count
+        self.rotations = np.zeros(self.count + 1)
+        self.velocities = np.zeros(self.count + 1)
+        self.events: list[Event] = []
+        self.side, self.u, self.rate = 0, 0.0, 0.0  # u = alpha - |theta| and its rate [rad/s]
+        self.stretch, self.tau = 0, 0.0
+        self.impacts = self.uplifts = 0
+        self.peak, self.peak_time, self.fastest, self.error = 0.0, 0.0, 0.0, 0.0
+        self.over_time = math.nan
+        self._set_later_bounds()
+
+    # ---- the course of a history ------------------------------------------------------------------------------------
+
+    def run(self, rotation: float = 0.0, velocity: float = 0.0) -> Trajectory:
+        """Return the history from given initial conditions.
+
+        Parameters
+        ----------
+        rotation, velocity : float
+            theta [rad] and theta' [rad/s] at time zero.
+
+        Returns
+        -------
+        Trajectory
+            The history.
+        """
+        self.rotations[0], self.velocities[0] = rotation, velocity
+        ended = self._start(rotation, velocity)
+        while ended is None:
+            ended = self._step()
+        return self._trajectory(ended)
+
+    def _start(self, rotation: float, velocity: float) -> _Ended | None:
+        if rotation == 0.0 and velocity == 0.0:
+            return self._rest()
+        self.side = 1 if rotation > 0.0 or (rotation == 0.0 and velocity > 0.0) else -1
+        self.u, self.rate = self._alpha - abs(rotation), -self.side * velocity
+        self._raise_peak(abs(rotation), 0.0)
+        if self.u < 0.0:
+            self.over_time = 0.0
+        self.uplifts = 1
+        self._note(EventKind.UPLIFT, 0.0)
+        return None
+
+    def _step(self) -> _Ended | None:
+        """Advance to the end of the stretch, or to the first event before it."""
+        left = (1.0 - self.tau) * self.push.step
+        push = shifted(self.push.horizontal[self.stretch].tolist(), self.tau, 1.0 - self.tau)
+        weight = shifted(self.push.vertical[self.stretch].tolist(), self.tau, 1.0 - self.tau)
+        push = [self.side * c for c in push]
+        weight[0] += 1.0
+        kappa = (self._p * left) ** 2
+        terms = series(self.u, self.rate * left, kappa, push, weight, _ORDER, linear=self.settings.linear)
+        part = self._trusted_part(terms)
+        if not part > 0.0:
+            return _Ended(Outcome.FAILED, Status.NOT_FINITE)
+        scaled = [c * part**k for k, c in enumerate(terms)]
+        self.error += abs(scaled[-1]) + abs(scaled[-2])
+        length = left * part
+        gap = [self._alpha - self.u, *(-c for c in scaled[1:])]
+        at = self._contact(gap)
+        self._note_peak(gap, 1.0 if at is None else at, length)
+        if at is not None:
+            return self._impact(-slope(gap, at) / length, self.tau + at * part * (1.0 - self.tau))
+        return self._advance(scaled, length, 1.0 if part == 1.0 else self.tau + part * (1.0 - self.tau))
+
+    def _trusted_part(self, terms: list[float]) -> float:
+        """Return the part of the step over which the last terms stay below the tolerance."""
+        if not all(map(math.isfinite, terms)):
+            return 0.0
+        if len(terms) <= _ORDER:
+            return 1.0
+        bound = self.settings.tolerance * self._alpha
+        part = 1.0
+        for k in (len(terms) - 2, len(terms) - 1):
+            if abs(terms[k]) > bound:
+                part = min(part, (bound / abs(terms[k])) ** (1.0 / k))
+        return part
+
+    def _contact(self, gap: list[float]) -> float | None:
+        """Return the first return of |theta| to zero; a step that starts there is divided by that zero."""
+        if gap[0] > 0.0:
+            return first_fall(gap)
+        if gap[1] > 0.0:
+            return first_fall(gap[1:])
+        rest = gap[2:]
+        rest[0] = max(rest[0], 0.0)  # lifted a moment ago, so only rounding can be negative
+        if rest[0] > 0.0:
+            return first_fall(rest)
+        return first_fall(rest[1:]) if rest[1] > 0.0 else None
+
+    def _impact(self, speed: float, tau: float) -> _Ended | None:
+        speed = max(speed, 0.0)
+        time = (self.stretch + tau) * self.push.step
+        self.fastest = max(self.fastest, speed)
+        old, self.side = self.side, -self.side
+        r = self._coefficient(speed)
+        after = r * speed
+        self.impacts += 1
+        self._note(EventKind.IMPACT, time, -old * speed, -old * after, r)
+        self.u, self.rate = self._alpha, -after
+        self._move(tau)
+        if self.impacts >= self.settings.most_impacts:
+            return _Ended(Outcome.FAILED, Status.TOO_MANY_IMPACTS)
+        if self.stretch >= self.count:
+            return self._conclude()
+        args = (self.side, after, self.stretch, self.tau, self.settings.rest_speed)
+        if comes_to_rest(self.rocker, self.ground, *args):
+            self._note(EventKind.REST, time)
+            return self._rest()
+        return None
+
+    def _advance(self, terms: list[float], length: float, tau: float) -> _Ended | None:
+        start, end = self.u, value(terms, 1.0)
+        if start >= 0.0 > end:
+            crossing = first_fall(terms) if start > 0.0 else 0.0
+            self.over_time = self._now + (1.0 if crossing is None else crossing) * length
+        self.u, self.rate = end, slope(terms, 1.0) / length
+        self.fastest = max(self.fastest, abs(self.rate))
+        self._move(tau)
+        if end < 0.0:
+            gone = self._beyond_return()
+            lies = self._alpha - end >= 0.5 * math.pi and (gone or not self.settings.linear)
+            if lies or (gone and not self.to_the_ground):
+                return _Ended(Outcome.OVERTURNED)
+        return self._conclude() if self.stretch >= self.count else None
+
+    def _rest(self) -> _Ended | None:
+        """Rest until the ground lifts the body, or to the end."""
+        found = self.ground.next_uplift(self.stretch, self.tau) if self.stretch < self.count else None
+        calm = _Ended(Outcome.ROCKED if self.uplifts or self.impacts else Outcome.NO_UPLIFT)
+        if found is None:
+            self.side = 0
+            return calm
+        self.stretch, tau, self.side = found
+        self.u, self.rate = self._alpha, 0.0
+        self._move(tau)
+        if self.stretch >= self.count:
+            return calm
+        self.uplifts += 1
+        self._note(EventKind.UPLIFT, self._now)
+        return None
+
+    def _conclude(self) -> _Ended:
+        """The motion is over: energy decides."""
+        linear = self.settings.linear
+        self._raise_peak(self._alpha - self.u, self._now)
+        top = float(equations.energy_at_top(self._alpha, linear=linear))
+        e = float(equations.energy(self._alpha - self.u, self.rate, self._alpha, self._p, linear=linear))
+        inward, passes = self.rate > 0.0, e > top
+        if self.u < 0.0 and not (inward and passes):
+            self.over_time = self.over_time if self.over_time >= 0.0 else self._now
+            return _Ended(Outcome.OVERTURNED)
+        if not inward:
+            if passes:
+                self.over_time = self._now
+                return _Ended(Outcome.OVERTURNED)
+            self._raise_peak(float(equations.turning_rotation(e, self._alpha, linear=linear)), self._now)
+        speed, impacts = self._p * math.sqrt(2.0 * max(e, 0.0)), self.impacts
+        for _ in range(2):
+            self.side = -self.side
+            speed *= self._coefficient(speed)
+            self.impacts += 1
+            e = 0.5 * (speed / self._p) ** 2
+            if e > float(equations.energy_at_top(self._alpha, linear=linear)):
+                self.over_time = self._now
+                return _Ended(Outcome.OVERTURNED)
+            self._raise_peak(float(equations.turning_rotation(e, self._alpha, linear=linear)), self._now)
+        self.impacts = impacts
+        return _Ended(Outcome.ROCKED)
+
+    # ---- small parts ------------------------------------------------------------------------------------------------
+
+    @property
+    def _alpha(self) -> float:
+        return self.rocker.side(self.side).slenderness_angle
+
+    @property
+    def _p(self) -> float:
+        return self.rocker.side(self.side).frequency_parameter
+
+    @property
+    def _now(self) -> float:
+        return (self.stretch + self.tau) * self.push.step
+
+    def _coefficient(self, speed: float) -> float:
+        return self.rocker.side(self.side).coefficient * self.rocker.law.factor(speed, self.key, self.impacts)
+
+    def _note(self, kind: EventKind, time: float, before: float = 0.0, after: float = 0.0, r: float = 0.0) -> None:
+        self.events.append(Event(time, kind, self.side, before, after, r))
+
+    def _move(self, tau: float) -> None:
+        if tau < _WHOLE:
+            self.tau = tau
+            return
+        self.stretch, self.tau = self.stretch + 1, 0.0
+        self.rotations[self.stretch] = self.side * (self._alpha - self.u)
+        self.velocities[self.stretch] = -self.side * self.rate
+
+    def _note_peak(self, gap: list[float], until: float, length: float) -> None:
+        if gap[1] < 0.0 or slope(gap, until) > 0.0:
+            return
+        slopes = [k * c for k, c in enumerate(gap)][1:]
+        while len(slopes) > 1 and slopes[0] == 0.0:
+            slopes.pop(0)
+        at = first_fall(slopes) if slopes[0] > 0.0 else None
+        if at is not None and at <= until:
+            self._raise_peak(value(gap, at), self._now + at * length)
+
+    def _raise_peak(self, size: float, time: float) -> None:
+        if size > abs(self.peak):
+            self.peak, self.peak_time = self.side * size, time
+
+    def _set_later_bounds(self) -> None:
+        """Strongest push either way and weakest gravity from each stretch to the end."""
+
+        def later(extreme: FloatArray, reduce: np.ufunc) -> FloatArray:
+            return np.append(reduce.accumulate(extreme[::-1])[::-1], 0.0)
+
+        h, v = self.push.horizontal, self.push.vertical
+        self.later_high = later(np.maximum(h[:, 0] + np.maximum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.maximum)
+        self.later_low = later(np.minimum(h[:, 0] + np.minimum(h[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
+        self.later_light = later(np.minimum(v[:, 0] + np.minimum(v[:, 1:], 0.0).sum(axis=1), 0.0), np.minimum)
+
+    def _beyond_return(self) -> bool:
+        if self.rate > 0.0:
+            return False
+        back = max(self.side * self.later_high[self.stretch], self.side * self.later_low[self.stretch])
+        weight = 1.0 + self.later_light[self.stretch]
+        if self.settings.linear:
+            return bool(weight > 0.0 and weight * -self.u > back)
+        if self.u <= -0.5 * math.pi:
+            return True
+        return bool(weight > 0.0 and weight * math.sin(-self.u) > back * math.cos(self.u))
+
+    def _trajectory(self, ended: _Ended) -> Trajectory:
+        over, good = ended.outcome is Outcome.OVERTURNED, ended.status is Status.GOOD
+        if over or not good:
+            self.rotations[self.stretch + 1 :] = np.nan
+            self.velocities[self.stretch + 1 :] = np.nan
+        peak, when = (self.side * 0.5 * math.pi, self.over_time) if over else (self.peak, self.peak_time)
+        return Trajectory(
+            rotation=self.rotations, angular_velocity=self.velocities, events=self.events,
+            outcome=ended.outcome, status=ended.status, side=self.side if over else 0,
+            peak_rotation=peak if good else math.nan, peak_time=when if good else math.nan,
+            peak_angular_velocity=self.fastest if good else math.nan,
+            overturning_time=self.over_time if over else math.nan,
+            impacts=self.impacts, uplifts=self.uplifts, error=self.error if good else math.nan,
+            engine=f"reference (Taylor, order up to {_ORDER}, tolerance {self.settings.tolerance:g})",
+        )

@@ -1,0 +1,122 @@
+"""A ground motion: acceleration, velocity, displacement with their peaks, and the response spectrum."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray, g
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
+from rocking.motions.spectrum import SHORTEST_PERIOD, response_spectrum
+from rocking.plots.style import DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, new_figure
+from rocking.plots.traces import Traces, fine_samples, traces
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_DAMPING = 0.05
+_PERIODS = 120
+_SHORTEST, _LONGEST = 0.02, 5.0
+_LONGEST_TITLE = 70
+_ACCELERATION, _VELOCITY, _DISPLACEMENT, _SPECTRUM = "#222222", "#0072B2", "#009E73", "#D55E00"
+
+
+@in_journal_style
+def ground_motion_picture(motion: GroundMotion | Pulse, spectrum: bool = True) -> "Figure":
+    """Draw a ground motion: acceleration, velocity, displacement, and beside them its response spectrum.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion, from rest; a pulse is drawn from its formulas.
+    spectrum : bool
+        Whether to draw the pseudo-acceleration for 5 % damping too.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three stacked panels, and one beside them if wanted.
+
+    Examples
+    --------
+    >>> from rocking.motions.pulses import sine
+    >>> len(ground_motion_picture(sine(amplitude=3.0, period=0.8)).axes)
+    4
+    """
+    width, columns = (DOUBLE, 2) if spectrum else (1.4 * SINGLE, 1)
+    ratios = [1.5, 1.0][:columns]
+    figure, cells = new_figure(width, 4.3, rows=3, columns=columns, sharex="col", width_ratios=ratios)
+    title = " ".join(motion.name.split()).replace("$", r"\$")
+    if len(title) > _LONGEST_TITLE:
+        title = title[: _LONGEST_TITLE - 3] + "..."
+    figure.suptitle(title, x=0.01, ha="left", fontsize=9)
+    curves = traces(motion)
+    _histories(cells[::columns], motion, curves)
+    figure.align_ylabels(cells[::columns])
+    if spectrum:
+        grid: Any = cells[0].get_gridspec()
+        for axes in cells[1::2]:
+            axes.remove()
+        _spectrum(figure.add_subplot(grid[:, 1]), fine_samples(motion), abs(curves.peaks["acceleration"][1]))
+    return figure
+
+
+def _histories(stack: "list[Axes]", motion: GroundMotion | Pulse, curves: Traces) -> None:
+    top, middle, bottom = stack
+    if isinstance(motion, GroundMotion) and motion.vertical is not None:
+        top.plot(motion.time, motion.vertical, color=GREY, linewidth=0.5, label="vertical", zorder=1)
+        top.plot([], [], color=_ACCELERATION, linewidth=0.8, label="horizontal")
+        # above the panel, where no curve runs
+        top.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, borderpad=0.2)
+    rows = (
+        (top, "acceleration", curves.acceleration, "[m/s$^2$]", "PGA", "m/s$^2$", _ACCELERATION),
+        (middle, "velocity", curves.velocity, "[m/s]", "PGV", "m/s", _VELOCITY),
+        (bottom, "displacement", curves.displacement, "[m]", "PGD", "m", _DISPLACEMENT),
+    )
+    for axes, name, values, unit, short, plain, color in rows:
+        axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+        axes.plot(*_with_ends(curves.time, values, name), color=color, linewidth=0.8)
+        at, peak = curves.peaks[name]
+        axes.plot([at], [peak], marker="o", markersize=4, markerfacecolor="white", color=color, linestyle="none")
+        in_g = f" = {abs(peak) / g:.3g} g" if name == "acceleration" else ""
+        axes.set_title(f"{short} {abs(peak):.3g} {plain}{in_g} at {at:.4g} s", loc="right", fontsize=7)
+        axes.set_ylabel(f"{name}\n{unit}")
+        axes.margins(x=0.01)
+        axes.locator_params(axis="y", nbins=5)
+    bottom.set_xlabel("time [s]")
+
+
+def _with_ends(time: FloatArray, values: FloatArray, name: str) -> tuple[FloatArray, FloatArray]:
+    """Let an acceleration rise from zero and fall to it: before and after the motion there is none."""
+    if name != "acceleration":
+        return time, values
+    return np.concatenate([time[:1], time, time[-1:]]), np.concatenate([[0.0], values, [0.0]])
+
+
+def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
+    low = max(_SHORTEST, SHORTEST_PERIOD * motion.time_step * 1.001)
+    # what is slower than the usual range is shown up to periods well beyond its own
+    high = max(_LONGEST, 2.0 * _slowest(motion), 10.0 * low)
+    periods = np.geomspace(low, high, _PERIODS)
+    values = response_spectrum(motion, periods, _DAMPING).pseudo_acceleration / g
+    axes.axhline(peak / g, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label=f"PGA {peak / g:.3g} g")
+    axes.plot(periods, values, color=_SPECTRUM, label=f"PSA, {100.0 * _DAMPING:g} % damping")
+    axes.set_xscale("log")
+    axes.set_xlim(low, high)
+    axes.set_ylim(0.0, 1.08 * max(float(values.max()), peak / g) or 1.0)
+    ticks = [tick for tick in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if low <= tick <= high]
+    if len(ticks) > 2:
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.minorticks_off()
+    axes.grid(color=PALE, linewidth=0.5)
+    axes.set_xlabel("period T [s]")
+    axes.set_ylabel("pseudo-spectral acceleration PSA [g]", color=INK)
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, borderpad=0.2)
+
+
+def _slowest(motion: GroundMotion) -> float:
+    """Return a period that the motion is about as slow as, from its peaks; zero if it does not move [s]."""
+    peaks = traces(motion).peaks
+    return 2.0 * math.pi * abs(peaks["velocity"][1]) / (abs(peaks["acceleration"][1]) or math.inf)

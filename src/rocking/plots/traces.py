@@ -1,0 +1,177 @@
+"""The curves of a ground motion with their exact peaks, for records and pulses alike."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.motions.kinematics import ground_displacement, ground_velocity, quadratic_roots
+from rocking.motions.motion import SHORTEST_STEP, GroundMotion
+from rocking.motions.pulse import Pulse
+
+_ENOUGH = 2000
+"""Points from which on a curve looks smooth."""
+
+_PER_PERIOD = 1000
+"""Steps in a period of the fastest part of a pulse: straight lines between miss a sine by 5 millionths."""
+
+_MOST = 400_000
+
+Peak = tuple[float, float]
+"""Time [s] and signed value."""
+
+
+@dataclass(frozen=True, eq=False)
+class Traces:
+    """Acceleration, velocity and displacement at many instants, and where each is largest.
+
+    Parameters
+    ----------
+    time : ndarray
+        Instants from the first sample to the last, or over a pulse [s].
+    acceleration : ndarray
+        Acceleration of the ground [m/s2].
+    velocity : ndarray
+        Velocity of the ground, from rest [m/s].
+    displacement : ndarray
+        Displacement of the ground, from zero [m].
+    peaks : mapping of str to (float, float)
+        Time and signed value of the largest of each, exact also between the instants, by its name.
+    """
+
+    time: FloatArray
+    acceleration: FloatArray
+    velocity: FloatArray
+    displacement: FloatArray
+    peaks: Mapping[str, Peak]
+
+
+def traces(motion: GroundMotion | Pulse) -> Traces:
+    """Return the curves of a motion, fine enough to be drawn, with their exact peaks.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion; its horizontal part counts.
+
+    Returns
+    -------
+    Traces
+        From zero to its duration.
+
+    Examples
+    --------
+    >>> at, value = traces(GroundMotion([1.0, -1.0], time_step=1.0)).peaks["velocity"]
+    >>> at, value
+    (0.5, 0.25)
+    """
+    if isinstance(motion, GroundMotion):
+        return _of_samples(motion)
+    time = np.linspace(0.0, motion.duration, _steps(motion) + 1)
+    curves = {
+        "acceleration": motion.acceleration,
+        "velocity": motion.velocity,
+        "displacement": motion.displacement,
+    }
+    peaks = {name: _zoomed(curve, time) for name, curve in curves.items()}
+    acceleration, velocity, displacement = (np.asarray(curve(time)) for curve in curves.values())
+    return Traces(time, acceleration, velocity, displacement, peaks)
+
+
+def fine_samples(motion: GroundMotion | Pulse) -> GroundMotion:
+    """Return a motion as samples: a record as it is, a pulse cut so finely that straight lines between will do.
+
+    The samples of a pulse begin and end with it, so that jumps at its ends stay jumps.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion.
+
+    Returns
+    -------
+    GroundMotion
+        The samples.
+
+    Examples
+    --------
+    >>> from rocking.motions.pulses import rectangular
+    >>> motion = fine_samples(rectangular(amplitude=2.0, duration=0.5))
+    >>> len(motion), motion.duration, motion.acceleration.min().item()
+    (1001, 0.5, 2.0)
+    """
+    if isinstance(motion, GroundMotion):
+        return motion
+    steps = _steps(motion)
+    values = motion.acceleration(np.linspace(0.0, motion.duration, steps + 1))
+    told = f"{motion!r} cut into {steps} steps"
+    return GroundMotion(values, motion.duration / steps, name=motion.name, provenance=(told,))
+
+
+def _steps(pulse: Pulse) -> int:
+    periods = max(1.0, pulse.fastest * pulse.duration / (2.0 * np.pi))
+    wanted = int(max(min(_PER_PERIOD * periods, _MOST), 20.0 * periods))
+    return max(1, min(wanted, int(0.999 * pulse.duration / SHORTEST_STEP)))
+
+
+def _zoomed(curve: Callable[[Any], FloatArray], time: FloatArray) -> Peak:
+    # each round narrows the time a hundredfold or more, and the value errs by its square
+    for _ in range(4):
+        values = np.asarray(curve(time))
+        k = int(np.abs(values).argmax())
+        best = float(time[k]), float(values[k])
+        time = np.linspace(time[max(k - 1, 0)], time[min(k + 1, time.size - 1)], 401)
+    return best
+
+
+def _of_samples(motion: GroundMotion) -> Traces:
+    a, v, u, h = motion.acceleration, ground_velocity(motion), ground_displacement(motion), motion.time_step
+    parts = max(1, -(-_ENOUGH // len(motion)))
+    tau = np.arange(parts) / parts
+    speed, place = _inside(motion, v, u, tau[:, None])
+    acceleration = a[:-1] + tau[:, None] * np.diff(a)
+    start = np.arange(len(motion) - 1)
+    columns = ((tau[:, None] + start) * h, acceleration, speed, place)
+    ends = (motion.duration, a[-1], v[-1], u[-1])
+    time, acceleration, v_fine, u_fine = (
+        np.append(values.T.ravel(), end) for values, end in zip(columns, ends, strict=True)
+    )
+    peaks = {
+        "acceleration": _largest(motion.time, a),
+        "velocity": _largest(*_turns_of_velocity(motion, v, u)),
+        "displacement": _largest(*_turns_of_displacement(motion, v, u)),
+    }
+    return Traces(time, acceleration, v_fine, u_fine, peaks)
+
+
+def _inside(motion: GroundMotion, v: FloatArray, u: FloatArray, tau: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return velocity and displacement within each step, at a fraction `tau` of it."""
+    a, rise, h = motion.acceleration[:-1], np.diff(motion.acceleration), motion.time_step
+    speed = v[:-1] + h * tau * (a + 0.5 * rise * tau)
+    return speed, u[:-1] + h * tau * (v[:-1] + h * tau * (0.5 * a + rise * tau / 6.0))
+
+
+def _turns_of_velocity(motion: GroundMotion, v: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    a, b = motion.acceleration[:-1], motion.acceleration[1:]
+    turns = (a < 0.0) != (b < 0.0)
+    tau = np.where(turns, a / np.where(turns, a - b, 1.0), 0.0)
+    times = (np.arange(tau.size) + tau) * motion.time_step
+    return np.append(times, motion.duration), np.append(_inside(motion, v, u, tau)[0], v[-1])
+
+
+def _turns_of_displacement(motion: GroundMotion, v: FloatArray, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    a, rise, h = motion.acceleration[:-1], np.diff(motion.acceleration), motion.time_step
+    times: list[FloatArray] = [motion.time]
+    places = [u]
+    for root in quadratic_roots(0.5 * h * rise, h * a, v[:-1]):
+        tau = np.where((root > 0.0) & (root < 1.0), root, 0.0)
+        times.append(np.asarray((np.arange(tau.size) + tau) * h, dtype=np.float64))
+        places.append(_inside(motion, v, u, tau)[1])
+    return np.concatenate(times), np.concatenate(places)
+
+
+def _largest(times: FloatArray, values: FloatArray) -> Peak:
+    k = int(np.abs(values).argmax())
+    return float(times[k]), float(values[k])

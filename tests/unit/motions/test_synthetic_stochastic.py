@@ -1,0 +1,148 @@
+"""Nonstationary motions: variance, intensity, frequency and high pass against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+from scipy.signal import lsim
+
+from rocking.conventions import g
+from rocking.errors import InvalidValueError
+from rocking.motions.intensity import arias_intensity
+from rocking.motions.kinematics import ground_displacement
+from rocking.motions.synthetic import (
+    GammaModulation,
+    NonstationaryFilter,
+    modulation_from_intensity,
+    nonstationary_motion,
+)
+from rocking.motions.synthetic.oscillator import highpassed
+from rocking.motions.synthetic.stochastic import _unit_process
+
+MODULATION = modulation_from_intensity(0.5, significant_duration=5.0, middle=4.0)
+SHAPER = NonstationaryFilter(frequency=4.0, slope=-0.2, middle=4.0, damping=0.3)
+
+
+@given(st.floats(1e-4, 50.0), st.floats(0.5, 60.0), st.floats(0.3, 4.5))
+def test_modulation_has_the_intensity_that_was_asked_for(intensity, middle, ratio):
+    """Integrals of the squared modulation up to 5, 45 and 95 % are found again by quadrature."""
+    q = modulation_from_intensity(intensity, ratio * middle, middle)
+    whole = 2.0 * g * intensity / math.pi
+
+    def share(end):
+        return quad(lambda t: float(q(np.array(t))) ** 2 / whole, 0.0, end, limit=200)[0]
+
+    assert share(middle) == pytest.approx(0.45, rel=1e-6)
+    assert q.time_of(0.95) - q.time_of(0.05) == pytest.approx(ratio * middle, rel=1e-9)
+    assert share(q.time_of(0.95)) == pytest.approx(0.95, rel=1e-6)
+    assert q.arias_intensity() == pytest.approx(intensity, rel=1e-10)
+
+
+def test_unit_process_has_unit_variance_exactly():
+    """The noise goes through linearly; the squares of its weights sum to 1 at every sample but the first."""
+    count = 120
+    omega = SHAPER.omega(np.arange(count) * 0.02)
+    weights = np.array([_unit_process(row, omega, 0.3, 0.02) for row in np.eye(count)])
+    np.testing.assert_allclose((weights**2).sum(axis=0)[1:], 1.0, rtol=1e-12)
+    assert (weights[:, 0] == 0.0).all()
+
+
+def _ensemble(**options):
+    return [
+        nonstationary_motion(MODULATION, SHAPER, seed=s, time_step=0.04, duration=16.0, **options) for s in range(250)
+    ]
+
+
+def test_ensemble_follows_the_modulation():
+    """Mean of x^2 over q^2 is 1 within 4 standard errors in each quarter; with a wrong shape it is not."""
+    motions = _ensemble(corner=None)
+    time = motions[0].time
+    squares = np.array([m.acceleration**2 for m in motions])
+    for part in np.array_split(np.arange(1, time.size), 4):
+        each = (squares[:, part] / MODULATION(time[part]) ** 2).mean(axis=1)
+        error = each.std(ddof=1) / math.sqrt(each.size)
+        assert error < 0.05
+        assert abs(each.mean() - 1.0) < 4.0 * error
+    wrong = GammaModulation(MODULATION.a1, MODULATION.a2 + 0.2, MODULATION.a3)
+    each = (squares[:, 100:200] / wrong(time[100:200]) ** 2).mean(axis=1)
+    assert abs(each.mean() - 1.0) > 6.0 * each.std(ddof=1) / math.sqrt(each.size)
+
+
+def test_ensemble_has_the_expected_arias_intensity():
+    """The sum of squares has the closed-form mean within 4 standard errors."""
+    values = np.array([0.5 * math.pi / g * 0.04 * (m.acceleration**2).sum() for m in _ensemble(corner=None)])
+    error = values.std(ddof=1) / math.sqrt(values.size)
+    assert error < 0.02 * 0.5
+    # 16 s hold all but 1e-5 of the energy
+    assert abs(values.mean() - 0.5) < 4.0 * error
+    # straight lines between the samples lose a little of it: the exact integral of the lines is below the sum
+    assert 0.8 * 0.5 < np.mean([arias_intensity(m) for m in _ensemble(corner=None)]) < 0.5
+
+
+def test_frequency_drifts_as_prescribed():
+    """A narrow filter crosses zero upwards at its own frequency, early and late."""
+    shaper = NonstationaryFilter(frequency=5.0, slope=-0.1, middle=20.0, damping=0.02)
+    flat = GammaModulation(1.0, 1.0, 1e-6)
+    a = nonstationary_motion(flat, shaper, seed=4, time_step=0.01, duration=40.0, corner=None).acceleration
+    for start, expected in [(500, 6.0), (2500, 4.0)]:
+        part = a[start : start + 1000]
+        rate = ((part[:-1] < 0.0) & (part[1:] >= 0.0)).sum() / 10.0
+        # 10 s hold 40 to 60 crossings, and the bandwidth of 4 % moves a few: 10 % is about 3 deviations
+        assert rate == pytest.approx(expected, rel=0.1)
+
+
+def test_highpass_agrees_with_a_state_space_solver():
+    """The recurrence is the response of s^2 / (s + w)^2 to straight lines, as SciPy's solver gives it."""
+    a = np.random.default_rng(2).standard_normal(300)
+    w = 2.0 * math.pi * 0.7
+    expected = lsim(([1.0, 0.0, 0.0], [1.0, 2.0 * w, w * w]), a, np.arange(300) * 0.02)[1]
+    np.testing.assert_allclose(highpassed(a, 0.02, 0.7), expected, atol=1e-10)
+
+
+def test_highpass_brings_the_ground_back():
+    """With the high pass the displacement ends near zero; without it, the negative control, the ground drifts away."""
+    seeds = range(8)
+    ends = {
+        corner: np.mean(
+            [
+                abs(ground_displacement(m)[-1])
+                for m in (nonstationary_motion(MODULATION, SHAPER, seed=s, corner=corner) for s in seeds)
+            ]
+        )
+        for corner in (None, 0.1)
+    }
+    assert ends[0.1] < 1e-3 * ends[None]
+
+
+def test_seeds_and_metadata():
+    """The same seed gives the same bits, another one does not, and every parameter is on record."""
+    one, same, other = (nonstationary_motion(MODULATION, SHAPER, seed=s, duration=10.0) for s in (1, 1, 2))
+    np.testing.assert_array_equal(one.acceleration, same.acceleration)
+    assert (one.acceleration != other.acceleration).any()
+    assert float(one.metadata["modulation.a2"]) == MODULATION.a2
+    assert {"seed", "time_step", "duration", "corner", "filter.damping"} <= set(one.metadata)
+    assert "seed 1" in one.provenance[0]
+
+
+def test_bad_values_are_refused():
+    """Parameters have ranges; a filter faster than the steps is refused, as is a duration without a modulation."""
+    with pytest.raises(InvalidValueError, match="filter frequency"):
+        nonstationary_motion(MODULATION, NonstationaryFilter(slope=5.0), seed=1)
+    for seed in (-1, 1.5, True, None):
+        with pytest.raises(InvalidValueError, match="seed"):
+            nonstationary_motion(MODULATION, SHAPER, seed=seed)
+    with pytest.raises(InvalidValueError, match="corner"):
+        nonstationary_motion(MODULATION, SHAPER, seed=1, corner=0.0)
+    with pytest.raises(InvalidValueError, match="duration"):
+        nonstationary_motion(MODULATION, SHAPER, seed=1, duration=0.005)
+    with pytest.raises(InvalidValueError, match="middle"):
+        modulation_from_intensity(1.0, 10.0, 1.0)
+    with pytest.raises(InvalidValueError, match="arias_intensity"):
+        modulation_from_intensity(0.0, 10.0, 8.0)
+    with pytest.raises(InvalidValueError, match="a2"):
+        GammaModulation(1.0, 0.9, 1.0)
+    with pytest.raises(InvalidValueError, match="damping"):
+        NonstationaryFilter(damping=1.0)
