@@ -1,12 +1,23 @@
-"""Predict what an impact costs a rocking body: bodies, restitution models, and the evidence for each."""
+"""Predict what an impact costs a rocking body, how it rocks in an earthquake, and whether it overturns."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rocking import bodies, conventions, errors, evidence, plots, report, restitution
+    from rocking import bodies, conventions, dynamics, errors, evidence, motions, plots, report, restitution
     from rocking.bodies import Block, Body, MassPoints, Region, Section, Side, shapes
     from rocking.bodies.formats import read_body
+    from rocking.dynamics import (
+        Outcome,
+        RandomRestitution,
+        Response,
+        SpeedRestitution,
+        free_rocking,
+        simulate,
+        simulate_many,
+    )
+    from rocking.motions import GroundMotion, pulses, synthetic
+    from rocking.motions.formats import read_motion
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
 
 __version__ = "0.1.0"
@@ -14,34 +25,58 @@ __version__ = "0.1.0"
 __all__ = [
     "Block",
     "Body",
+    "GroundMotion",
     "MassPoints",
+    "Outcome",
+    "RandomRestitution",
     "Region",
+    "Response",
     "RestitutionModel",
     "Section",
     "Side",
+    "SpeedRestitution",
     "bodies",
     "coefficient_of_restitution",
     "conventions",
+    "dynamics",
     "errors",
     "evidence",
+    "free_rocking",
+    "motions",
     "plots",
+    "pulses",
     "read_body",
+    "read_motion",
     "report",
     "restitution",
     "shapes",
+    "simulate",
+    "simulate_many",
+    "synthetic",
 ]
 
 _HOME = {
     "Block": "rocking.bodies",
     "Body": "rocking.bodies",
+    "GroundMotion": "rocking.motions",
     "MassPoints": "rocking.bodies",
+    "Outcome": "rocking.dynamics",
+    "RandomRestitution": "rocking.dynamics",
     "Region": "rocking.bodies",
+    "Response": "rocking.dynamics",
     "RestitutionModel": "rocking.restitution",
     "Section": "rocking.bodies",
     "Side": "rocking.bodies",
+    "SpeedRestitution": "rocking.dynamics",
     "coefficient_of_restitution": "rocking.restitution",
+    "free_rocking": "rocking.dynamics",
+    "pulses": "rocking.motions",
     "read_body": "rocking.bodies.formats",
+    "read_motion": "rocking.motions.formats",
     "shapes": "rocking.bodies",
+    "simulate": "rocking.dynamics",
+    "simulate_many": "rocking.dynamics",
+    "synthetic": "rocking.motions",
 }
 
 
@@ -50,7 +85,10 @@ def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module 'rocking' has no attribute {name!r}")
     home = _HOME.get(name)
-    return getattr(import_module(home), name) if home else import_module(f"rocking.{name}")
+    if home is None:
+        return import_module(f"rocking.{name}")
+    found = getattr(import_module(home), name, None)
+    return import_module(f"{home}.{name}") if found is None else found
 
 
 def __dir__() -> list[str]:

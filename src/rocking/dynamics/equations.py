@@ -160,8 +160,14 @@ def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) 
 
 
 def reactions(
-    rotation: Any, angular_velocity: Any, acceleration: Any, side: Any, alpha: Any, semi_diagonal: Any,
-    horizontal: Any, vertical: Any,
+    rotation: Any,
+    angular_velocity: Any,
+    acceleration: Any,
+    side: Any,
+    alpha: Any,
+    semi_diagonal: Any,
+    horizontal: Any,
+    vertical: Any,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the force of the ground on a rocking body, per unit mass.
 

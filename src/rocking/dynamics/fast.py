@@ -13,8 +13,14 @@ _OUTCOMES, _STATUSES = list(Outcome), list(Status)
 
 
 def run_fast(
-    rocker: Rocker, segments: Segments, settings: Settings, *,
-    scale: float = 1.0, key: int = 0, rotation: float = 0.0, velocity: float = 0.0,
+    rocker: Rocker,
+    segments: Segments,
+    settings: Settings,
+    *,
+    scale: float = 1.0,
+    key: int = 0,
+    rotation: float = 0.0,
+    velocity: float = 0.0,
 ) -> Trajectory:
     """Return one history by the fast engine; the numbers are those that it gives within a batch, bit for bit.
 

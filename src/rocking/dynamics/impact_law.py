@@ -179,7 +179,9 @@ class RandomRestitution(ImpactLaw):
         object.__setattr__(self, "at", np.linspace(0.0, 1.0, quantiles.size))
 
     @classmethod
-    def normal(cls, mean: float, deviation: float, *, seed: int, times: Any = 1.0, points: int = 1025) -> "RandomRestitution":
+    def normal(
+        cls, mean: float, deviation: float, *, seed: int, times: Any = 1.0, points: int = 1025
+    ) -> "RandomRestitution":
         """Return draws from a normal distribution cut to [0, 1].
 
         Parameters

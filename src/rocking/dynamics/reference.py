@@ -48,8 +48,14 @@ class Reference:
     """
 
     def __init__(
-        self, rocker: Rocker, segments: Segments, settings: Settings, *,
-        scale: float = 1.0, key: int = 0, to_the_ground: bool = True,
+        self,
+        rocker: Rocker,
+        segments: Segments,
+        settings: Settings,
+        *,
+        scale: float = 1.0,
+        key: int = 0,
+        to_the_ground: bool = True,
     ) -> None:
         over_g = scale / settings.gravity
         vertical = np.zeros_like(segments.horizontal) if segments.vertical is None else segments.vertical
@@ -298,11 +304,18 @@ class Reference:
             self.velocities[self.stretch + 1 :] = np.nan
         peak, when = (self.side * 0.5 * math.pi, self.over_time) if over else (self.peak, self.peak_time)
         return Trajectory(
-            rotation=self.rotations, angular_velocity=self.velocities, events=self.events,
-            outcome=ended.outcome, status=ended.status, side=self.side if over else 0,
-            peak_rotation=peak if good else math.nan, peak_time=when if good else math.nan,
+            rotation=self.rotations,
+            angular_velocity=self.velocities,
+            events=self.events,
+            outcome=ended.outcome,
+            status=ended.status,
+            side=self.side if over else 0,
+            peak_rotation=peak if good else math.nan,
+            peak_time=when if good else math.nan,
             peak_angular_velocity=self.fastest if good else math.nan,
             overturning_time=self.over_time if over else math.nan,
-            impacts=self.impacts, uplifts=self.uplifts, error=self.error if good else math.nan,
+            impacts=self.impacts,
+            uplifts=self.uplifts,
+            error=self.error if good else math.nan,
             engine=f"reference (Taylor, order up to {_ORDER}, tolerance {self.settings.tolerance:g})",
         )

@@ -56,6 +56,24 @@ class Segments:
         return cls(step, _lines(horizontal), None if vertical is None else _lines(vertical))
 
     @classmethod
+    def still(cls, step: float, count: int) -> "Segments":
+        """Return ground at rest.
+
+        Parameters
+        ----------
+        step : float
+            Duration of a stretch [s].
+        count : int
+            Number of stretches.
+
+        Returns
+        -------
+        Segments
+            Of degree 1.
+        """
+        return cls(step, np.zeros((count, 2)))
+
+    @classmethod
     def of_function(cls, acceleration: Callable[[FloatArray], FloatArray], duration: float, count: int) -> "Segments":
         """Return polynomials that agree with a smooth function to rounding, if there are enough of them.
 

@@ -8,7 +8,7 @@ import numpy as np
 from rocking.conventions import FloatArray, g
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
-from rocking.motions.spectrum import SHORTEST_PERIOD, response_spectrum
+from rocking.motions.spectrum import response_spectrum
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, new_figure
 from rocking.plots.traces import Traces, fine_samples, traces
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _DAMPING = 0.05
 _PERIODS = 120
 _SHORTEST, _LONGEST = 0.02, 5.0
+_SHORTEST_IN_STEPS = 0.2
 _LONGEST_TITLE = 70
 _ACCELERATION, _VELOCITY, _DISPLACEMENT, _SPECTRUM = "#222222", "#0072B2", "#009E73", "#D55E00"
 
@@ -96,7 +97,7 @@ def _with_ends(time: FloatArray, values: FloatArray, name: str) -> tuple[FloatAr
 
 
 def _spectrum(axes: "Axes", motion: GroundMotion, peak: float) -> None:
-    low = max(_SHORTEST, SHORTEST_PERIOD * motion.time_step * 1.001)
+    low = max(_SHORTEST, _SHORTEST_IN_STEPS * motion.time_step)
     # what is slower than the usual range is shown up to periods well beyond its own
     high = max(_LONGEST, 2.0 * _slowest(motion), 10.0 * low)
     periods = np.geomspace(low, high, _PERIODS)

@@ -156,6 +156,10 @@ def test_v1_hand_made_file() -> None:
         ("/&  ------", "   ------", "END OF DATA FOR CHANNEL expected"),
         ("SEC AND G/10", "SEC AND WHAT", "say units="),
         ("SEC AND G/10", "SEC AND CM/SEC/SEC", "peak of 1.235"),
+        ("MAX  = -1.235 G", "MAX  = 0.270 G", "MAX of 0.27, the data have 1.2345"),
+        ("MAX  = -1.235 G", "MAX  = -1.236 G", "MAX of 1.236, the data have 1.2345"),
+        ("MAX  = -1.235 G", "MAX  = -1.235 CM/SEC/SEC", "MAX of 1.235, the data have 1210"),
+        ("MAX  = -1.235 G", "MAX  = -1.2B5 G", "line 12: MAX = a number and its unit expected"),
     ],
 )
 def test_v1_damage_is_refused(old: str, new: str, message: str) -> None:
@@ -164,6 +168,16 @@ def test_v1_damage_is_refused(old: str, new: str, message: str) -> None:
     assert text.count(old) == 1
     with pytest.raises(RecordError, match=message):
         V1.read(_source([text.replace(old, new)], "\n"))
+
+
+def test_v1_text_alone_states_the_peak() -> None:
+    """Where the header of reals leaves the peak open, the text line is checked and kept; 12.345 g/10 is 1.2345 g."""
+    text = "\n".join(_v1()).replace("    -1.235", "      .000").replace("MAX  =", "MAX=")
+    assert V1.read(_source([text], "\n")).components[0].stated_peak == pytest.approx(12.35)
+    with pytest.raises(RecordError, match=r"MAX of 0.27, the data have 1.2345"):
+        V1.read(_source([text.replace("-1.235 G", ".270G")], "\n"))
+    without = text.replace("     MAX= -1.235 G.", "")
+    assert V1.read(_source([without], "\n")).components[0].stated_peak is None
 
 
 def test_v1_evenly_spaced_variant() -> None:

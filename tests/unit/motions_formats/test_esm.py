@@ -58,6 +58,10 @@ def test_hand_made_file() -> None:
         ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2: -3.260000", "PGA_CM/S.2 of 3.26, the data have 3.25"),
         ("-3.250000\n2.0", "-3.260000\n2.0", "the data have 3.26"),
         ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2: 0", "states a PGA_CM/S.2 of 0"),
+        ("PGA_CM/S^2: -3.250000\n", "", "the header has no line PGA_CM/S.2"),
+        ("PGA_CM/S^2: -3.250000", "PGA_CM/S^3: -3.250000", "the header has no line PGA_CM/S.2"),
+        ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2:", "line 9: PGA_CM/S.2 states no number"),
+        ("UNITS: cm/s^2", "UNITS: m/s^2", "the header has no line PGA_M/S.2"),
         ("TIME_PGA_S: 0.010000", "TIME_PGA_S: 0.020000", "states the peak at 0.02 s, the data have it at 0.01 s"),
         ("cm/s^2\n", "furlong\n", "line 8: UNITS must be one of"),
         ("DATA_TYPE: ACCELERATION", "DATA_TYPE: VELOCITY", "line 11: only ACCELERATION can be read"),
@@ -72,6 +76,16 @@ def test_damage_is_refused(old: str, new: str, message: str) -> None:
     assert HAND.count(old) == 1
     with pytest.raises(RecordError, match=message):
         ESM.read(_source(HAND.replace(old, new)))
+
+
+@pytest.mark.parametrize(("unit", "label"), [("m/s^2", "PGA_M/S^2"), ("mm/s^2", "PGA_MM/S^2"), ("g", "PGA_G")])
+def test_other_units_need_their_own_peak(unit: str, label: str) -> None:
+    """A file in another unit is read if its peak is stated in that unit, and the peak is checked."""
+    text = HAND.replace("UNITS: cm/s^2", f"UNITS: {unit}").replace("PGA_CM/S^2", label)
+    part = ESM.read(_source(text)).components[0]
+    assert (part.unit, part.stated_peak) == (unit.replace("^", ""), 3.25)
+    with pytest.raises(RecordError, match=r"of 3.26, the data have 3.25"):
+        ESM.read(_source(text.replace(": -3.250000", ": -3.260000")))
 
 
 def test_duration_may_end_at_the_last_sample() -> None:

@@ -95,6 +95,32 @@ def test_velocity_is_no_acceleration() -> None:
         PEER.read(_source(text + SIZE + BODY))
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Each file states NPTS= 4000, DT= .01 SEC in its fourth line.\n",
+        "# Records\n\nThe header has NPTS and DT.\nNPTS=  7, DT= .02000 SEC\nis what it looks like.\n",
+        "# Records\n\n" + SIZE + BODY + "These numbers were typed by hand.\n",
+        "Records\n" + SIZE,
+        "Records\n" + SIZE + "\n   \n",
+        SIZE + BODY,
+        TOP + "about NPTS=  7, DT= .02000 SEC or so\n" + BODY,
+        TOP + "   7    0.0200    NPTS, DT\nand so on\n",
+    ],
+)
+def test_prose_is_not_recognised(text: str) -> None:
+    """A page that speaks of NPTS and DT is no PEER file: titles, one line of size, and numbers must follow."""
+    assert not PEER.recognises(_source(text))
+    with pytest.raises(RecordError):
+        PEER.read(_source(text + "end of page\n"))
+
+
+@pytest.mark.parametrize(("old", "new"), [("NPTS=  7", "NPTS=  7x"), ("-.1000000E-01", "-.1000O00E-01")])
+def test_damaged_files_are_still_recognised(old: str, new: str) -> None:
+    """One damaged number does not hide what a file is, so that the refusal names its line."""
+    assert PEER.recognises(_source((TOP + SIZE + BODY).replace(old, new)))
+
+
 def test_contradicting_user_is_refused() -> None:
     """The user cannot overrule the unit or step of the file."""
     with pytest.raises(RecordError, match="states the unit g, you say m/s2"):

@@ -2,13 +2,13 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
-from rocking.motions.formats.agreement import check_count, check_end, check_peak, check_peak_time
+from rocking.motions.formats.agreement import check_count, check_end, check_peak, check_peak_time, half_digit
+from rocking.motions.formats.channels import LONGEST_LINE, Channel, distinct_names, names_in
 from rocking.motions.formats.columns import uniform_step
 from rocking.motions.formats.number_lines import in_width, one_line
 from rocking.motions.formats.numbers import fixed, fortran_form, number, whole
@@ -17,16 +17,13 @@ from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
 from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, step_between_samples
 
-Channel = tuple[list[str], str, Component]
-"""Header lines of a channel, the one with its number and direction, and its samples."""
-
 _TITLE = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.IGNORECASE)
 _TEXT_LINES, _WHOLE_LINES, _REAL_LINES = 13, 7, 7
 _EVEN = re.compile(r"\s*(\d+)\s+POINTS\b.*\bEQUALLY SPACED AT\s+(\S+?)\s*SEC\b[.,]?\s*(.*)", re.IGNORECASE)
 _UNIT = re.compile(r"(?<![\w/])(G/10|CM/SEC/SEC|CM/SEC2|GALS?|G)(?![\w/*])")
 _UNITS = {"G/10": "g/10", "CM/SEC/SEC": "cm/s2", "CM/SEC2": "cm/s2", "GAL": "gal", "GALS": "gal", "G": "g"}
+_STATED_MAX = re.compile(r"\bMAX\s*=(?:\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*(G/10|CM/SEC/SEC|CM/SEC2|GALS?|G)(?![\w/*]))?")
 _LENGTH, _PEAK, _PEAK_TIME = 2, 6, 7
-_LONGEST_LINE = 200
 
 
 class CsmipV1(RecordFormat):
@@ -37,7 +34,8 @@ class CsmipV1(RecordFormat):
     suffixes: ClassVar[tuple[str, ...]] = (".v1", ".raw")
     notes: ClassVar[str] = (
         "Written from public documentation; no real file was at hand. Uncorrected: neither baseline nor instrument. "
-        "Unevenly spaced times are refused. Count, record length, peak (to 0.001 g) and its time are checked."
+        "Unevenly spaced times are refused. Count, record length, peak (to 0.001 g) in numbers "
+        "and in text, and its time are checked."
     )
 
     def recognises(self, source: Source) -> bool:
@@ -112,54 +110,6 @@ class CsmipV1(RecordFormat):
         return ("\r\n".join(lines) + "\r\n").encode("latin-1")
 
 
-def distinct_names(channels: Sequence[Channel]) -> tuple[Component, ...]:
-    """Return the components named by direction, or by channel number where directions repeat.
-
-    Parameters
-    ----------
-    channels : sequence of tuple
-        The channels.
-
-    Returns
-    -------
-    tuple of Component
-        Named.
-    """
-    found = [re.search(r"CHAN\s*(\d+)\s*:\s*(.*?)\s*(?:DEG\b.*)?$", label, re.IGNORECASE) for _, label, _ in channels]
-    numbers = [one[1] if one else str(place) for place, one in enumerate(found, 1)]
-    names = directions = [one[2].strip() if one else "" for one in found]
-    if len({name.casefold() for name in directions}) < len(channels) or "" in directions:
-        unique = len(set(numbers)) == len(channels)
-        names = [f"CHAN {n}" for n in (numbers if unique else range(1, len(channels) + 1))]
-    return tuple(
-        replace(part, name=name, metadata={"channel": chan, "direction": direction})
-        for (_, _, part), name, chan, direction in zip(channels, names, numbers, directions, strict=True)
-    )
-
-
-def names_in(texts: Sequence[str]) -> dict[str, str]:
-    """Return event and station from the text lines after the titles.
-
-    Parameters
-    ----------
-    texts : sequence of str
-        The event stands first, its date second, the station's number fourth, its name fifth.
-
-    Returns
-    -------
-    dict of str to str
-        What is not blank.
-    """
-    station = re.search(r"STATION NO\.?\s*(\w+)", texts[3][:_LONGEST_LINE], re.IGNORECASE)
-    found = {
-        "event": texts[0].strip(),
-        "date": texts[1].split("(")[0].strip(),
-        "station number": station[1] if station else "",
-        "station": texts[4].strip(),
-    }
-    return {key: value for key, value in found.items() if value}
-
-
 def _channel(source: Source, first: int, units: str | None, time_step: float | None) -> tuple[Channel, int]:
     after = first + _TEXT_LINES + _WHOLE_LINES + _REAL_LINES
     if len(source.lines) <= after or not _TITLE.match(source.lines[first]):
@@ -171,8 +121,8 @@ def _channel(source: Source, first: int, units: str | None, time_step: float | N
     figures, line = fixed(source, line, 48 + min(8, max(1, last)), 8, 10)
     # newer files state the number of samples at place 33, older ones at 28
     count = whole(source, first + _TEXT_LINES, f"{wholes[32] or wholes[27]:.0f}", "number of samples", 2)
-    unit = acceleration_unit(source, _unit([text[:_LONGEST_LINE] for text in header[:_TEXT_LINES]]), units)
-    even = _EVEN.fullmatch(source.lines[line][:_LONGEST_LINE])
+    unit = acceleration_unit(source, _unit([text[:LONGEST_LINE] for text in header[:_TEXT_LINES]]), units)
+    even = _EVEN.fullmatch(source.lines[line][:LONGEST_LINE])
     if even:
         check_count(source, count, whole(source, line, even[1], "number of samples", 2))
         step, zero = number(source, line, even[2], "time step"), 0.0
@@ -186,7 +136,10 @@ def _channel(source: Source, first: int, units: str | None, time_step: float | N
     if line >= len(source.lines) or not source.lines[line].startswith("/&"):
         raise source.error(min(line, len(source.lines) - 1), "END OF DATA FOR CHANNEL expected")
     peak = _check_figures(source, figures, values, step, zero, unit)
-    return (header, header[6][:_LONGEST_LINE], Component("", values, unit, step, peak)), line + 1
+    told = _check_text(source, first, values * ACCELERATION_UNITS[unit])
+    if peak is None and told is not None:
+        peak = told / ACCELERATION_UNITS[unit]
+    return (header, header[6][:LONGEST_LINE], Component("", values, unit, step, peak)), line + 1
 
 
 def _unit(texts: Sequence[str]) -> str | None:
@@ -211,6 +164,21 @@ def _check_figures(
     check_peak(source, peak, values * in_g, 6e-4)
     check_peak_time(source, at - zero, values * in_g, step, 6e-4)
     return abs(peak) / in_g
+
+
+def _check_text(source: Source, first: int, values: FloatArray) -> float | None:
+    """Compare samples in m/s2 with the peak that the text lines state, if they do, and return it in m/s2."""
+    for line in range(first, first + _TEXT_LINES):
+        found = _STATED_MAX.search(source.lines[line][:LONGEST_LINE].upper())
+        if found is None:
+            continue
+        if found[1] is None:
+            raise source.error(line, "MAX = a number and its unit expected; damaged?")
+        factor = ACCELERATION_UNITS[_UNITS[found[2]]]
+        # the samples are printed to 0.001 g/10, the peak to its last digit
+        check_peak(source, float(found[1]), values / factor, half_digit(found[1]) + 1.1e-4 * g / factor, "MAX")
+        return abs(float(found[1])) * factor
+    return None
 
 
 def _lines(record: Record, row: int, values: FloatArray) -> list[str]:

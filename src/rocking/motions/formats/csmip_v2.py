@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.motions.formats.agreement import check_count, check_end, check_peak, check_peak_time
-from rocking.motions.formats.csmip_v1 import Channel, distinct_names, names_in
+from rocking.motions.formats.channels import Channel, distinct_names, names_in
 from rocking.motions.formats.number_lines import in_width, one_line
 from rocking.motions.formats.numbers import fixed, fortran_form, number, whole
 from rocking.motions.formats.record import Component, Record

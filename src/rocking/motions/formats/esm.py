@@ -15,6 +15,14 @@ from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, 
 _KEY = re.compile(r"([A-Z][A-Z0-9_/^]*):(?:\s(.*))?")
 _MOST_KEYS = 200
 _UNITS = {"cm/s^2": "cm/s2", "cm/s2": "cm/s2", "m/s^2": "m/s2", "mm/s^2": "mm/s2", "g": "g", "mg": "mg", "gal": "gal"}
+_PEAKS = {
+    "cm/s2": "PGA_CM/S^2",
+    "gal": "PGA_CM/S^2",
+    "m/s2": "PGA_M/S^2",
+    "mm/s2": "PGA_MM/S^2",
+    "g": "PGA_G",
+    "mg": "PGA_MG",
+}
 _KEPT = {
     "event": "EVENT_NAME",
     "station": "STATION_CODE",
@@ -60,7 +68,7 @@ class Esm(RecordFormat):
     suffixes: ClassVar[tuple[str, ...]] = (".asc",)
     notes: ClassVar[str] = (
         "Verified on one real file of acceleration in cm/s^2. Count, duration, peak and time of the peak are checked "
-        "against the header. Velocity, displacement and spectra (DATA_TYPE) are refused."
+        "against the header; a file that does not state its peak in its own unit is refused. Velocity, displacement and spectra (DATA_TYPE) are refused."
     )
 
     def recognises(self, source: Source) -> bool:
@@ -190,19 +198,20 @@ def _check_kind(source: Source, keys: dict[str, tuple[int, str]]) -> None:
         raise source.error(line, f"only ACCELERATION can be read, DATA_TYPE is {kind[:40]!r}; take the .ACC. file")
 
 
-def _check_peaks(
-    source: Source, keys: dict[str, tuple[int, str]], values: FloatArray, step: float, unit: str
-) -> float | None:
+def _check_peaks(source: Source, keys: dict[str, tuple[int, str]], values: FloatArray, step: float, unit: str) -> float:
     duration = _number(source, keys, "DURATION_S")
     if duration is not None:
         digits = len(keys["DURATION_S"][1].partition(".")[2])
         check_duration(source, duration, values.size, step, min(0.005, 0.5 * 10.0**-digits))
-    peak = _number(source, keys, "PGA_CM/S^2")
-    if unit not in {"cm/s2", "gal"} or peak is None:
-        return None
+    # the one line that a wrong unit contradicts: a file without it cannot be trusted
+    label = _PEAKS[unit]
+    _, word = _value(source, keys, label)
+    peak = _number(source, keys, label)
+    if peak is None:
+        raise source.error(keys[label][0], f"{label} states no number, and nothing else confirms unit and data")
     # the peak has the 6 decimals of the data; one with fewer than 3 would check nothing
-    rounding = min(1.1e-3, 1.1 * 10.0 ** -len(keys["PGA_CM/S^2"][1].partition(".")[2]))
-    check_peak(source, peak, values, rounding, "PGA_CM/S^2")
+    rounding = min(1.1e-3, 1.1 * 10.0 ** -len(word.partition(".")[2]))
+    check_peak(source, peak, values, rounding, label)
     at = _number(source, keys, "TIME_PGA_S")
     if at is not None:
         check_peak_time(source, at, values, step, rounding)

@@ -17,6 +17,9 @@ _KEYED = re.compile(r"\bNPTS\s*=.*\bDT\s*=|\bDT\s*=.*\bNPTS\s*=", re.IGNORECASE)
 _OLD = re.compile(r"\s*(\S+)\s+(\S+)\s+NPTS\s*,\s*DT\s*(?:\(?SEC\)?)?[\s,.]*", re.IGNORECASE)
 _UNIT = re.compile(r"\bUNITS?\s+(?:OF|ARE|IS|IN)\s*:?\s*(\(?[^\s,;.]*)", re.IGNORECASE)
 _IN_WORDS = re.compile(r"(\d+)\s+points\s+at\s+equal\s+spacing\s+of\s+(\d*\.\d+)\s*sec", re.IGNORECASE)
+_REST = re.compile(r"[\s,.]*(SEC(ONDS?)?)?[\s,.]*")
+_NUMBERS = re.compile(r"[\s\d.+\-EeDd]*\d[\s\d.+\-EeDd]*")
+_PROSE = re.compile(r"\b[A-Za-z]{3,}\b.*\b[A-Za-z]{3,}\b")
 _END = re.compile(r"\s*\*+\s*End\s+Data\s*\*+\s*", re.IGNORECASE)
 _DATE = re.compile(r"\b\d{1,2}/\d{1,2}/\d{2,4}\b")
 
@@ -33,7 +36,7 @@ class Peer(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether a line near the top states NPTS and DT.
+        """Return whether titles, a line that states NPTS and DT and nothing else, and numbers follow one another.
 
         Parameters
         ----------
@@ -45,7 +48,18 @@ class Peer(RecordFormat):
         bool
             True if so.
         """
-        return source.is_text and _size_line(source) is not None
+        line = _size_line(source) if source.is_text else None
+        if not line or not (_OLD.fullmatch(source.lines[line]) or _keyed(source.lines[line])):
+            return False
+        follow = [
+            text[:_LONGEST_LINE] for text in source.lines[line + 1 :] if text.strip() and not _END.fullmatch(text)
+        ]
+        return (
+            any(text.strip() for text in source.lines[:line])
+            and bool(follow)
+            and _NUMBERS.fullmatch(follow[0]) is not None
+            and not any(_PROSE.search(text) for text in follow)
+        )
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, of one component.
@@ -127,14 +141,17 @@ def _size_line(source: Source) -> int | None:
 def _size(source: Source, line: int) -> tuple[int, float]:
     text = source.lines[line]
     old = _OLD.fullmatch(text)
-    if old:
-        words = {"NPTS": old[1], "DT": old[2]}
-    else:
-        words = dict(re.findall(r"\b(NPTS|DT)\s*=\s*([^\s,]+)", text.upper()))
-        rest = re.sub(r"\b(NPTS|DT)\s*=\s*[^\s,]+", "", text.upper())
-        if len(words) != 2 or rest.upper().count("=") or not re.fullmatch(r"[\s,.]*(SEC(ONDS?)?)?[\s,.]*", rest):
-            raise source.error(line, f"NPTS= and DT= expected once each, found {text.strip()[:60]!r}")
+    words = {"NPTS": old[1], "DT": old[2]} if old else _keyed(text)
+    if words is None:
+        raise source.error(line, f"NPTS= and DT= expected once each, found {text.strip()[:60]!r}")
     return whole(source, line, words["NPTS"], "number of samples", 2), number(source, line, words["DT"], "time step")
+
+
+def _keyed(text: str) -> dict[str, str] | None:
+    """Return what NPTS and DT are equal to; none if the line says anything else."""
+    words = dict(re.findall(r"\b(NPTS|DT)\s*=\s*([^\s,]+)", text.upper()))
+    rest = re.sub(r"\b(NPTS|DT)\s*=\s*[^\s,]+", "", text.upper())
+    return words if len(words) == 2 and _REST.fullmatch(rest) else None
 
 
 def _unit(source: Source, header: list[str]) -> str | None:

@@ -1,0 +1,218 @@
+"""Many histories: arrays of bodies, motions, scales and coefficients, by the fast engine or one by one."""
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics import engine as fast_engine
+from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
+from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.reference import Reference
+from rocking.dynamics.rocker import Rocker, RockingSide
+from rocking.dynamics.run import ENGINES
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.motions.segments import Segments
+
+PIECE = 1 << 16
+"""Histories that are handed to the engine at a time: memory beside the results does not grow with their number."""
+
+_CHUNK = 256
+ROWS = (
+    "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "scale", "rotation", "velocity",
+)  # fmt: skip
+"""Numbers that make a history, beside the number of its motion and its key."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Histories to compute, one entry each; a piece of a larger whole.
+
+    Parameters
+    ----------
+    values : dict of str to ndarray
+        The keys of `ROWS` [rad, rad/s, -, rad, rad/s].
+    motion : ndarray of int
+        Number of the motion.
+    key : ndarray of int
+        Number of the history, for random coefficients.
+    """
+
+    values: dict[str, FloatArray]
+    motion: np.ndarray
+    key: np.ndarray
+
+    @classmethod
+    def of(cls, count: int, motion: Any = 0, key: Any = None, **values: Any) -> "Rows":
+        """Return rows from numbers and arrays, which are repeated to the count.
+
+        Parameters
+        ----------
+        count : int
+            How many histories.
+        motion : array_like of int
+            Number of the motion.
+        key : array_like of int, optional
+            Number of the history; 0, 1, ... if not given.
+        **values
+            The keys of `ROWS`; scale is 1, rotation and velocity 0 if not given.
+
+        Returns
+        -------
+        Rows
+            The rows.
+
+        Raises
+        ------
+        InvalidValueError
+            If a key is missing or unknown, or an array does not fit the count.
+        """
+        given = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0} | values
+        if set(given) != set(ROWS):
+            odd = sorted(set(given) ^ set(ROWS))
+            raise InvalidValueError(f"rows have {', '.join(ROWS)}; missing or unknown: {', '.join(odd)}")
+        try:
+            rows = {name: _repeated(given[name], count, np.float64) for name in ROWS}
+            keys = np.arange(count) if key is None else key
+            return cls(rows, _repeated(motion, count, np.int64), _repeated(keys, count, np.int64))
+        except (TypeError, ValueError) as error:
+            raise InvalidValueError(f"rows must be numbers, or arrays of {count}: {error}") from error
+
+    def __len__(self) -> int:
+        """Return the number of histories."""
+        return int(self.motion.size)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """What to compute many times: the motions, the law of impact, the settings.
+
+    Parameters
+    ----------
+    motions : list of Segments
+        All records or all pulses [m/s2].
+    law : ImpactLaw
+        How the coefficient changes from impact to impact.
+    settings : Settings
+        How to integrate.
+    threads : int, optional
+        Threads of the fast engine; as many as the processor has, if not given.
+    engine : {"auto", "fast", "reference"}
+        Which engine.
+    """
+
+    motions: Sequence[Segments]
+    law: ImpactLaw = ConstantRestitution()
+    settings: Settings = Settings()
+    threads: int | None = None
+    engine: str = "auto"
+
+    def __post_init__(self) -> None:
+        """Check engine and threads."""
+        if self.engine not in ENGINES:
+            raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {self.engine!r}")
+        if self.threads is not None and (
+            isinstance(self.threads, bool) or not isinstance(self.threads, int) or self.threads < 1
+        ):
+            raise InvalidValueError(f"threads must be a whole number >= 1, got {self.threads!r}")
+
+    def run(
+        self, count: int, rows: Callable[[int, int], Rows], progress: Callable[[int], None] | None = None
+    ) -> tuple[fast_engine.Arrays, dict[str, int]]:
+        """Return the results of many histories.
+
+        Parameters
+        ----------
+        count : int
+            How many.
+        rows : callable
+            Returns the rows from a first up to but not including a last one; called for one piece after another.
+        progress : callable, optional
+            Called with the number of histories done since the last call.
+
+        Returns
+        -------
+        results : dict of str to ndarray
+            One array for each key of `rocking.dynamics.engine.RESULTS`.
+        work : dict of str to int
+            Steps that were taken; empty for the reference engine.
+        """
+        results = fast_engine.empty_results(count)
+        total: dict[str, int] = {}
+        quick = self.engine != "reference" and (self.engine == "fast" or fast_engine.available())
+        library = fast_engine.Library(list(self.motions)) if quick else None
+        for first in range(0, count, PIECE):
+            last = min(first + PIECE, count)
+            out = {name: values[first:last] for name, values in results.items()}
+            piece = rows(first, last)
+            if library is None:
+                self._one_by_one(piece, out)
+            else:
+                done = fast_engine.module().run_batch(
+                    library.handle, {**piece.values, "motion": piece.motion, "key": piece.key}, out,
+                    order=self.settings.order, threads=self.threads or _processors(), chunk=_CHUNK,
+                    **fast_engine.common(self.settings, self.law),
+                )  # fmt: skip
+                total = {name: total.get(name, 0) + value for name, value in done.items()}
+            if progress is not None:
+                progress(last - first)
+        return results, total
+
+    def _one_by_one(self, rows: Rows, out: fast_engine.Arrays) -> None:
+        for k in range(len(rows)):
+            row = {name: float(values[k]) for name, values in rows.values.items()}
+            for name, value in self._one(row, int(rows.motion[k]), int(rows.key[k])).items():
+                out[name][k] = value
+
+    def _one(self, row: dict[str, float], motion: int, key: int) -> dict[str, float]:
+        if not valid_row(row) or not 0 <= motion < len(self.motions):
+            bad = dict.fromkeys(fast_engine.RESULTS, np.nan) | {"outcome": Outcome.FAILED.code, "side": 0}
+            return bad | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0}
+        sides = [RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"]) for s in ("right", "left")]
+        reference = Reference(
+            Rocker(sides[0], sides[1], self.law, ""), self.motions[motion], self.settings,
+            scale=row["scale"], key=key, to_the_ground=False,
+        )  # fmt: skip
+        run = reference.run(row["rotation"], row["velocity"])
+        uplift = next((e.time for e in run.events if e.kind == 0), np.nan)
+        return {
+            "outcome": run.outcome.code, "status": run.status.code, "side": run.side, "peak_rotation": run.peak_rotation,
+            "peak_time": run.peak_time, "peak_velocity": run.peak_angular_velocity, "first_uplift": uplift,
+            "overturning_time": run.overturning_time, "error": run.error, "impacts": run.impacts, "uplifts": run.uplifts,
+        }  # fmt: skip
+
+
+def valid_row(row: dict[str, float]) -> bool:
+    """Return whether the numbers of a history are within the ranges that the engines take.
+
+    Parameters
+    ----------
+    row : dict of str to float
+        The keys of `ROWS`.
+
+    Returns
+    -------
+    bool
+        False for what is not finite or outside.
+    """
+    half_pi = 0.5 * np.pi
+    angles = all(0.0 < row[f"alpha_{s}"] < half_pi for s in ("right", "left"))
+    frequencies = all(1e-9 < row[f"p_{s}"] < 1e9 for s in ("right", "left"))
+    coefficients = all(0.0 <= row[f"r_{s}"] <= 100.0 for s in ("right", "left"))
+    motion = abs(row["scale"]) <= 1e9 and abs(row["rotation"]) < half_pi and abs(row["velocity"]) < 1e9
+    return bool(angles and frequencies and coefficients and motion)
+
+
+def _repeated(values: Any, count: int, dtype: Any) -> np.ndarray:
+    return np.ascontiguousarray(np.broadcast_to(np.asarray(values, dtype=dtype), (count,)))
+
+
+def _processors() -> int:
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:
+        return os.cpu_count() or 1

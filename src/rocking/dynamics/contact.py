@@ -1,0 +1,136 @@
+"""The forces of the ground on the body, and whether pure rocking is credible under them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.bodies import Body
+from rocking.conventions import FloatArray, Foot, opposite
+from rocking.dynamics import equations
+from rocking.dynamics.intervals import Intervals
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.trajectory import EventKind, Trajectory
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Forces of the ground at the samples, and the friction that rocking without slip takes.
+
+    Parameters
+    ----------
+    time : ndarray
+        Times of the samples [s].
+    horizontal, vertical : ndarray
+        Force of the ground on the body, to the right and upwards [N].
+    least_vertical : float
+        Smallest vertical force, until the body falls; below zero the body would leave the ground [N].
+    friction_of_motion : float
+        Largest |horizontal / vertical| until the body falls; infinite where the vertical force vanishes [-].
+    friction_of_impacts : float
+        Largest ratio of the impulses at an impact [-].
+    """
+
+    time: FloatArray
+    horizontal: FloatArray
+    vertical: FloatArray
+    least_vertical: float
+    friction_of_motion: float
+    friction_of_impacts: float
+
+    @property
+    def friction_demand(self) -> float:
+        """Coefficient of friction that the whole response takes [-]."""
+        return max(self.friction_of_motion, self.friction_of_impacts)
+
+    @property
+    def loses_contact(self) -> bool:
+        """Whether the vertical force falls to zero somewhere: the body would fly, which pure rocking cannot do."""
+        return self.least_vertical <= 0.0
+
+    def warnings(self, friction: float = 0.5) -> list[str]:
+        """Return why pure rocking is not credible, in plain words; empty if it is.
+
+        Parameters
+        ----------
+        friction : float
+            Coefficient of friction between body and ground [-].
+
+        Returns
+        -------
+        list of str
+            Sentences.
+        """
+        found = []
+        if self.loses_contact:
+            found.append(
+                "the vertical force falls to zero: the body would leave the ground, which this model cannot do"
+            )
+        if self.friction_of_motion > friction:
+            found.append(
+                f"rocking without slip takes a coefficient of friction of {self.friction_of_motion:.2f}; "
+                f"with {friction:g} the body would slide"
+            )
+        if self.friction_of_impacts > friction:
+            found.append(
+                f"impacts without slip take a coefficient of friction of {self.friction_of_impacts:.2f}; "
+                f"with {friction:g} the foot would slip and lose more energy"
+            )
+        return found
+
+
+def contact_of(
+    trajectory: Trajectory, intervals: Intervals, time: FloatArray, body: Body, settings: Settings
+) -> Contact:
+    """Return the forces of the ground on a body during a response.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The history, for its impacts.
+    intervals : Intervals
+        The response between its samples and events.
+    time : ndarray
+        Times of the samples [s].
+    body : Body
+        The body.
+    settings : Settings
+        How it was integrated.
+
+    Returns
+    -------
+    Contact
+        Forces and friction demand.
+    """
+    gravity = settings.gravity
+    side = intervals.side[:, None]
+    f_x, f_z = equations.reactions(
+        intervals.rotation, intervals.velocity, intervals.acceleration, np.where(side == 0.0, 1.0, side),
+        intervals.alpha[:, None], intervals.semi_diagonal[:, None], intervals.push, gravity + intervals.lift,
+    )  # fmt: skip
+    resting = side == 0.0
+    f_x = np.where(resting, intervals.push, f_x)
+    f_z = np.where(resting, gravity + intervals.lift, f_z)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        demand = np.where(f_z > 0.0, np.abs(f_x) / f_z, np.where(f_x == 0.0, 0.0, np.inf))
+    standing = ~(intervals.end > trajectory.overturning_time)  # a body that falls is past all questions of friction
+    place = np.clip(np.searchsorted(intervals.end, time[1:] * (1.0 + 1e-14), side="right") - 1, 0, None)
+    mass = body.mass
+    return Contact(
+        time=time,
+        horizontal=mass * np.concatenate([[f_x[0, 0]], f_x[place, 1]]),
+        vertical=mass * np.concatenate([[f_z[0, 0]], f_z[place, 1]]),
+        least_vertical=mass * float(f_z[standing].min()),
+        friction_of_motion=float(demand[standing].max()),
+        friction_of_impacts=_friction_of_impacts(trajectory, body),
+    )
+
+
+def _friction_of_impacts(trajectory: Trajectory, body: Body) -> float:
+    most = 0.0
+    for event in trajectory.events:
+        if event.kind is EventKind.IMPACT:
+            onto: Foot = "right" if event.side > 0 else "left"
+            new, old = body.side(onto), body.side(opposite(onto))
+            ratio = equations.friction_of_impact(new.centre_height, old.half_width, new.half_width, event.coefficient)
+            most = max(most, abs(float(ratio)))
+    return most

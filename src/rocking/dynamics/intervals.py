@@ -1,0 +1,197 @@
+"""A response between its samples and events: states at both ends of every interval, and smooth curves between them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics import equations
+from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.trajectory import EventKind, Trajectory
+from rocking.motions.segments import Segments
+
+# Gauss-Legendre points and weights on [0, 1], exact to degree 9
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
+
+
+@dataclass(frozen=True)
+class Intervals:
+    """Intervals between consecutive samples and events, in order of time.
+
+    Parameters
+    ----------
+    start, end : ndarray, shape (n,)
+        Times [s].
+    side : ndarray, shape (n,)
+        +1, -1 or 0 where the body rests.
+    rotation, velocity, acceleration : ndarray, shape (n, 2)
+        theta [rad], theta' [rad/s] and theta'' [rad/s2] at the start and at the end of each interval, as limits from
+        within it.
+    push, lift : ndarray, shape (n, 2)
+        a_x and a_z at the same instants [m/s2].
+    alpha, p, semi_diagonal : ndarray, shape (n,)
+        Of the side on which the body stands; at rest of the right one.
+    """
+
+    start: FloatArray
+    end: FloatArray
+    side: FloatArray
+    rotation: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    push: FloatArray
+    lift: FloatArray
+    alpha: FloatArray
+    p: FloatArray
+    semi_diagonal: FloatArray
+    _segments: Segments
+    _scale: float
+
+    @classmethod
+    def of(
+        cls, trajectory: Trajectory, segments: Segments, rocker: Rocker, settings: Settings, scale: float
+    ) -> "Intervals":
+        """Return the intervals of a trajectory.
+
+        Parameters
+        ----------
+        trajectory : Trajectory
+            The history.
+        segments : Segments
+            Its motion [m/s2].
+        rocker : Rocker
+            Its body.
+        settings : Settings
+            How it was integrated.
+        scale : float
+            Factor on the motion [-].
+
+        Returns
+        -------
+        Intervals
+            All of positive length.
+        """
+        time, before, after = _nodes(trajectory, segments.step)
+        whole = np.flatnonzero(np.diff(time) > 0.0)
+        start, end = time[whole], time[whole + 1]
+        states = np.stack([after[whole], before[whole + 1]], axis=1)
+        rotation, velocity = states[..., 0], states[..., 1]
+        size = rotation[:, 0] + rotation[:, 1]
+        side = np.sign(np.where(size != 0.0, size, velocity[:, 0] - velocity[:, 1]))
+        right = side >= 0.0
+        alpha, p, radius = (
+            np.where(right, getattr(rocker.right, name), getattr(rocker.left, name))
+            for name in ("slenderness_angle", "frequency_parameter", "semi_diagonal")
+        )
+        stretch = np.clip(((0.5 * (start + end)) / segments.step).astype(np.int64), 0, segments.count - 1)
+        tau = np.stack([start, end], axis=1) / segments.step - stretch[:, None]
+        push = scale * _evaluated(segments.horizontal, stretch, tau)
+        lift = np.zeros_like(push) if segments.vertical is None else scale * _evaluated(segments.vertical, stretch, tau)
+        g = settings.gravity
+        acceleration = equations.angular_acceleration(
+            rotation, side[:, None], alpha[:, None], p[:, None], push / g, 1.0 + lift / g, linear=settings.linear
+        )
+        acceleration = np.where(side[:, None] != 0.0, acceleration, 0.0)
+        return cls(start, end, side, rotation, velocity, acceleration, push, lift, alpha, p, radius, segments, scale)
+
+    @property
+    def length(self) -> FloatArray:
+        """Length of each interval [s]."""
+        return self.end - self.start
+
+    def inside(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return rotation and velocity within every interval: the quintic through both ends.
+
+        Parameters
+        ----------
+        x : ndarray, shape (m,)
+            Places within each interval, from 0 to 1.
+
+        Returns
+        -------
+        rotation, velocity : ndarray, shape (n, m)
+            theta [rad] and theta' [rad/s].
+        """
+        c = self.quintics()
+        powers = x[None, :] ** np.arange(6)[:, None]
+        slopes = np.arange(1, 6)[:, None] * x[None, :] ** np.arange(5)[:, None]
+        return c @ powers, (c[:, 1:] @ slopes) / self.length[:, None]
+
+    def quintics(self) -> FloatArray:
+        """Return the quintics that have the value, rate and acceleration of the motion at both ends.
+
+        Returns
+        -------
+        ndarray, shape (n, 6)
+            Coefficients of the powers of the place x from 0 to 1 [rad].
+        """
+        h = self.length
+        a, b = self.rotation[:, 0], self.rotation[:, 1]
+        va, vb = self.velocity[:, 0] * h, self.velocity[:, 1] * h
+        ja, jb = 0.5 * self.acceleration[:, 0] * h * h, 0.5 * self.acceleration[:, 1] * h * h
+        gap, rate, bend = b - a - va - ja, vb - va - 2.0 * ja, jb - ja
+        return np.stack(
+            [
+                a,
+                va,
+                ja,
+                10.0 * gap - 4.0 * rate + bend,
+                -15.0 * gap + 7.0 * rate - 2.0 * bend,
+                6.0 * gap - 3.0 * rate + bend,
+            ],
+            axis=1,
+        )
+
+    def work(self, settings: Settings) -> FloatArray:
+        """Return the work that the ground does in each interval, per unit mass.
+
+        In the frame of the ground the inertia forces ``-m a_x`` and ``-m a_z`` act on the centre of mass; the
+        slender-linear equations have the corresponding terms.
+
+        Parameters
+        ----------
+        settings : Settings
+            Gravity and equations.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Work [J/kg].
+        """
+        rotation, velocity = self.inside(_POINTS)
+        middle = 0.5 * (self.start + self.end) / self._segments.step
+        stretch = np.clip(middle.astype(np.int64), 0, self._segments.count - 1)
+        tau = (self.start[:, None] + _POINTS * self.length[:, None]) / self._segments.step - stretch[:, None]
+        to_top = self.alpha[:, None] - self.side[:, None] * rotation
+        sine, cosine = (to_top, np.ones_like(to_top)) if settings.linear else (np.sin(to_top), np.cos(to_top))
+        force = -self._scale * _evaluated(self._segments.horizontal, stretch, tau) * cosine
+        if self._segments.vertical is not None:
+            lift = self._scale * _evaluated(self._segments.vertical, stretch, tau)
+            force = force - lift * sine * self.side[:, None]
+        power = self.semi_diagonal[:, None] * force * velocity
+        return np.where(self.side != 0.0, (power @ _WEIGHTS) * self.length, 0.0)
+
+
+def _nodes(trajectory: Trajectory, step: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return times, and the states (rotation, velocity) just before and just after each sample and event."""
+    finite = np.isfinite(trajectory.rotation)
+    samples = np.stack([trajectory.rotation[finite], trajectory.angular_velocity[finite]], axis=1)
+    events = [e for e in trajectory.events if e.time > 0.0 or e.kind is EventKind.IMPACT]
+    times = np.concatenate([np.flatnonzero(finite) * step, [e.time for e in events]])
+    kinds = [e.kind for e in events]
+    before = np.array([[0.0, e.before if e.kind is EventKind.IMPACT else 0.0] for e in events]).reshape(-1, 2)
+    after = np.array([[0.0, e.after if e.kind is EventKind.IMPACT else 0.0] for e in events]).reshape(-1, 2)
+    # at one instant: impacts first, then rest or uplift, then the sample
+    rank = np.concatenate([np.full(samples.shape[0], 9), [0 if k is EventKind.IMPACT else 1 for k in kinds]])
+    order = np.lexsort((rank, times))
+    return times[order], np.concatenate([samples, before])[order], np.concatenate([samples, after])[order]
+
+
+def _evaluated(polynomials: FloatArray, stretch: FloatArray, tau: FloatArray) -> FloatArray:
+    c = polynomials[stretch]
+    total = np.zeros_like(tau)
+    for k in range(c.shape[1] - 1, -1, -1):
+        total = total * tau + c[:, k, None]
+    return total

@@ -1,0 +1,168 @@
+"""`simulate_many`: every body under every motion at every scale with every restitution, as a labelled dataset."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import Body
+from rocking.dynamics.batch import Batch, Rows
+from rocking.dynamics.export import extra
+from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
+from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.response import Motion
+from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.simulate import settings_of
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_UNITS = {
+    "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
+    "status": ("1", ", ".join(f"{s.code} {s.value}" for s in Status)),
+    "side": ("1", "side to which it overturned: 1 right, -1 left"),
+    "peak_rotation": ("rad", "rotation of largest size; a quarter turn if it overturned"),
+    "peak_time": ("s", "time of the peak rotation"),
+    "peak_velocity": ("rad/s", "largest angular velocity"),
+    "overturning_time": ("s", "when the centre passed over the foot for good"),
+    "first_uplift": ("s", "first uplift"),
+    "error": ("rad", "sum of the local error estimates"),
+    "impacts": ("1", "number of impacts"),
+    "uplifts": ("1", "number of uplifts from rest"),
+}
+
+
+def simulate_many(
+    bodies: Body | Sequence[Body],
+    motions: Motion | Sequence[Motion],
+    restitution: Any = "ked",
+    *,
+    scale: Any = 1.0,
+    gravity: float = conventions.g,
+    engine: str = "auto",
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+    **options: Any,
+) -> "xr.Dataset":
+    """Return the outcome of every combination of bodies, motions, scales and restitutions.
+
+    Parameters
+    ----------
+    bodies : Body or sequence of Body
+        The bodies.
+    motions : GroundMotion or Pulse, or a sequence of them
+        All records or all pulses.
+    restitution : as for `simulate`, or a list of such
+        Laws that change from impact to impact cannot be mixed with others.
+    scale : float or array_like
+        Factors on the motions [-].
+    gravity : float
+        Acceleration of gravity [m/s2].
+    engine : {"auto", "fast", "reference"}
+        Which engine.
+    threads : int, optional
+        Threads of the fast engine; the results do not depend on them.
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+    **options
+        Fields of `Settings`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or the combination is empty.
+    MissingExtraError
+        If xarray is not installed, or engine="fast" and it was not built.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> blocks = [rk.Block(width=0.5, height=h) for h in (1.0, 2.0, 3.0)]
+    >>> pulse = rk.pulses.sine(amplitude=4.0, period=0.6)
+    >>> result = rk.simulate_many(blocks, pulse, ["housner", "ked"], scale=[0.5, 1.0])
+    >>> dict(result.sizes)
+    {'body': 3, 'motion': 1, 'scale': 2, 'restitution': 2}
+    """
+    xarray = extra("xarray", "simulate_many")
+    settings = settings_of(gravity, options)
+    body_list, motion_list = _several("bodies", bodies, (Body,)), _several("motions", motions, (GroundMotion, Pulse))
+    choices = restitution if isinstance(restitution, (list, tuple)) else [restitution]
+    scales = np.atleast_1d(checks.real_array("scale", scale))
+    if scales.ndim != 1 or not scales.size or not np.all(np.abs(scales) <= 1e6):
+        raise InvalidValueError("scale must be one number or a row of finite numbers within 1e6")
+    if not choices:
+        raise InvalidValueError("restitution must be at least one model, got none")
+    law = _common_law(choices)
+    rockers = [[Rocker.of_body(body, choice, settings.gravity) for choice in choices] for body in body_list]
+    shape = (len(body_list), len(motion_list), scales.size, len(choices))
+    batch = Batch([m.segments() for m in motion_list], law, settings, threads, engine)
+    count = int(np.prod(shape))
+    results, work = batch.run(count, _pieces(rockers, scales, shape), progress)
+    dims = ("body", "motion", "scale", "restitution")
+    data = {
+        name: (dims, values.reshape(shape), {"units": _UNITS[name][0], "long_name": _UNITS[name][1]})
+        for name, values in results.items()
+    }
+    from rocking import __version__
+
+    made: xr.Dataset = xarray.Dataset(
+        data,
+        coords={
+            "motion": [m.name for m in motion_list],
+            "scale": ("scale", scales, {"units": "1"}),
+            "restitution": [
+                rocker.label if law.kind else _label(choice) for rocker, choice in zip(rockers[0], choices, strict=True)
+            ],
+        },
+        attrs={
+            "software": f"rocking {__version__}",
+            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in vars(settings).items()},
+            **{f"work_{k}": v for k, v in work.items()},
+        },
+    )
+    return made
+
+
+def _pieces(rockers: list[list[Rocker]], scales: np.ndarray, shape: tuple[int, ...]) -> Callable[[int, int], Rows]:
+    table = {
+        f"{short}_{side}": np.array([[getattr(getattr(r, side), name) for r in row] for row in rockers])
+        for short, name in (("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"))
+        for side in ("right", "left")
+    }
+
+    def rows(first: int, last: int) -> Rows:
+        body, motion, factor, choice = np.unravel_index(np.arange(first, last), shape)
+        values = {name: array[body, choice] for name, array in table.items()}
+        return Rows.of(last - first, motion, np.arange(first, last), scale=scales[factor], **values)
+
+    return rows
+
+
+def _several(name: str, given: Any, kinds: tuple[type, ...]) -> list[Any]:
+    found = [given] if isinstance(given, kinds) else list(given)
+    if not found or not all(isinstance(item, kinds) for item in found):
+        raise InvalidValueError(f"{name} must be one or more of {', '.join(k.__name__ for k in kinds)}")
+    return found
+
+
+def _common_law(choices: Sequence[Any]) -> ImpactLaw:
+    laws = [c for c in choices if isinstance(c, ImpactLaw)]
+    if not laws:
+        return ConstantRestitution()
+    if len(choices) > 1:
+        raise InvalidValueError("a law that changes from impact to impact must be the only restitution of a call")
+    return laws[0]
+
+
+def _label(choice: Any) -> str:
+    label = getattr(choice, "label", None)
+    return label if isinstance(label, str) else str(choice)

@@ -1,0 +1,274 @@
+"""The response of a body to a ground motion: rotation, impacts, energy, forces, outcome."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as np
+
+from rocking.bodies import Body
+from rocking.conventions import FloatArray
+from rocking.dynamics.contact import Contact, contact_of
+from rocking.dynamics.intervals import Intervals
+from rocking.dynamics.ledger import ResponseEnergy, energy_of
+from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.trajectory import EventKind, Trajectory
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
+from rocking.motions.segments import Segments
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+Motion = Union[GroundMotion, Pulse]
+
+IMPACT = np.dtype(
+    [("time", "f8"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("coefficient", "f8"), ("onto", "U5")]
+)
+"""Fields of `Response.impacts`: [s], [rad/s], [rad/s], [-], foot."""
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """What `simulate` returns; everything that takes time is computed when first asked for.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    motion : GroundMotion or Pulse, optional
+        The motion; None for free rocking.
+    rocker : Rocker
+        The body as the equations see it, with its coefficients of restitution.
+    settings : Settings
+        How it was integrated.
+    segments : Segments
+        The motion as it was integrated, rest of the ground after it included [m/s2].
+    scale : float
+        Factor on the motion [-].
+    key : int
+        Number of the history, for random coefficients.
+    trajectory : Trajectory
+        What the engine returned.
+    """
+
+    body: Body
+    motion: Motion | None
+    rocker: Rocker
+    settings: Settings
+    segments: Segments = field(repr=False)
+    scale: float
+    key: int
+    trajectory: Trajectory = field(repr=False)
+
+    def __repr__(self) -> str:
+        """Outcome in words, and which engine found it."""
+        return f"<Response: {self.summary} [{self.trajectory.engine}]>"
+
+    @cached_property
+    def _finite(self) -> int:
+        bad = np.flatnonzero(~np.isfinite(self.trajectory.rotation))
+        return int(bad[0]) if bad.size else int(self.trajectory.rotation.size)
+
+    @cached_property
+    def time(self) -> FloatArray:
+        """Times of the samples, to the end or until the body lies [s]."""
+        return np.arange(self._finite) * self.segments.step
+
+    @property
+    def rotation(self) -> FloatArray:
+        """Rotation theta at the samples, positive clockwise, standing on the right foot [rad]."""
+        return self.trajectory.rotation[: self._finite]
+
+    @property
+    def angular_velocity(self) -> FloatArray:
+        """Angular velocity theta' at the samples [rad/s]."""
+        return self.trajectory.angular_velocity[: self._finite]
+
+    @cached_property
+    def impacts(self) -> np.ndarray:
+        """Impacts in order: time, velocity_before, velocity_after, coefficient, onto."""
+        found = [
+            (e.time, e.before, e.after, e.coefficient, "right" if e.side > 0 else "left")
+            for e in self.trajectory.events
+            if e.kind is EventKind.IMPACT
+        ]
+        return np.array(found, dtype=IMPACT)
+
+    @cached_property
+    def uplifts(self) -> FloatArray:
+        """Times at which the body was lifted from rest [s]."""
+        return np.array([e.time for e in self.trajectory.events if e.kind is EventKind.UPLIFT])
+
+    @property
+    def outcome(self) -> Outcome:
+        """How it ended."""
+        return self.trajectory.outcome
+
+    @property
+    def status(self) -> Status:
+        """Whether it could be computed."""
+        return self.trajectory.status
+
+    @property
+    def engine(self) -> str:
+        """Which engine ran, and how."""
+        return self.trajectory.engine
+
+    @property
+    def peak_rotation(self) -> float:
+        """Largest |theta|, between the samples too; a quarter turn if it overturned [rad]."""
+        return abs(self.trajectory.peak_rotation)
+
+    @property
+    def overturning_time(self) -> float:
+        """When the centre of mass passed over the foot for good; NaN if it did not overturn [s]."""
+        return self.trajectory.overturning_time
+
+    @property
+    def summary(self) -> str:
+        """The outcome in one sentence."""
+        run = self.trajectory
+        if run.outcome is Outcome.OVERTURNED:
+            side = "right" if run.side > 0 else "left"
+            count = {0: "without an impact", 1: "after 1 impact"}.get(run.impacts, f"after {run.impacts} impacts")
+            return f"overturned to the {side} {count}, past the point of no return at {run.overturning_time:.4g} s"
+        if run.outcome is Outcome.ROCKED:
+            angle = self.rocker.side(run.peak_rotation).slenderness_angle
+            ratio = self.peak_rotation / angle
+            return (
+                f"rocked and stayed standing: largest rotation {np.degrees(self.peak_rotation):.4g} degrees, "
+                f"{ratio:.3g} of the slenderness angle, {run.impacts} impacts"
+            )
+        return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
+
+    @cached_property
+    def intervals(self) -> Intervals:
+        """The response between its samples and events."""
+        return Intervals.of(self.trajectory, self.segments, self.rocker, self.settings, self.scale)
+
+    @cached_property
+    def energy(self) -> ResponseEnergy:
+        """Kinetic and potential energy, work of the ground and losses at the samples [J]."""
+        return energy_of(self.intervals, self.time, self.body.mass, self.settings)
+
+    @cached_property
+    def contact(self) -> Contact:
+        """Forces of the ground, friction demand and loss of contact."""
+        return contact_of(self.trajectory, self.intervals, self.time, self.body, self.settings)
+
+    @cached_property
+    def ground_acceleration(self) -> FloatArray:
+        """Horizontal acceleration of the ground at the samples [m/s2]."""
+        h = self.scale * self.segments.horizontal
+        return np.append(h[:, 0], h[-1].sum())[: self._finite]
+
+    @cached_property
+    def error_estimate(self) -> float:
+        """Largest change of theta if every step is halved: what the integration leaves open [rad].
+
+        It grows with the length of a history, since rocking multiplies small differences; where another step changes
+        the outcome, it is infinite.
+        """
+        from rocking.dynamics.run import rerun_finer
+
+        return rerun_finer(self)
+
+    def at(self, time: Any) -> FloatArray:
+        """Return the rotation at any times within the response.
+
+        Parameters
+        ----------
+        time : array_like
+            Times [s].
+
+        Returns
+        -------
+        ndarray
+            theta [rad].
+        """
+        intervals = self.intervals
+        t = np.clip(np.asarray(time, dtype=np.float64), 0.0, self.time[-1])
+        k = np.clip(np.searchsorted(intervals.start, t, side="right") - 1, 0, intervals.start.size - 1)
+        x = (t - intervals.start[k]) / intervals.length[k]
+        c = intervals.quintics()[k]
+        return np.asarray((c * x[..., None] ** np.arange(6)).sum(axis=-1))
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Return the response as a labelled dataset with units and provenance.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over `time` and `impact`.
+        """
+        from rocking.dynamics.export import to_xarray
+
+        return to_xarray(self)
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Return the samples as a table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row a sample, units in the column names.
+        """
+        from rocking.dynamics.export import to_dataframe
+
+        return to_dataframe(self)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the samples as comma-separated values.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.dynamics.export import to_csv
+
+        return to_csv(self, path)
+
+    def to_mat(self, path: str | Path) -> Path:
+        """Write a file that MATLAB loads.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.dynamics.export import to_mat
+
+        return to_mat(self, path)
+
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write a netCDF file, which xarray and MATLAB open.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.dynamics.export import to_netcdf
+
+        return to_netcdf(self, path)

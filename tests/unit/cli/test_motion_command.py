@@ -1,0 +1,235 @@
+"""`rocking motion`: numbers against closed forms, files against what was typed, and refusals in one sentence."""
+
+import csv
+import json
+import math
+
+import pytest
+
+from rocking.cli import main
+from rocking.cli.motion_options import motion_from
+from rocking.errors import InvalidValueError, RecordError, UnknownModelError
+
+G = 9.80665
+# 0, 1, 0 m/s2 at 0.5 s: a triangle, whose integrals are 0.5 m/s, 0.25 m and 1/3 m2/s3
+TRIANGLE = "0.0 0.0\n0.5 1.0\n1.0 0.0\n"
+FOUR = "0.0 0.0 0.0 0.1\n0.5 1.0 -2.0 0.3\n1.0 0.0 0.0 -0.2\n"
+PEER = "A DATABASE\nSOMEWHERE 01/17/94, CELLAR, 360\nACCELERATION IN UNITS OF G\nNPTS= 3, DT= .5 SEC\n 0.0 0.1 -0.2\n"
+
+
+def run(capsys, *words):
+    """Exit code, standard output and standard error of `rocking WORDS`."""
+    with pytest.raises(SystemExit) as stop:
+        main([str(word) for word in words])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+def measured(capsys, *words):
+    """The JSON of `rocking motion WORDS`."""
+    code, out, err = run(capsys, "motion", *words, "--json")
+    assert (code, err) == (0, "")
+    return json.loads(out)
+
+
+@pytest.fixture
+def triangle(tmp_path):
+    """File of the triangle."""
+    path = tmp_path / "triangle.txt"
+    path.write_text(TRIANGLE, encoding="utf-8")
+    return path
+
+
+def test_record_by_closed_form(capsys, triangle):
+    """The triangle: PGA 1, PGV 1/2, PGD 1/4, CAV 1/2, Arias pi/(6 g), exact to rounding; and what the file is."""
+    answer = measured(capsys, triangle, "--units", "m/s2")
+    found = answer["intensity"]
+    expected = {"pga_m_s2": 1.0, "pgv_m_s": 0.5, "pgd_m": 0.25, "cav_m_s": 0.5, "arias_m_s": math.pi / (6.0 * G)}
+    assert {key: found[key] for key in expected} == pytest.approx(expected, rel=1e-12)
+    assert (answer["kind"], answer["format"], answer["file_unit"]) == ("record", "columns", "m/s2")
+    assert (answer["samples"], answer["time_step_s"], answer["duration_s"]) == (3, 0.5, 1.0)
+    assert "SHA-256" in answer["provenance"][0]
+    # negative control: the same file in g is not the same motion
+    assert measured(capsys, triangle, "--units", "g")["intensity"]["pga_m_s2"] == pytest.approx(G)
+
+
+def test_pulse_by_closed_form(capsys):
+    """One sine of 3 m/s2 and 0.8 s: PGV 2a/w, PGD aT/w to rounding; CAV 4a/w, Arias pi a2 T/(4 g) to 1e-5."""
+    answer = measured(capsys, "sine:amplitude=3,period=0.8")
+    found, w = answer["intensity"], 2.0 * math.pi / 0.8
+    assert found["pga_m_s2"] == pytest.approx(3.0, rel=1e-12)
+    assert found["pgv_m_s"] == pytest.approx(6.0 / w, rel=1e-12)
+    assert found["pgd_m"] == pytest.approx(3.0 * 0.8 / w, rel=1e-12)
+    assert found["cav_m_s"] == pytest.approx(12.0 / w, rel=1e-5)
+    assert found["arias_m_s"] == pytest.approx(math.pi / (2.0 * G) * 9.0 * 0.4, rel=1e-5)
+    assert (answer["kind"], answer["duration_s"], answer["format"]) == ("pulse", 0.8, None)
+
+
+def test_jumps_at_the_ends_of_a_pulse_are_kept(capsys):
+    """A constant a for 0.5 s: CAV a t and Arias exact, not one step longer; undamped PSA 2 a, with 5 % 1.8545 a."""
+    found = measured(capsys, "rectangular:amplitude=2,duration=0.5", "--periods", "0.2", "--damping", 0)
+    assert found["intensity"]["cav_m_s"] == pytest.approx(1.0, rel=1e-12)
+    assert found["intensity"]["arias_m_s"] == pytest.approx(math.pi / (2.0 * G) * 4.0 * 0.5, rel=1e-12)
+    # the solver misses peaks by up to 1e-4
+    assert found["spectrum"]["psa_m_s2"] == pytest.approx([4.0], rel=1e-4)
+    damped = measured(capsys, "rectangular:amplitude=2,duration=0.5", "--periods", "0.2")["spectrum"]
+    overshoot = 1.0 + math.exp(-0.05 * math.pi / math.sqrt(1.0 - 0.05**2))
+    assert damped["psa_m_s2"] == pytest.approx([2.0 * overshoot], rel=1e-4)
+    assert damped["damping_ratio"] == 0.05
+
+
+def test_periods_are_those_asked_for(capsys, triangle):
+    """--periods gives these periods and no others; a very slow oscillator moves as far as the ground did."""
+    spectrum = measured(capsys, triangle, "--units", "m/s2", "--periods", "0.5, 1000", "--damping", "0.02")["spectrum"]
+    assert (spectrum["period_s"], spectrum["damping_ratio"]) == ([0.5, 1000.0], 0.02)
+    # free flight goes on after the record: Sv, not Sd, is what the ground's 0.5 m/s bounds
+    assert spectrum["psv_m_s"][1] == pytest.approx(0.5, rel=0.04)  # exp(-0.02 pi / 2) = 0.969 is lost to damping
+
+
+def test_scale_multiplies(capsys, triangle):
+    """--scale -2 doubles all peaks and makes Arias four times as large, for files and for pulses."""
+    for words in ([triangle, "--units", "m/s2"], ["ricker:amplitude=1,period=0.5"]):
+        one, two = (measured(capsys, *words, *more)["intensity"] for more in ([], ["--scale", "-2"]))
+        assert two["pgd_m"] == pytest.approx(2.0 * one["pgd_m"], rel=1e-9)
+        assert two["arias_m_s"] == pytest.approx(4.0 * one["arias_m_s"], rel=1e-9)
+
+
+def test_printed_page(capsys, tmp_path):
+    """The page names format, station, component, samples, step, duration, every measure with its unit, and PSA in g."""
+    path = tmp_path / "cellar.at2"
+    path.write_text(PEER, encoding="utf-8")
+    code, out, err = run(capsys, "motion", path)
+    assert (code, err) == (0, "")
+    for words in ("peer", "CELLAR", "360", "3 at 0.5 s", "in g", "1 s", "m/s2", "PSA [g]", "5 % damping", "0.2 g"):
+        assert words in out
+    # peak 0.2 g = 1.96133 m/s2
+    assert "1.961" in out
+    code, out, _ = run(capsys, "motion", "half-sine:amplitude=1,period=1")
+    assert "pulse, known at every instant" in out
+
+
+def test_csv(capsys, tmp_path, triangle):
+    """The CSV holds time, acceleration, velocity, displacement at the samples: those of the triangle, by hand."""
+    path = tmp_path / "out.csv"
+    code, out, _ = run(capsys, "motion", triangle, "--units", "m/s2", "--csv", path)
+    assert code == 0
+    assert f"wrote {path}" in out
+    with path.open(encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    assert head == ["time_s", "acceleration_m_s2", "velocity_m_s", "displacement_m"]
+    expected = [[0.0, 0.0, 0.0, 0.0], [0.5, 1.0, 0.25, 1.0 / 24.0], [1.0, 0.0, 0.5, 0.25]]
+    assert [[float(word) for word in row] for row in rows] == [pytest.approx(row, abs=1e-15) for row in expected]
+
+
+def test_csv_of_a_pulse_is_exact(capsys, tmp_path):
+    """The CSV of a sine holds a sin(wt), its integrals, and ends with the pulse."""
+    path = tmp_path / "out.csv"
+    assert run(capsys, "motion", "sine:amplitude=3,period=0.8", "--csv", path)[0] == 0
+    with path.open(encoding="utf-8") as file:
+        rows = [[float(word) for word in row] for row in list(csv.reader(file))[1:]]
+    w = 2.0 * math.pi / 0.8
+    for t, a, v, u in rows[:: len(rows) // 7]:
+        exact = [3.0 * math.sin(w * t), 3.0 / w * (1.0 - math.cos(w * t)), 3.0 / w * (t - math.sin(w * t) / w)]
+        assert [a, v, u] == pytest.approx(exact, abs=1e-12)
+    assert rows[-1][0] == pytest.approx(0.8, rel=1e-12)
+
+
+def test_picture(capsys, tmp_path, triangle):
+    """--picture writes an SVG with the axes' units in it."""
+    path = tmp_path / "motion.svg"
+    assert run(capsys, "motion", triangle, "--units", "g", "--picture", path)[0] == 0
+    text = path.read_text(encoding="utf-8")
+    assert "time [s]" in text
+    assert "PSA [g]" in text
+
+
+def test_components(capsys, tmp_path):
+    """Several components: the refusal says what to type, and typed so it works, vertical part included."""
+    path = tmp_path / "four.txt"
+    path.write_text(FOUR, encoding="utf-8")
+    code, out, err = run(capsys, "motion", path, "--units", "m/s2")
+    assert (code, out) == (2, "")
+    assert "--component 'column 2' or --component 'column 3' or --component 'column 4'" in err
+    assert "component=" not in err
+    assert err.count("\n") == 1
+    left = run(capsys, "motion", path, "--units", "m/s2", "--vertical", "column 4")[2]
+    assert "--component 'column 3'" in left
+    assert "--component 'column 4'" not in left
+    words = ["--units", "m/s2", "--component", "column 3", "--vertical", "column 4"]
+    answer = measured(capsys, path, *words, "--csv", tmp_path / "out.csv")
+    assert (answer["component"], answer["vertical_component"]) == ("column 3", "column 4")
+    assert answer["intensity"]["pga_m_s2"] == 2.0
+    assert answer["peak_vertical_acceleration_m_s2"] == 0.3
+    assert "vertical_acceleration_m_s2" in (tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "upwards" in run(capsys, "motion", path, *words)[1]
+
+
+def test_a_file_wins_over_a_pulse(tmp_path, monkeypatch):
+    """A file that is called like a pulse is read as a file; without it the word is the pulse."""
+    monkeypatch.chdir(tmp_path)
+    word = "sine:amplitude=3,period=0.8"
+    assert motion_from(word).peak == 3.0
+    (tmp_path / word).write_text(TRIANGLE, encoding="utf-8")
+    assert motion_from(word, units="m/s2").peak == 1.0
+
+
+REFUSED = {
+    "no file": (["no.at2"], "no.at2: no such file; a pulse is written as sine:amplitude=3,period=0.8"),
+    "no folder": (["no/where:1"], "no such file"),
+    "folder": (["."], "not a plain file"),
+    "long": (["x" * 5000], "no such file"),
+    "unknown pulse": (["sin:amplitude=3"], "no pulse named 'sin'"),
+    "half a pulse": (["sine"], "takes"),
+    "pulse value": (["sine:amplitude=three,period=1"], "amplitude must be a number"),
+    "pulse and units": (["sine:amplitude=3,period=1", "--units", "g"], "a pulse takes no --units"),
+    "pulse and step": (["sine:amplitude=3,period=1", "--time-step", "0.1"], "a pulse takes no --time-step"),
+    "nothing moves": (["sine:amplitude=0,period=1"], "zero throughout?"),
+    "scale 0": (["sine:amplitude=3,period=1", "--scale", "0"], "scale must not be 0"),
+    "scale nan": (["sine:amplitude=3,period=1", "--scale", "nan"], "scale must be finite"),
+    "percent": (["sine:amplitude=3,period=1", "--damping", "5"], "a ratio, not a percentage"),
+    "periods": (["sine:amplitude=3,period=1", "--periods", "a,b"], "periods must be numbers such as 0.1,0.5,1"),
+    "no periods": (["sine:amplitude=3,period=1", "--periods", ","], "periods must be 1 to 1000 numbers"),
+    "period 0": (["sine:amplitude=3,period=1", "--periods", "0"], "periods must be > 0 s, got 0"),
+    "period nan": (["sine:amplitude=3,period=1", "--periods", "nan"], "periods must be finite"),
+    "picture": (["sine:amplitude=3,period=1", "--picture", "a.bmp"], ".png, .svg or .pdf"),
+    "no record": ([], "Missing argument"),
+}
+
+
+@pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
+def test_bad_input_gives_one_sentence_and_exit_code_2(capsys, words, sentence):
+    """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
+    code, out, err = run(capsys, "motion", *words)
+    assert (code, out) == (2, "")
+    assert sentence in err
+    assert err.startswith("rocking: ")
+    assert err.count("\n") == 1
+
+
+def test_unit_and_format_are_asked_for_by_option(capsys, triangle):
+    """What the file leaves open is asked for in the words of the command line, and never guessed."""
+    for words, sentence in (
+        ([], "say --units one of m/s2"),
+        (["--units", "furlong"], "got 'furlong'"),
+        (["--units", "g", "--time-step", "0.25"], "the file states a time step of 0.5 s, you say 0.25"),
+        (["--units", "g", "--format", "nope"], "one of peer"),
+        (["--units", "g", "--component", "north"], "got 'north'"),
+    ):
+        code, out, err = run(capsys, "motion", triangle, *words)
+        assert (code, out) == (2, "")
+        assert sentence in err
+
+
+def test_errors_keep_their_kind(tmp_path):
+    """Files raise RecordError, values InvalidValueError, pulses UnknownModelError: callers can tell them apart."""
+    path = tmp_path / "triangle.txt"
+    path.write_text(TRIANGLE, encoding="utf-8")
+    for word, options, kind in (
+        (str(path), {}, RecordError),
+        (str(path), {"units": "x"}, InvalidValueError),
+        ("nothing", {}, RecordError),
+        ("nothing:a=1", {}, UnknownModelError),
+        ("sine:amplitude=1,period=1", {"component": "x"}, InvalidValueError),
+    ):
+        with pytest.raises(kind):
+            motion_from(word, **options)
