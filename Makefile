@@ -5,14 +5,15 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test lint fuzz bench gallery lock clean
+.PHONY: help demo test lint engine campaign fuzz bench gallery lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
 	@echo "make test     set up, run linters, type checker, docstring and import checks, tests with coverage"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make gallery  run every example         make lock     pin the dependencies anew"
-	@echo "make clean    remove what was made        make fuzz     damage record files 100000 times"
+	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
+	@echo "make campaign the long verifications    make clean    remove what was made"
 
 $(VENV)/created:
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "rocking needs Python 3.11 or newer, this is " + sys.version)'
@@ -32,11 +33,25 @@ $(VENV)/dev: $(VENV)/created requirements/dev.lock pyproject.toml
 	@$(PIP) install --no-deps --no-build-isolation --editable .
 	@touch $@ $(VENV)/demo
 
-demo: $(VENV)/demo
+# The fast engine is built where it stands. Without a compiler the reference engine serves, and says so.
+ENGINE := build/engine/built
+engine: $(ENGINE)
+$(ENGINE): $(VENV)/demo CMakeLists.txt $(wildcard engine/*.cpp engine/*.hpp)
+	@echo "Building the fast engine (about a minute, once) ..."
+	@mkdir -p build/engine
+	@$(BIN)/cmake -S . -B build/engine -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN)/ninja) -DROCKING_INPLACE=ON \
+		-DPython_EXECUTABLE=$(abspath $(BIN)/python) > build/engine/log.txt 2>&1 \
+		&& $(BIN)/cmake --build build/engine >> build/engine/log.txt 2>&1 \
+		|| (tail -n 20 build/engine/log.txt; echo "The fast engine could not be built: the reference engine serves, slowly.")
+	@touch $@
+
+demo: $(VENV)/demo $(ENGINE)
 	@$(BIN)/rocking paper --out $(OUT)
 	@$(BIN)/rocking cor --width 1 --height 4 --picture $(OUT)/body.png
+	@$(BIN)/rocking simulate --width 0.5 --height 2 --motion "sine:amplitude=3.2,period=0.8" --restitution ked \
+		--picture $(OUT)/response.png --animation $(OUT)/response.html
 
-lint: $(VENV)/dev
+lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -50,11 +65,14 @@ test: lint
 fuzz: $(VENV)/dev
 	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py -q
 
-bench: $(VENV)/dev
+bench: $(VENV)/dev $(ENGINE)
 	$(BIN)/python -m benchmarks
 
-gallery: $(VENV)/dev
+gallery: $(VENV)/dev $(ENGINE)
 	@for example in examples/*.py; do echo "== $$example"; $(BIN)/python $$example || exit 1; done
+
+campaign: $(VENV)/dev $(ENGINE)
+	ROCKING_CAMPAIGN=1 $(BIN)/python -m pytest tests/verification -q
 
 lock: $(VENV)/created
 	$(PIP) install uv
@@ -65,4 +83,5 @@ lock: $(VENV)/created
 		-o requirements/demo.lock
 
 clean:
+	rm -rf src/rocking/dynamics/_engine*.so
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage $(OUT) gallery-output
