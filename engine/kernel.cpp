@@ -5,8 +5,8 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Two registers of AVX-512 or four of AVX2 are 16 lanes; a single history takes one register.
-constexpr int kMany = 16 / Pack::width;
+// Four registers' worth of lanes side by side hide the latency of the multiply-adds; a single history takes one.
+constexpr int kMany = 4;
 
 Run kernel_for(bool single, const Choice& c) {
     if (c.order == 8) {

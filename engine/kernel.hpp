@@ -275,26 +275,26 @@ class Kernel {
 
     // First return to y = 0; a step that starts there is divided by the known zero first.
     double first_contact(double* c) const {
-        if (c[0] > 0.0) return first_zero(c, N + 1);
+        if (c[0] > 0.0) return first_zero<N + 1>(c);
         if (c[0] < 0.0) return 0.0;
-        if (c[1] > 0.0) return first_zero(c + 1, N);
+        if (c[1] > 0.0) return first_zero<N>(c + 1);
         if (c[1] < 0.0) return 0.0;
         c[2] = std::max(c[2], 0.0);  // uplift: the moment just changed sign here, so rounding alone is left
-        if (c[2] > 0.0) return first_zero(c + 2, N - 1);
-        if (c[3] > 0.0) return first_zero(c + 3, N - 2);
+        if (c[2] > 0.0) return first_zero<N - 1>(c + 2);
+        if (c[3] > 0.0) return first_zero<N - 2>(c + 3);
         return 2.0;
     }
 
     void note_peak(int i, const double* c, double upto) {
         if (c[1] < 0.0) return;
-        double slopes[N + 2];
-        for (int k = 0; k <= N; ++k) slopes[k] = (k + 1) * c[k + 1];
-        int skip = 0;
-        while (skip < 2 && slopes[skip] == 0.0) ++skip;
-        if (!(slopes[skip] > 0.0)) return;
-        if (value_of(slopes, N, upto) > 0.0) return;
-        const double at = first_zero(slopes + skip, N - skip);
-        if (at <= upto) raise_peak(i, value_of(c, N + 1, at), now(i, at));
+        double slopes[N + 1];
+        slopes_of<N + 1>(c, slopes);
+        if (value_of<N>(slopes, upto) > 0.0) return;
+        double at = 2.0;
+        if (slopes[0] > 0.0) at = first_zero<N>(slopes);
+        else if (slopes[1] > 0.0) at = first_zero<N - 1>(slopes + 1);
+        else if (slopes[2] > 0.0) at = first_zero<N - 2>(slopes + 2);
+        if (at <= upto) raise_peak(i, value_of<N + 1>(c, at), now(i, at));
     }
 
     void raise_peak(int i, double y, double time) {
@@ -307,7 +307,9 @@ class Kernel {
 
     void impact(int i, const double* c, double at) {
         Lane& lane = lanes[i];
-        const double speed = std::max(0.0, -slope_of(c, N + 1, at) / (len[i] * lane.step));
+        double slopes[N + 1];
+        slopes_of<N + 1>(c, slopes);
+        const double speed = std::max(0.0, -value_of<N>(slopes, at) / (len[i] * lane.step));
         const double time = now(i, at);
         const int old = lane.side;
         fastest[i] = std::max(fastest[i], speed * lane.step);
@@ -368,7 +370,7 @@ class Kernel {
             double c[N + 2];
             c[0] = u[i];
             for (int k = 0; k <= N; ++k) c[k + 1] = V[k] / (k + 1);
-            lane.over_time = now(i, u[i] > 0.0 ? std::min(first_zero(c, N + 1), 1.0) : 0.0);
+            lane.over_time = now(i, u[i] > 0.0 ? std::min(first_zero<N + 1>(c), 1.0) : 0.0);
         }
         u[i] = u1;
         v[i] = v1;
@@ -436,7 +438,7 @@ class Kernel {
         double spread = 0.0;
         for (int k = 1; k <= D; ++k) spread += std::fabs(d[k]);
         if (d[0] > spread) return 2.0;
-        if (value_of(d, D, from) < 0.0) return from;
+        if (value_of<D>(d, from) < 0.0) return from;
         if (D == 1) {
             if (!(d[0] + d[1] < 0.0)) return 2.0;
             return std::min(std::max(-d[0] / d[1], from), 1.0);
@@ -449,7 +451,7 @@ class Kernel {
             power *= 1.0 - from;
         }
         if (!(d[0] > 0.0)) d[0] = std::numeric_limits<double>::min();
-        const double zero = first_zero(d, D);
+        const double zero = first_zero<D>(d);
         return zero > 1.0 ? 2.0 : from + zero * (1.0 - from);
     }
 
@@ -503,10 +505,14 @@ class Kernel {
         if (!(after <= set.rest * unit)) return false;
         double d[D + 1];
         holding(i, lane.side, static_cast<std::int64_t>(idx[i]), d);
-        const double held = value_of(d, D, tau[i]);
+        const double held = value_of<D>(d, tau[i]);
         if (!(held > 0.0)) return false;
         if (after <= 1e-9 * unit) return true;  // what is left is below all digits that count
         const double left = 1.0 - tau[i];
+        // no bound can be shorter than flights that all lasted as long as the first one under the moment of now
+        const Side& o = lane.sides[lane.side > 0 ? 1 : 0];
+        const double shortest = 2.0 * after / (s.p * s.p * held * lane.step);
+        if (shortest > std::max(left, 40.0) * (1.0 - s.r * o.r * law.largest * law.largest)) return false;
         Window w;
         if (!window(i, 1, w)) return false;
         const double first = time_to_rest(i, after, w) / lane.step;
@@ -578,7 +584,7 @@ class Kernel {
     int preferred(int i, std::int64_t at, double from) const {
         const double* a = motions.data + at;
         constexpr int hop = Z ? 2 : 1;
-        const double push = lanes[i].ax * (D == 1 ? a[0] + (a[hop] - a[0]) * from : value_of(a, D, from));
+        const double push = lanes[i].ax * (D == 1 ? a[0] + (a[hop] - a[0]) * from : value_of<D>(a, from));
         return push > 0.0 ? -1 : push < 0.0 ? 1 : 0;
     }
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from rocking.motions.intensity import peak_ground_displacement, peak_ground_velocity
 from rocking.motions.motion import GroundMotion
@@ -45,9 +46,9 @@ def test_peaks_are_marked_and_told():
     places = ((PERIOD / 4, AMPLITUDE), (PERIOD / 2, 2 * AMPLITUDE / W), (PERIOD, AMPLITUDE * PERIOD / W))
     for axes, place in zip(figure.axes[:3], places, strict=True):
         (mark,) = (line for line in axes.lines if line.get_marker() == "o")
-        # a flat top is found in value to rounding, in time to its root
+        # a top that is flat to the third order is found in value to rounding, in time to the cube root of it
         assert (mark.get_xdata()[0], mark.get_ydata()[0]) == (
-            pytest.approx(place[0], rel=1e-6),
+            pytest.approx(place[0], rel=1e-5),
             pytest.approx(place[1]),
         )
     titles = [axes.get_title(loc="right") for axes in figure.axes[:3]]
@@ -90,7 +91,7 @@ def test_spectrum_ends_in_the_peak_acceleration():
     # at T = 0.02 s the oscillator still adds (T/T_p)^2-sized dynamics to a pulse of 0.5 s
     assert curve.get_ydata()[0] == pytest.approx(2.0 / G, rel=0.02)
     assert axes.get_xscale() == "log"
-    # negative control: a jump is felt by the stiffest oscillator with almost twice its size, 1 + exp(-0.05 pi / 0.99875)
+    # negative control: a jump is felt by the stiffest oscillator with almost twice its size
     jump = ground_motion_picture(rectangular(2.0, 0.5)).axes[3].lines[1].get_ydata()[0]
     assert jump == pytest.approx(2.0 / G * (1.0 + math.exp(-0.05 * math.pi / math.sqrt(1.0 - 0.05**2))), rel=1e-3)
 
@@ -101,7 +102,7 @@ def test_labels_have_units_and_nothing_overlaps(motion, spectrum):
     """Every label ends in a unit, and no two titles, labels or legends of the drawn figure touch."""
     figure = ground_motion_picture(motion, spectrum)
     assert len(figure.axes) == (4 if spectrum else 3)
-    figure.canvas.draw()
+    FigureCanvasAgg(figure).draw()
     shown = [figure._suptitle]
     for axes in figure.axes:
         assert axes.get_ylabel().endswith("]")

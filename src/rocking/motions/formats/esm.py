@@ -68,7 +68,8 @@ class Esm(RecordFormat):
     suffixes: ClassVar[tuple[str, ...]] = (".asc",)
     notes: ClassVar[str] = (
         "Verified on one real file of acceleration in cm/s^2. Count, duration, peak and time of the peak are checked "
-        "against the header; a file that does not state its peak in its own unit is refused. Velocity, displacement and spectra (DATA_TYPE) are refused."
+        "against the header; a file that does not state its peak in its own unit is refused. Velocity, displacement "
+        "and spectra (DATA_TYPE) are refused."
     )
 
     def recognises(self, source: Source) -> bool:

@@ -1,0 +1,218 @@
+"""A response in motion: one web page that needs nothing else, or a GIF."""
+
+import base64
+import hashlib
+import html
+import json
+from collections.abc import Callable
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.dynamics.response import Response
+from rocking.errors import InvalidValueError, RockingError
+from rocking.motions.motion import GroundMotion
+from rocking.plots.animation_scene import Scene, Shape, scene_of
+from rocking.plots.response_curves import over_slenderness, shown_until
+from rocking.plots.style import GREY, INK, PALE, in_journal_style
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MOST_FRAMES = 500
+"""Frames of a GIF: more would make a file that no page wants to carry."""
+
+_DOTS, _WIDTH, _SCENE_TOP, _CURVE = 100, 4.8, 0.42, 1.15
+_LEAST_SCENE, _MOST_SCENE = 1.6, 3.6
+
+
+def animate_html(response: Response, path: str | Path) -> Path:
+    """Write a web page in which the body rocks: play, slow down, step, drag to any instant.
+
+    The page is one file: no network, no other script; it declares and keeps a content security policy that allows
+    nothing but its own script and style. It opens at an instant if ``#t=1.5`` is added to its address.
+
+    Parameters
+    ----------
+    response : Response
+        What `simulate` or `free_rocking` returned.
+    path : str or Path
+        File ending in .html.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    RockingError
+        If the name does not end in .html, or the file cannot be written.
+    """
+    target = _target(path, ".html")
+    try:
+        target.write_text(page(response), encoding="utf-8")
+    except OSError as error:
+        raise RockingError(f"cannot write {target}: {error.strerror or error}") from error
+    return target
+
+
+def page(response: Response) -> str:
+    """Return the web page of a response.
+
+    Parameters
+    ----------
+    response : Response
+        The response.
+
+    Returns
+    -------
+    str
+        HTML.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> block = rk.Block(width=0.5, height=2.0)
+    >>> page(rk.free_rocking(block, rotation=0.1))[:15]
+    '<!DOCTYPE html>'
+    """
+    here = Path(__file__).parent
+    style, script, form = ((here / f"animation_page.{kind}").read_text(encoding="utf-8") for kind in ("css", "js", "html"))
+    policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'"
+    summary = response.summary[:1].upper() + response.summary[1:]
+    motion = response.motion
+    about = [
+        "free rocking, the ground at rest" if motion is None else motion.name,
+        *([f"{response.scale:g} times"] if response.scale != 1.0 else []),
+        f"restitution {response.rocker.label}",
+        f"engine {response.engine}",
+    ]
+    lifted = isinstance(motion, GroundMotion) and motion.vertical is not None
+    # "<" cannot end the script element early, whatever a motion is called
+    data = json.dumps(page_data(response), allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    return Template(form).substitute(
+        policy=html.escape(policy, quote=False),
+        title=html.escape(summary),
+        about=html.escape("; ".join(about)),
+        picture=html.escape(f"Animation of a {type(response.body).__name__} on moving ground: {response.summary}."),
+        count=response.impacts.size,
+        note="The vertical motion of the ground counts in the forces but is not drawn." if lifted else "",
+        style=style,
+        script=script,
+        data=data,
+    )
+
+
+def page_data(response: Response) -> dict[str, Any]:
+    """Return what the page draws: histories as little-endian float32 in base64, events to the last digit.
+
+    Parameters
+    ----------
+    response : Response
+        The response.
+
+    Returns
+    -------
+    dict
+        SI units; `rotation`, `velocity`, `ground` and `acceleration` at equal steps from 0 to `end`, both included.
+    """
+    scene = scene_of(response)
+    rocker, fall = response.rocker, response.overturning_time
+    impacts = response.impacts
+    signs = np.where(impacts["onto"] == "right", 1, -1)
+    columns = (impacts["time"], impacts["velocity_before"], impacts["velocity_after"], impacts["coefficient"], signs)
+    shape = scene.shape
+    return {
+        "outcome": response.summary,
+        "end": float(scene.time[-1]),
+        "rotation": _packed(scene.rotation),
+        "velocity": _packed(scene.velocity),
+        "ground": _packed(scene.ground),
+        "acceleration": _packed(scene.acceleration),
+        "impacts": [list(row) for row in zip(*(column.tolist() for column in columns), strict=True)],
+        "fall": None if np.isnan(fall) else fall,
+        "alpha": [rocker.left.slenderness_angle, rocker.right.slenderness_angle],
+        "regions": [{"shade": shade, "rings": [_short(ring) for ring in rings]} for shade, rings in shape.regions],
+        "points": _short(shape.points),
+        "feet": list(shape.feet),
+        "centre": list(shape.centre),
+        "follows": scene.follows,
+        "window": list(scene.window),
+    }
+
+
+def animate_gif(
+    response: Response,
+    path: str | Path,
+    fps: float = 25.0,
+    speed: float = 1.0,
+    progress: Callable[[int, int], object] | None = None,
+) -> Path:
+    """Write a GIF in which the body rocks, with the rotation below it.
+
+    Parameters
+    ----------
+    response : Response
+        What `simulate` or `free_rocking` returned.
+    path : str or Path
+        File ending in .gif.
+    fps : float
+        Frames in a second of playing, from 1 to 50; rounded so that a frame lasts whole hundredths of a second.
+    speed : float
+        Seconds of the response in a second of playing, from 0.01 to 100 [-].
+    progress : callable, optional
+        Called after each frame with the frames done and all frames.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    RockingError
+        If the name does not end in .gif, or the file cannot be written.
+    InvalidValueError
+        If a value is outside its range, or there would be more than 500 frames.
+    """
+    target = _target(path, ".gif")
+    lasts = round(100.0 / checks.within("fps", fps, 1.0, 50.0)) / 100.0
+    speed = checks.within("speed", speed, 0.01, 100.0)
+    end = shown_until(response)
+    count = int(np.ceil(end / (lasts * speed))) + 1
+    if count > MOST_FRAMES:
+        raise InvalidValueError(
+            f"a GIF has at most {MOST_FRAMES} frames, got {count}: {end:.3g} s of response at fps = {fps:g}; "
+            f"speed = {slowest_speed(response, fps):.3g} would do, or a web page"
+        )
+    try:
+        _film(response, target, lasts, lasts * speed, progress)
+    except OSError as error:
+        raise RockingError(f"cannot write {target}: {error.strerror or error}") from error
+    return target
+
+
+def slowest_speed(response: Response, fps: float = 25.0) -> float:
+    """Return the slowest speed at which a GIF of a response has few enough frames, at least real speed.
+
+    Parameters
+    ----------
+    response : Response
+        The response.
+    fps : float
+        Frames in a second of playing.
+
+    Returns
+    -------
+    float
+        Seconds of the response in a second of playing, rounded up to two digits behind the point [-].
+    """
+    lasts = round(100.0 / fps) / 100.0
+    return max(1.0, float(np.ceil(100.0 * shown_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)

@@ -1,0 +1,284 @@
+"use strict";
+const data = JSON.parse(document.getElementById("data").textContent);
+const element = (id) => document.getElementById(id);
+const unpacked = (words) => {
+  const bytes = Uint8Array.from(atob(words), (letter) => letter.charCodeAt(0));
+  const view = new DataView(bytes.buffer);
+  return Float32Array.from({ length: bytes.length / 4 }, (_, k) => view.getFloat32(4 * k, true));
+};
+const series = {};
+for (const name of ["rotation", "velocity", "ground", "acceleration"]) series[name] = unpacked(data[name]);
+const degrees = 180 / Math.PI;
+const last = series.rotation.length - 1;
+const reach = series.rotation.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+const hardest = series.acceleration.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+let now = 0, playing = false, before = null, colours = {};
+
+const at = (name, time) => {
+  const x = Math.min(Math.max(time / data.end, 0), 1) * last;
+  const k = Math.min(Math.floor(x), last - 1);
+  return series[name][k] + (series[name][k + 1] - series[name][k]) * (x - k);
+};
+const speed = () => Number(element("speed").value);
+const share = (theta) => theta / (theta > 0 ? data.alpha[1] : data.alpha[0]);
+// a minus sign, and none before a zero
+const fixed = (value, digits) => {
+  const text = Math.abs(value).toFixed(digits);
+  return value < 0 && Number(text) > 0 ? "\u2212" + text : text;
+};
+
+function sized(canvas, height) {
+  const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth;
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+  }
+  const pen = canvas.getContext("2d");
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  pen.font = "13px system-ui, 'DejaVu Sans', sans-serif";
+  return [pen, width, height];
+}
+
+function line(pen, points, colour, width, dashes) {
+  pen.beginPath();
+  points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+  pen.strokeStyle = colour;
+  pen.lineWidth = width;
+  pen.setLineDash(dashes || []);
+  pen.stroke();
+  pen.setLineDash([]);
+}
+
+function drawScene() {
+  const canvas = element("scene"), [x0, y0, x1, y1] = data.window;
+  const tall = (canvas.clientWidth * (y1 - y0)) / (x1 - x0);
+  const height = Math.round(Math.min(Math.max(tall, 220), Math.max(260, 0.46 * window.innerHeight)));
+  canvas.style.height = height + "px";
+  const [pen, w, h] = sized(canvas, height);
+  const floor = 46, scale = Math.min(w / (x1 - x0), (h - floor) / (y1 - Math.max(y0, 0)));
+  const moved = at("ground", now), camera = (x0 + x1) / 2 + (data.follows ? moved : 0);
+  const place = (x, y) => [w / 2 + (x - camera) * scale, h - floor - y * scale];
+  drawGround(pen, w, h, h - floor, scale, place, moved, camera);
+  const theta = at("rotation", now), pivot = theta > 0 ? data.feet[1] : data.feet[0];
+  const c = Math.cos(theta), s = Math.sin(theta);
+  const turned = ([x, y]) => place(pivot + c * (x - pivot) + s * y + moved, -s * (x - pivot) + c * y);
+  drawBody(pen, turned);
+  drawFlash(pen, place, moved);
+}
+
+function drawGround(pen, w, h, level, scale, place, moved, camera) {
+  line(pen, [[0, level], [w, level]], colours.ink, 1.5);
+  // hatches belong to the ground and move with it
+  const gap = 16 / scale, first = Math.floor((camera - w / 2 / scale - moved) / gap);
+  for (let k = first; k * gap < camera - moved + w / 2 / scale + gap; k++) {
+    const [x] = place(k * gap + moved, 0);
+    line(pen, [[x, level], [x - 8, level + 8]], colours.soft, 1);
+  }
+  // the ruler stands still
+  const step = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]
+    .find((one) => one * scale > 70) || 5000;
+  pen.fillStyle = colours.soft;
+  pen.textAlign = "center";
+  for (let k = Math.ceil((camera - w / 2 / scale) / step); k * step < camera + w / 2 / scale; k++) {
+    const [x] = place(k * step, 0);
+    line(pen, [[x, level + 14], [x, level + 20]], colours.soft, 1);
+    if (x > 25 && x < w - 25) pen.fillText(fixed(k * step, step < 0.01 ? 3 : step < 0.1 ? 2 : step < 1 ? 1 : 0) + " m", x, level + 35);
+  }
+  pen.textAlign = "left";
+  if (!hardest) return pen.fillText("the ground is at rest", 10, 20);
+  const push = at("acceleration", now), long = (60 * push) / hardest, from = [80, 36];
+  pen.fillText("ground acceleration " + fixed(push, 2) + " m/s\u00b2", 10, 20);
+  if (Math.abs(long) > 2) {
+    const tip = from[0] + long, back = tip - 6 * Math.sign(long);
+    line(pen, [from, [tip, from[1]]], colours.ink, 2);
+    line(pen, [[back, from[1] - 4], [tip, from[1]], [back, from[1] + 4]], colours.ink, 2);
+  }
+  return undefined;
+}
+
+function drawBody(pen, turned) {
+  for (const { shade, rings } of data.regions) {
+    pen.beginPath();
+    for (const ring of rings) {
+      ring.forEach((corner, k) => (k ? pen.lineTo(...turned(corner)) : pen.moveTo(...turned(corner))));
+      pen.closePath();
+    }
+    pen.globalAlpha = 0.35 + 0.65 * shade;
+    pen.fillStyle = colours.body;
+    pen.fill("evenodd");
+    pen.globalAlpha = 1;
+    pen.strokeStyle = colours.ink;
+    pen.lineWidth = 1.5;
+    pen.stroke();
+  }
+  if (data.points.length) {
+    const centre = turned(data.centre);
+    for (const foot of data.feet) line(pen, [turned([foot, 0]), centre], colours.soft, 1, [5, 4]);
+    line(pen, data.feet.map((foot) => turned([foot, 0])), colours.ink, 2);
+  }
+  pen.fillStyle = colours.ink;
+  for (const [x, y, mass] of data.points) {
+    pen.beginPath();
+    pen.arc(...turned([x, y]), 3 + 6 * Math.sqrt(mass), 0, 2 * Math.PI);
+    pen.fill();
+  }
+  const [x, y] = turned(data.centre), colour = data.points.length ? colours.rotation : colours.ink;
+  line(pen, [[x - 6, y], [x + 6, y]], colour, 1.5);
+  line(pen, [[x, y - 6], [x, y + 6]], colour, 1.5);
+}
+
+function drawFlash(pen, place, moved) {
+  // as long for the eye at any speed
+  const lasts = Math.max(0.4 * speed(), 0.02);
+  const recent = data.impacts.filter((impact) => impact[0] <= now && now < impact[0] + lasts);
+  if (!recent.length) return;
+  const [time, , , r, onto] = recent[recent.length - 1], age = (now - time) / lasts;
+  const [x, y] = place(data.feet[onto > 0 ? 1 : 0] + moved, 0);
+  pen.globalAlpha = 1 - 0.7 * age;
+  pen.beginPath();
+  pen.arc(x, y, 6 + 22 * age, Math.PI, 2 * Math.PI);
+  pen.strokeStyle = pen.fillStyle = colours.impact;
+  pen.lineWidth = 3;
+  pen.stroke();
+  pen.globalAlpha = 1;
+  pen.font = "bold 14px system-ui, 'DejaVu Sans', sans-serif";
+  const words = "r = " + r.toFixed(3), wide = pen.measureText(words).width;
+  const right = onto > 0 ? x + 12 + wide < pen.canvas.clientWidth : x - 12 - wide < 0;
+  pen.textAlign = right ? "left" : "right";
+  pen.fillText(words, right ? x + 12 : x - 12, y - 12);
+  pen.textAlign = "left";
+}
+
+function drawCurve() {
+  const canvas = element("curve"), [pen, w, h] = sized(canvas, canvas.clientHeight);
+  const left = 52, right = w - 12, top = 12, bottom = h - 26, most = top + bottom;
+  const falls = data.fall !== null;
+  // a fall is followed to twice the slenderness angle, small rocking fills the panel
+  const biggest = Math.max(...data.alpha);
+  const span = 1.12 * (falls ? 2 * biggest : Math.max(reach, reach > 0.2 * biggest || !reach ? biggest : 0));
+  const x = (time) => left + ((right - left) * time) / data.end;
+  const y = (theta) => most / 2 - ((bottom - top) / 2) * (theta / span);
+  pen.fillStyle = colours.soft;
+  line(pen, [[left, y(0)], [right, y(0)]], colours.line, 1);
+  pen.textAlign = "right";
+  pen.fillText("0\u00b0", left - 6, y(0) + 4);
+  for (const alpha of [data.alpha[1], -data.alpha[0]]) {
+    if (Math.abs(alpha) < span) {
+      line(pen, [[left, y(alpha)], [right, y(alpha)]], colours.soft, 1, [6, 4]);
+      pen.fillText(fixed(alpha * degrees, 1) + "\u00b0", left - 6, y(alpha) + 4);
+    } else pen.fillText(fixed(Math.sign(alpha) * reach * degrees, 1) + "\u00b0", left - 6, y(Math.sign(alpha) * reach) + 4);
+  }
+  pen.save();
+  pen.beginPath();
+  pen.rect(left, 0, right - left, bottom + 4);
+  pen.clip();
+  if (falls) line(pen, [[x(data.fall), 0], [x(data.fall), bottom]], colours.fall, 1.5, [4, 3]);
+  const points = [];
+  for (let k = 0; k <= last; k++) points.push([x((data.end * k) / last), y(series.rotation[k])]);
+  line(pen, points, colours.rotation, 1.8);
+  pen.restore();
+  pen.fillStyle = colours.impact;
+  for (const [time] of data.impacts) {
+    pen.beginPath();
+    pen.arc(x(time), y(0), 2.6, 0, 2 * Math.PI);
+    pen.fill();
+  }
+  pen.fillStyle = colours.soft;
+  pen.fillText(data.end.toFixed(1) + " s", right, h - 8);
+  pen.textAlign = "left";
+  pen.fillText("0 s", left, h - 8);
+  pen.textAlign = "center";
+  pen.fillText(w < 520 ? "rotation, impacts (dots)" : "rotation, impacts (dots), slenderness angle (dashed)", (left + right) / 2, h - 8);
+  line(pen, [[x(now), 4], [x(now), bottom]], colours.ink, 1.5);
+  pen.beginPath();
+  pen.fillStyle = colours.ink;
+  pen.arc(x(now), Math.min(Math.max(y(at("rotation", now)), 4), bottom), 4.5, 0, 2 * Math.PI);
+  pen.fill();
+  canvas.seek = (pixel) => ((pixel - left) / (right - left)) * data.end;
+}
+
+function draw() {
+  const theta = at("rotation", now);
+  element("now").textContent = now.toFixed(3) + " s";
+  element("rotation").textContent = fixed(theta * degrees, 3) + "\u00b0";
+  element("share").textContent = fixed(share(theta), 3);
+  element("velocity").textContent = fixed(at("velocity", now), 3) + " rad/s";
+  element("time").value = now / data.end;
+  element("time").setAttribute("aria-valuetext", now.toFixed(2) + " seconds, " + fixed(theta * degrees, 1) + " degrees");
+  drawScene();
+  drawCurve();
+}
+
+function frame(stamp) {
+  if (!playing) return;
+  if (before !== null) now += Math.min((stamp - before) / 1000, 0.1) * speed();
+  before = stamp;
+  if (now >= data.end) {
+    now = data.end;
+    play(false);
+  } else requestAnimationFrame(frame);
+  draw();
+}
+
+function play(wanted) {
+  if (wanted && now >= data.end) now = 0;
+  if (wanted && !playing) requestAnimationFrame(frame);
+  playing = wanted;
+  before = null;
+  element("play").textContent = playing ? "Pause" : "Play";
+  if (!playing) speak();
+}
+
+function speak() {
+  const theta = at("rotation", now);
+  element("spoken").textContent = "At " + now.toFixed(2) + " seconds the rotation is " + fixed(theta * degrees, 2) +
+    " degrees" + (now >= data.end ? "; the end: " + data.outcome : "") + ".";
+}
+
+function seek(time) {
+  now = Math.min(Math.max(time, 0), data.end);
+  play(false);
+  draw();
+}
+
+function paint() {
+  const style = getComputedStyle(document.documentElement);
+  for (const name of ["ink", "soft", "line", "body", "rotation", "impact", "fall"])
+    colours[name] = style.getPropertyValue("--" + name).trim();
+  draw();
+}
+
+for (const [time, first, second, r, onto] of data.impacts) {
+  const row = element("impacts").insertRow();
+  for (const text of [time.toFixed(4), fixed(first, 4), fixed(second, 4), r.toFixed(4), onto > 0 ? "right" : "left"])
+    row.insertCell().textContent = text;
+}
+element("play").addEventListener("click", () => play(!playing));
+element("time").addEventListener("input", (event) => seek(Number(event.target.value) * data.end));
+element("speed").addEventListener("change", draw);
+const curve = element("curve");
+const drag = (event) => seek(curve.seek(event.clientX - curve.getBoundingClientRect().left));
+curve.addEventListener("pointerdown", (event) => { curve.setPointerCapture(event.pointerId); drag(event); });
+curve.addEventListener("pointermove", (event) => { if (event.buttons) drag(event); });
+document.addEventListener("keydown", (event) => {
+  const where = event.target.tagName, stride = event.shiftKey ? 0.5 : 1 / 30;
+  if (event.ctrlKey || event.metaKey || event.altKey || where === "SELECT") return;
+  const does = {
+    " ": () => play(!playing),
+    ArrowRight: () => seek(now + stride),
+    ArrowLeft: () => seek(now - stride),
+    Home: () => seek(0),
+    End: () => seek(data.end),
+  }[event.key];
+  if (!does || (event.key === " " && (where === "BUTTON" || where === "SUMMARY"))) return;
+  event.preventDefault();
+  does();
+});
+window.addEventListener("resize", draw);
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", paint);
+paint();
+// page.html#t=1.5 opens at an instant
+const wanted = /^#t=([0-9.]+)$/.exec(window.location.hash);
+if (wanted) seek(Number(wanted[1]));
+else if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);

@@ -1,0 +1,169 @@
+"""What an animation shows: the body about its feet, the ground under it, and both at equal steps of time."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rocking.bodies import Block, Body, MassPoints, Section
+from rocking.conventions import FloatArray
+from rocking.dynamics.response import Response
+from rocking.plots.response_curves import ground_place, shown_until, velocity_at
+
+FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000
+"""Samples in a second, and in all."""
+
+_MARGIN = 0.10
+_FAR = 1.5
+_POSES = 400
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A body with its ground at y = 0 and the middle between its feet at x = 0.
+
+    Parameters
+    ----------
+    regions : list of (float, list of ndarray)
+        Density over the largest one, and rings: the outline and its holes [m].
+    points : ndarray, shape (n, 3)
+        Mass points (x, y) [m] with their mass over the largest one; none for a solid body.
+    feet : (float, float)
+        Left and right foot [m].
+    centre : (float, float)
+        Centre of mass [m].
+    """
+
+    regions: list[tuple[float, list[FloatArray]]]
+    points: FloatArray
+    feet: tuple[float, float]
+    centre: tuple[float, float]
+
+    @classmethod
+    def of(cls, body: Body) -> "Shape":
+        """Return the shape of a body.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+
+        Returns
+        -------
+        Shape
+            Moved to the middle between its feet.
+        """
+        left, right = body.local_feet
+        middle = 0.5 * (left + right)
+        moments = body.local_moments
+        solid = body.to_section() if isinstance(body, Block) else body
+        regions: list[tuple[float, list[FloatArray]]] = []
+        points = np.empty((0, 3))
+        if isinstance(solid, Section):
+            densest = max(region.density for region in solid.regions)
+            # a block turned into a section keeps its feet but not its frame
+            shift = np.array([0.5 * sum(solid.local_feet), 0.0])
+            regions = [(one.density / densest, [ring - shift for ring in one.rings]) for one in solid.regions]
+        elif isinstance(body, MassPoints):
+            points = np.column_stack([body.points - (middle, 0.0), body.masses / body.masses.max()])
+        return cls(regions, points, (left - middle, right - middle), (moments.x - middle, moments.y))
+
+    @property
+    def corners(self) -> FloatArray:
+        """Everything that the body reaches: vertices, points and feet [m]."""
+        parts = [ring for _, rings in self.regions for ring in rings]
+        feet = np.array([[foot, 0.0] for foot in self.feet])
+        return np.vstack([*parts, self.points[:, :2], feet, [self.centre]])
+
+    def turned(self, corners: FloatArray, rotation: float) -> FloatArray:
+        """Return points of the body after it has turned about the foot that it stands on.
+
+        Parameters
+        ----------
+        corners : ndarray, shape (n, 2)
+            Points of the body at rest [m].
+        rotation : float
+            theta, positive clockwise about the right foot [rad].
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            Where they are then [m].
+        """
+        pivot = np.array([self.feet[1] if rotation > 0.0 else self.feet[0], 0.0])
+        c, s = np.cos(rotation), np.sin(rotation)
+        return np.asarray((corners - pivot) @ np.array([[c, -s], [s, c]]) + pivot)
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A response at equal steps of time, and the window through which it is seen.
+
+    Parameters
+    ----------
+    shape : Shape
+        The body.
+    time : ndarray
+        Equal steps from zero to the end of what is shown [s].
+    rotation, velocity : ndarray
+        theta [rad] and theta' [rad/s].
+    ground, acceleration : ndarray
+        Displacement [m] and acceleration of the ground [m/s2].
+    follows : bool
+        Whether the window moves with the ground, since it moves farther than the body is large.
+    window : tuple of float
+        x_min, y_min, x_max, y_max [m].
+    """
+
+    shape: Shape
+    time: FloatArray = field(repr=False)
+    rotation: FloatArray = field(repr=False)
+    velocity: FloatArray = field(repr=False)
+    ground: FloatArray = field(repr=False)
+    acceleration: FloatArray = field(repr=False)
+    follows: bool
+    window: tuple[float, float, float, float]
+
+
+def scene_of(response: Response, step: float | None = None) -> Scene:
+    """Return the scene of a response.
+
+    Parameters
+    ----------
+    response : Response
+        The response.
+    step : float, optional
+        Step of time; if not given, 120 samples a second or fewer [s].
+
+    Returns
+    -------
+    Scene
+        From its start to where nothing happens any more.
+    """
+    end = shown_until(response)
+    if step is None:
+        time = np.linspace(0.0, end, max(2, min(int(end * FASTEST_RATE), MOST_SAMPLES)))
+    else:
+        time = np.append(np.arange(0.0, end, step), end)
+    shape = Shape.of(response.body)
+    rotation, ground = response.at(time), ground_place(response, time)
+    follows, window = _window(shape, rotation, ground)
+    acceleration = np.interp(time, response.time, response.ground_acceleration)
+    return Scene(shape, time, rotation, velocity_at(response, time), ground, acceleration, follows, window)
+
+
+def _window(
+    shape: Shape, rotation: FloatArray, ground: FloatArray
+) -> tuple[bool, tuple[float, float, float, float]]:
+    corners = shape.corners
+    poses = np.unique(np.linspace(0, rotation.size - 1, _POSES).astype(np.int64))
+    # with the two ends of the swing, which fall between the poses of a long history
+    poses = np.append(poses, [rotation.argmin(), rotation.argmax()])
+    turned = [shape.turned(corners, float(rotation[k])) for k in poses]
+    low = np.min([pose.min(axis=0) for pose in turned], axis=0)
+    high = np.max([pose.max(axis=0) for pose in turned], axis=0)
+    follows = bool(np.ptp(ground) > _FAR * max(high - low))
+    if not follows:
+        low[0] = min(pose[:, 0].min() + ground[k] for k, pose in zip(poses, turned, strict=True))
+        high[0] = max(pose[:, 0].max() + ground[k] for k, pose in zip(poses, turned, strict=True))
+    room = _MARGIN * max(high - low)
+    return follows, (float(low[0] - room), float(min(low[1], 0.0) - room), float(high[0] + room), float(high[1] + room))

@@ -1,0 +1,190 @@
+"""A response: the ground, the rotation, the velocity, where the energy goes, and the friction that it takes."""
+
+from textwrap import wrap
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.response import Response
+from rocking.plots.response_curves import Curves, ground_curve, motion_curves, over_slenderness, shown_until
+from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_ROTATION, _VELOCITY, _IMPACT, _FALL = "#0072B2", "#009E73", "#D55E00", "#CC79A7"
+_KINETIC, _POTENTIAL, _LOST, _WORK = "#E69F00", "#0072B2", "#D55E00", "#222222"
+_BEYOND = 2.2
+"""How far a falling body is followed, in slenderness angles: what came before stays visible."""
+
+_SMALL = 0.2
+"""Below this share of the slenderness angle the rotation fills its panel and +-1 is left out."""
+
+_WIDTH, _LONGEST_LINE = 88, 118
+"""Characters that fit into one line of the title, and of the small print below it."""
+
+
+@in_journal_style
+def response_picture(response: Response, friction: float = 0.5) -> "Figure":
+    """Draw a response: ground acceleration, rotation, angular velocity, energy, friction.
+
+    Parameters
+    ----------
+    response : Response
+        What `simulate` or `free_rocking` returned.
+    friction : float
+        Coefficient of friction between body and ground, drawn beside what the response takes [-].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Five panels over one time axis.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> pulse = rk.pulses.sine(amplitude=3.0, period=0.8)
+    >>> len(response_picture(rk.simulate(rk.Block(width=0.5, height=2.0), pulse)).axes)
+    5
+    """
+    friction = checks.positive("friction", friction)
+    ratios = [0.75, 1.7, 0.9, 1.2, 0.8]
+    figure, axes = new_figure(DOUBLE, 7.0, rows=5, sharex=True, height_ratios=ratios)
+    first, *others = _title(response)
+    figure.suptitle("\n".join(wrap(first, _WIDTH)), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    axes[0].set_title("\n".join(others), loc="left", fontsize=7.5, color=INK)
+    curves = motion_curves(response)
+    _ground(axes[0], response)
+    _rotation(axes[1], response, curves)
+    _velocity(axes[2], response, curves)
+    _energy(axes[3], response)
+    _friction(axes[4], response, friction)
+    for panel in axes:
+        panel.locator_params(axis="y", nbins=5)
+        if not np.isnan(response.overturning_time):
+            panel.axvline(response.overturning_time, color=_FALL, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1)
+    axes[0].set_xlim(0.0, shown_until(response))
+    axes[-1].set_xlabel("time [s]")
+    figure.align_ylabels(axes)
+    return figure
+
+
+def _title(response: Response) -> list[str]:
+    motion = response.motion
+    ground = "free rocking, the ground at rest" if motion is None else " ".join(motion.name.split())
+    if response.scale != 1.0:
+        ground = f"{response.scale:g} times {ground}"
+    summary = response.summary[:1].upper() + response.summary[1:]
+    lines = [summary, ground, f"restitution: {response.rocker.label};  engine: {response.engine}"]
+    short = [line if len(line) <= _LONGEST_LINE else line[: _LONGEST_LINE - 3] + "..." for line in lines]
+    return [line.replace("$", r"\$") for line in short]
+
+
+def _ground(axes: "Axes", response: Response) -> None:
+    time, values = ground_curve(response)
+    axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    axes.plot(time, values, color=INK, linewidth=0.7)
+    if not values.any():
+        axes.set_ylim(-1.0, 1.0)
+    axes.set_ylabel("ground\nacceleration\n[m/s$^2$]")
+
+
+def _rotation(axes: "Axes", response: Response, curves: Curves) -> None:
+    values = over_slenderness(response, curves.rotation)
+    axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    axes.plot(curves.time, values, color=_ROTATION, linewidth=1.0, zorder=3)
+    times = response.impacts["time"]
+    if times.size:
+        axes.plot(
+            times, np.zeros(times.size), marker="o", markersize=3.2, markerfacecolor="white", color=_IMPACT,
+            linestyle="none", zorder=4, label=f"impacts ({times.size})",
+        )  # fmt: skip
+    peak = float(np.abs(values).max(initial=0.0))
+    if 0.0 < peak < _SMALL:
+        axes.set_ylim(-1.25 * peak, 1.25 * peak)
+        axes.set_title(r"the slenderness angle, $\pm$1, lies far outside this panel", loc="right", fontsize=7)
+    else:
+        for level in (-1.0, 1.0):
+            axes.axhline(level, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
+        axes.set_ylim(*_reach(values, response.outcome is Outcome.OVERTURNED))
+    if response.outcome is Outcome.OVERTURNED:
+        axes.plot([], [], color=_FALL, linewidth=0.9, linestyle=(0, (4, 2)), label="past the point of no return")
+    if times.size or response.outcome is Outcome.OVERTURNED:
+        _legend(axes, 2)
+    axes.set_ylabel("rotation /\nslenderness\nangle [-]")
+
+
+def _reach(values: FloatArray, falls: bool) -> tuple[float, float]:
+    most = _BEYOND if falls else np.inf
+    low, high = max(float(values.min(initial=-1.0)), -most), min(float(values.max(initial=1.0)), most)
+    return 1.15 * low, 1.15 * high
+
+
+def _velocity(axes: "Axes", response: Response, curves: Curves) -> None:
+    axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    axes.plot(curves.time, curves.velocity, color=_VELOCITY, linewidth=0.9)
+    _limits(axes, response, curves.time, [curves.velocity])
+    axes.set_ylabel("angular\nvelocity\n[rad/s]")
+
+
+def _energy(axes: "Axes", response: Response) -> None:
+    energy = response.energy
+    rows = (
+        ("kinetic", energy.kinetic, _KINETIC, "-"),
+        ("potential", energy.potential, _POTENTIAL, "--"),
+        ("lost at impacts", energy.lost, _LOST, "-."),
+        ("work of the ground", energy.work, _WORK, ":"),
+    )
+    unit, factor = _unit(response, [values for _, values, _, _ in rows])
+    axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
+    for label, values, color, line in rows:
+        axes.plot(energy.time, factor * values, color=color, linestyle=line, linewidth=0.9, label=label)
+    _limits(axes, response, energy.time, [factor * values for _, values, _, _ in rows])
+    _legend(axes, 4)
+    axes.set_ylabel(f"energy\n[{unit}]")
+
+
+def _unit(response: Response, histories: list[FloatArray]) -> tuple[str, float]:
+    until = ~(response.energy.time > response.overturning_time)
+    most = max(float(np.abs(values[until]).max()) for values in histories)
+    for unit, factor in (("MJ", 1e-6), ("kJ", 1e-3)):
+        if most * factor >= 1.0:
+            return unit, factor
+    return "J", 1.0
+
+
+def _friction(axes: "Axes", response: Response, friction: float) -> None:
+    contact = response.contact
+    standing = ~(contact.time > response.overturning_time)
+    touching = standing & (contact.vertical > 0.0)
+    demand = np.full(contact.time.size, np.nan)
+    demand[touching] = np.abs(contact.horizontal[touching]) / contact.vertical[touching]
+    axes.plot(contact.time, demand, color=INK, linewidth=0.8, label="taken between impacts")
+    most = np.nanmax(demand, initial=friction)
+    if response.impacts.size:
+        axes.axhline(contact.friction_of_impacts, color=_IMPACT, linewidth=0.9, linestyle="-.", label="at impacts")
+        most = max(most, contact.friction_of_impacts)
+    axes.axhline(friction, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)), label=f"friction {friction:g}")
+    axes.set_ylim(0.0, 1.15 * min(most, 4.0 * friction + contact.friction_of_impacts))
+    if contact.loses_contact:
+        axes.set_title("the vertical force falls to zero", loc="right", fontsize=7, color=_IMPACT)
+    _legend(axes, 3)
+    axes.set_ylabel("friction\ntaken [-]")
+
+
+def _limits(axes: "Axes", response: Response, time: FloatArray, values: list[FloatArray]) -> None:
+    """Fit a panel to what happens before the body falls for good."""
+    until = ~(time > response.overturning_time)
+    low = min(float(part[until].min(initial=0.0)) for part in values)
+    high = max(float(part[until].max(initial=0.0)) for part in values)
+    room = 0.12 * (high - low) or 1.0
+    axes.set_ylim(low - room, high + room)
+
+
+def _legend(axes: "Axes", columns: int) -> None:
+    # above the panel, where no curve runs
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.0, borderpad=0.2)
