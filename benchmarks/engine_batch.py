@@ -56,10 +56,13 @@ class Histories:
         return Rows.of(len(self), np.arange(len(self)) if motion is None else motion, scale=self.scale, **values)
 
 
-def histories(count: int = COUNT, seed: int = 2024) -> Histories:
-    """Blocks of R 0.2 to 10 m and slenderness 2 to 10; scaled so that about a third each rests, rocks, overturns."""
+def histories(count: int = COUNT, seed: int = 2024, highest: float = 8.0) -> Histories:
+    """Blocks of R 0.2 to 10 m and slenderness 2 to 10; scaled so that about a third each rests, rocks, overturns.
+
+    Records with frequencies above `highest` [Hz] make blocks chatter, with an impact every few samples.
+    """
     rng = np.random.default_rng(seed)
-    records = [record(rng) for _ in range(count)]
+    records = [record(rng, highest) for _ in range(count)]
     size = 10.0 ** rng.uniform(np.log10(0.2), 1.0, count)
     slenderness = rng.uniform(2.0, 10.0, count)
     alpha = np.arctan(1.0 / slenderness)
@@ -70,17 +73,18 @@ def histories(count: int = COUNT, seed: int = 2024) -> Histories:
     return Histories(records, alpha, np.sqrt(0.75 * g / size), 1.0 - 1.5 * np.sin(alpha) ** 2, size, scale)
 
 
-def record(rng: np.random.Generator) -> np.ndarray:
-    """White noise through a soil layer (Kanai-Tajimi) and a high-pass, under an envelope; peak of about 1 m/s2."""
+def record(rng: np.random.Generator, highest: float) -> np.ndarray:
+    """White noise through a soil layer (Kanai-Tajimi), a high-pass and a low-pass, under an envelope; peak 1 m/s2."""
     from scipy.signal import bilinear, lfilter
 
     duration = rng.uniform(8.0, 40.0)
     time = np.arange(0.0, duration, STEP)
-    soil, low = 2.0 * np.pi * rng.uniform(0.8, 4.0), 2.0 * np.pi * 0.15
+    soil, low, high = 2.0 * np.pi * rng.uniform(0.6, 3.0), 2.0 * np.pi * 0.15, 2.0 * np.pi * highest
     noise = rng.standard_normal(time.size)
     for top, bottom in (
         ([1.2 * soil, soil**2], [1.0, 1.2 * soil, soil**2]),
         ([1.0, 0.0, 0.0], [1.0, 1.4 * low, low**2]),
+        ([high**2], [1.0, 1.4 * high, high**2]),
     ):
         noise = lfilter(*bilinear(top, bottom, 1.0 / STEP), noise)
     rise, fall = 0.15 * duration, 0.5 * duration

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 Foot = Literal["left", "right"]
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
 
 g: Final = 9.80665
 """Standard gravity [m/s2] (exact by definition, 3rd CGPM 1901)."""

@@ -31,3 +31,7 @@ class RecordError(RockingError):
 
 class MissingExtraError(RockingError, ImportError):
     """A feature needs an optional dependency that is not installed."""
+
+
+class SlowEngineWarning(UserWarning):
+    """The fast engine was not built, and the reference engine serves in its place."""

@@ -211,10 +211,11 @@ def moved(case: Case, random: np.random.Generator) -> Case:
     jitter = 1.0 + 1e-12 * random.choice([-1.0, 1.0], np.size(case.push))
     lift = None if case.lift is None else np.asarray(case.lift) * (1.0 + 1e-12 * random.choice([-1.0, 1.0]))
     row = {key: value * signs[key] for key, value in case.row.items()}
-    return replace(case, row=row, push=np.asarray(case.push) * jitter, lift=lift)
+    step = case.step * (1.0 + 1e-12 * random.choice([-1.0, 1.0]))
+    return replace(case, row=row, push=np.asarray(case.push) * jitter, lift=lift, step=step)
 
 
-def spread(case: Case, settings: Settings, tries: int = 8) -> tuple[bool, float]:
+def spread(case: Case, settings: Settings, tries: int = 12) -> tuple[bool, float]:
     """Whether the reference changes its mind about moved copies of a case, and by how much its peak moves."""
     random = np.random.default_rng(1)
     found = results([case, *(moved(case, random) for _ in range(tries))], settings, "reference")

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,6 @@ from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.reference import Reference
 from rocking.dynamics.rocker import Rocker, RockingSide
-from rocking.dynamics.run import ENGINES
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -106,18 +105,15 @@ class Batch:
     """
 
     motions: Sequence[Segments]
-    law: ImpactLaw = ConstantRestitution()
-    settings: Settings = Settings()
+    law: ImpactLaw = field(default_factory=ConstantRestitution)
+    settings: Settings = field(default_factory=Settings)
     threads: int | None = None
     engine: str = "auto"
 
     def __post_init__(self) -> None:
-        """Check engine and threads."""
-        if self.engine not in ENGINES:
-            raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {self.engine!r}")
-        if self.threads is not None and (
-            isinstance(self.threads, bool) or not isinstance(self.threads, int) or self.threads < 1
-        ):
+        """Check the threads."""
+        threads: object = self.threads
+        if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
             raise InvalidValueError(f"threads must be a whole number >= 1, got {self.threads!r}")
 
     def run(
@@ -143,7 +139,7 @@ class Batch:
         """
         results = fast_engine.empty_results(count)
         total: dict[str, int] = {}
-        quick = self.engine != "reference" and (self.engine == "fast" or fast_engine.available())
+        quick = fast_engine.chosen(self.engine) == "fast"
         library = fast_engine.Library(list(self.motions)) if quick else None
         for first in range(0, count, PIECE):
             last = min(first + PIECE, count)
@@ -180,9 +176,10 @@ class Batch:
         run = reference.run(row["rotation"], row["velocity"])
         uplift = next((e.time for e in run.events if e.kind == 0), np.nan)
         return {
-            "outcome": run.outcome.code, "status": run.status.code, "side": run.side, "peak_rotation": run.peak_rotation,
-            "peak_time": run.peak_time, "peak_velocity": run.peak_angular_velocity, "first_uplift": uplift,
-            "overturning_time": run.overturning_time, "error": run.error, "impacts": run.impacts, "uplifts": run.uplifts,
+            "outcome": run.outcome.code, "status": run.status.code, "side": run.side, "error": run.error,
+            "peak_rotation": run.peak_rotation, "peak_time": run.peak_time, "peak_velocity": run.peak_angular_velocity,
+            "first_uplift": uplift, "overturning_time": run.overturning_time,
+            "impacts": run.impacts, "uplifts": run.uplifts,
         }  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """The fast engine as Python sees it: whether it is there, and arrays in and out."""
 
 import os
+import warnings
 from functools import cache
 from types import ModuleType
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 from rocking.motions.segments import Segments
 
 Arrays = dict[str, Any]
@@ -22,6 +23,14 @@ RESULTS: dict[str, Any] = {
     "impacts": np.int64, "uplifts": np.int64,
 }  # fmt: skip
 """What the fast engine reports for every history."""
+
+
+ENGINES = ("auto", "fast", "reference")
+"""What can be asked for."""
+
+_NOT_BUILT = (
+    "the fast engine was not built: it takes a C++17 compiler when rocking is installed (in a checkout, `make engine`)"
+)
 
 
 @cache
@@ -42,6 +51,36 @@ def available() -> bool:
         True if it is there; otherwise the reference engine serves.
     """
     return _module() is not None
+
+
+def chosen(asked: str) -> str:
+    """Return which engine will run, and say so once if it is not the one that users expect.
+
+    Parameters
+    ----------
+    asked : {"auto", "fast", "reference"}
+        What was asked for.
+
+    Returns
+    -------
+    str
+        "fast" or "reference".
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such engine.
+    MissingExtraError
+        If the fast one was asked for and not built.
+    """
+    if asked not in ENGINES:
+        raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {asked!r}")
+    if asked == "fast":
+        module()
+    if asked == "auto" and not available():
+        warnings.warn(f"{_NOT_BUILT}; the reference engine runs instead", SlowEngineWarning, stacklevel=4)
+        return "reference"
+    return "fast" if asked == "auto" else asked
 
 
 def instruction_sets() -> list[str]:
@@ -89,10 +128,7 @@ def module() -> ModuleType:
     """
     found = _module()
     if found is None:
-        raise MissingExtraError(
-            "the fast engine was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
-            '`make engine`); engine="reference" gives the same results, slowly'
-        )
+        raise MissingExtraError(f'{_NOT_BUILT}; engine="reference" gives the same results, slowly')
     return found
 
 

@@ -159,7 +159,7 @@ def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) 
     return np.asarray(angle - (np.sqrt(2.0 * left) if linear else 2.0 * np.arcsin(np.sqrt(0.5 * left))))
 
 
-def reactions(
+def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of the equations
     rotation: Any,
     angular_velocity: Any,
     acceleration: Any,

@@ -134,7 +134,7 @@ def to_xarray(response: "Response") -> "xr.Dataset":
     xarray = extra("xarray", "a labelled dataset")
     values = columns(response)
     about = {name: {"units": unit, "long_name": words} for name, unit, words in _COLUMNS}
-    data = {name: ("time", value, about[name]) for name, value in values.items() if name != "time"}
+    data: dict[str, Any] = {name: ("time", value, about[name]) for name, value in values.items() if name != "time"}
     units = {"time": "s", "velocity_before": "rad/s", "velocity_after": "rad/s", "coefficient": "1"}
     for name, unit in units.items():
         data[f"impact_{name}"] = ("impact", response.impacts[name], {"units": unit})

@@ -101,8 +101,8 @@ class SpeedRestitution(ImpactLaw):
 
     Examples
     --------
-    >>> SpeedRestitution([0.0, 1.0], [0.95, 0.85]).factor(0.5, 0, 0)
-    0.9
+    >>> SpeedRestitution([0.0, 1.0], [0.75, 0.25]).factor(0.5, 0, 0)
+    0.5
     """
 
     kind: ClassVar[int] = 1
@@ -173,7 +173,8 @@ class RandomRestitution(ImpactLaw):
         quantiles = _factors(self.factors, None)
         if np.any(np.diff(quantiles) < 0.0):
             raise InvalidValueError("factors must be quantiles, which never decrease")
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed <= _MASK:
+        seed: object = self.seed
+        if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed <= _MASK:
             raise InvalidValueError(f"seed must be a whole number in [0, 2^64), got {self.seed!r}")
         object.__setattr__(self, "factors", quantiles)
         object.__setattr__(self, "at", np.linspace(0.0, 1.0, quantiles.size))

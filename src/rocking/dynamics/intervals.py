@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics import equations
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
@@ -189,7 +189,7 @@ def _nodes(trajectory: Trajectory, step: float) -> tuple[FloatArray, FloatArray,
     return times[order], np.concatenate([samples, before])[order], np.concatenate([samples, after])[order]
 
 
-def _evaluated(polynomials: FloatArray, stretch: FloatArray, tau: FloatArray) -> FloatArray:
+def _evaluated(polynomials: FloatArray, stretch: IntArray, tau: FloatArray) -> FloatArray:
     c = polynomials[stretch]
     total = np.zeros_like(tau)
     for k in range(c.shape[1] - 1, -1, -1):

@@ -36,7 +36,7 @@ class ResponseEnergy:
     def gap(self) -> FloatArray:
         """What does not add up: kinetic + potential + lost - work - initial [J]."""
         stored = self.kinetic + self.potential
-        return stored + self.lost - self.work - stored[0]
+        return np.asarray(stored + self.lost - self.work - stored[0], dtype=np.float64)
 
     @property
     def closure(self) -> float:

@@ -9,11 +9,11 @@ from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.export import extra
+from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
-from rocking.dynamics.simulate import settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse

@@ -206,7 +206,7 @@ class Reference:
         return None
 
     def _conclude(self) -> _Ended:
-        """The motion is over: energy decides."""
+        """Let energy decide: the motion is over."""
         linear = self.settings.linear
         self._raise_peak(self._alpha - self.u, self._now)
         top = float(equations.energy_at_top(self._alpha, linear=linear))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-Motion = Union[GroundMotion, Pulse]
+Motion = GroundMotion | Pulse
 
 IMPACT = np.dtype(
     [("time", "f8"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("coefficient", "f8"), ("onto", "U5")]
@@ -77,7 +77,7 @@ class Response:
     @cached_property
     def time(self) -> FloatArray:
         """Times of the samples, to the end or until the body lies [s]."""
-        return np.arange(self._finite) * self.segments.step
+        return np.asarray(np.arange(self._finite) * self.segments.step, dtype=np.float64)
 
     @property
     def rotation(self) -> FloatArray:

@@ -148,7 +148,7 @@ class Window:
     steepness: float
 
 
-def comes_to_rest(
+def comes_to_rest(  # noqa: PLR0911, PLR0917 - each way out is a reason
     rocker: Rocker, ground: Ground, sign: int, after: float, stretch: int, tau: float, rest_speed: float
 ) -> bool:
     """Return whether the impacts to come provably add up to rest before the body could rise again.

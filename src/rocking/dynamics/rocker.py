@@ -7,7 +7,7 @@ from typing import Any
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import FEET, Foot
+from rocking.conventions import FEET
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
@@ -102,7 +102,8 @@ class Rocker:
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients, label = coefficients_of(base, body)
         if law.kind:
-            label = f"{('', 'of the speed', 'at random')[law.kind]}: {law.factors.min():.4g} to {law.largest:.4g} times {label}"
+            how = ("", "of the speed", "at random")[law.kind]
+            label = f"{how}: {law.factors.min():.4g} to {law.largest:.4g} times {label}"
         sides = {foot: body.side(foot, gravity) for foot in FEET}
         for foot, other in (("left", "right"), ("right", "left")):
             most = math.sqrt(sides[other].moment_of_inertia / sides[foot].moment_of_inertia)  # type: ignore[index]
@@ -149,8 +150,8 @@ def coefficients_of(restitution: Any, body: Body) -> tuple[dict[str, float], str
     if isinstance(restitution, Mapping):
         if set(restitution) != set(FEET):
             raise InvalidValueError(f'restitution by side is {{"left": r, "right": r}}, got {restitution!r:.60}')
-        pair: dict[Foot, float] = {foot: _coefficient(f"restitution[{foot!r}]", restitution[foot]) for foot in FEET}
-        return dict(pair), f"left {pair['left']:.6g}, right {pair['right']:.6g}"
+        pair: dict[str, float] = {foot: _coefficient(f"restitution[{foot!r}]", restitution[foot]) for foot in FEET}
+        return pair, f"left {pair['left']:.6g}, right {pair['right']:.6g}"
     r = _coefficient("restitution", restitution)
     return dict.fromkeys(FEET, r), f"{r:.6g}"
 

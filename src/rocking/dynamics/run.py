@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -12,11 +11,7 @@ from rocking.dynamics.response import Response
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import Trajectory
-from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
-
-Engine = Literal["auto", "fast", "reference"]
-ENGINES = ("auto", "fast", "reference")
 
 
 def run(
@@ -53,15 +48,8 @@ def run(
     -------
     Trajectory
         The history.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such engine.
     """
-    if engine not in ENGINES:
-        raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {engine!r}")
-    if engine == "reference" or (engine == "auto" and not fast_engine.available()):
+    if fast_engine.chosen(engine) == "reference":
         made = Reference(rocker, segments, settings, scale=scale, key=key)
         return made.run(rotation, velocity)
     from rocking.dynamics.fast import run_fast

@@ -51,9 +51,11 @@ class Settings:
         checks.within("rest_speed", self.rest_speed, 0.0, 0.1, hint="the flights must be short for the sum to hold")
         checks.within("longest_step", self.longest_step, 1e-6, 1.0)
         checks.within("tolerance", self.tolerance, 1e-17, 1e-3)
-        if isinstance(self.most_impacts, bool) or not isinstance(self.most_impacts, int) or self.most_impacts < 1:
+        most: object = self.most_impacts
+        if isinstance(most, bool) or not isinstance(most, int) or most < 1:
             raise InvalidValueError(f"most_impacts must be a whole number >= 1, got {self.most_impacts!r}")
-        if not isinstance(self.linear, bool):
+        linear: object = self.linear
+        if not isinstance(linear, bool):
             raise InvalidValueError(f"linear must be True or False, got {self.linear!r}")
         if self.order not in ORDERS:
             raise InvalidValueError(f"order must be one of {ORDERS}, got {self.order!r}")

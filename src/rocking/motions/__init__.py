@@ -1,6 +1,40 @@
 """What shakes: records, pulses, synthetic motions, and what is measured on them."""
 
+from rocking.motions import pulses, synthetic
+from rocking.motions.intensity import Measure, intensity_measures
+from rocking.motions.kinematics import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
+from rocking.motions.processing import bandpassed, demeaned, detrended, tapered
+from rocking.motions.pulse import Pulse
+from rocking.motions.resampling import padded, resampled, trimmed, trimmed_to_significant
+from rocking.motions.rotation import rotated, rotd_pga
+from rocking.motions.scaling import scaled_to_pga, scaled_to_pgv, scaled_to_sa
 from rocking.motions.segments import Segments
+from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
 
-__all__ = ["GroundMotion", "Segments"]
+__all__ = [
+    "GroundMotion",
+    "Measure",
+    "Pulse",
+    "ResponseSpectrum",
+    "Segments",
+    "bandpassed",
+    "demeaned",
+    "detrended",
+    "ground_displacement",
+    "ground_velocity",
+    "intensity_measures",
+    "padded",
+    "pulses",
+    "resampled",
+    "response_spectrum",
+    "rotated",
+    "rotd_pga",
+    "scaled_to_pga",
+    "scaled_to_pgv",
+    "scaled_to_sa",
+    "synthetic",
+    "tapered",
+    "trimmed",
+    "trimmed_to_significant",
+]

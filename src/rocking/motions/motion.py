@@ -106,7 +106,7 @@ class GroundMotion:
     @property
     def time(self) -> FloatArray:
         """Times of the samples [s]."""
-        return np.arange(len(self)) * self.time_step
+        return np.asarray(np.arange(len(self)) * self.time_step, dtype=np.float64)
 
     @property
     def peak(self) -> float:

@@ -200,7 +200,8 @@ def type_c(amplitude: float, period: float, n: int = 1) -> Sinusoids:
     InvalidValueError
         If n is not a whole number from 1 to 1000.
     """
-    if isinstance(n, bool) or not isinstance(n, int) or not 1 <= n <= 1000:
+    given: object = n
+    if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= 1000:
         raise InvalidValueError(f"n must be a whole number in [1, 1000], got {n!r}")
     phase = _closing_phase(n)
     return _windowed(f"type C{n} pulse", amplitude, period, 0.5 * math.pi + phase, n + 0.5 - phase / math.pi)

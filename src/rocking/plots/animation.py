@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,20 +16,14 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
-from rocking.plots.animation_scene import Scene, Shape, scene_of
-from rocking.plots.response_curves import over_slenderness, shown_until
-from rocking.plots.style import GREY, INK, PALE, in_journal_style
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from rocking.plots.animation_film import film
+from rocking.plots.animation_scene import scene_of
+from rocking.plots.response_curves import shown_until
 
 MOST_FRAMES = 500
 """Frames of a GIF: more would make a file that no page wants to carry."""
 
-_DOTS, _WIDTH, _SCENE_TOP, _CURVE = 100, 4.8, 0.42, 1.15
-_LEAST_SCENE, _MOST_SCENE = 1.6, 3.6
+_FORM = Path(__file__).parent
 
 
 def animate_html(response: Response, path: str | Path) -> Path:
@@ -83,8 +77,8 @@ def page(response: Response) -> str:
     >>> page(rk.free_rocking(block, rotation=0.1))[:15]
     '<!DOCTYPE html>'
     """
-    here = Path(__file__).parent
-    style, script, form = ((here / f"animation_page.{kind}").read_text(encoding="utf-8") for kind in ("css", "js", "html"))
+    kinds = ("css", "js", "html")
+    style, script, form = ((_FORM / f"animation_page.{kind}").read_text(encoding="utf-8") for kind in kinds)
     policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'"
     summary = response.summary[:1].upper() + response.summary[1:]
     motion = response.motion
@@ -193,7 +187,7 @@ def animate_gif(
             f"speed = {slowest_speed(response, fps):.3g} would do, or a web page"
         )
     try:
-        _film(response, target, lasts, lasts * speed, progress)
+        film(response, target, lasts, lasts * speed, progress)
     except OSError as error:
         raise RockingError(f"cannot write {target}: {error.strerror or error}") from error
     return target
@@ -216,3 +210,24 @@ def slowest_speed(response: Response, fps: float = 25.0) -> float:
     """
     lasts = round(100.0 / fps) / 100.0
     return max(1.0, float(np.ceil(100.0 * shown_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
+
+
+def _target(path: str | Path, suffix: str) -> Path:
+    target = Path(path)
+    if target.suffix.lower() != suffix:
+        raise RockingError(f"this animation is a {suffix} file, got {target.name!r}")
+    return target
+
+
+def _hash(words: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(words.encode()).digest()).decode()}'"
+
+
+def _packed(values: FloatArray) -> str:
+    return base64.b64encode(values.astype("<f4").tobytes()).decode()
+
+
+def _short(points: FloatArray) -> list[list[float]]:
+    # a tenth of a millionth of the body is below anything that can be seen
+    unit = 10.0 ** np.floor(np.log10(np.abs(points).max(initial=0.0) or 1.0) - 6.0)
+    return [[float(f"{value:.7g}") for value in row] for row in (np.round(points / unit) * unit).tolist()]

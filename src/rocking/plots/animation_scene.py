@@ -151,9 +151,7 @@ def scene_of(response: Response, step: float | None = None) -> Scene:
     return Scene(shape, time, rotation, velocity_at(response, time), ground, acceleration, follows, window)
 
 
-def _window(
-    shape: Shape, rotation: FloatArray, ground: FloatArray
-) -> tuple[bool, tuple[float, float, float, float]]:
+def _window(shape: Shape, rotation: FloatArray, ground: FloatArray) -> tuple[bool, tuple[float, float, float, float]]:
     corners = shape.corners
     poses = np.unique(np.linspace(0, rotation.size - 1, _POSES).astype(np.int64))
     # with the two ends of the swing, which fall between the poses of a long history

@@ -20,7 +20,7 @@ _FINE, _AFTER = 0.05, 15.0
 _MOST_SAMPLES = 2_000_000
 
 
-def simulate(
+def simulate(  # noqa: PLR0913 - every one of them is a question that users ask
     body: Body,
     motion: Motion,
     restitution: Any = "ked",
@@ -149,7 +149,7 @@ def free_rocking(
     >>> import rocking as rk
     >>> block = rk.Block(width=1.0, height=4.0)
     >>> response = rk.free_rocking(block, rotation=0.5 * block.slenderness_angle, restitution=0.9, gravity=9.81)
-    >>> round(4.0 * response.impacts["time"][0], 9)
+    >>> round(4.0 * float(response.impacts["time"][0]), 9)
     2.793372816
     """
     settings = settings_of(gravity, options)
