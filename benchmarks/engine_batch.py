@@ -67,7 +67,7 @@ def histories(count: int = COUNT, seed: int = 2024, highest: float = 8.0) -> His
     slenderness = rng.uniform(2.0, 10.0, count)
     alpha = np.arctan(1.0 / slenderness)
     # what a block needs to overturn grows with its size against the period of the shaking
-    severity = np.exp(rng.normal(0.35, 0.75, count)) * (0.9 + 0.35 * size**0.6)
+    severity = np.exp(rng.normal(0.05, 0.75, count)) * (0.9 + 0.35 * size**0.6)
     peaks = np.array([np.abs(each).max() for each in records])
     scale = severity * g * np.tan(alpha) / peaks
     return Histories(records, alpha, np.sqrt(0.75 * g / size), 1.0 - 1.5 * np.sin(alpha) ** 2, size, scale)

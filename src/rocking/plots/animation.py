@@ -132,6 +132,7 @@ def page_data(response: Response) -> dict[str, Any]:
         "acceleration": _packed(scene.acceleration),
         "impacts": [list(row) for row in zip(*(column.tolist() for column in columns), strict=True)],
         "fall": None if np.isnan(fall) else fall,
+        "overturnedTo": response.trajectory.side,
         "alpha": [rocker.left.slenderness_angle, rocker.right.slenderness_angle],
         "regions": [{"shade": shade, "rings": [_short(ring) for ring in rings]} for shade, rings in shape.regions],
         "points": _short(shape.points),

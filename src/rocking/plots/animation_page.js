@@ -89,7 +89,7 @@ function drawGround(pen, w, h, level, scale, place, moved, camera) {
   if (!hardest) return pen.fillText("the ground is at rest", 10, 20);
   const push = at("acceleration", now), long = (60 * push) / hardest, from = [80, 36];
   pen.fillText("ground acceleration " + fixed(push, 2) + " m/s\u00b2", 10, 20);
-  if (Math.abs(long) > 2) {
+  if (Math.abs(long) > 8) {
     const tip = from[0] + long, back = tip - 6 * Math.sign(long);
     line(pen, [from, [tip, from[1]]], colours.ink, 2);
     line(pen, [[back, from[1] - 4], [tip, from[1]], [back, from[1] + 4]], colours.ink, 2);
@@ -152,7 +152,7 @@ function drawFlash(pen, place, moved) {
 
 function drawCurve() {
   const canvas = element("curve"), [pen, w, h] = sized(canvas, canvas.clientHeight);
-  const left = 52, right = w - 12, top = 12, bottom = h - 26, most = top + bottom;
+  const left = 60, right = w - 12, top = 12, bottom = h - 26, most = top + bottom;
   const falls = data.fall !== null;
   // a fall is followed to twice the slenderness angle, small rocking fills the panel
   const biggest = Math.max(...data.alpha);
@@ -178,6 +178,10 @@ function drawCurve() {
   for (let k = 0; k <= last; k++) points.push([x((data.end * k) / last), y(series.rotation[k])]);
   line(pen, points, colours.rotation, 1.8);
   pen.restore();
+  if (falls) {
+    pen.fillStyle = colours.fall;
+    pen.fillText("no return", x(data.fall) - 6, data.overturnedTo > 0 ? bottom - 2 : top + 4);
+  }
   pen.fillStyle = colours.impact;
   for (const [time] of data.impacts) {
     pen.beginPath();
