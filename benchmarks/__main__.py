@@ -1,26 +1,30 @@
-"""Run every benchmark, print the table and keep it in benchmarks/RESULTS.md."""
+"""Run the benchmarks, print their tables and keep them in benchmarks/.
 
+`python -m benchmarks` runs all; `python -m benchmarks restitution` and `python -m benchmarks engine [--full]` one part.
+"""
+
+import argparse
 import platform
 import sys
-from pathlib import Path
 
 import numpy as np
 
-from benchmarks import ked, section, start
+from benchmarks import engine, ked, section, start, table
+from benchmarks.table import Row
 
 
-def rows() -> list[tuple[str, str, str, str, bool]]:
-    """(subject, against, measured, goal, met) of every benchmark."""
+def rows() -> list[Row]:
+    """Every benchmark of bodies and restitution."""
     found = []
     for each in ked.comparisons():
         faster = each.ratio >= 1.0
         measured = f"{each.ratio:,.0f} times faster" if faster else f"{1.0 / each.ratio:.2f} times its cost"
         goal = _goal(each.goal)
         cost = f"{each.ours * 1e9:.2f} ns against {each.theirs * 1e9:,.2f} ns a {each.unit}"
-        found.append((each.subject, each.against, f"{measured} ({cost})", goal, each.met))
+        found.append(Row(each.subject, each.against, f"{measured} ({cost})", goal, each.met))
     spent = section.seconds()
     found.append(
-        (
+        Row(
             f"Section of {section.VERTICES:,} vertices, checks and KED",
             "-",
             f"{spent * 1e3:.1f} ms",
@@ -28,7 +32,7 @@ def rows() -> list[tuple[str, str, str, str, bool]]:
             spent < section.GOAL,
         )
     )
-    found += [(what, "-", f"{spent:.3f} s", f"< {goal} s", spent < goal) for what, spent, goal in start.starts()]
+    found += [Row(what, "-", f"{spent:.3f} s", f"< {goal} s", spent < goal) for what, spent, goal in start.starts()]
     return found
 
 
@@ -38,23 +42,35 @@ def _goal(goal: float | None) -> str:
     return f">= {goal:,.0f} times" if goal >= 1.0 else f"<= {1.0 / goal:.0f} times"
 
 
-def main() -> None:
-    """Print and keep the table; leave with 1 if a goal is missed."""
-    table = rows()
-    lines = [
+def restitution() -> bool:
+    """Print and keep the table of bodies and restitution; whether every goal was met."""
+    found = rows()
+    text = [
         "# Speed",
         "",
         "Medians of interleaved repeats, CPU time, one run; made by `make bench`.",
         "",
         f"Python {platform.python_version()}, numpy {np.__version__}, {platform.machine()}.",
         "",
-        "| what | against | measured | goal | met |",
-        "|---|---|---|---|---|",
+        *table.lines(found),
     ]
-    lines += [f"| {a} | {b} | {c} | {d} | {'yes' if met else 'NO'} |" for a, b, c, d, met in table]
-    print("\n".join(lines))
-    (Path(__file__).parent / "RESULTS.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    sys.exit(0 if all(row[-1] for row in table) else 1)
+    table.keep("RESULTS.md", text)
+    return all(row.met is not False for row in found)
+
+
+def main() -> None:
+    """Run what was asked for; leave with 1 if a goal is missed."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description="Speed, as ratios in one run.")
+    parser.add_argument("part", nargs="?", choices=("all", "restitution", "engine"), default="all")
+    parser.add_argument("--full", action="store_true", help="engine: more repeats, more histories of slow peers")
+    parser.add_argument("--histories", type=int, default=10_000, help="engine: histories of the batch (10000)")
+    asked = parser.parse_args()
+    good = True
+    if asked.part in {"all", "restitution"}:
+        good = restitution()
+    if asked.part in {"all", "engine"}:
+        good = engine.main(full=asked.full, count=asked.histories) and good
+    sys.exit(0 if good else 1)
 
 
 if __name__ == "__main__":

@@ -18,13 +18,13 @@ def jax_rk4(batch: Histories, substeps: int = 2) -> Verdicts:
     jax.config.update("jax_enable_x64", True)
 
     def advance(rates: Any, y: Any, push: Any, h: Any) -> Any:
-        a, b = push
+        (a, b), (th, om) = push, y
         middle = 0.5 * (a + b)
-        k1 = rates(y, a)
-        k2 = rates(y + 0.5 * h * k1, middle)
-        k3 = rates(y + 0.5 * h * k2, middle)
-        k4 = rates(y + h * k3, b)
-        return y + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        v1, k1 = rates((th, om), a)
+        v2, k2 = rates((th + 0.5 * h * v1, om + 0.5 * h * k1), middle)
+        v3, k3 = rates((th + 0.5 * h * v2, om + 0.5 * h * k2), middle)
+        v4, k4 = rates((th + h * v3, om + h * k3), b)
+        return th + h / 6.0 * (v1 + 2.0 * (v2 + v3) + v4), om + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
 
     return _compiled(jax, batch, advance, substeps)
 
@@ -74,7 +74,7 @@ def _history(jax: Any, advance: Any, substeps: int) -> Any:
         limit, slow = jnp.tan(alpha), 1e-3 * p * alpha
 
         def substep(state: Any, push: Any) -> Any:
-            y, side, resting, fallen = state
+            th, om, side, resting, fallen = state
             a, b = push
             lifts = resting & (jnp.abs(a) > limit)
             side = jnp.where(lifts, -jnp.sign(a), side)
@@ -82,17 +82,18 @@ def _history(jax: Any, advance: Any, substeps: int) -> Any:
 
             def rates(y: Any, push: Any) -> Any:
                 gap = alpha * side - y[0]
-                return jnp.stack([y[1], -p * p * (jnp.sin(gap) + push * jnp.cos(gap))])
+                return y[1], -p * p * (jnp.sin(gap) + push * jnp.cos(gap))
 
-            new = advance(rates, y, push, h)
-            hit = (side * new[0] < 0.0) & ~resting
-            share = jnp.where(hit, y[0] / jnp.where(hit, y[0] - new[0], 1.0), 0.0)
-            after = r * (y[1] + share * (new[1] - y[1]))
-            new = jnp.where(hit, jnp.stack([after * (1.0 - share) * h, after]), new)
+            th1, om1 = advance(rates, (th, om), push, h)
+            hit = (side * th1 < 0.0) & ~resting
+            share = jnp.where(hit, th / jnp.where(hit, th - th1, 1.0), 0.0)
+            after = r * (om + share * (om1 - om))
+            th1, om1 = jnp.where(hit, after * (1.0 - share) * h, th1), jnp.where(hit, after, om1)
             side = jnp.where(hit, -side, side)
             resting = resting | (hit & (jnp.abs(after) < slow) & (jnp.abs(b) < limit))
-            new = jnp.where(resting, 0.0, jnp.where(fallen, y, new))
-            return new, side, resting, fallen | (jnp.abs(new[0]) > 1.57)
+            th1 = jnp.where(resting, 0.0, jnp.where(fallen, th, th1))
+            om1 = jnp.where(resting, 0.0, jnp.where(fallen, om, om1))
+            return th1, om1, side, resting, fallen | (jnp.abs(th1) > 1.57)
 
         def sample(state: Any, push: Any) -> Any:
             a, b = push
@@ -101,10 +102,10 @@ def _history(jax: Any, advance: Any, substeps: int) -> Any:
                 state = substep(state, (a + k * rise, a + (k + 1) * rise))
             return state, None
 
-        start = (jnp.zeros(2), jnp.array(1.0), jnp.array(True), jnp.array(False))
-        (y, side, resting, fallen), _ = jax.lax.scan(sample, start, (record[:-1], record[1:]))
-        outward, size = side * y[1], side * y[0]
-        passes = 0.5 * (y[1] / p) ** 2 + jnp.cos(alpha - size) > 1.0
+        start = (jnp.array(0.0), jnp.array(0.0), jnp.array(1.0), jnp.array(True), jnp.array(False))
+        (th, om, side, resting, fallen), _ = jax.lax.scan(sample, start, (record[:-1], record[1:]))
+        outward, size = side * om, side * th
+        passes = 0.5 * (om / p) ** 2 + jnp.cos(alpha - size) > 1.0
         over = jnp.where(size > alpha, ~((outward < 0.0) & passes), (outward > 0.0) & passes)
         return fallen | (over & ~resting)
 

@@ -28,8 +28,7 @@ def scipy_events(batch: Histories, method: str = "DOP853", tolerance: float = 1e
 
 
 def _scipy_one(batch: Histories, k: int, method: str, tolerance: float) -> bool:
-    from scipy.integrate import solve_ivp
-
+    solve_ivp: Any = import_module("scipy.integrate").solve_ivp
     alpha, p, r = batch.alpha[k], batch.p[k], batch.r[k]
     record = batch.records[k] * (batch.scale[k] / g)
     times, end, limit = STEP * np.arange(record.size), STEP * (record.size - 1), math.tan(alpha)
@@ -40,13 +39,13 @@ def _scipy_one(batch: Histories, k: int, method: str, tolerance: float) -> bool:
         at = t / STEP
         i = min(int(at), record.size - 2)
         push = record[i] + (at - i) * (record[i + 1] - record[i])
-        return y[1], -p2 * (math.sin(gap) + push * math.cos(gap))
+        return float(y[1]), float(-p2 * (math.sin(gap) + push * math.cos(gap)))
 
     def contact(_: float, y: Any) -> float:
         return float(side * y[0])
 
     def lies(_: float, y: Any) -> float:
-        return HALF_PI - abs(y[0])
+        return HALF_PI - abs(float(y[0]))
 
     for event in (contact, lies):
         event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
@@ -98,7 +97,7 @@ def numba_rk4(batch: Histories, substeps: int = 2) -> Verdicts:
     return lambda: np.asarray(run(*arguments))
 
 
-def _rk4(th: float, om: float, side: float, p2: float, alpha: float, a: float, b: float, h: float) -> Any:  # noqa: PLR0913, PLR0917
+def _rk4(th: float, om: float, side: float, p2: float, alpha: float, a: float, b: float, h: float) -> Any:  # noqa: PLR0917
     """One step of length h under a push that goes from a to b."""
     middle, top = 0.5 * (a + b), alpha * side
     gap = top - th
@@ -112,7 +111,7 @@ def _rk4(th: float, om: float, side: float, p2: float, alpha: float, a: float, b
     return th + h * om + h * h / 6.0 * (k1 + k2 + k3), om + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
 
 
-def _loop(record: Any, alpha: float, p: float, r: float, factor: float, substeps: int, rk4: Any) -> bool:  # noqa: PLR0912
+def _loop(record: Any, alpha: float, p: float, r: float, factor: float, substeps: int, rk4: Any) -> bool:  # noqa: PLR0917
     """One history; impacts by linear interpolation, then the rest of the step on the other side."""
     limit, p2, slow = math.tan(alpha), p * p, 1e-3 * p * alpha
     th, om, side, resting = 0.0, 0.0, 1.0, True

@@ -1,5 +1,7 @@
 // What goes into the engine and what comes out: plain arrays, one entry a history.
 #pragma once
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -77,6 +79,20 @@ struct Settings {
     bool linear;
     int order;
     bool to_the_ground;   // follow an overturning body until it lies
+};
+
+// Rows that wait; threads take a few at a time.
+struct Queue {
+    std::int64_t end, chunk;
+    std::atomic<std::int64_t> next{0};
+
+    bool take(std::int64_t& from, std::int64_t& to) {
+        from = next.fetch_add(chunk);
+        to = std::min(from + chunk, end);
+        if (from < end) return true;
+        from = to = end;
+        return false;
+    }
 };
 
 struct Work {

@@ -194,14 +194,13 @@ static nb::dict run_batch(const Library& library, const nb::dict& in, const nb::
     Work total;
     {
         nb::gil_scoped_release release;
-        std::atomic<std::int64_t> next{0}, steps{0}, sweeps{0}, events{0};
+        Queue queue{rows.count, chunk};
+        std::atomic<std::int64_t> steps{0}, sweeps{0}, events{0};
         auto labour = [&] {
-            for (std::int64_t from; (from = next.fetch_add(chunk)) < rows.count;) {
-                const Work work = run(m, law, rows, set, nullptr, from, std::min(from + chunk, rows.count));
-                steps += work.steps;
-                sweeps += work.sweeps;
-                events += work.events;
-            }
+            const Work work = run(m, law, rows, set, nullptr, queue);
+            steps += work.steps;
+            sweeps += work.sweeps;
+            events += work.events;
         };
         std::vector<std::thread> crew;
         for (int k = 1; k < threads; ++k) crew.emplace_back(labour);
@@ -232,7 +231,8 @@ static nb::list run_single(const Library& library, const nb::dict& in, const nb:
     Trace trace{rotation.data(), velocity.data(), {}};
     trace.rotation[0] = rows.rotation[0];
     trace.velocity[0] = rows.velocity[0];
-    kernel(isa, true, {8, m.degree, m.vertical, linear})(m, law, rows, set, &trace, 0, 1);
+    Queue queue{1, 1};
+    kernel(isa, true, {8, m.degree, m.vertical, linear})(m, law, rows, set, &trace, queue);
     nb::list events;
     for (const Event& e : trace.events)
         events.append(nb::make_tuple(e.time, static_cast<int>(e.kind), static_cast<int>(e.side), e.before, e.after, e.coefficient));

@@ -9,7 +9,7 @@ struct Choice {
     bool vertical, linear;
 };
 
-using Run = Work (*)(const Motions&, const Law&, const Rows&, const Settings&, Trace*, std::int64_t, std::int64_t);
+using Run = Work (*)(const Motions&, const Law&, const Rows&, const Settings&, Trace*, Queue&);
 
 #define ROCKING_DECLARE(isa) \
     namespace isa {          \

@@ -7,6 +7,7 @@ from rocking.cli.formats import formats
 from rocking.cli.models import models
 from rocking.cli.motion import motion
 from rocking.cli.paper import paper
+from rocking.cli.simulate import simulate
 
 
 def application() -> typer.Typer:
@@ -26,7 +27,7 @@ def application() -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    for command in (cor, paper, models, motion, formats):
+    for command in (cor, simulate, paper, models, motion, formats):
         app.command()(command)
     return app
 

@@ -20,7 +20,7 @@ from rocking.motions.segments import Segments
 PIECE = 1 << 16
 """Histories that are handed to the engine at a time: memory beside the results does not grow with their number."""
 
-_CHUNK = 256
+_CHUNK = 64
 ROWS = (
     "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "scale", "rotation", "velocity",
 )  # fmt: skip

@@ -148,7 +148,7 @@ class Window:
     steepness: float
 
 
-def comes_to_rest(  # noqa: PLR0911, PLR0917 - each way out is a reason
+def comes_to_rest(  # noqa: PLR0917 - each way out is a reason
     rocker: Rocker, ground: Ground, sign: int, after: float, stretch: int, tau: float, rest_speed: float
 ) -> bool:
     """Return whether the impacts to come provably add up to rest before the body could rise again.
@@ -184,21 +184,20 @@ def comes_to_rest(  # noqa: PLR0911, PLR0917 - each way out is a reason
         return False
     if after <= _NOTHING * unit:
         return True
-    window = _window(rocker, ground, stretch, tau, 1)
-    if window is None:
+    other, across = rocker.side(-sign), ground.held(-sign, stretch, tau)
+    if not across > 0.0:
         return False
-    left, step = 1.0 - tau, ground.push.step
-    first = _time_to_rest(rocker, sign, after, window) / step
-    if first <= left:
-        return True
-    count = ground.push.horizontal.shape[0]
-    if ground.push.horizontal.shape[1] > 2 or not first < _LONGEST_WINDOW:
+    # the flights under the moments of now, as a guess of the time they take
+    here, there = side.frequency_parameter**2 * ground.held(sign, stretch, tau), other.frequency_parameter**2 * across
+    r_here, r_there = (k.coefficient * rocker.law.largest for k in (side, other))
+    step = ground.push.step
+    flights, steps = 2.0 * after * (there + r_there * here), here * there * (1.0 - r_here * r_there) * step
+    if not flights < _LONGEST_WINDOW * steps:
         return False
-    stretches = int(1.5 * first - left) + 2
-    if stretch + stretches > count:
-        return False
+    left, guess, (count, terms) = 1.0 - tau, 1.5 * flights / steps, ground.push.horizontal.shape
+    stretches = min(int(guess - left) + 2, count - stretch) if terms == 2 and guess > left else 1
     window = _window(rocker, ground, stretch, tau, stretches)
-    return window is not None and _time_to_rest(rocker, sign, after, window) / step <= left + (stretches - 1)
+    return window is not None and _time_to_rest(rocker, sign, after, window) <= (left + (stretches - 1)) * step
 
 
 def _window(rocker: Rocker, ground: Ground, stretch: int, tau: float, stretches: int) -> Window | None:

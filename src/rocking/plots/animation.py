@@ -23,7 +23,7 @@ from rocking.plots.response_curves import shown_until
 MOST_FRAMES = 500
 """Frames of a GIF: more would make a file that no page wants to carry."""
 
-_FORM = Path(__file__).parent
+_FOLDER = Path(__file__).parent
 
 
 def animate_html(response: Response, path: str | Path) -> Path:
@@ -77,8 +77,8 @@ def page(response: Response) -> str:
     >>> page(rk.free_rocking(block, rotation=0.1))[:15]
     '<!DOCTYPE html>'
     """
-    kinds = ("css", "js", "html")
-    style, script, form = ((_FORM / f"animation_page.{kind}").read_text(encoding="utf-8") for kind in kinds)
+    style, form = _part("animation_page.css"), _part("animation_page.html")
+    script = _part("animation_page.js") + _part("animation_drawing.js")
     policy = f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'"
     summary = response.summary[:1].upper() + response.summary[1:]
     motion = response.motion
@@ -218,6 +218,10 @@ def _target(path: str | Path, suffix: str) -> Path:
     if target.suffix.lower() != suffix:
         raise RockingError(f"this animation is a {suffix} file, got {target.name!r}")
     return target
+
+
+def _part(name: str) -> str:
+    return (_FOLDER / name).read_text(encoding="utf-8")
 
 
 def _hash(words: str) -> str:

@@ -63,8 +63,9 @@ def film(
 
     scene = scene_of(response, step)
     stage = _stage(response, scene)
-    # the writer cuts 1000 / fps down to whole milliseconds
-    writer = PillowWriter(fps=(1.0 - 1e-9) / lasts)
+    # the writer cuts 1000 / fps down to whole milliseconds; it takes any number, though it is declared for whole ones
+    rate: Any = (1.0 - 1e-9) / lasts
+    writer = PillowWriter(fps=rate)
     with writer.saving(stage.figure, str(path), _DOTS):
         for k in range(scene.time.size):
             _show(stage, response, scene, k, _FLASH * step / lasts)

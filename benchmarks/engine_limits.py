@@ -1,0 +1,120 @@
+"""Threads, memory and time against the number of histories, a single response, the first call of a process."""
+
+import json
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.engine_batch import STEP, Fast, Histories
+from benchmarks.table import Row
+from benchmarks.timing import cpu_seconds
+
+COUNTS = (10_000, 100_000, 1_000_000)
+FIRST = """
+import json, time
+import numpy as np
+import rocking as rk
+t = np.arange(4001) * 0.01
+shaking = 3.0 * np.sin(2.0 * t) * np.sin(0.31 * t * t) * np.exp(-0.05 * t)
+motion = rk.GroundMotion(shaking, 0.01)
+block = rk.Block(width=0.5, height=2.0)
+spent = []
+for _ in range(31):
+    start = time.perf_counter()
+    response = rk.simulate(block, motion, engine="fast")
+    spent.append(time.perf_counter() - start)
+print(json.dumps([spent, int(response.impacts.size), response.outcome.name]))
+"""
+
+
+def threads(batch: Histories, repeats: int) -> Row:
+    """Wall time with one thread over that with two, in turn."""
+    one, two = Fast(batch, 1), Fast(batch, 2)
+    two()
+    ratios = sorted(_wall(one) / _wall(two) for _ in range(repeats))
+    middle = statistics.median(ratios)
+    return Row(
+        "Fast engine, 2 threads",
+        "1 thread",
+        f"{middle:.2f} times faster (wall time; {ratios[0]:.2f} to {ratios[-1]:.2f} in {repeats} repeats)",
+        ">= 1.9 times",
+        middle >= 1.9,
+    )
+
+
+def growth(counts: tuple[int, ...] = COUNTS) -> list[Row]:
+    """Memory and time of campaigns of more and more histories, each in a process of its own."""
+    found = [json.loads(_process("-m", "benchmarks.engine_growth", str(count))) for count in counts]
+    cost = [each["cpu"] / count * 1e6 for each, count in zip(found, counts, strict=True)]
+    even = max(cost) / min(cost)
+    numbers = ", ".join(f"{count:,}" for count in counts)
+    linear = Row(
+        f"Time of {numbers} histories",
+        "-",
+        f"{', '.join(f'{each:.1f}' for each in cost)} us a history: within {100.0 * (even - 1.0):.0f} %",
+        "within 15 %",
+        even <= 1.15,
+    )
+    if any(each["memory"] is None for each in found):
+        return [linear, Row(f"Memory of {numbers} histories", "-", "not measured on this system", "flat")]
+    memory = [(each["memory"] - each["results"]) / 1e6 for each in found]
+    grown = memory[-1] - memory[0]
+    return [
+        linear,
+        Row(
+            f"Memory of {numbers} histories, beside their results",
+            "-",
+            f"{', '.join(f'{each:.0f}' for each in memory)} MB (the results take"
+            f" {found[-1]['results'] / counts[-1]:.0f} bytes a history)",
+            "flat: grows by < 32 MB",
+            grown < 32.0,
+        ),
+    ]
+
+
+def single(batch: Histories) -> list[Row]:
+    """A response of a 40 s record at 0.01 s from Python; and what the first one costs in a fresh process."""
+    import rocking as rk
+
+    record = max(batch.records, key=np.size)
+    motion = rk.GroundMotion(np.resize(record, 4001), STEP)
+    block = rk.Block(width=0.5, height=2.0)
+    response = rk.simulate(block, motion, "ked", scale=5.0, engine="fast")
+    spent = statistics.median(
+        cpu_seconds(lambda: rk.simulate(block, motion, "ked", scale=5.0, engine="fast")) for _ in range(301)
+    )
+    found = [json.loads(_process("-c", FIRST)) for _ in range(5)]
+    late = statistics.median(each[0][0] - statistics.median(each[0][1:]) for each in found)
+    return [
+        Row(
+            f"A response of a 40 s record at 0.01 s, from Python ({response.impacts.size} impacts,"
+            f" {response.outcome.name.lower()})",
+            "-",
+            f"{spent * 1e3:.2f} ms",
+            "< 1 ms",
+            spent < 1e-3,
+        ),
+        Row(
+            "First response of a fresh process",
+            "its later ones",
+            f"{late * 1e3:.1f} ms slower (wall time, median of 5 processes)",
+            "< 50 ms",
+            late < 0.05,
+        ),
+    ]
+
+
+def _wall(work: Fast) -> float:
+    start = time.perf_counter()
+    work()
+    return time.perf_counter() - start
+
+
+def _process(*arguments: str) -> str:
+    root = Path(__file__).parent.parent
+    done = subprocess.run([sys.executable, *arguments], check=True, capture_output=True, text=True, cwd=root)
+    return done.stdout

@@ -1,0 +1,96 @@
+"""How many floating-point operations a step takes, and how many a second the core could do."""
+
+import ctypes
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from benchmarks.timing import cpu_seconds
+
+# Independent chains of multiply-adds in registers: as many as hide their latency, and few enough to stay there.
+SOURCE = """
+#if defined(__AVX512F__)
+#define BYTES 64
+#elif defined(__AVX__)
+#define BYTES 32
+#else
+#define BYTES 16
+#endif
+typedef double pack __attribute__((vector_size(BYTES)));
+enum { CHAINS = 12 };
+double spin(long rounds, double factor, double term) {
+    pack a[CHAINS], f, t;
+    for (int k = 0; k < BYTES / 8; ++k) f[k] = factor, t[k] = term;
+    for (int i = 0; i < CHAINS; ++i) a[i] = f + (double)i;
+    for (long n = 0; n < rounds; ++n)
+#pragma GCC unroll 12
+        for (int i = 0; i < CHAINS; ++i) a[i] = a[i] * f + t;
+    double sum = 0.0;
+    for (int i = 0; i < CHAINS; ++i) for (int k = 0; k < BYTES / 8; ++k) sum += a[i][k];
+    return sum;
+}
+int operations(void) { return 2 * CHAINS * BYTES / 8; }
+"""
+FLAGS = ("-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-contract=fast", "-shared", "-fPIC")
+
+
+def spinner(rounds: int = 5_000_000) -> tuple[Callable[[], object], float] | None:
+    """Multiply-adds at full speed, and how many operations a call does; None without a compiler that builds it."""
+    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    if compiler is None:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        source, built = Path(folder) / "peak.c", Path(folder) / "peak.so"
+        source.write_text(SOURCE, encoding="utf-8")
+        wanted = [flag for flag in FLAGS if sys.platform == "linux" or "vector-width" not in flag]
+        done = subprocess.run([compiler, *wanted, "-o", built, source], capture_output=True, check=False)
+        if done.returncode:
+            return None
+        library = ctypes.CDLL(str(built))
+    library.spin.argtypes, library.spin.restype = (ctypes.c_long, ctypes.c_double, ctypes.c_double), ctypes.c_double
+    count = float(library.operations()) * rounds
+    return lambda: library.spin(rounds, 0.999999, 1e-6), count
+
+
+def peak(repeats: int = 7) -> float | None:
+    """Float64 operations a second of one core, at best; None if it cannot be measured."""
+    made = spinner()
+    if made is None:
+        return None
+    work, count = made
+    return max(count / cpu_seconds(work) for _ in range(repeats))
+
+
+def beside(work: Callable[[], object], repeats: int) -> tuple[float | None, float]:
+    """Median peak [operations/s] and median CPU seconds of some work, in turn."""
+    made = spinner()
+    work()
+    spent, speed = [], []
+    for _ in range(repeats):
+        spent.append(cpu_seconds(work))
+        if made is not None:
+            speed.append(made[1] / cpu_seconds(made[0]))
+    return statistics.median(speed) if speed else None, statistics.median(spent)
+
+
+def operations_of_a_step(order: int = 8) -> int:
+    """Additions, multiplications and divisions of one Taylor step of one lane (records, nonlinear, no vertical part).
+
+    A multiply-add counts as 2; comparisons, selections, minima, maxima, absolute values, changes of sign, loads and
+    stores as none. What the lane-by-lane part does at impacts is not counted either.
+    """
+    start = 2 + 1  # q = kappa h^2; V_0 = v h
+    forcing = 1 + 2 + 1 + 2  # difference of samples; value at t_0 by a multiply-add; times c; slope times c h
+    # reduction: 1 multiply-add, 1 subtraction, 2 multiply-adds; z; sine: 6 + 1 multiply-adds, 1 product; cosine: 8
+    sincos = (2 + 1 + 4) + 1 + (7 * 2 + 1) + 8 * 2
+    moment = 2 + (order - 1) * 4 + order * 2  # one, then two multiply-adds a coefficient; q / (k + 1) and its product
+    # S_{k+1}, C_{k+1} for k = 0 ... order - 2: a product, k multiply-adds and a factor for each of the two
+    series = sum(2 * (2 + 2 * k) for k in range(order - 1))
+    sums = order + (1 + 2 * order)  # velocity: additions; rotation: a product and multiply-adds
+    contact = 1 + 2 * (order - 1) + 2 + 3  # how far it can sag: a product, multiply-adds; y_0, y_1; the turning point
+    state = 1 + 1 + 1 + 1 + 1 + 1  # u_1, v_1 / h, time, index, length of the next step, error
+    return start + forcing + sincos + moment + series + sums + contact + state

@@ -1,0 +1,205 @@
+// Visits to single lanes: impacts, tops, the ends of motions, and whatever else is not a plain step.
+#pragma once
+#include "kernel.hpp"
+
+namespace rocking {
+namespace ROCKING_ISA {
+
+// Those that may touch the ground go side by side, a register at a time.
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::visit_all(unsigned long flagged, unsigned long near) {
+    int who[P], count = 0;
+    for (unsigned long left = flagged & near; left;) {
+        who[count++] = lowest(left);
+        left &= left - 1;
+        if (count == P || !left) {
+            land(who, count);
+            count = 0;
+        }
+    }
+    for (unsigned long left = flagged & ~near; left; left &= left - 1) visit(lowest(left), false);
+    for (; flagged; flagged &= flagged - 1) {
+        ++work.events;
+        if (lanes[lowest(flagged)].row < 0) fill(lowest(flagged));
+    }
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::land(const int* who, int count) {
+    alignas(64) double lane[P];
+    for (int s = 0; s < P; ++s) lane[s] = who[s < count ? s : 0];
+    const Pack at = Pack::load(lane);
+    Pack raw[N + 2];
+    raw[0] = Pack::gather(alpha, at) - Pack::gather(u, at);
+    ROCKING_UNROLL
+    for (int k = 0; k <= N; ++k) raw[k + 1] = Pack::gather(terms[k], at);
+    Landings<N> landings;
+    const unsigned found = landings.solve(raw);
+    for (int s = 0; s < count; ++s) {
+        if (found >> s & 1) touch(who[s], landings.zero[s], landings.slope[s]);
+        else visit(who[s], true);
+    }
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::sample(int i) {
+    const Lane& lane = lanes[i];
+    const std::int64_t k = static_cast<std::int64_t>((idx[i] - lane.first) / motions.stride());
+    trace->rotation[k] = lane.side * (alpha[i] - u[i]);
+    trace->velocity[k] = -lane.side * v[i] / lane.step;
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::note(int i, EventKind kind, double time, double before, double after, double coefficient) {
+    if (trace) trace->events.push_back({time, before, after, coefficient, kind, static_cast<std::int8_t>(lanes[i].side)});
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::touch(int i, double zero, double slope) {
+    const double c0 = alpha[i] - u[i], c1 = -terms[0][i];
+    if (c1 > 0.0 && c0 + c1 > peak[i]) {
+        double c[N + 2] = {c0};
+        for (int k = 0; k <= N; ++k) c[k + 1] = -terms[k][i] * (1.0 / (k + 1));
+        note_peak(i, c, zero);
+    }
+    impact(i, zero, std::max(0.0, -slope / (len[i] * lanes[i].step)));
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::visit(int i, bool near) {
+    double V[N + 1], c[N + 2];
+    double sum = 0.0;
+    for (int k = 0; k <= N; ++k) {
+        V[k] = terms[k][i];
+        c[k + 1] = -V[k] * (1.0 / (k + 1));
+        sum += std::fabs(V[k]);
+    }
+    c[0] = alpha[i] - u[i];
+    if (!(sum < 1e100)) return finish(i, kFailed, kNotFinite);
+    const double zero = near ? first_contact(c) : 2.0;
+    note_peak(i, c, zero < 1.0 ? zero : 1.0);
+    if (!(zero <= 1.0)) return advance(i, V);
+    double slopes[N + 1];
+    slopes_of<N + 1>(c, slopes);
+    impact(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / (len[i] * lanes[i].step)));
+}
+
+// First return to y = 0; a step that starts there is divided by the known zero first.
+ROCKING_KERNEL
+double Kernel<U, N, D, Z, L>::first_contact(double* c) const {
+    if (c[0] > 0.0) return first_zero<N + 1>(c);
+    if (c[0] < 0.0) return 0.0;
+    if (c[1] > 0.0) return first_zero<N>(c + 1);
+    if (c[1] < 0.0) return 0.0;
+    c[2] = std::max(c[2], 0.0);  // uplift: the moment just changed sign here, so rounding alone is left
+    if (c[2] > 0.0) return first_zero<N - 1>(c + 2);
+    if (c[3] > 0.0) return first_zero<N - 2>(c + 3);
+    return 2.0;
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::note_peak(int i, const double* c, double upto) {
+    if (c[1] < 0.0) return;
+    double slopes[N + 1];
+    slopes_of<N + 1>(c, slopes);
+    if (value_of<N>(slopes, upto) > 0.0) return;
+    double at = 2.0;
+    if (slopes[0] > 0.0) at = first_zero<N>(slopes);
+    else if (slopes[1] > 0.0) at = first_zero<N - 1>(slopes + 1);
+    else if (slopes[2] > 0.0) at = first_zero<N - 2>(slopes + 2);
+    if (at <= upto) raise_peak(i, value_of<N + 1>(c, at), now(i, at));
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::raise_peak(int i, double y, double time) {
+    if (y > peak[i]) {
+        peak[i] = y;
+        lanes[i].peak_signed = lanes[i].side * y;
+        lanes[i].peak_time = time;
+    }
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::impact(int i, double at, double speed) {
+    Lane& lane = lanes[i];
+    const double time = now(i, at);
+    const int old = lane.side;
+    fastest[i] = std::max(fastest[i], speed * lane.step);
+    lane.side = -old;
+    const double r = coefficient(i, speed);
+    const double after = r * speed;
+    ++lane.impacts;
+    note(i, kImpact, time, -old * speed, -old * after, r);
+    stand(i);
+    u[i] = alpha[i];
+    v[i] = -after * lane.step;
+    move(i, tau[i] + at * len[i]);
+    if (trace && tau[i] == 0.0) sample(i);
+    if (lane.impacts >= set.most_impacts) return finish(i, kFailed, kTooManyImpacts);
+    if (idx[i] >= last[i]) return conclude(i);
+    if (comes_to_rest(i, after)) {
+        note(i, kRest, time, 0.0, 0.0, 0.0);
+        rest(i);
+    }
+}
+
+ROCKING_KERNEL
+double Kernel<U, N, D, Z, L>::coefficient(int i, double speed) const {
+    const Lane& lane = lanes[i];
+    const double r = here(i).r;
+    if (law.kind == LawKind::of_speed) return r * interpolated(law.at, law.value, speed);
+    if (law.kind == LawKind::random)
+        return r * interpolated(law.at, law.value, uniform(law.seed, rows.key[lane.row], lane.impacts));
+    return r;
+}
+
+// Lane variables of the side on which the body stands.
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::stand(int i) {
+    const Lane& lane = lanes[i];
+    const Side& s = here(i);
+    alpha[i] = s.alpha;
+    kappa[i] = (s.p * lane.step) * (s.p * lane.step);
+    ca[i] = lane.side * lane.ax;
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::move(int i, double to) {
+    if (to >= kWhole) {
+        idx[i] += motions.stride();
+        tau[i] = 0.0;
+    } else {
+        tau[i] = to;
+    }
+    len[i] = std::min(sub[i], 1.0 - tau[i]);
+}
+
+ROCKING_KERNEL
+void Kernel<U, N, D, Z, L>::advance(int i, const double* V) {
+    Lane& lane = lanes[i];
+    double u1 = V[N] * (1.0 / (N + 1)), v1 = V[0];
+    for (int k = N; k-- > 0;) u1 = fma(V[k], 1.0 / (k + 1), u1);
+    u1 = u[i] + u1;
+    for (int k = 1; k <= N; ++k) v1 += V[k];
+    v1 /= len[i];
+    if (u[i] >= 0.0 && u1 < 0.0) {
+        double c[N + 2];
+        c[0] = u[i];
+        for (int k = 0; k <= N; ++k) c[k + 1] = V[k] / (k + 1);
+        lane.over_time = now(i, u[i] > 0.0 ? std::min(first_zero<N + 1>(c), 1.0) : 0.0);
+    }
+    u[i] = u1;
+    v[i] = v1;
+    fastest[i] = std::max(fastest[i], std::fabs(v1));
+    move(i, tau[i] + len[i]);
+    if (trace && tau[i] == 0.0) sample(i);
+    if (u1 < 0.0) {
+        const bool lies = alpha[i] - u1 >= kHalfPi && (!L || beyond_return(i));
+        if (lies || (!set.to_the_ground && beyond_return(i))) return overturned(i);
+        gate[i] = set.to_the_ground ? 0.0 : u1 - 0.02;  // look again a degree further out
+    }
+    if (idx[i] >= last[i]) conclude(i);
+}
+
+}  // namespace ROCKING_ISA
+}  // namespace rocking

@@ -1,0 +1,105 @@
+"""`rocking simulate`: how a body rocks under a record or a pulse, or when let go."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+_BODY = "Size, in place of a body file"
+_FILE = "What a record file leaves open"
+_HOW = "How it is computed"
+_OUTPUT = "Output"
+
+
+def simulate(
+    body: Annotated[
+        str | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit; left out with --width.")
+    ] = None,
+    record: Annotated[
+        str | None, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")
+    ] = None,
+    motion: Annotated[str | None, typer.Option(help="The same, as an option.")] = None,
+    free: Annotated[
+        float | None, typer.Option(help="No motion: let the body go at this share of its slenderness angle.")
+    ] = None,
+    restitution: Annotated[
+        str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")
+    ] = "ked",
+    scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
+    friction: Annotated[float, typer.Option(help="Coefficient of friction between body and ground.")] = 0.5,
+    width: Annotated[float | None, typer.Option(help="Full width of a block.", rich_help_panel=_BODY)] = None,
+    height: Annotated[float | None, typer.Option(help="Full height of a block.", rich_help_panel=_BODY)] = None,
+    depth: Annotated[float | None, typer.Option(help="Depth of a block.", rich_help_panel=_BODY)] = None,
+    density: Annotated[float | None, typer.Option(help="Density [kg/m3].", rich_help_panel=_BODY)] = None,
+    angle: Annotated[
+        float | None, typer.Option(help="Slenderness angle alpha = atan(b/h) [rad].", rich_help_panel=_BODY)
+    ] = None,
+    semi_diagonal: Annotated[
+        float | None, typer.Option(help="Semi-diagonal R, with --angle.", rich_help_panel=_BODY)
+    ] = None,
+    unit: Annotated[
+        str | None, typer.Option(help="Unit of all lengths: m (default), cm, mm, ft, in.", rich_help_panel=_BODY)
+    ] = None,
+    format: Annotated[
+        str | None, typer.Option(help="Format, if not found by content: see rocking formats.", rich_help_panel=_FILE)
+    ] = None,
+    units: Annotated[
+        str | None, typer.Option(help="Unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.", rich_help_panel=_FILE)
+    ] = None,
+    time_step: Annotated[
+        float | None, typer.Option(help="Step between samples in seconds.", rich_help_panel=_FILE)
+    ] = None,
+    component: Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)] = None,
+    vertical: Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)] = None,
+    linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
+    engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
+    gravity: Annotated[float | None, typer.Option(help="Acceleration of gravity [m/s2].", rich_help_panel=_HOW)] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="Draw the response (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
+    ] = None,
+    animation: Annotated[
+        Path | None, typer.Option(help="Show it moving: a web page (.html) or a .gif.", rich_help_panel=_OUTPUT)
+    ] = None,
+    csv: Annotated[Path | None, typer.Option(help="Write the samples for Excel.", rich_help_panel=_OUTPUT)] = None,
+    mat: Annotated[Path | None, typer.Option(help="Write the samples for MATLAB.", rich_help_panel=_OUTPUT)] = None,
+    netcdf: Annotated[
+        Path | None, typer.Option(help="Write samples and impacts as netCDF.", rich_help_panel=_OUTPUT)
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+) -> None:
+    """Print how a body rocks under a ground motion, whether it overturns, and whether the model of impact decides."""
+    from rocking.cli import simulate_json, simulate_output, simulate_page
+    from rocking.cli.body_options import body_from
+    from rocking.cli.simulate_question import Question, body_and_motion, motion_asked
+
+    sized = any(value is not None for value in (width, height, angle, semi_diagonal))
+    file, word = body_and_motion(body, record, motion, sized=sized, free=free is not None)
+    files = simulate_output.Files(picture, animation, csv, mat, netcdf)
+    subject = body_from(
+        file,
+        width=width,
+        height=height,
+        depth=depth,
+        density=density,
+        angle=angle,
+        semi_diagonal=semi_diagonal,
+        unit=unit,
+    )
+    told = {"format": format, "units": units, "time_step": time_step, "component": component, "vertical": vertical}
+    question = Question.of(
+        subject,
+        motion_asked(word, told, scale),
+        free,
+        scale=scale,
+        gravity=gravity,
+        engine=engine,
+        linear=linear,
+    )
+    answer = simulate_output.Answer.of(question, restitution, friction)
+    written = files.write(answer)
+    if as_json:
+        print(simulate_json.as_json(answer))
+    else:
+        simulate_page.show(answer)
+        for path in written:
+            print(f"wrote {path}")

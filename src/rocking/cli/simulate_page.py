@@ -1,0 +1,160 @@
+"""What `rocking simulate` prints."""
+
+import math
+from typing import Any
+
+from rocking.cli.simulate_output import Answer
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.response import Response
+from rocking.motions.pulse import Pulse
+
+_FIRST = 10
+"""Impacts that are printed."""
+
+_WORDS = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
+
+
+def show(answer: Answer) -> None:
+    """Print body, motion, outcome, impacts, doubts, and what other models say.
+
+    Parameters
+    ----------
+    answer : Answer
+        What `Answer.of` computed.
+    """
+    from rich.console import Console
+
+    console = Console(highlight=False, soft_wrap=True)
+    response = answer.response
+    for word, value in _facts(response):
+        console.print(f"{word + ':':<13} {value}", markup=False)
+    console.print()
+    console.print(_sentence(response.summary) + ".", style="bold", markup=False)
+    if response.impacts.size:
+        console.print()
+        console.print(_impacts(response))
+        if response.impacts.size > _FIRST:
+            console.print(f"... and {response.impacts.size - _FIRST} more; --json has them all", style="dim")
+    console.print()
+    for word, value in _measures(answer):
+        console.print(f"{word + ':':<16} {value}", markup=False)
+    for warning in response.contact.warnings(answer.friction):
+        console.print(f"! {warning}", style="yellow", markup=False)
+    console.print()
+    console.print("With other restitution models", style="bold")
+    console.print(_rivals(answer))
+    for name, found in answer.others.items():
+        if isinstance(found, str):
+            console.print(f"! {name}: {found}", style="yellow", markup=False)
+    console.print(_verdict(answer), markup=False)
+
+
+def _facts(response: Response) -> list[tuple[str, str]]:
+    body, rocker, motion = response.body, response.rocker, response.motion
+    same = math.isclose(rocker.right.slenderness_angle, rocker.left.slenderness_angle, rel_tol=1e-12)
+    sides = (("", rocker.right),) if same else (("left ", rocker.left), ("right ", rocker.right))
+    shape = "; ".join(
+        f"{foot}alpha = {side.slenderness_angle:.4g} rad ({math.degrees(side.slenderness_angle):.3g} deg), "
+        f"R = {side.semi_diagonal:.4g} m, p = {side.frequency_parameter:.4g} rad/s"
+        for foot, side in sides
+    )
+    r = {rocker.left.coefficient, rocker.right.coefficient}
+    value = f"r = {rocker.left.coefficient:.6f}"
+    if len(r) > 1:
+        value = f"onto the left foot {value}, onto the right one r = {rocker.right.coefficient:.6f}"
+    if motion is None:
+        ground = f"none; let go at {math.degrees(float(response.rotation[0])):.4g} deg"
+    else:
+        times = "" if response.scale == 1.0 else f"{response.scale:g} times "
+        peak = f", peak {abs(response.scale) * motion.peak:.4g} m/s2"
+        ground = times + motion.name
+        if not isinstance(motion, Pulse):
+            ground += f", {motion.duration:.4g} s{peak}"
+        elif times:
+            ground += peak
+    equations = ", slender-linear equations" if response.settings.linear else ""
+    return [
+        ("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"),
+        ("motion", ground),
+        ("restitution", f"{rocker.label}, {value}"),
+        ("engine", f"{response.engine}{equations}"),
+    ]
+
+
+def _impacts(response: Response) -> Any:
+    rows = response.impacts[:_FIRST]
+    head = ("impact", "time [s]", "velocity before [rad/s]", "after [rad/s]", "r", "onto")
+    table = _table(head, left=("onto",))
+    for k, row in enumerate(rows.tolist()):
+        time, before, after, r, onto = row
+        table.add_row(str(k + 1), f"{time:.6f}", f"{before:+.6f}", f"{after:+.6f}", f"{r:.6f}", onto)
+    return table
+
+
+def _measures(answer: Answer) -> list[tuple[str, str]]:
+    response = answer.response
+    contact, error = response.contact, response.error_estimate
+    fell = response.outcome is Outcome.OVERTURNED
+    peak = f"{math.degrees(response.peak_rotation):.6g} deg, {_over_alpha(response):.6g} of the slenderness angle"
+    doubt = (
+        "another step changes the outcome: it hangs by a thread"
+        if math.isinf(error)
+        else f"{error:.1e} rad, the largest change of the rotation if every step is halved"
+    )
+    return [
+        ("peak rotation", "it overturned" if fell else peak),
+        ("energy closure", f"{response.energy.closure:.1e} of the largest energy"),
+        ("friction", f"{contact.friction_demand:.3g} needed, {answer.friction:g} given"),
+        ("error estimate", doubt),
+    ]
+
+
+def _rivals(answer: Answer) -> Any:
+    table = _table(("model", "r", "outcome", "peak deg", "/ alpha", "impacts"), left=("model", "outcome"))
+    chosen = answer.response.rocker.label
+    for name, found in {chosen: answer.response, **answer.others}.items():
+        if isinstance(found, str):
+            table.add_row(name, "", "not for this body", "", "", "")
+            continue
+        left, right = found.rocker.left.coefficient, found.rocker.right.coefficient
+        r = f"{right:.4f}" if left == right else f"{left:.3f}/{right:.3f}"
+        fell = found.outcome is Outcome.OVERTURNED
+        size = ("-", "-") if fell else (f"{math.degrees(found.peak_rotation):.4g}", f"{_over_alpha(found):.4g}")
+        table.add_row(name, r, _short(found), *size, str(found.impacts.size), style="bold" if name == chosen else None)
+    return table
+
+
+def _verdict(answer: Answer) -> str:
+    found = {answer.response.rocker.label: answer.response}
+    found |= {name: one for name, one in answer.others.items() if isinstance(one, Response)}
+    groups: dict[str, list[str]] = {}
+    for name, one in found.items():
+        groups.setdefault(_WORDS[one.outcome], []).append(name)
+    if len(groups) == 1:
+        (word,) = groups
+        return f"With every one of these models the body {word}."
+    return "The model decides: the body " + ", ".join(f"{word} with {', '.join(n)}" for word, n in groups.items()) + "."
+
+
+def _short(response: Response) -> str:
+    if response.outcome is Outcome.OVERTURNED:
+        return f"overturned {'right' if response.trajectory.side > 0 else 'left'}"
+    return "rocked" if response.outcome is Outcome.ROCKED else "no uplift"
+
+
+def _over_alpha(response: Response) -> float:
+    side = response.rocker.side(response.trajectory.peak_rotation)
+    return response.peak_rotation / side.slenderness_angle
+
+
+def _sentence(words: str) -> str:
+    return words[:1].upper() + words[1:]
+
+
+def _table(head: tuple[str, ...], left: tuple[str, ...]) -> Any:
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, collapse_padding=True, header_style="bold")
+    for word in head:
+        table.add_column(word.replace("[", r"\["), justify="left" if word in left else "right", overflow="fold")
+    return table

@@ -1,0 +1,197 @@
+"""What `rocking simulate` was asked: a body, a motion or a first rotation, and how to compute."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.cli.model_options import models_from
+from rocking.cli.motion_options import motion_from
+from rocking.conventions import g
+from rocking.dynamics.histories import free_rocking, simulate
+from rocking.dynamics.response import Motion, Response
+from rocking.errors import InvalidValueError
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Everything but the coefficient of restitution.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    motion : GroundMotion or Pulse, optional
+        The motion; None for free rocking.
+    rotation : float
+        Rotation at the start [rad].
+    scale : float
+        Factor on the motion [-].
+    how : dict
+        gravity, engine, linear, as `simulate` takes them.
+    """
+
+    body: Body
+    motion: Motion | None
+    rotation: float
+    scale: float
+    how: dict[str, Any]
+
+    @classmethod
+    def of(
+        cls,
+        body: Body,
+        motion: Motion | None,
+        free: float | None,
+        *,
+        scale: float,
+        gravity: float | None,
+        engine: str,
+        linear: bool,
+    ) -> "Question":
+        """Put the question together.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+        motion : GroundMotion or Pulse, optional
+            The motion.
+        free : float, optional
+            First rotation over the slenderness angle of the side it leans to, for free rocking [-].
+        scale : float
+            Factor on the motion [-].
+        gravity : float, optional
+            Acceleration of gravity; the standard one if not given [m/s2].
+        engine : str
+            Which engine.
+        linear : bool
+            Whether to solve the slender-linear equations.
+
+        Returns
+        -------
+        Question
+            Checked as far as the engines do not check it.
+
+        Raises
+        ------
+        InvalidValueError
+            If `free` or `gravity` is not allowed.
+        """
+        pull = g if gravity is None else checks.positive("--gravity", gravity, "m/s2")
+        rotation = 0.0
+        if free is not None:
+            share = checks.number("--free", free)
+            rotation = share * body.side("right" if share > 0.0 else "left", pull).slenderness_angle
+        return cls(body, motion, rotation, scale, {"gravity": pull, "engine": engine, "linear": linear})
+
+    def answered_with(self, restitution: Any) -> Response:
+        """Return the response with one coefficient of restitution.
+
+        Parameters
+        ----------
+        restitution : str, RestitutionModel or float
+            As `simulate` takes it.
+
+        Returns
+        -------
+        Response
+            The response.
+        """
+        if self.motion is None:
+            return free_rocking(self.body, self.rotation, restitution, **self.how)
+        return simulate(self.body, self.motion, restitution, scale=self.scale, **self.how)
+
+
+def body_and_motion(
+    body: str | None, record: str | None, motion: str | None, *, sized: bool, free: bool
+) -> tuple[Path | None, str | None]:
+    """Return which word names the body and which one the motion.
+
+    Parameters
+    ----------
+    body, record : str, optional
+        First and second word of the command.
+    motion : str, optional
+        Value of --motion.
+    sized : bool
+        Whether the body is given by its size, so that one word alone is the motion.
+    free : bool
+        Whether free rocking is asked for, which takes no motion.
+
+    Returns
+    -------
+    body : Path, optional
+        Body file.
+    motion : str, optional
+        Record file or pulse; None for free rocking.
+
+    Raises
+    ------
+    InvalidValueError
+        If the motion is missing or given twice, or the body is given twice.
+    """
+    if sized and record is None:
+        body, record = None, body
+    if record is not None and motion is not None:
+        # a word that is a file beside dimensions is more likely a body
+        raise InvalidValueError(f"one motion and one body, please: got {record[:100]!r} and --motion {motion[:100]!r}")
+    word = record if record is not None else motion
+    if free and word is not None:
+        raise InvalidValueError(f"give a motion or --free, not both; got {word[:100]!r}")
+    if not free and word is None:
+        raise InvalidValueError(
+            "what moves the ground? Give a record file, a pulse such as sine:amplitude=3,period=0.8, or --free 0.5"
+        )
+    return None if body is None else Path(body), word
+
+
+def motion_asked(word: str | None, told: dict[str, Any], scale: float) -> Motion | None:
+    """Return the motion, none for free rocking.
+
+    Parameters
+    ----------
+    word : str, optional
+        Record file or pulse.
+    told : dict
+        Options for files, as `motion_from` takes them.
+    scale : float
+        Factor on the motion, refused for free rocking [-].
+
+    Returns
+    -------
+    GroundMotion or Pulse, optional
+        The motion, not scaled.
+
+    Raises
+    ------
+    InvalidValueError
+        If free rocking is given an option for motions.
+    """
+    if word is not None:
+        return motion_from(word, **told)
+    given = [f"--{name.replace('_', '-')}" for name, value in told.items() if value is not None]
+    given += ["--scale"] if scale != 1.0 else []
+    if given:
+        raise InvalidValueError(f"--free has no motion, so it takes no {', '.join(given)}")
+    return None
+
+
+def restitution_from(word: str) -> Any:
+    """Return a model or a coefficient from one word.
+
+    Parameters
+    ----------
+    word : str
+        Name of a model, with parameters; path of a file with a class; or a number.
+
+    Returns
+    -------
+    RestitutionModel or float
+        As `simulate` takes it.
+    """
+    try:
+        return float(word)
+    except ValueError:
+        return next(iter(models_from([word]) or []))

@@ -1,0 +1,141 @@
+"""The energy of a response adds up, and the forces of the ground are those of the closed forms."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.conventions import g
+from rocking.dynamics import engine
+
+ENGINES = [
+    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    "reference",
+]
+BLOCK = rk.Block(width=1.0, height=3.0, depth=2.0, density=1000.0)
+MASS, RADIUS, ALPHA = 6000.0, math.hypot(0.5, 1.5), math.atan(1.0 / 3.0)
+P = math.sqrt(0.75 * g / RADIUS)
+START, R = 0.15, 0.85
+PSI = ALPHA - START
+WHOLE = MASS * g * RADIUS * (math.cos(PSI) - math.cos(ALPHA))
+RECORD = rk.GroundMotion(
+    6.0 * np.sin(0.4 * np.arange(120)) * np.exp(-0.01 * np.arange(120)), 0.05,
+    vertical=2.0 * np.sin(0.9 * np.arange(120)),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_free_rocking_ledger(name: str) -> None:
+    """All energy is m g R (cos(alpha - theta_0) - cos(alpha)); n impacts take 1 - r^(2n) of it; no work is done."""
+    response = rk.free_rocking(BLOCK, START, R, engine=name)
+    energy = response.energy
+    assert (energy.kinetic[0], energy.work[0], energy.lost[0]) == (0.0, 0.0, 0.0)
+    assert energy.potential[0] == pytest.approx(WHOLE, rel=1e-13)
+    assert not energy.work.any()
+    happened = np.searchsorted(response.impacts["time"], response.time, side="right")
+    early = happened < 12  # later impacts are summed up in the rest
+    np.testing.assert_allclose(energy.lost[early], WHOLE * (1.0 - R ** (2.0 * happened[early])), atol=1e-11 * WHOLE)
+    assert energy.lost[-1] == pytest.approx(WHOLE, rel=1e-13)
+    assert energy.closure < 1e-11
+    assert energy.gap.shape == energy.time.shape == response.time.shape
+
+
+@pytest.mark.parametrize("linear", [False, True])
+@pytest.mark.parametrize("name", ENGINES)
+def test_shaken_ledger(name: str, linear: bool) -> None:
+    """Under a record with a vertical part, work in, losses out and energy stored close to 1e-9 of the largest."""
+    response = rk.simulate(BLOCK, RECORD, R, engine=name, linear=linear)
+    assert response.impacts.size > 3
+    assert response.energy.closure < 1e-9
+    assert np.all(np.diff(response.energy.lost) >= -1e-9 * WHOLE), "what is lost does not come back"
+    assert np.abs(response.energy.work).max() > 0.01 * WHOLE
+
+
+def test_a_wrong_ledger_does_not_close() -> None:
+    """Negative control: work that is 1e-6 too large is seen by the gap."""
+    from dataclasses import replace
+
+    energy = rk.simulate(BLOCK, RECORD, R).energy
+    off = replace(energy, work=energy.work * (1.0 + 1e-6))
+    assert off.closure > 1e-8 > energy.closure
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_forces_when_let_go(name: str, sign: float) -> None:
+    """Let go from theta_0: f_x = -s m 3/4 g sin cos, f_z = m (g - 3/4 g sin^2), of alpha - theta_0."""
+    contact = rk.free_rocking(BLOCK, sign * START, R, engine=name).contact
+    expected_x = -sign * MASS * 0.75 * g * math.sin(PSI) * math.cos(PSI)
+    expected_z = MASS * (g - 0.75 * g * math.sin(PSI) ** 2)
+    assert contact.horizontal[0] == pytest.approx(expected_x, rel=1e-12)
+    assert contact.vertical[0] == pytest.approx(expected_z, rel=1e-12)
+    assert contact.horizontal[-1] == pytest.approx(0.0, abs=1e-9 * MASS)
+    assert contact.vertical[-1] == pytest.approx(MASS * g, rel=1e-12)
+    assert contact.friction_of_motion >= abs(expected_x / expected_z)
+
+
+def test_friction_of_impacts() -> None:
+    """Impacts of a block take (h / b) (1 - r) / (1 + r), of both the larger; the demand is the largest of all."""
+    contact = rk.free_rocking(BLOCK, START, {"left": 0.8, "right": 0.9}).contact
+    assert contact.friction_of_impacts == pytest.approx(3.0 * 0.2 / 1.8, rel=1e-13)
+    assert contact.friction_demand == max(contact.friction_of_motion, contact.friction_of_impacts)
+
+
+def test_at_rest_on_moving_ground() -> None:
+    """A body that the ground does not lift is carried: f_x = m a_x, f_z = m (g + a_z), friction their ratio."""
+    record = rk.GroundMotion(np.array([0.0, 1.0, -2.0, 0.0]), 0.2, vertical=np.array([0.0, 3.0, -1.0, 0.0]))
+    response = rk.simulate(BLOCK, record, R, duration=0.6)
+    contact = response.contact
+    np.testing.assert_allclose(contact.horizontal, MASS * record.acceleration, atol=1e-9)
+    assert record.vertical is not None
+    np.testing.assert_allclose(contact.vertical, MASS * (g + record.vertical), rtol=1e-13)
+    assert contact.friction_demand == pytest.approx(2.0 / (g - 1.0), rel=1e-12)
+    assert contact.least_vertical == pytest.approx(MASS * (g - 1.0), rel=1e-12)
+
+
+def test_warnings_of_friction() -> None:
+    """Motion and impacts that take more friction than there is are named with what they take; enough keeps quiet."""
+    contact = rk.free_rocking(BLOCK, START, 0.5).contact
+    assert contact.friction_of_impacts == pytest.approx(1.0, rel=1e-13)
+    low = contact.warnings(0.1)
+    assert len(low) == 2
+    assert f"rocking without slip takes a coefficient of friction of {contact.friction_of_motion:.2f}" in low[0]
+    assert "with 0.1 the body would slide" in low[0]
+    assert "impacts without slip take a coefficient of friction of 1.00; with 0.1 the foot would slip" in low[1]
+    assert contact.warnings(1.0) == []
+    assert len(contact.warnings()) == 1
+    assert not contact.loses_contact
+
+
+@pytest.mark.parametrize(("drop", "flies"), [(-1.02 * g, True), (-0.9 * g, False)])
+def test_loss_of_contact(drop: float, flies: bool) -> None:
+    """Ground that falls faster than g leaves the body: the force vanishes and a warning says so; slower does not."""
+    vertical = np.array([0.0, 0.0, drop, 0.0, 0.0])
+    record = rk.GroundMotion(np.array([0.0, 0.0, 0.1, 0.0, 0.0]), 0.02, vertical=vertical)
+    contact = rk.simulate(BLOCK, record, R, duration=0.5).contact
+    assert contact.loses_contact is flies
+    assert (contact.least_vertical <= 0.0) is flies
+    said = [w for w in contact.warnings(1e9) if "the body would leave the ground" in w]
+    assert len(said) == int(flies)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_forces_follow_from_the_motion(name: str) -> None:
+    """Newton's second law: the forces are m times the acceleration of the centre, differentiated numerically."""
+    response: Any = rk.free_rocking(BLOCK, START, R, engine=name)
+    h = 1e-3
+    t = np.linspace(0.05, 0.9 * response.impacts["time"][0], 9)
+
+    def centre(time: Any) -> Any:
+        psi = ALPHA - response.at(time)
+        return -RADIUS * np.sin(psi), RADIUS * np.cos(psi)
+
+    (x0, z0), (x1, z1), (x2, z2) = centre(t - h), centre(t), centre(t + h)
+    f_x, f_z = MASS * (x0 - 2.0 * x1 + x2) / h**2, MASS * (g + (z0 - 2.0 * z1 + z2) / h**2)
+    contact = response.contact
+    scale = MASS * g
+    # samples interpolated linearly at steps of 0.05 / p, and differences of second order: 1e-3 of the weight
+    np.testing.assert_allclose(np.interp(t, contact.time, contact.horizontal), f_x, atol=1e-3 * scale)
+    np.testing.assert_allclose(np.interp(t, contact.time, contact.vertical), f_z, atol=1e-3 * scale)

@@ -1,0 +1,190 @@
+"""Coefficients of restitution by side, by speed and at random: bounds, draws, and both engines alike."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import rocking as rk
+from rocking.dynamics import engine
+from rocking.dynamics.impact_law import ConstantRestitution, interpolated, uniform
+from rocking.errors import InvalidValueError
+
+BLOCK = rk.Block(width=0.5, height=2.0)
+ENGINES = [
+    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    "reference",
+]
+MASK = 2**64 - 1
+
+
+def impacts_of(restitution: Any, name: str, key: int = 0) -> Any:
+    return rk.free_rocking(BLOCK, 0.12, restitution, engine=name, key=key, duration=4.0).impacts
+
+
+def splitmix64(state: int) -> int:
+    """First output of splitmix64 from a state, as its authors published it."""
+    z = (state + 0x9E3779B97F4A7C15) & MASK
+    z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & MASK
+    z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & MASK
+    return z ^ (z >> 31)
+
+
+def test_uniform_is_splitmix64() -> None:
+    """The generator here gives the published first outputs of two seeds, and `uniform` chains it three times."""
+    assert splitmix64(0) == 0xE220A8397B1DCDAF
+    assert splitmix64(1234567) == 6457827717110365317
+    for seed, key, impact in ((0, 0, 0), (1, 2, 3), (MASK, 2**63 - 1, 10**6)):
+        chained = splitmix64((splitmix64((splitmix64(seed) + key) & MASK) + impact) & MASK)
+        assert uniform(seed, key, impact) == (chained >> 11) / 2**53
+
+
+def test_draws_are_uniform_and_independent() -> None:
+    """Over impacts, over keys and over seeds the draws pass a Kolmogorov test and do not follow one another."""
+    for draws in (
+        np.array([uniform(5, 9, k) for k in range(4000)]),
+        np.array([uniform(5, k, 9) for k in range(4000)]),
+        np.array([uniform(k, 5, 9) for k in range(4000)]),
+    ):
+        assert draws.min() >= 0.0
+        assert draws.max() < 1.0
+        assert stats.kstest(draws, "uniform").pvalue > 1e-3
+        assert abs(np.corrcoef(draws[:-1], draws[1:])[0, 1]) < 4.0 / math.sqrt(4000.0)
+
+
+def test_random_law_by_seed_and_key() -> None:
+    """The same seed, history and impact give the same draw whatever the speed; any other gives another."""
+    law, same = (rk.RandomRestitution.normal(0.9, 0.03, seed=3) for _ in range(2))
+    other = rk.RandomRestitution.normal(0.9, 0.03, seed=4)
+    draw = law.factor(1.0, 7, 2)
+    assert draw == same.factor(99.0, 7, 2)
+    assert len({draw, other.factor(1.0, 7, 2), law.factor(1.0, 8, 2), law.factor(1.0, 7, 3)}) == 4
+
+
+@pytest.mark.parametrize(("mean", "deviation"), [(0.9, 0.03), (0.99, 0.2), (0.0, 0.5), (1.0, 1.0), (0.5, 1e-3)])
+def test_normal_law_is_the_cut_normal(mean: float, deviation: float) -> None:
+    """Draws stay in [0, 1], their mean is that of the cut normal within 1 %, and they follow its distribution."""
+    law = rk.RandomRestitution.normal(mean, deviation, seed=1)
+    draws = np.array([law.factor(0.0, 0, k) for k in range(3000)])
+    assert 0.0 <= draws.min() <= draws.max() <= law.largest <= 1.0
+    exact = stats.truncnorm((0.0 - mean) / deviation, (1.0 - mean) / deviation, mean, deviation)
+    assert stats.kstest(draws, exact.cdf).pvalue > 1e-3
+    assert law.factors.mean() == pytest.approx(exact.mean(), rel=0.01)
+
+
+def test_the_distribution_test_rejects() -> None:
+    """Negative control: a law whose deviation is a fifth larger is told from the one that was asked for."""
+    law = rk.RandomRestitution.normal(0.5, 0.12, seed=1)
+    draws = np.array([law.factor(0.0, 0, k) for k in range(3000)])
+    assert stats.kstest(draws, stats.norm(0.5, 0.10).cdf).pvalue < 1e-3
+
+
+def test_law_of_a_sample() -> None:
+    """Draws from measured values lie between the least and the largest, with their median in the middle."""
+    law = rk.RandomRestitution.of_sample([0.9, 0.7, 0.8], seed=2)
+    assert (law.factors[0], law.factors[512], law.largest) == (0.7, 0.8, 0.9)
+    draws = [law.factor(0.0, k, 0) for k in range(500)]
+    assert 0.7 <= min(draws) < 0.72
+    assert 0.88 < max(draws) <= 0.9
+
+
+def test_speed_law() -> None:
+    """Straight lines through the points, constant outside; a row given as list is copied and frozen."""
+    law = rk.SpeedRestitution([0.1, 0.5, 1.0], [0.9, 0.7, 0.6])
+    for speed, expected in ((0.0, 0.9), (0.1, 0.9), (0.3, 0.8), (0.5, 0.7), (0.75, 0.65), (1.0, 0.6), (9.0, 0.6)):
+        assert law.factor(speed, 0, 0) == pytest.approx(expected, rel=1e-15)
+    assert law.largest == 0.9
+    with pytest.raises(ValueError, match="read-only"):
+        law.factors[0] = 1.0
+    assert interpolated(np.zeros(1), np.ones(1), math.nan) == 1.0
+    assert ConstantRestitution().factor(3.0, 1, 2) == 1.0 == ConstantRestitution().largest
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_coefficients_by_side(name: str) -> None:
+    """Landing left takes the left coefficient, landing right the right one, in either engine."""
+    found = impacts_of({"left": 0.8, "right": 0.9}, name)
+    assert found["onto"][:4].tolist() == ["left", "right", "left", "right"]
+    expected = np.where(found["onto"] == "left", 0.8, 0.9)
+    np.testing.assert_array_equal(found["coefficient"], expected)
+    np.testing.assert_allclose(found["velocity_after"], expected * found["velocity_before"], rtol=1e-15)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_speed_law_in_a_response(name: str) -> None:
+    """Each impact has the coefficient of its own speed, times Housner's 1 - 3/2 sin^2(alpha)."""
+    housner = 1.0 - 1.5 * math.sin(math.atan(0.25)) ** 2
+    found = impacts_of(rk.SpeedRestitution([0.05, 0.3], [1.0, 0.9], times="housner"), name)
+    speeds = np.abs(found["velocity_before"])
+    assert speeds[0] > 0.3 > speeds[-1], "both sides of a corner are met"
+    np.testing.assert_allclose(found["coefficient"], housner * np.interp(speeds, [0.05, 0.3], [1.0, 0.9]), rtol=1e-13)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_random_law_in_a_response(name: str) -> None:
+    """The n-th impact has the n-th draw of its history, times 0.95, and another key other draws."""
+    law = rk.RandomRestitution([0.7, 0.8, 1.0], 12, times=0.95)
+    for key in (0, 5, 2**63 - 1):
+        found = impacts_of(law, name, key)["coefficient"]
+        assert found.size > 5
+        np.testing.assert_allclose(found, [0.95 * law.factor(0.0, key, k) for k in range(found.size)], rtol=1e-14)
+        assert 0.95 * 0.7 <= found.min() <= found.max() <= 0.95
+
+
+@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+@pytest.mark.parametrize(
+    "law", [rk.SpeedRestitution([0.0, 0.4], [0.95, 0.8]), rk.RandomRestitution.normal(0.9, 0.05, seed=8)]
+)
+def test_both_engines_give_the_same_coefficients(law: Any) -> None:
+    """Impact by impact the two engines agree: coefficients to 1e-10, and the draws to the last bit or two."""
+    fast, slow = impacts_of(law, "fast", 3), impacts_of(law, "reference", 3)
+    assert fast.size == slow.size
+    np.testing.assert_allclose(fast["coefficient"], slow["coefficient"], rtol=1e-10 if law.kind == 1 else 1e-15)
+
+
+@pytest.mark.parametrize(
+    ("at", "factors", "message"),
+    [
+        ([0.0, 0.0], [0.5, 0.5], "speeds >= 0 that increase"),
+        ([1.0, 0.0], [0.5, 0.5], "speeds >= 0 that increase"),
+        ([-0.1, 1.0], [0.5, 0.5], "speeds >= 0 that increase"),
+        ([0.0], [0.5], "at must be a row of at least 2 finite numbers"),
+        ([0.0, math.nan], [0.5, 0.5], "at must be a row"),
+        ([0.0, math.inf], [0.5, 0.5], "at must be a row"),
+        ([[0.0, 1.0]], [0.5, 0.5], "at must be a row"),
+        (None, [0.5, 0.5], "at must be numbers"),
+        (["0", "1"], [0.5, 0.5], "at must be numbers"),
+        ([0.0, 1.0], [0.5, 0.5, 0.5], "factors must be as many as the speeds, 2, got 3"),
+        ([0.0, 1.0], [0.5, 1.1], r"factors must be in \[0, 1\], got 0.5 to 1.1"),
+        ([0.0, 1.0], [-0.1, 1.0], r"factors must be in \[0, 1\], got -0.1 to 1"),
+        ([0.0, 1.0], [0.5, math.nan], "factors must be a row"),
+        ([0.0, 1.0], None, "factors must be numbers"),
+    ],
+)
+def test_bad_tables(at: Any, factors: Any, message: str) -> None:
+    """Speeds that do not increase and coefficients outside [0, 1] are refused."""
+    with pytest.raises(InvalidValueError, match=message):
+        rk.SpeedRestitution(at, factors)
+
+
+def test_bad_distributions() -> None:
+    """Decreasing quantiles, seeds that are no whole numbers, means and deviations out of range are refused."""
+    with pytest.raises(InvalidValueError, match="quantiles, which never decrease"):
+        rk.RandomRestitution([0.6, 0.5], 1)  # type: ignore[arg-type]
+    seed: Any
+    for seed in (-1, 2**64, 1.0, None, True, "1"):
+        with pytest.raises(InvalidValueError, match=r"seed must be a whole number in \[0, 2\^64\), got"):
+            rk.RandomRestitution([0.5, 0.6], seed)  # type: ignore[arg-type]
+    bad: Any
+    for bad in (-0.1, 1.1, math.nan, None, "1"):
+        with pytest.raises(InvalidValueError, match="mean must be"):
+            rk.RandomRestitution.normal(bad, 0.1, seed=1)
+        with pytest.raises(InvalidValueError, match="deviation must be"):
+            rk.RandomRestitution.normal(0.5, bad, seed=1)
+    with pytest.raises(InvalidValueError, match=r"deviation must be in \(0, 1\], got 0"):
+        rk.RandomRestitution.normal(0.5, 0.0, seed=1)
+    for values, message in (([0.5], "values must be a row"), ([0.5, math.nan], "values"), ([0.5, 1.2], r"\[0, 1\]")):
+        with pytest.raises(InvalidValueError, match=message):
+            rk.RandomRestitution.of_sample(values, seed=1)

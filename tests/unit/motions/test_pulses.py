@@ -1,0 +1,249 @@
+"""Every pulse against its closed forms: derivatives, ends, peaks, phases, and the polynomials that stand for it."""
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from rocking.errors import InvalidValueError
+from rocking.motions import pulses
+from rocking.motions.pulse import Pulse
+from rocking.motions.segments import Segments
+
+A, T = 3.0, 0.8
+W = 2.0 * math.pi / T
+
+PULSES: dict[str, Pulse] = {
+    "rectangular": pulses.rectangular(A, T),
+    "half-sine": pulses.half_sine(A, T),
+    "sine": pulses.sine(A, T),
+    "half-cosine": pulses.half_cosine(A, T),
+    "cosine": pulses.cosine(A, T),
+    "type-a": pulses.type_a(A, T),
+    "type-b": pulses.type_b(A, T),
+    "type-c": pulses.type_c(A, T, 2),
+    "ricker": pulses.ricker(A, T),
+    "antisymmetric-ricker": pulses.antisymmetric_ricker(A, T),
+    "mavroeidis-papageorgiou": pulses.mavroeidis_papageorgiou(0.9, T, 2.2, 0.7),
+    "harmonic": pulses.harmonic(A, T, 3.25, 0.4),
+}
+
+# velocity and displacement of the ground at the end of each pulse, integrated by hand
+ENDS = {
+    "rectangular": (A * T, 0.5 * A * T * T),
+    "half-sine": (2.0 * A / W, math.pi * A / W**2),
+    "sine": (0.0, 2.0 * math.pi * A / W**2),
+    "half-cosine": (0.0, 2.0 * A / W**2),
+    "cosine": (0.0, 0.0),
+    "type-a": (0.0, 2.0 * math.pi * A / W**2),
+    "type-b": (0.0, 0.0),
+    "type-c": (0.0, 0.0),
+    "ricker": (0.0, 0.0),
+    "antisymmetric-ricker": (0.0, 0.0),
+}
+
+every = pytest.mark.parametrize("name", sorted(PULSES))
+
+
+def first_derivative(f: Callable[[Any], Any], t: Any, h: float) -> Any:
+    """Central differences of order 8."""
+    return sum(c * (f(t + k * h) - f(t - k * h)) for k, c in enumerate((4 / 5, -1 / 5, 4 / 105, -1 / 280), 1)) / h
+
+
+def second_derivative(f: Callable[[Any], Any], t: Any, h: float) -> Any:
+    """Central differences of order 8."""
+    sides = sum(c * (f(t + k * h) + f(t - k * h)) for k, c in enumerate((8 / 5, -1 / 5, 8 / 315, -1 / 560), 1))
+    return (sides - 205 / 72 * f(t)) / h**2
+
+
+def value_of(segments: Segments, time: Any) -> Any:
+    """Value of the polynomials, by Horner's rule."""
+    k = np.minimum((time / segments.step).astype(int), segments.count - 1)
+    tau = time / segments.step - k
+    total = np.zeros_like(tau)
+    for c in segments.horizontal[k].T[::-1]:
+        total = total * tau + c
+    return total
+
+
+def test_all_pulses_are_here() -> None:
+    """The table above leaves no pulse of the catalogue out."""
+    assert set(PULSES) == set(pulses.catalogue())
+
+
+@every
+def test_acceleration_is_the_derivative(name: str) -> None:
+    """Acceleration is the first derivative of velocity and the second of displacement, away from the jumps."""
+    pulse = PULSES[name]
+    h = T / 80.0
+    t = np.linspace(5.0 * h, pulse.duration - 5.0 * h, 101)
+    expected, unit = pulse.acceleration(t), pulse.peak
+    np.testing.assert_allclose(first_derivative(pulse.velocity, t, h), expected, atol=1e-9 * unit)
+    np.testing.assert_allclose(second_derivative(pulse.displacement, t, h), expected, atol=1e-8 * unit)
+
+
+def test_differences_reject_another_pulse() -> None:
+    """Negative control: the velocity of a pulse that is 1e-6 longer in period is not the integral."""
+    off = pulses.sine(A, T * (1.0 + 1e-6))
+    t = np.linspace(0.1, 0.7, 11)
+    assert np.abs(first_derivative(off.velocity, t, 0.01) - PULSES["sine"].acceleration(t)).max() > 1e-6
+
+
+@every
+def test_before_and_after(name: str) -> None:
+    """Before the pulse all is zero; after it the ground coasts at the velocity that it has."""
+    pulse = PULSES[name]
+    early = np.array([-5.0, -1e-9, 0.0])
+    assert not np.any(pulse.velocity(early))
+    assert not np.any(pulse.displacement(early))
+    assert not np.any(pulse.acceleration(np.array([-1e-9, pulse.duration + 1e-9, 1e6])))
+    v, d = pulse.velocity(pulse.duration), pulse.displacement(pulse.duration)
+    np.testing.assert_allclose(pulse.velocity(pulse.duration + 7.0), v, rtol=0, atol=0)
+    np.testing.assert_allclose(pulse.displacement(pulse.duration + 2.0), d + 2.0 * v, rtol=1e-14, atol=1e-14)
+
+
+@pytest.mark.parametrize("name", sorted(ENDS))
+def test_velocity_and_displacement_at_the_end(name: str) -> None:
+    """Where the ground ends, and how fast, is what integration by hand gives; C_n ends at zero in both."""
+    pulse = PULSES[name]
+    v, d = ENDS[name]
+    np.testing.assert_allclose(pulse.velocity(pulse.duration), v, rtol=1e-13, atol=1e-13)
+    np.testing.assert_allclose(pulse.displacement(pulse.duration), d, rtol=1e-13, atol=1e-13)
+
+
+@every
+def test_peak(name: str) -> None:
+    """No instant exceeds the stated peak, and one of 200,001 reaches it to 1e-8."""
+    pulse = PULSES[name]
+    found = np.abs(pulse.acceleration(np.linspace(0.0, pulse.duration, 200_001))).max()
+    assert pulse.peak * (1.0 - 1e-8) <= found <= pulse.peak * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("name", sorted(set(PULSES) - {"mavroeidis-papageorgiou"}))
+def test_peak_is_the_amplitude(name: str) -> None:
+    """A pulse that is given by its peak acceleration has just that peak."""
+    assert PULSES[name].peak == A
+
+
+@pytest.mark.parametrize("name", sorted(set(PULSES) - {"rectangular"}))
+def test_durations(name: str) -> None:
+    """Durations in periods are those of the definitions."""
+    phase = 0.0409759670432386  # phi / pi of C_2
+    periods = {
+        "half-sine": 0.5, "half-cosine": 0.5, "type-c": 2.5 - phase, "ricker": 4.0, "antisymmetric-ricker": 5.0,
+        "mavroeidis-papageorgiou": 2.2, "harmonic": 3.25,
+    }  # fmt: skip
+    assert PULSES[name].duration == pytest.approx(periods.get(name, 1.0) * T, rel=1e-13)
+
+
+@pytest.mark.parametrize(("n", "share"), [(1, 0.0697033468757972), (2, 0.0409759670432386), (3, 0.0291102756529802)])
+def test_phases_of_type_c(n: int, share: float) -> None:
+    """phi / pi of C_1, C_2, C_3 are the roots of the closing equation to all digits; the pulse starts at cos(phi)."""
+    pulse = pulses.type_c(A, T, n)
+    assert pulse.duration == pytest.approx((n + 0.5 - share) * T, rel=1e-13)
+    assert pulse.acceleration(0.0) == pytest.approx(A * math.cos(math.pi * share), rel=1e-13)
+    middle = pulse.displacement(np.linspace(0.0, pulse.duration, 1001))
+    assert np.abs(middle).max() > 0.1 * A / W**2, "zero at the end, but not all along"
+
+
+def test_a_wrong_phase_does_not_close() -> None:
+    """Negative control: C_1 whose phase is 1e-6 off ends with a velocity that the tolerance above sees."""
+    turn = math.pi * (0.0697033468757972 + 1e-6)
+    off = pulses.harmonic(A, T, 1.5 - turn / math.pi, 0.5 * math.pi + turn)
+    end = float(np.abs(off.velocity(off.duration)).max() + np.abs(off.displacement(off.duration)).max())
+    assert end > 1e-7
+
+
+def test_rickers_by_closed_form() -> None:
+    """Both wavelets are the formulas of the literature about their middles, beta = 1.3801190460461607."""
+    s = np.linspace(-1.5, 1.5, 301) * T
+    x, z = math.pi * s / T, 2.0 * math.pi * s / (math.sqrt(3.0) * T)
+    even = A * (1.0 - 2.0 * x**2) * np.exp(-(x**2))
+    odd = A / 1.3801190460461607491 * (z**2 - 3.0) * z * np.exp(-0.5 * z**2)
+    np.testing.assert_allclose(PULSES["ricker"].acceleration(s + 2.0 * T), even, atol=1e-13)
+    np.testing.assert_allclose(PULSES["antisymmetric-ricker"].acceleration(s + 2.5 * T), odd, atol=1e-13)
+    for name in ("ricker", "antisymmetric-ricker"):
+        ends = PULSES[name].acceleration(np.array([0.0, PULSES[name].duration]))
+        assert np.abs(ends).max() < 1e-14 * A, "nothing is cut away"
+
+
+@pytest.mark.parametrize(("gamma", "nu"), [(1.0, 0.0), (1.5, 0.5 * math.pi), (2.2, 0.7), (5.0, -2.0)])
+def test_mavroeidis_papageorgiou(gamma: float, nu: float) -> None:
+    """Velocity and acceleration are the two published formulas, the second the derivative of the first."""
+    amplitude, f = 0.9, 1.0 / T
+    pulse = pulses.mavroeidis_papageorgiou(amplitude, T, gamma, nu)
+    t = np.linspace(-0.5, 0.5, 401) * gamma / f
+    slow, main = 2.0 * math.pi * f * t / gamma, 2.0 * math.pi * f * t + nu
+    velocity = 0.5 * amplitude * (1.0 + np.cos(slow)) * np.cos(main)
+    inner = np.sin(slow) * np.cos(main) + gamma * np.sin(main) * (1.0 + np.cos(slow))
+    acceleration = -amplitude * math.pi * f / gamma * inner
+    time = np.clip(t + 0.5 * gamma / f, 0.0, pulse.duration)
+    np.testing.assert_allclose(pulse.velocity(time), velocity, atol=1e-13)
+    np.testing.assert_allclose(pulse.acceleration(time), acceleration, atol=1e-12)
+
+
+@pytest.mark.parametrize(("gamma", "nu"), [(1.0, 0.0), (1.5, 0.5 * math.pi), (2.2, 0.7), (5.0, -2.0)])
+def test_peak_of_mavroeidis_papageorgiou(gamma: float, nu: float) -> None:
+    """The peak is the largest of all extremes of the published formula, each found by minimisation, to 1e-7."""
+
+    def size(x: float) -> float:
+        slow, main = 2.0 * math.pi * x / gamma, 2.0 * math.pi * x + nu
+        inner = math.sin(slow) * math.cos(main) + gamma * math.sin(main) * (1.0 + math.cos(slow))
+        return -abs(0.9 * math.pi / (T * gamma) * inner)
+
+    ends = np.linspace(-0.5 * gamma, 0.5 * gamma, 101)
+    best = min(
+        minimize_scalar(size, bounds=(a, b), method="bounded", options={"xatol": 1e-10}).fun
+        for a, b in pairwise(ends.tolist())
+    )
+    assert pulses.mavroeidis_papageorgiou(0.9, T, gamma, nu).peak == pytest.approx(-best, rel=1e-7)
+
+
+@every
+def test_segments_agree_to_rounding(name: str) -> None:
+    """The polynomials of degree 7 are the pulse itself, within 20 roundings of its peak."""
+    pulse = PULSES[name]
+    segments = pulse.segments()
+    assert segments.degree == 7
+    assert segments.duration == pytest.approx(pulse.duration, rel=1e-14)
+    t = np.linspace(0.0, pulse.duration, 20_001)
+    off = np.abs(value_of(segments, t) - pulse.acceleration_inside(t)).max()
+    assert off <= 20.0 * np.finfo(float).eps * pulse.peak * max(1.0, pulse.duration / T)
+
+
+def test_too_few_segments_are_seen() -> None:
+    """Negative control: with six stretches a period the polynomials are off by far more than rounding."""
+    pulse = PULSES["sine"]
+    rough = Segments.of_function(pulse.acceleration_inside, pulse.duration, 6)
+    t = np.linspace(0.0, pulse.duration, 2001)
+    assert np.abs(value_of(rough, t) - pulse.acceleration_inside(t)).max() > 1e-9 * A
+
+
+@every
+def test_scaled(name: str) -> None:
+    """A factor multiplies acceleration, velocity, displacement; the peak takes its size; -1 twice is the pulse."""
+    pulse = PULSES[name]
+    twice = pulse.scaled(-2.0)
+    t = np.linspace(0.0, pulse.duration, 33)
+    for quantity in ("acceleration", "velocity", "displacement"):
+        np.testing.assert_array_equal(getattr(twice, quantity)(t), -2.0 * getattr(pulse, quantity)(t))
+    assert twice.peak == 2.0 * pulse.peak
+    assert twice.duration == pulse.duration
+    assert pulse.scaled(-1.0).scaled(-1.0) == pulse
+    with pytest.raises(InvalidValueError, match="factor must be finite"):
+        pulse.scaled(math.nan)
+
+
+@every
+def test_frozen_and_named(name: str) -> None:
+    """A pulse cannot be changed, is equal to its like, and its name tells its period."""
+    pulse = PULSES[name]
+    with pytest.raises(AttributeError):
+        pulse.duration = 1.0  # type: ignore[misc]
+    assert f"{T:.3g}" in pulse.name
+    assert pulse == pulse.scaled(1.0)
+    assert hash(pulse) == hash(pulse.scaled(1.0))

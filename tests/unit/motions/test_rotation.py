@@ -1,0 +1,92 @@
+"""Components turned into other directions, and peaks over all of them."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rocking.errors import InvalidValueError
+from rocking.motions import GroundMotion, rotated, rotd_pga
+
+RANDOM = np.random.default_rng(8)
+X, Y = (GroundMotion(row, 0.01, name=name) for row, name in zip(RANDOM.normal(size=(2, 300)), "xy", strict=True))
+RAY = np.sin(np.arange(50.0))
+
+
+def test_quarter_and_half_turns() -> None:
+    """A quarter turn makes y of x and -x of y; half a turn both negative; none leaves the samples."""
+    a, b = rotated(X, Y, 0.5 * math.pi)
+    np.testing.assert_allclose(a.acceleration, Y.acceleration, atol=1e-15)
+    np.testing.assert_allclose(b.acceleration, -X.acceleration, atol=1e-15)
+    a, b = rotated(X, Y, math.pi)
+    np.testing.assert_allclose(a.acceleration, -X.acceleration, atol=1e-15)
+    a, b = rotated(X, Y, 0.0)
+    assert np.array_equal(a.acceleration, X.acceleration)
+    assert np.array_equal(b.acceleration, Y.acceleration)
+
+
+def test_there_and_back_keeps_the_vector() -> None:
+    """The length of the vector does not change, and turning back gives the components."""
+    a, b = rotated(X, Y, 0.7)
+    length = np.hypot(X.acceleration, Y.acceleration)
+    np.testing.assert_allclose(np.hypot(a.acceleration, b.acceleration), length, rtol=1e-14)
+    back, _ = rotated(a, b, -0.7)
+    np.testing.assert_allclose(back.acceleration, X.acceleration, atol=1e-14)
+
+
+def test_a_ray_is_found() -> None:
+    """Motion along 30 degrees, turned by 30 degrees, is all in the first component."""
+    along = GroundMotion(math.cos(math.pi / 6) * RAY, 0.1), GroundMotion(0.5 * RAY, 0.1)
+    a, b = rotated(*along, math.pi / 6)
+    np.testing.assert_allclose(a.acceleration, RAY, atol=1e-15)
+    assert b.peak < 1e-15
+
+
+def test_vertical_and_provenance() -> None:
+    """Each keeps its vertical part and says by how much it was turned, with which other motion."""
+    first = GroundMotion(RAY, 0.1, vertical=2.0 * RAY, name="one", provenance=("read",))
+    a, b = rotated(first, GroundMotion(RAY, 0.1, name="two"), 0.25)
+    assert a.vertical is not None
+    assert np.array_equal(a.vertical, 2.0 * RAY)
+    assert b.vertical is None
+    assert a.provenance == ("read", "turned by 0.25 rad together with 'two'")
+    assert "'one'" in b.provenance[-1]
+
+
+def test_peaks_over_directions_by_closed_form() -> None:
+    """A ray of peak A has RotD100 = A, RotD00 = 0 and RotD50 = A cos(45 degrees); a circle has A for all."""
+    peak = float(np.abs(RAY).max())
+    ray, nothing = GroundMotion(RAY, 0.1), GroundMotion(0.0 * RAY, 0.1)
+    assert rotd_pga(ray, nothing, 100) == peak
+    assert rotd_pga(ray, nothing, 0) < 1e-15
+    # half of the directions lie within 45 degrees of the ray; the 180 directions round that to half a degree, 0.9 %
+    assert rotd_pga(ray, nothing, 50) == pytest.approx(peak * math.cos(math.radians(45.0)), rel=0.009)
+    turn = np.linspace(0.0, 2.0 * math.pi, 3601)
+    circle = GroundMotion(np.cos(turn), 0.01), GroundMotion(np.sin(turn), 0.01)
+    for percentile in (0, 50, 100):
+        assert rotd_pga(*circle, percentile) == pytest.approx(1.0, rel=1e-5)
+
+
+def test_peaks_do_not_see_the_axes() -> None:
+    """RotD100 of turned components is that of the record, to rounding; percentiles rise."""
+    turned = rotated(X, Y, 0.3)
+    assert rotd_pga(*turned, 100) == pytest.approx(rotd_pga(X, Y, 100), rel=1e-14)
+    values = [rotd_pga(X, Y, p) for p in (0, 16, 50, 84, 100)]
+    assert values == sorted(values)
+    assert values[0] < values[-1]
+
+
+def test_refusals() -> None:
+    """Other lengths, other steps, percentiles outside [0, 100], angles that are no number."""
+    with pytest.raises(InvalidValueError, match=r"0\.01 s and 300 samples, got 0\.01 s and 2"):
+        rotated(X, GroundMotion(np.zeros(2), 0.01), 0.1)
+    with pytest.raises(InvalidValueError, match="second must have the step"):
+        rotd_pga(X, GroundMotion(Y.acceleration, 0.02), 50)
+    bad: Any
+    for bad in (-1, 101, math.nan, None, "50"):
+        with pytest.raises(InvalidValueError, match="percentile must be"):
+            rotd_pga(X, Y, bad)
+    for bad in (math.nan, math.inf, None, "x", [0.1, 0.2]):
+        with pytest.raises(InvalidValueError, match="angle must be"):
+            rotated(X, Y, bad)

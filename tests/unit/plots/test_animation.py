@@ -1,0 +1,268 @@
+"""The animations: a page that needs nothing else and holds what the response says; a GIF of the right length."""
+
+import base64
+import hashlib
+import json
+import math
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from rocking.bodies import Block, MassPoints, Region, Section
+from rocking.dynamics.histories import free_rocking, simulate
+from rocking.errors import InvalidValueError, RockingError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulses import rectangular, sine
+from rocking.plots.animation import animate_gif, animate_html, page, page_data, slowest_speed
+from rocking.plots.animation_scene import Shape, scene_of
+
+BLOCK = Block(width=0.5, height=2.0)
+ALPHA = math.atan(0.25)
+HOLLOW = Section([Region([(0, 0), (2, 0), (2, 6), (0, 6)], 2000.0, holes=[[(0.5, 1), (1.5, 1), (1.5, 5), (0.5, 5)]])])
+LOLLIPOP = MassPoints([(0.2, 2.0), (0.0, 0.5)], [1.0, 3.0], feet=(-0.5, 0.7))
+
+
+class _Page(HTMLParser):
+    """Elements of a page, what is inside them, and those left open."""
+
+    EMPTY = frozenset({"meta", "input"})
+
+    def __init__(self, words):
+        super().__init__(convert_charrefs=True)
+        self.open, self.seen, self.words = [], [], []
+        self.feed(words)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.seen.append((tag, dict(attrs)))
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append((self.open[-1] if self.open else "", data))
+
+    def inside(self, tag):
+        return [words for place, words in self.words if place == tag]
+
+
+@pytest.fixture(scope="module")
+def rocked():
+    """A block that rocks under a sine pulse and stays standing."""
+    return simulate(BLOCK, sine(3.2, 0.8), 0.9)
+
+
+def _unpacked(words):
+    return np.frombuffer(base64.b64decode(words), "<f4")
+
+
+def _hash(words):
+    return f"'sha256-{base64.b64encode(hashlib.sha256(words.encode()).digest()).decode()}'"
+
+
+def test_page_is_whole_and_alone(rocked, tmp_path):
+    """The page closes every element, asks for nothing from elsewhere, and its policy allows its own parts alone."""
+    target = animate_html(rocked, tmp_path / "rocking.html")
+    words = target.read_text(encoding="utf-8")
+    made = _Page(words)
+    assert made.open == []
+    assert not re.search(r"//[\w-]+\.|https?:|url\(|@import|\bimport\b|fetch\(|XMLHttpRequest|eval\(", words)
+    assert not any({"src", "href", "style", "onclick"} & set(attributes) for _, attributes in made.seen)
+    (policy,) = (a["content"] for tag, a in made.seen if a.get("http-equiv") == "Content-Security-Policy")
+    script, style = made.inside("script")[-1], made.inside("style")[0]
+    assert policy == f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'"
+    assert ".innerHTML" not in script
+    # a minute of rocking stays far below a picture of a telephone
+    assert len(words) < 60_000
+
+
+def test_page_is_told_in_words(rocked):
+    """Outcome, motion, model and engine are text; canvases have labels, inputs have names; small screens are meant."""
+    made = _Page(page(rocked))
+    assert made.inside("h1")[0].lower() == rocked.summary
+    assert made.inside("title") == made.inside("h1")
+    about = made.inside("p")[0]
+    assert "sine pulse, 3.2 m/s2, 0.8 s" in about
+    assert "restitution 0.9" in about
+    assert rocked.engine in about
+    for tag, attributes in made.seen:
+        if tag == "canvas":
+            assert attributes["role"] == "img"
+            assert attributes["aria-label"]
+        if tag in {"input", "select"}:
+            assert any(t == "label" and a.get("for") == attributes["id"] for t, a in made.seen)
+    assert ("html", {"lang": "en"}) in made.seen
+    assert any(a.get("name") == "viewport" for _, a in made.seen)
+
+
+def test_name_of_a_motion_cannot_become_markup():
+    """A motion called like a script, or with a dollar sign, is shown as it is called and runs nothing."""
+    name = "</script><script>alert(1)</script> $data & 'x'"
+    motion = GroundMotion([0.0, 3.0, -3.0, 0.0], 0.2, [0.0, 0.1, 0.1, 0.0], name=name)
+    made = _Page(page(simulate(BLOCK, motion, scale=1.5)))
+    assert [tag for tag, _ in made.seen].count("script") == 2
+    assert name in made.inside("p")[0]
+    assert "1.5 times" in made.inside("p")[0]
+    assert "vertical motion" in " ".join(made.inside("p"))
+
+
+def test_data_is_the_response(rocked):
+    """Rotation and velocity are the response at equal steps to float32, impacts to the last digit."""
+    made = _Page(page(rocked))
+    data = json.loads(made.inside("script")[0])
+    assert data == json.loads(json.dumps(page_data(rocked)))
+    rotation = _unpacked(data["rotation"])
+    time = np.linspace(0.0, data["end"], rotation.size)
+    np.testing.assert_array_equal(rotation, rocked.at(time).astype("f4"))
+    assert (rotation.size - 1) / data["end"] <= 120.0
+    # the slope of the rotation is the velocity, where no impact lies between
+    velocity = _unpacked(data["velocity"])
+    slope = np.gradient(rocked.at(time), time, edge_order=2)
+    calm = np.min(np.abs(time[:, None] - np.append(rocked.impacts["time"], rocked.uplifts)), axis=1) > 0.05
+    np.testing.assert_allclose(velocity[calm], slope[calm], atol=2e-3)
+    for row, impact in zip(data["impacts"], rocked.impacts.tolist(), strict=True):
+        assert row == [*impact[:4], 1 if impact[4] == "right" else -1]
+    assert data["alpha"] == pytest.approx([ALPHA, ALPHA])
+    assert data["outcome"] == rocked.summary
+    assert (data["fall"], data["overturnedTo"]) == (None, 0)
+
+
+def test_ground_moves_as_the_formulas_say(rocked):
+    """Under a sine pulse the ground is at a T / (2 pi) (t - sin(wt) / w), and its acceleration is a sin(wt)."""
+    data = page_data(rocked)
+    ground, acceleration = _unpacked(data["ground"]), _unpacked(data["acceleration"])
+    time = np.linspace(0.0, data["end"], ground.size)
+    w = 2.0 * math.pi / 0.8
+    early = time < 0.8
+    exact = 3.2 / w * (time - np.sin(w * time) / w)
+    np.testing.assert_allclose(ground[early], exact[early], atol=1e-6)
+    np.testing.assert_allclose(ground[~early], 3.2 / w * 0.8, atol=1e-6)
+    # between samples of the response, 16 ms apart, the arrow is on a straight line
+    np.testing.assert_allclose(acceleration[early], 3.2 * np.sin(w * time[early]), atol=0.01)
+
+
+def test_overturning_and_rest_are_told():
+    """A fall names its instant and side and ends lying down; a body never lifted shows the motion, and no impact."""
+    fell = simulate(BLOCK, sine(6.0, 0.8), 0.9)
+    data = page_data(fell)
+    assert data["fall"] == fell.overturning_time
+    assert data["overturnedTo"] == 1
+    # as far as the samples go, and they go until it lies
+    assert _unpacked(data["rotation"])[-1] == pytest.approx(math.pi / 2.0, abs=0.1)
+    still = page_data(simulate(BLOCK, sine(2.0, 0.8)))
+    assert (still["end"], still["impacts"]) == (pytest.approx(0.8), [])
+    assert not _unpacked(still["rotation"]).any()
+
+
+def test_outlines_are_those_of_the_bodies():
+    """A block is its rectangle, a hole is a second ring, mass points keep their shares, all about their feet."""
+    block = Shape.of(BLOCK)
+    ((shade, (ring,)),) = block.regions
+    assert shade == 1.0
+    assert {tuple(row) for row in ring.tolist()} == {(-0.25, 0.0), (0.25, 0.0), (0.25, 2.0), (-0.25, 2.0)}
+    assert (block.feet, block.centre) == ((-0.25, 0.25), (0.0, 1.0))
+    ((_, rings),) = Shape.of(HOLLOW).regions
+    assert [sorted(map(tuple, ring.tolist()))[0] for ring in rings] == [(-1.0, 0.0), (-0.5, 1.0)]
+    points = Shape.of(LOLLIPOP)
+    np.testing.assert_allclose(points.points, [[0.1, 2.0, 1.0 / 3.0], [-0.1, 0.5, 1.0]], atol=1e-15)
+    np.testing.assert_allclose(points.feet, [-0.6, 0.6])
+    np.testing.assert_allclose(points.centre, [-0.05, 0.875])
+
+
+@pytest.mark.parametrize("theta", [0.3, -0.3])
+def test_body_turns_about_the_foot_it_stands_on(theta):
+    """Turned clockwise the right foot stays and the left one rises by 2 b sin(theta); no corner sinks."""
+    shape = Shape.of(BLOCK)
+    left, right = shape.turned(np.array([[-0.25, 0.0], [0.25, 0.0]]), theta)
+    stays, rises = (right, left) if theta > 0.0 else (left, right)
+    np.testing.assert_allclose(stays, [math.copysign(0.25, theta), 0.0], atol=1e-15)
+    assert rises[1] == pytest.approx(0.5 * math.sin(0.3))
+    assert shape.turned(shape.corners, theta)[:, 1].min() > -1e-12
+    # clockwise is to the right
+    assert shape.turned(np.array([[0.0, 1.0]]), theta)[0, 0] * theta > 0.0
+
+
+def test_window_holds_the_body_all_the_time(rocked):
+    """Every corner at every instant lies inside the window; where the ground runs away the window goes with it."""
+    for response in (
+        rocked,
+        simulate(BLOCK, sine(6.0, 0.8), 0.9),
+        free_rocking(HOLLOW, 0.2),
+        free_rocking(LOLLIPOP, 0.1),
+    ):
+        scene = scene_of(response)
+        x0, y0, x1, y1 = scene.window
+        for k in range(0, scene.time.size, 7):
+            corners = scene.shape.turned(scene.shape.corners, scene.rotation[k])
+            corners += np.array([0.0 if scene.follows else scene.ground[k], 0.0])
+            low, high = corners.min(axis=0), corners.max(axis=0)
+            assert x0 < low[0] < high[0] < x1
+            assert y0 < low[1] < high[1] < y1
+        assert not scene.follows
+    # half a metre a second for many seconds is far
+    assert scene_of(simulate(BLOCK, rectangular(2.6, 0.5), 0.9)).follows
+
+
+@pytest.mark.parametrize("body", [HOLLOW, LOLLIPOP], ids=["hollow", "points"])
+def test_gif_has_its_frames(body, tmp_path):
+    """At 20 frames a second and half speed a response of T seconds has ceil(40 T) + 1 frames of 50 ms."""
+    response = free_rocking(body, 0.1, 0.5, duration=0.6)
+    steps = []
+    path = animate_gif(response, tmp_path / "a.gif", fps=20, speed=0.5, progress=lambda *step: steps.append(step))
+    count = math.ceil(40.0 * response.time[-1] - 1e-9) + 1
+    with Image.open(path) as film:
+        assert (film.n_frames, film.is_animated) == (count, True)
+        durations = []
+        for k in range(film.n_frames):
+            film.seek(k)
+            durations.append(film.info["duration"])
+        assert set(durations) == {50}
+        assert film.size[0] == 480
+        assert film.info["loop"] == 0
+    assert steps == [(k + 1, count) for k in range(count)]
+
+
+def test_gif_moves_and_ends_at_the_end(tmp_path):
+    """The first frames of a falling block differ from the last; 30 frames a second are frames of 30 ms."""
+    response = simulate(BLOCK, sine(6.0, 0.8), 0.9)
+    path = animate_gif(response, tmp_path / "fall.gif", fps=30, speed=5.0)
+    with Image.open(path) as film:
+        assert film.info["duration"] == 30
+        assert film.n_frames == math.ceil(response.time[-1] / 0.15) + 1
+        first = np.asarray(film.convert("L"), dtype=float)
+        film.seek(film.n_frames - 1)
+        last = np.asarray(film.convert("L"), dtype=float)
+    # upright the body fills the middle of the upper half, lying it does not
+    assert np.abs(first - last).max() > 50.0
+
+
+def test_refusals(rocked, tmp_path):
+    """Other suffixes, folders that are not there, too many frames, and impossible speeds are refused in a sentence."""
+    with pytest.raises(RockingError, match=r"\.html"):
+        animate_html(rocked, tmp_path / "a.gif")
+    with pytest.raises(RockingError, match=r"\.gif"):
+        animate_gif(rocked, tmp_path / "a.mp4")
+    with pytest.raises(RockingError, match="cannot write"):
+        animate_html(rocked, tmp_path / "none" / "a.html")
+    with pytest.raises(RockingError, match="cannot write"):
+        animate_gif(free_rocking(BLOCK, 0.1, 0.5, duration=0.1), tmp_path / "none" / "a.gif")
+    with pytest.raises(InvalidValueError, match=r"at most 500 frames.*speed = "):
+        animate_gif(rocked, tmp_path / "a.gif", speed=0.05)
+    for wrong in ({"fps": 0.5}, {"fps": 51}, {"fps": math.nan}, {"speed": 0.0}, {"speed": math.inf}):
+        with pytest.raises(InvalidValueError, match=next(iter(wrong))):
+            animate_gif(rocked, tmp_path / "a.gif", **wrong)
+    assert not (tmp_path / "a.gif").exists()
+
+
+def test_slowest_speed_is_real_speed_where_that_fits(rocked):
+    """Twenty seconds fit at real speed and 25 frames a second; a long record is shown faster, in at most 500 frames."""
+    assert slowest_speed(rocked) == 1.0
+    long = simulate(BLOCK, GroundMotion(np.full(6000, 1.0), 0.01), duration=60.0)
+    speed = slowest_speed(long)
+    assert 60.0 / (0.04 * speed) + 1 <= 500
+    assert speed == pytest.approx(3.0, rel=0.01)

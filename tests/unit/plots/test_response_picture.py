@@ -1,0 +1,222 @@
+"""The picture of a response: curves against closed forms, marks where events are, and no text over text."""
+
+import math
+from itertools import combinations
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
+
+from rocking.bodies import Block
+from rocking.dynamics.histories import free_rocking, simulate
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulses import rectangular, sine
+from rocking.plots.response import response_picture
+from rocking.plots.response_curves import ground_place, shown_until, velocity_at
+from rocking.plots.style import write
+
+G = 9.80665
+BLOCK = Block(width=0.5, height=2.0)
+ALPHA, RADIUS = math.atan(0.25), 0.5 * math.hypot(0.5, 2.0)
+P = math.sqrt(3.0 * G / (4.0 * RADIUS))
+SHARE, R = 0.6, 0.9
+
+
+def _noise(name="made up", vertical=False):
+    time = np.arange(500) * 0.02
+    row = 2.6 * np.sin(5.0 * time) * np.exp(-0.3 * time) + 0.3 * np.sin(31.0 * time)
+    return GroundMotion(row, 0.02, -2.0 * G * (time == 1.0) if vertical else None, name=name)
+
+
+@pytest.fixture(scope="module")
+def linear():
+    """Slender-linear free rocking from 0.6 alpha: every curve is a hyperbolic cosine."""
+    return free_rocking(BLOCK, SHARE * ALPHA, R, linear=True)
+
+
+def _line(axes, label=None):
+    """Data of the line with this label, or of the longest one."""
+    if label is None:
+        return max((line.get_data() for line in axes.lines), key=lambda pair: len(pair[0]))
+    (line,) = (line for line in axes.lines if line.get_label().startswith(label))
+    return line.get_data()
+
+
+def _swings():
+    """Times and speeds of the first three impacts by closed form: cosh(p t) = 1 / (1 - theta / alpha)."""
+    share, found, time = SHARE, [], 0.0
+    for k in range(3):
+        time += (1.0 if k == 0 else 2.0) * math.acosh(1.0 / (1.0 - share)) / P
+        speed = P * ALPHA * math.sqrt(1.0 - (1.0 - share) ** 2)
+        found.append((time, speed))
+        share = 1.0 - math.sqrt(1.0 - (R * speed / (P * ALPHA)) ** 2)
+    return found
+
+
+def test_rotation_and_velocity_are_the_closed_form(linear):
+    """Until the first impact rotation / alpha is 1 - 0.4 cosh(pt), and the velocity -0.4 alpha p sinh(pt), to 1e-9."""
+    axes = response_picture(linear).axes
+    first = _swings()[0][0]
+    (time, rotation), (moments, velocity) = _line(axes[1]), _line(axes[2])
+    early = time < first - 1e-9
+    assert early.sum() > 50
+    np.testing.assert_allclose(rotation[early], 1.0 - (1.0 - SHARE) * np.cosh(P * time[early]), atol=1e-9)
+    exact = -(1.0 - SHARE) * ALPHA * P * np.sinh(P * moments[early])
+    np.testing.assert_allclose(velocity[early], exact, atol=1e-8)
+    # negative control: the nonlinear body does not follow the hyperbolic cosine
+    other = _line(response_picture(free_rocking(BLOCK, SHARE * ALPHA, R)).axes[1])
+    assert np.abs(np.interp(0.5, *other) - (1.0 - (1.0 - SHARE) * math.cosh(0.5 * P))) > 1e-3
+
+
+def test_impacts_are_marked_and_the_velocity_jumps(linear):
+    """The first three marks lie on the ground at the closed-form times; there the drawn velocity falls by r."""
+    axes = response_picture(linear).axes
+    times, heights = _line(axes[1], "impacts")
+    assert not np.any(heights)
+    moments, velocity = _line(axes[2])
+    for k, (time, speed) in enumerate(_swings()):
+        assert times[k] == pytest.approx(time, abs=1e-9)
+        here = np.abs(velocity[np.abs(moments - time) < 1e-9])
+        assert here.max() == pytest.approx(speed, rel=1e-8)
+        assert here.min() == pytest.approx(R * speed, rel=1e-8)
+    assert axes[1].get_legend().get_texts()[0].get_text() == f"impacts ({linear.impacts.size})"
+
+
+def test_energy_is_drawn_in_joules():
+    """Let go at 0.6 alpha the potential energy is m g R (cos(0.4 alpha) - cos alpha), of which 1 - r2 is lost first."""
+    response = free_rocking(BLOCK, SHARE * ALPHA, R)
+    axes = response_picture(response).axes[3]
+    start = BLOCK.mass * G * RADIUS * (math.cos((1.0 - SHARE) * ALPHA) - math.cos(ALPHA))
+    assert axes.get_ylabel() == "energy\n[J]"
+    assert _line(axes, "potential")[1][0] == pytest.approx(start, rel=1e-12)
+    time, lost = _line(axes, "lost")
+    between = (time > response.impacts["time"][0] + 0.05) & (time < response.impacts["time"][1] - 0.05)
+    assert between.sum() > 10
+    np.testing.assert_allclose(lost[between], (1.0 - R * R) * start, rtol=1e-9)
+    assert not np.any(_line(axes, "work")[1])
+    heavy = Block(width=10.0, height=40.0)
+    assert response_picture(free_rocking(heavy, SHARE * ALPHA, R)).axes[3].get_ylabel() == "energy\n[MJ]"
+
+
+def test_ground_and_friction_of_a_body_at_rest():
+    """Under a sine too weak to lift it the ground is a sin(wt), and the body takes |a| / g of friction at samples."""
+    response = simulate(BLOCK, sine(2.0, 0.8))
+    axes = response_picture(response, friction=0.3).axes
+    time, ground = _line(axes[0])
+    w = 2.0 * math.pi / 0.8
+    np.testing.assert_allclose(ground[time < 0.8], 2.0 * np.sin(w * time[time < 0.8]), atol=1e-6)
+    moments, taken = _line(axes[4], "taken")
+    inside = moments < 0.8
+    np.testing.assert_allclose(taken[inside], np.abs(2.0 * np.sin(w * moments[inside])) / G, atol=1e-6)
+    assert _line(axes[4], "friction 0.3")[1][0] == 0.3
+    assert axes[0].get_xlim() == (0.0, pytest.approx(0.8))
+    assert all("impacts" not in str(line.get_label()) for line in axes[1].lines)
+
+
+def test_titles_tell_outcome_restitution_and_engine():
+    """Outcome in words, motion with its scale, label of the model and engine stand above the panels."""
+    response = simulate(BLOCK, sine(1.6, 0.8), "housner", scale=2.0, engine="reference")
+    figure = response_picture(response)
+    assert figure.get_suptitle().replace("\n", " ").lower() == response.summary
+    small = figure.axes[0].get_title(loc="left")
+    for words in ("2 times sine pulse, 1.6 m/s2, 0.8 s", "restitution: housner", "engine: reference"):
+        assert words in small
+    let_go = response_picture(free_rocking(BLOCK, 0.1))
+    assert "free rocking, the ground at rest" in let_go.axes[0].get_title(loc="left")
+
+
+def test_overturning_is_marked_in_every_panel():
+    """Pushed over by a constant a, -theta = (a/g - alpha) (cosh(pt) - 1): the mark is where that is alpha."""
+    response = simulate(BLOCK, rectangular(6.0, 1.5), R, linear=True)
+    figure = response_picture(response)
+    fall = math.acosh(1.0 + ALPHA / (6.0 / G - ALPHA)) / P
+    for panel in figure.axes:
+        (mark,) = (line for line in panel.lines if line.get_color() == "#CC79A7" and len(line.get_xdata()) == 2)
+        assert mark.get_xdata() == pytest.approx([fall, fall], rel=1e-9)
+    words = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
+    assert words == ["past the point of no return"]
+    low, high = figure.axes[1].get_ylim()
+    assert low == pytest.approx(-1.15 * 2.2)
+    assert high == pytest.approx(1.15)
+
+
+def test_small_rocking_fills_its_panel():
+    """Rocking within a tenth of alpha fills the panel, which says that alpha lies outside."""
+    axes = response_picture(free_rocking(BLOCK, 0.1 * ALPHA, R)).axes[1]
+    assert axes.get_ylim()[1] == pytest.approx(0.125)
+    assert "far outside" in axes.get_title(loc="right")
+
+
+def test_lost_contact_is_told():
+    """A jerk downwards of 2 g takes the ground away, and the friction panel says so."""
+    axes = response_picture(simulate(BLOCK, _noise(vertical=True))).axes[4]
+    assert "falls to zero" in axes.get_title(loc="right")
+    assert response_picture(simulate(BLOCK, _noise())).axes[4].get_title(loc="right") == ""
+
+
+@pytest.mark.parametrize("friction", [0.0, -1.0, math.nan, "much"])
+def test_impossible_friction_is_refused(friction):
+    """A coefficient of friction is a finite number above zero."""
+    with pytest.raises(InvalidValueError, match="friction"):
+        response_picture(free_rocking(BLOCK, 0.1), friction)
+
+
+def _cases():
+    long_name = "a record $_{x}$ whose name goes on " * 8
+    return {
+        "rocked": lambda: simulate(BLOCK, sine(3.2, 0.8)),
+        "no uplift": lambda: simulate(BLOCK, sine(2.0, 0.8)),
+        "overturned": lambda: simulate(BLOCK, sine(6.0, 0.8), R),
+        "free": lambda: free_rocking(BLOCK, SHARE * ALPHA),
+        "record": lambda: simulate(BLOCK, _noise(long_name, vertical=True), scale=-1.25),
+        "small": lambda: free_rocking(BLOCK, 0.05 * ALPHA, 0.5),
+    }
+
+
+@pytest.mark.parametrize("case", _cases())
+def test_no_text_over_text(case, tmp_path):
+    """At 1200 pixels no two words touch, none leaves the page, and the file is the same every time."""
+    figure = response_picture(_cases()[case]())
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    renderer = canvas.get_renderer()
+    texts = [text for text in figure.findobj(Text) if text.get_visible()]
+    seen = [text for text in texts if text.get_text().strip() and _drawn(text, figure, renderer)]
+    boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in seen]
+    page = figure.bbox
+    for words, box in boxes:
+        inside = box.x0 >= -1 and box.y0 >= -1 and box.x1 <= page.x1 + 1 and box.y1 <= page.y1 + 1
+        assert inside, f"{words!r} leaves the page"
+    clashes = [
+        (a, b)
+        for (a, one), (b, two) in combinations(boxes, 2)
+        if one.shrunk(0.98, 0.98).overlaps(two.shrunk(0.98, 0.98))
+    ]
+    assert not clashes
+    first, again = (write(figure, tmp_path / f"{k}.png").read_bytes() for k in range(2))
+    assert first == again
+    # 1200 pixels at the least
+    assert figure.get_size_inches()[0] * 300 > 1200
+
+
+def _drawn(text, figure, renderer):
+    """Whether a tick label lies within its axis: labels beyond the limits exist but are not drawn."""
+    for axes in figure.axes:
+        for axis, low, high in ((axes.xaxis, *axes.get_xlim()), (axes.yaxis, *axes.get_ylim())):
+            for tick in axis.get_major_ticks():
+                if text in (tick.label1, tick.label2):
+                    on = text is tick.label1 and tick.label1.get_visible()
+                    return on and low - 1e-9 <= tick.get_loc() <= high + 1e-9
+    return True
+
+
+def test_curves_between_samples():
+    """Velocity at any instant is the closed form; the ground of a sine pulse has moved a T2 / (2 pi) at its end."""
+    response = simulate(BLOCK, sine(2.0, 0.8))
+    assert ground_place(response, np.array([0.8]))[0] == pytest.approx(2.0 * 0.8**2 / (2.0 * math.pi), rel=1e-7)
+    rocking = free_rocking(BLOCK, SHARE * ALPHA, R, linear=True)
+    time = np.linspace(0.0, 0.55, 7)
+    np.testing.assert_allclose(velocity_at(rocking, time), -0.4 * ALPHA * P * np.sinh(P * time), atol=1e-7)
+    assert shown_until(rocking) <= rocking.time[-1]
