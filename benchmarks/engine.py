@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from benchmarks import engine_duels, engine_limits, engine_truth, table
-from benchmarks.engine_batch import Fast, Histories, histories
+from benchmarks.engine_batch import COUNT, Fast, Histories, histories
 from benchmarks.table import Row
 from rocking.dynamics.engine import instruction_set
 
@@ -45,7 +45,7 @@ class Session:
             self.say(f"  {row.what} | {row.against}: {row.measured}")
 
 
-def main(*, full: bool = False, count: int = 10_000) -> bool:
+def main(*, full: bool = False, count: int = COUNT) -> bool:
     """Measure all, print the page and keep it; whether every goal was met."""
     began = time.perf_counter()
     print(f"making {count:,} histories ...", file=sys.stderr, flush=True)
@@ -60,7 +60,10 @@ def main(*, full: bool = False, count: int = 10_000) -> bool:
     session.add("growth to a million histories", lambda s: s.rows.extend(engine_limits.growth()))
     for duel in engine_duels.DUELS:
         session.add(f"against {duel.name}", lambda s, d=duel: _duel(s, d))  # type: ignore[misc]
-    table.keep("RESULTS-engine.md", _page(session))
+    if count == COUNT:
+        table.keep("RESULTS-engine.md", _page(session))
+    else:  # a trial
+        print("\n".join(_page(session)))
     return all(row.met is not False for row in session.rows)
 
 
@@ -94,8 +97,8 @@ def _page(session: Session) -> list[str]:
         "# Speed of the engines",
         "",
         f"Made by `{COMMAND}{' --full' if session.full else ''}`; peers that are not installed are left out.",
-        "Medians of interleaved repeats in one run, CPU time of all threads, with their spread. Slow peers take a part of",
-        "the batch: every n-th history in order of impacts, other ones each time.",
+        "Medians of interleaved repeats in one run, CPU time of all threads, with their spread. Slow peers take a part",
+        "of the batch: every n-th history in order of impacts, other ones each time.",
         "",
         f"- Machine: {table.machine()}; the fast engine uses {instruction_set()}",
         f"- Versions: {table.versions(*PACKAGES)}",

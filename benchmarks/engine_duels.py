@@ -98,15 +98,8 @@ def shares(batch: Histories, repeats: int) -> list[Row]:
             found.append(Row(f"Arithmetic, {name}", "peak of the core", f"{cost}; peak not measured", _goal(goal)))
             continue
         share = f"{100.0 * speed / peak:.0f} % of {peak / 1e9:.1f} GFLOP/s ({cost})"
-        found.append(
-            Row(
-                f"Arithmetic, {name}",
-                "peak of the core",
-                share,
-                _goal(goal),
-                None if goal is None else speed / peak >= goal,
-            )
-        )
+        met = None if goal is None else speed / peak >= goal
+        found.append(Row(f"Arithmetic, {name}", "peak of the core", share, _goal(goal), met))
     return found
 
 
@@ -133,7 +126,7 @@ def _variant(batch: Histories, truth: np.ndarray, name: str, order: int) -> Row:
 
 
 def _flying(batch: Histories) -> Fast:
-    """Blocks so large that, let go at half alpha, they are still on their way when the record ends: plain steps alone."""
+    """Blocks so large that, let go at half alpha, they still fly when the record ends: plain steps alone."""
     work = Fast(replace(batch, p=np.full(len(batch), 1e-4)))
     work.rows.values["rotation"][:] = 0.5 * batch.alpha
     return work

@@ -24,10 +24,10 @@ motion = rk.GroundMotion(shaking, 0.01)
 block = rk.Block(width=0.5, height=2.0)
 spent = []
 for _ in range(31):
-    start = time.perf_counter()
-    response = rk.simulate(block, motion, engine="fast")
-    spent.append(time.perf_counter() - start)
-print(json.dumps([spent, int(response.impacts.size), response.outcome.name]))
+    start = time.process_time(), time.perf_counter()
+    rk.simulate(block, motion, engine="fast")
+    spent.append((time.process_time() - start[0], time.perf_counter() - start[1]))
+print(json.dumps(spent))
 """
 
 
@@ -88,7 +88,10 @@ def single(batch: Histories) -> list[Row]:
         cpu_seconds(lambda: rk.simulate(block, motion, "ked", scale=5.0, engine="fast")) for _ in range(301)
     )
     found = [json.loads(_process("-c", FIRST)) for _ in range(5)]
-    late = statistics.median(each[0][0] - statistics.median(each[0][1:]) for each in found)
+    late, wall = (
+        statistics.median(each[0][k] - statistics.median(later[k] for later in each[1:]) for each in found)
+        for k in range(2)
+    )
     return [
         Row(
             f"A response of a 40 s record at 0.01 s, from Python ({response.impacts.size} impacts,"
@@ -101,7 +104,7 @@ def single(batch: Histories) -> list[Row]:
         Row(
             "First response of a fresh process",
             "its later ones",
-            f"{late * 1e3:.1f} ms slower (wall time, median of 5 processes)",
+            f"{late * 1e3:.1f} ms slower (wall time {wall * 1e3:.1f} ms; medians of 5 processes)",
             "< 50 ms",
             late < 0.05,
         ),

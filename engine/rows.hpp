@@ -94,7 +94,8 @@ void Kernel<U, N, D, Z, L>::start(int i, std::int64_t row) {
     tau[i] = 0.0;
     len[i] = sub[i];
     const double angle = rows.rotation[row], speed = rows.velocity[row];
-    if (angle == 0.0 && speed == 0.0) {
+    const Side& turned = lane.sides[angle > 0.0 ? 0 : 1];
+    if (turned.alpha - std::fabs(angle) == turned.alpha && speed == 0.0) {  // by less than alpha's own rounding
         peak[i] = 0.0;
         return rest(i);
     }

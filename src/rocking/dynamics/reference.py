@@ -95,7 +95,9 @@ class Reference:
         return self._trajectory(ended)
 
     def _start(self, rotation: float, velocity: float) -> _Ended | None:
-        if rotation == 0.0 and velocity == 0.0:
+        turned = self.rocker.side(1 if rotation > 0.0 else -1).slenderness_angle
+        upright = turned - abs(rotation) == turned  # turned by less than the rounding of alpha
+        if upright and velocity == 0.0:
             return self._rest()
         self.side = 1 if rotation > 0.0 or (rotation == 0.0 and velocity > 0.0) else -1
         self.u, self.rate = self._alpha - abs(rotation), -self.side * velocity
@@ -104,7 +106,7 @@ class Reference:
             self.over_time = 0.0
         self.uplifts = 1
         self._note(EventKind.UPLIFT, 0.0)
-        return None
+        return self._impact(self.rate, 0.0) if upright and self.rate > 0.0 else None
 
     def _step(self) -> _Ended | None:
         """Advance to the end of the stretch, or to the first event before it."""

@@ -20,9 +20,10 @@ P = math.sqrt(0.75 * g / RADIUS)
 START, R = 0.15, 0.85
 PSI = ALPHA - START
 WHOLE = MASS * g * RADIUS * (math.cos(PSI) - math.cos(ALPHA))
+SHARE = np.linspace(0.0, 1.0, 301)
 RECORD = rk.GroundMotion(
-    6.0 * np.sin(0.4 * np.arange(120)) * np.exp(-0.01 * np.arange(120)), 0.05,
-    vertical=2.0 * np.sin(0.9 * np.arange(120)),
+    7.0 * np.sin(15.0 * math.pi * SHARE) * (1.0 - SHARE), 0.02,
+    vertical=2.0 * np.sin(34.0 * math.pi * SHARE) * (1.0 - SHARE),
 )  # fmt: skip
 
 
