@@ -63,9 +63,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description="Speed, as ratios in one run.")
     parser.add_argument("part", nargs="?", choices=("all", "restitution", "engine"), default="all")
     parser.add_argument("--full", action="store_true", help="engine: more repeats, more histories of slow peers")
-    parser.add_argument(
-        "--histories", type=int, default=10_000, help="engine: fewer histories for a trial, which is not kept"
-    )
+    parser.add_argument("--histories", type=int, default=10_000, help="engine: fewer for a trial, not kept")
     asked = parser.parse_args()
     good = True
     if asked.part in {"all", "restitution"}:

@@ -18,13 +18,18 @@ def jax_rk4(batch: Histories, substeps: int = 2) -> Verdicts:
     jax.config.update("jax_enable_x64", True)
 
     def advance(rates: Any, y: Any, push: Any, h: Any) -> Any:
-        (a, b), (th, om) = push, y
+        (a, b), y = push, jax.numpy.stack(y)  # as an array, or the compiler works out stages several times
         middle = 0.5 * (a + b)
-        v1, k1 = rates((th, om), a)
-        v2, k2 = rates((th + 0.5 * h * v1, om + 0.5 * h * k1), middle)
-        v3, k3 = rates((th + 0.5 * h * v2, om + 0.5 * h * k2), middle)
-        v4, k4 = rates((th + h * v3, om + h * k3), b)
-        return th + h / 6.0 * (v1 + 2.0 * (v2 + v3) + v4), om + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+
+        def slope(y: Any, push: Any) -> Any:
+            return jax.numpy.stack(rates((y[0], y[1]), push))
+
+        k1 = slope(y, a)
+        k2 = slope(y + 0.5 * h * k1, middle)
+        k3 = slope(y + 0.5 * h * k2, middle)
+        k4 = slope(y + h * k3, b)
+        y += h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+        return y[0], y[1]
 
     return _compiled(jax, batch, advance, substeps)
 

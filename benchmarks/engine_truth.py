@@ -66,8 +66,9 @@ def agreement(batch: Histories, truth: np.ndarray) -> tuple[list[Row], list[str]
 def flips(batch: Histories, outcome: np.ndarray, band: float) -> np.ndarray:
     """Which histories end otherwise if the motion is a little stronger or weaker."""
     found = np.zeros(len(batch), bool)
-    for factor in (1.0 - band, 1.0 + band):
-        found |= Fast(batch.rescaled(factor))()[0]["outcome"] != outcome
+    for part in (1.0, 0.5, 0.2, 0.1, 1e-2, 1e-3, 1e-4, 1e-6):  # where impacts magnify errors, the boundary is no line
+        for sign in (-1.0, 1.0):
+            found |= Fast(batch.rescaled(1.0 + sign * band * part))()[0]["outcome"] != outcome
     return found
 
 

@@ -15,6 +15,7 @@ enum EventKind : std::int8_t { kUplift = 0, kImpact = 1, kRest = 2 };
 struct Shake {
     std::int64_t first;     // index of its first number
     std::int64_t segments;  // number of stretches
+    std::int64_t still;     // stretches of rest after them; the jump to zero is a pair of samples at one instant
     double step;            // duration of a stretch [s]
     std::int64_t block;     // index of its first block in the bounds
 };

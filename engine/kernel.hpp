@@ -39,7 +39,7 @@ class Kernel {
         double alpha, p, sine, cosine, r;
     };
     struct Lane {
-        std::int64_t row = -1, impacts = 0, uplifts = 0;
+        std::int64_t row = -1, impacts = 0, uplifts = 0, still = 0;
         int side = 0;
         Side sides[2];
         double scale, ax, az, step, first, peak_signed, peak_time, over_time, first_uplift;
@@ -110,6 +110,7 @@ class Kernel {
     void stand(int i);
     void move(int i, double to);
     void advance(int i, const double* V);
+    bool over(int i);
     void overturned(int i);
     bool beyond_return(int i) const;
     const Bounds& bounds_at(int i) const;

@@ -26,10 +26,10 @@ void Motions::find_bounds() {
     const int hop = stride();
     for (Shake& shake : shakes) {
         shake.block = static_cast<std::int64_t>(bounds.size());
-        const std::int64_t blocks = (shake.segments + kBlock - 1) / kBlock;
+        const std::int64_t whole = shake.segments + shake.still, blocks = (whole + kBlock - 1) / kBlock;
         for (std::int64_t b = 0; b < blocks; ++b) {
             Bounds found{1e300, -1e300, 1e300, 0, 0, 0};
-            const std::int64_t stop = std::min(shake.segments, (b + 1) * kBlock);
+            const std::int64_t stop = std::min(whole, (b + 1) * kBlock);
             for (std::int64_t k = b * kBlock; k < stop + (degree == 1); ++k) {
                 const double* a = data + shake.first + k * hop;
                 double low = a[0], high = a[0];
@@ -82,12 +82,13 @@ struct Library {
     Motions motions;
     In<double> keep;
 
-    Library(In<double> data, int degree, bool vertical, In<std::int64_t> first, In<std::int64_t> segments, In<double> step)
+    Library(In<double> data, int degree, bool vertical, In<std::int64_t> first, In<std::int64_t> segments,
+            In<std::int64_t> still, In<double> step)
         : keep(data) {
         if (degree != 1 && degree != 7) throw std::invalid_argument("degree must be 1 or 7");
         if (degree == 7 && vertical) throw std::invalid_argument("a smooth motion has no vertical part");
-        if (first.size() != segments.size() || first.size() != step.size())
-            throw std::invalid_argument("first, segments and step must be of one length");
+        if (first.size() != segments.size() || first.size() != still.size() || first.size() != step.size())
+            throw std::invalid_argument("first, segments, still and step must be of one length");
         motions.data = data.data();
         motions.degree = degree;
         motions.vertical = vertical;
@@ -95,9 +96,11 @@ struct Library {
         const auto size = static_cast<std::int64_t>(data.size());
         const int hop = motions.stride(), extra = degree == 1 ? hop : 0;
         for (std::size_t k = 0; k < first.size(); ++k) {
-            const Shake shake{first(k), segments(k), step(k), 0};
-            if (shake.first < 0 || shake.segments < 1 || shake.segments > size || !(shake.step > 0.0) ||
-                shake.first + shake.segments * hop + extra > size)
+            const Shake shake{first(k), segments(k), still(k), step(k), 0};
+            const std::int64_t jump = shake.still > 0 ? 1 : 0;
+            if (shake.first < 0 || shake.segments < 1 || shake.segments > size || shake.still < 0 || shake.still > size ||
+                (degree > 1 && jump) || !(shake.step > 0.0) ||
+                shake.first + (shake.segments + jump + shake.still) * hop + extra > size)
                 throw std::invalid_argument("a motion lies outside the data");
             motions.shakes.push_back(shake);
         }
@@ -226,7 +229,8 @@ static nb::list run_single(const Library& library, const nb::dict& in, const nb:
     const Motions& m = library.motions;
     if (rows.count != 1 || rows.motion[0] < 0 || rows.motion[0] >= static_cast<std::int64_t>(m.shakes.size()))
         throw std::invalid_argument("one row of a known motion expected");
-    const auto need = static_cast<std::size_t>(m.shakes[rows.motion[0]].segments + 1);
+    const Shake& shake = m.shakes[rows.motion[0]];
+    const auto need = static_cast<std::size_t>(shake.segments + shake.still + 1);
     if (rotation.size() != need || velocity.size() != need) throw std::invalid_argument("room for the samples expected");
     Trace trace{rotation.data(), velocity.data(), {}};
     trace.rotation[0] = rows.rotation[0];
@@ -245,8 +249,8 @@ NB_MODULE(_engine, m) {
     using namespace rocking;
     m.doc() = "Taylor steps of many rocking histories side by side.";
     nb::class_<Library>(m, "Library")
-        .def(nb::init<In<double>, int, bool, In<std::int64_t>, In<std::int64_t>, In<double>>(), "data"_a, "degree"_a,
-             "vertical"_a, "first"_a, "segments"_a, "step"_a);
+        .def(nb::init<In<double>, int, bool, In<std::int64_t>, In<std::int64_t>, In<std::int64_t>, In<double>>(), "data"_a, "degree"_a,
+             "vertical"_a, "first"_a, "segments"_a, "still"_a, "step"_a);
     m.def("instruction_sets", &instruction_sets);
     m.def("run_batch", &run_batch, "library"_a, "rows"_a, "results"_a, "kind"_a, "at"_a, "value"_a, "seed"_a, "gravity"_a,
           "longest_step"_a, "rest"_a, "most_impacts"_a, "linear"_a, "order"_a, "threads"_a, "chunk"_a, "isa"_a);

@@ -88,6 +88,7 @@ void Kernel<U, N, D, Z, L>::start(int i, std::int64_t row) {
     idx[i] = lane.first;
     stride[i] = motions.stride();
     last[i] = lane.first + static_cast<double>(shake.segments) * motions.stride();
+    lane.still = shake.still;
     cz[i] = lane.az;
     const double reach = std::max(rows.p_right[row], rows.p_left[row]) * shake.step;
     sub[i] = 1.0 / std::max(1.0, std::ceil(reach / set.longest_step));

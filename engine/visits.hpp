@@ -136,7 +136,7 @@ void Kernel<U, N, D, Z, L>::impact(int i, double at, double speed) {
     move(i, tau[i] + at * len[i]);
     if (trace && tau[i] == 0.0) sample(i);
     if (lane.impacts >= set.most_impacts) return finish(i, kFailed, kTooManyImpacts);
-    if (idx[i] >= last[i]) return conclude(i);
+    if (over(i)) return conclude(i);
     if (comes_to_rest(i, after)) {
         note(i, kRest, time, 0.0, 0.0, 0.0);
         rest(i);
@@ -174,6 +174,19 @@ void Kernel<U, N, D, Z, L>::move(int i, double to) {
     len[i] = std::min(sub[i], 1.0 - tau[i]);
 }
 
+// Whether the motion has ended; where rest of the ground follows, its jump to zero is passed.
+ROCKING_KERNEL
+bool Kernel<U, N, D, Z, L>::over(int i) {
+    Lane& lane = lanes[i];
+    if (idx[i] < last[i]) return false;
+    if (!lane.still) return true;
+    idx[i] += motions.stride();
+    lane.first += motions.stride();  // the pair of samples counts as one instant
+    last[i] = idx[i] + static_cast<double>(lane.still * motions.stride());
+    lane.still = 0;
+    return false;
+}
+
 ROCKING_KERNEL
 void Kernel<U, N, D, Z, L>::advance(int i, const double* V) {
     Lane& lane = lanes[i];
@@ -192,13 +205,14 @@ void Kernel<U, N, D, Z, L>::advance(int i, const double* V) {
     v[i] = v1;
     fastest[i] = std::max(fastest[i], std::fabs(v1));
     move(i, tau[i] + len[i]);
+    const bool ended = over(i);
     if (trace && tau[i] == 0.0) sample(i);
     if (u1 < 0.0) {
         const bool lies = alpha[i] - u1 >= kHalfPi && (!L || beyond_return(i));
         if (lies || (!set.to_the_ground && beyond_return(i))) return overturned(i);
         gate[i] = set.to_the_ground ? 0.0 : u1 - 0.02;  // look again a degree further out
     }
-    if (idx[i] >= last[i]) conclude(i);
+    if (ended) conclude(i);
 }
 
 }  // namespace ROCKING_ISA

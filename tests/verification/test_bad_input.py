@@ -1,4 +1,4 @@
-"""What no engine may compute, and no door may let in: not finite, outside the ranges, of the wrong kind.
+"""What no engine may compute: rows and motions that are not finite, or outside the ranges.
 
 Every history that goes in comes out with a status; a good status comes with finite numbers that fit together; what
 was refused leaves NaN and its neighbours alone; nothing hangs.
@@ -7,14 +7,15 @@ was refused leaves NaN and its neighbours alone; nothing hangs.
 import faulthandler
 import math
 import os
+import subprocess
+import sys
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 
-import rocking as rk
 from rocking.dynamics import Outcome, Status, engine
 from rocking.dynamics.batch import ROWS, Batch, Rows
 from rocking.dynamics.impact_law import ConstantRestitution
@@ -32,14 +33,12 @@ ENGINES = pytest.mark.parametrize(
 POISON = (math.nan, math.inf, -math.inf, -math.nan)
 REALS = ("peak_rotation", "peak_time", "peak_velocity", "error")
 HALF_PI = 0.5 * math.pi
-BLOCK = rk.Block(width=0.5, height=2.0)
-MOTION = rk.GroundMotion(3.0 * np.sin(0.1 * np.arange(60)), 0.05)
 
 
 @pytest.fixture(autouse=True)
 def _no_hang() -> Iterator[None]:
     """Whatever takes ten minutes has hung: the run ends with a trace of where."""
-    faulthandler.dump_traceback_later(20.0, exit=True)
+    faulthandler.dump_traceback_later(600.0, exit=True)
     yield
     faulthandler.cancel_dump_traceback_later()
 
@@ -68,8 +67,8 @@ def run(
         return batch.run(which.size, rows)[0]
 
 
-def false_success(found: dict[str, Any]) -> Any:
-    """Rows whose numbers do not fit their status."""
+def false_success(found: dict[str, Any], *, linear: bool = False) -> Any:
+    """Rows whose numbers do not fit their status; only the linear model knows no ground beyond a quarter turn."""
     good = found["status"] == Status.GOOD.code
     down, failed = found["outcome"] == Outcome.OVERTURNED.code, found["outcome"] == Outcome.FAILED.code
     still = found["outcome"] == Outcome.NO_UPLIFT.code
@@ -77,7 +76,7 @@ def false_success(found: dict[str, Any]) -> Any:
     none = np.all([np.isnan(found[key]) for key in REALS], axis=0)
     known = np.isin(found["status"], range(len(Status))) & np.isin(found["outcome"], range(len(Outcome)))
     with np.errstate(invalid="ignore"):
-        fits = (np.abs(found["peak_rotation"]) <= HALF_PI * (1.0 + 1e-15)) & (found["peak_time"] >= 0.0)
+        fits = (np.abs(found["peak_rotation"]) <= (math.inf if linear else HALF_PI)) & (found["peak_time"] >= 0.0)
         fits &= (found["error"] >= 0.0) & (found["peak_velocity"] >= 0.0)
     fits &= np.isfinite(found["overturning_time"]) == down
     fits &= (np.abs(found["side"]) == 1) == down
@@ -93,7 +92,7 @@ def false_success(found: dict[str, Any]) -> Any:
 def test_poisoned_rows(name: str) -> None:
     """1,000 rows with NaN or infinity in one of their numbers are refused; the rows between them keep their bits."""
     values = ordinary(2 * INJECTIONS if name == "fast" or CAMPAIGN else 1_100, 1)
-    count, motions = values["scale"].size, [MOTION.segments()]
+    count, motions = values["scale"].size, [Segments.between_samples(0.05, 3.0 * np.sin(0.1 * np.arange(60)))]
     which, random = np.zeros(count, np.int64), np.random.default_rng(5)
     ill = random.permutation(count)[:INJECTIONS]
     clean = run({key: np.delete(v, ill) for key, v in values.items()}, motions, np.delete(which, ill), name)
@@ -110,23 +109,28 @@ def test_poisoned_rows(name: str) -> None:
 @ENGINES
 @pytest.mark.parametrize("vertical", [False, True])
 def test_poisoned_motions(name: str, vertical: bool) -> None:
-    """NaN or infinity within a motion: no success that went through it, and other motions keep their bits."""
-    count = 250
+    """NaN or infinity within a motion: refused, or no success that went through it and no effect on other motions."""
+    count = 125
     values, random, motions = ordinary(2 * count, 2), np.random.default_rng(6), []
-    values["rotation"][:], values["velocity"][:] = 0.0, 0.0
-    bad = np.arange(2 * count) % 2 == 1
-    at = random.integers(0, 40, 2 * count)
-    for k in range(2 * count):
-        x, z = 6.0 * random.normal(size=(2, 40))
-        if bad[k]:
-            (z if vertical and k % 4 == 1 else x)[at[k]] = POISON[k // 2 % len(POISON)]
-        with np.errstate(invalid="ignore"):
-            motions.append(Segments.between_samples(0.05, x, z if vertical else None))
-    found = run(values, motions, np.arange(2 * count), name)
+    bad, at = np.arange(2 * count) % 2 == 1, random.integers(0, 40, 2 * count)
+    with np.errstate(invalid="ignore"):
+        for k in range(2 * count):
+            x, z = 6.0 * random.normal(size=(2, 40))
+            if bad[k]:
+                (z if vertical and k % 4 == 1 else x)[at[k]] = POISON[k // 2 % len(POISON)]
+            try:
+                motions.append(Segments.between_samples(0.05, x, z if vertical else None))
+            except RockingError:
+                assert bad[k]
+                motions.append(Segments.still(0.05, 1))
+        try:
+            found = run(values, motions, np.arange(2 * count), name)
+        except RockingError:
+            return
     assert not false_success(found).any()
     # what fell before the poison was met is a true result
-    fell_before = found["overturning_time"] <= 0.05 * at
-    assert (found["status"][bad & ~fell_before] != Status.GOOD.code).all()
+    through = bad & ~(found["overturning_time"] <= 0.05 * (at - 1)) & [m.count > 1 for m in motions]
+    assert (found["status"][through] != Status.GOOD.code).all()
     healthy = np.flatnonzero(~bad)
     clean = run({key: v[healthy] for key, v in values.items()}, [motions[k] for k in healthy], np.arange(count), name)
     assert all(found[key][healthy].tobytes() == clean[key].tobytes() for key in engine.RESULTS)
@@ -160,21 +164,28 @@ def extreme(random: np.random.Generator, count: int) -> dict[str, Any]:
     return {key: np.where(random.uniform(size=count) < share, odd[key], sane[key]) for key in ROWS}
 
 
+def monsters(random: np.random.Generator) -> list[Segments]:
+    """Motions on steps from 1e-9 to 1e3 s with peaks from 1e-3 to 1e6 m/s2, and rest of the ground on the same."""
+    motions = []
+    for step in (1e-9, 1e-3, 0.05, 1.0, 1e3):
+        x, z = random.normal(size=(2, 12)) * 10.0 ** random.uniform(-3.0, 6.0, (2, 1))
+        motions += [Segments.between_samples(step, x, z), Segments.between_samples(step, np.zeros(12), None)]
+    return motions
+
+
 @ENGINES
 @pytest.mark.parametrize("linear", [False, True])
 def test_pathological_parameters(name: str, linear: bool) -> None:
     """10,000 rows of extremes on motions of extremes: a status each, no false success, and many of either."""
     count = PATHOLOGICAL[name] // 2
     random = np.random.default_rng([9, linear])
-    values, motions = extreme(random, count), []
-    for step in (1e-9, 1e-3, 0.05, 1.0, 1e3):
-        x, z = random.normal(size=(2, 12)) * 10.0 ** random.uniform(-3.0, 6.0, (2, 1))
-        motions += [Segments.between_samples(step, x, z), Segments.between_samples(step, np.zeros(12), None)]
+    values, motions = extreme(random, count), monsters(random)
     which = random.integers(-1, len(motions) + 1, count)
+    # p times the step above 1e5 has a test of its own, below
+    long = np.fmax(values["p_right"], values["p_left"]) * [motions[k % 10].step for k in which] > 1e5
+    which[long] = random.integers(0, 2, int(long.sum()))
     settings = Settings(linear=linear, most_impacts=300, rest_speed=0.0 if linear else 0.01)
     found = run(values, motions, which, name, settings)
-    wrong = np.flatnonzero(false_success(found))
-    assert not wrong.size, [{key: v[k] for key, v in {**values, **found}.items()} for k in wrong[:3]]
     # the ranges, written once more
     valid = (which >= 0) & (which < len(motions)) & (np.abs(values["scale"]) <= 1e9)
     valid &= (np.abs(values["rotation"]) < HALF_PI) & (np.abs(values["velocity"]) < 1e9)
@@ -184,120 +195,17 @@ def test_pathological_parameters(name: str, linear: bool) -> None:
     assert np.array_equal(found["status"] == Status.INVALID.code, ~valid)
     assert 0.15 < valid.mean() < 0.85
     assert (found["status"] == Status.GOOD.code).mean() > 0.1
+    wrong = np.flatnonzero(false_success(found, linear=linear))
+    # what no row may be (the message shows up to three in full)
+    assert not wrong.size, (wrong.size, [{key: v[k] for key, v in {**values, **found}.items()} for k in wrong[:3]])
 
 
-# ---- the public doors -----------------------------------------------------------------------------------------------
-
-NUMBERS = (math.nan, math.inf, -math.inf, 1.0 + 2.0j, "0.1", None, [0.1, 0.2], np.array([0.1, 0.2]), True, b"1", object)
-OPTIONS: dict[str, tuple[Any, ...]] = {
-    "scale": (1e7, -1e7),
-    "rotation": (HALF_PI, 15.0, -90.0, 10**400),
-    "angular_velocity": (1e4, -720.0),
-    "gravity": (0.0, -9.81, 1e7),
-    "duration": (0.0, -1.0, 1e12),
-    "restitution": (-0.1, 1.01, 85.0, "housnr", {"left": 0.5}, {"left": 0.5, "right": math.nan}),
-    "rest_speed": (-1e-9, 0.5),
-    "longest_step": (0.0, 2.0, 1e-9),
-    "tolerance": (0.0, 1.0),
-    "key": (-1, 0.5, 2**63),
-    "order": (3, 8.5, 0),
-    "most_impacts": (0, 10.0, -1),
-    "linear": (0, 1, "no"),
-    "engine": ("quick", 1),
-}
-DOORS: dict[str, Callable[..., Any]] = {
-    "simulate": lambda **options: rk.simulate(BLOCK, MOTION, **options),
-    "free_rocking": lambda **options: rk.free_rocking(BLOCK, **({"rotation": 0.05} | options)),
-    "simulate_many": lambda **options: rk.simulate_many([BLOCK], [MOTION], **options),
-}
-LACKING = {
-    "free_rocking": {"scale"},
-    "simulate_many": {"rotation", "angular_velocity", "duration", "key"},
-}
-# what has a meaning there: no duration, a linear model, a row of scales, several restitutions
-MEANT = {
-    "duration": ("None",), "linear": ("True",), "simulate_many scale": ("[0.1, 0.2]", "array([0.1, 0.2])"),
-    "simulate_many restitution": ("[0.1, 0.2]",),
-}  # fmt: skip
-
-
-def bad_options() -> Iterator[Any]:
-    for door in DOORS:
-        for option in sorted(OPTIONS.keys() - LACKING.get(door, set())):
-            meant = MEANT.get(option, ()) + MEANT.get(f"{door} {option}", ())
-            for value in (*OPTIONS[option], *NUMBERS):
-                if repr(value) not in meant:
-                    yield pytest.param(door, option, value, id=f"{door}-{option}-{value!r:.20}")
-
-
-@pytest.mark.parametrize(("door", "option", "value"), list(bad_options()))
-def test_refused_at_the_door(door: str, option: str, value: Any) -> None:
-    """A bad option is refused with our own error, which names it or what it was."""
-    with pytest.raises(RockingError) as caught:
-        DOORS[door](**{option: value})
-    words = str(caught.value).lower()
-    named = (
-        option.rsplit("_", maxsplit=1)[-1] in words or "coefficient" in words or "samples" in words or "model" in words
+@ENGINES
+def test_no_hang(name: str) -> None:
+    """Steps of 1e12 / p on one side, a slow body on the other: done, or refused, within ten seconds."""
+    code = (
+        "from rocking.dynamics.batch import Batch, Rows; from rocking.motions.segments import Segments\n"
+        "row = dict(alpha_right=0.2, alpha_left=0.2, p_right=9e8, p_left=2.0, r_right=0.5, r_left=0.5)\n"
+        f"Batch([Segments.still(1e3, 2)], engine={name!r}).run(1, lambda a, b: Rows.of(1, rotation=-0.05, **row))"
     )
-    assert named, words
-
-
-@pytest.mark.parametrize("body", [None, "block", 1.0, math.nan, [BLOCK], np.zeros(3), MOTION])
-@pytest.mark.parametrize("door", [rk.simulate, rk.simulate_many])
-def test_no_body(door: Callable[..., Any], body: Any) -> None:
-    """What is not a body is refused."""
-    if door is rk.simulate_many and isinstance(body, list):
-        body = []
-    with pytest.raises(RockingError, match=r"body|bodies"):
-        door(body, MOTION)
-    with pytest.raises(RockingError, match="body"):
-        rk.free_rocking(None, 0.1)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("motion", [None, "record.at2", 1.0, np.zeros(30), [0.0, 1.0], BLOCK, MOTION.segments()])
-@pytest.mark.parametrize("door", [rk.simulate, rk.simulate_many])
-def test_no_motion(door: Callable[..., Any], motion: Any) -> None:
-    """What is not a motion is refused, bare arrays too: their step and unit would be guesses."""
-    with pytest.raises(RockingError, match="motion"):
-        door(BLOCK, motion)
-
-
-@pytest.mark.parametrize("poison", [math.nan, math.inf, 1e7, 1.0 + 1.0j, "1.0", None])
-@pytest.mark.parametrize("part", ["acceleration", "vertical", "time_step"])
-def test_no_poisoned_record(part: str, poison: Any) -> None:
-    """NaN, infinity, wrong units and wrong kinds do not become a ground motion."""
-    given: dict[str, Any] = {"acceleration": [0.0, 1.0, 0.0], "vertical": [0.0, 1.0, 0.0], "time_step": 0.1}
-    given[part] = poison if part == "time_step" else [0.0, poison, 0.0]
-    with pytest.raises(RockingError, match=part):
-        rk.GroundMotion(**given)
-
-
-def test_the_value_is_named() -> None:
-    """The message shows the number that was given and says what it may have been."""
-    with pytest.raises(RockingError, match=r"rotation.*got 15.*degrees"):
-        rk.free_rocking(BLOCK, 15.0)
-    with pytest.raises(RockingError, match=r"angular_velocity.*got 720.*degrees"):
-        rk.simulate(BLOCK, MOTION, angular_velocity=720.0)
-    with pytest.raises(RockingError, match=r"restitution.*got 85.*percent"):
-        rk.simulate(BLOCK, MOTION, 85.0)
-    with pytest.raises(RockingError, match=r"got 1\.01.*create energy"):
-        rk.simulate(BLOCK, MOTION, 1.01)
-    with pytest.raises(RockingError, match="no option named 'rest_sped'"):
-        rk.simulate(BLOCK, MOTION, rest_sped=0.1)
-
-
-def test_good_input_passes() -> None:
-    """Negative control: what was refused for its values is taken with others."""
-    good: dict[str, Any] = {
-        "gravity": 9.81,
-        "rest_speed": 1e-3,
-        "longest_step": 0.1,
-        "order": 6,
-        "linear": True,
-        "most_impacts": 500,
-    }
-    assert rk.simulate(BLOCK, MOTION, 0.9, scale=1.5, rotation=0.1, duration=2.0, key=3, **good).status is Status.GOOD
-    assert rk.free_rocking(BLOCK, 0.1, "ked", angular_velocity=-0.1).outcome is Outcome.ROCKED
-    assert rk.simulate_many([BLOCK], [MOTION], 0.9, scale=[1.0, 2.0], **good)["status"].values.tolist() == [
-        [[[0], [0]]]
-    ]
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=10.0)

@@ -129,7 +129,7 @@ def test_constant_vertical(
     # after the record gravity is g again, so the verdict and peaks after it may differ
     n = min(one.rotation.size, other.rotation.size)
     assert np.abs(one.rotation[:n] - other.rotation[:n]).max() < 1e-8
-    assert abs(one.rotation.size - other.rotation.size) <= 1
+    assert (one.impacts.size, one.uplifts.size) == (other.impacts.size, other.uplifts.size)
     if abs(c - 1.0) > 0.1 and np.abs(one.rotation).max() > 0.01 * alpha:
         wrong = respond(body, still, r, name, linear=linear)
         n = min(n, wrong.rotation.size)
@@ -174,7 +174,7 @@ def test_dimensionless_groups(
 
 
 def histories(
-    name: str, sides: tuple[RockingSide, RockingSide], motion: Segments, *, linear: bool = False, **state: float
+    name: str, sides: tuple[RockingSide, RockingSide], motion: Segments, *, linear: bool = False, **state: Any
 ) -> Trajectory:
     rocker = Rocker(*sides, ConstantRestitution(), "")
     return run(rocker, motion, Settings(linear=linear, rest_speed=1e-6), engine=name, **state)
@@ -249,7 +249,7 @@ def test_mirrored_body(name: str, lean: float, strength: float, seed: int) -> No
 @FEW
 @given(alpha=slenderness, p=st.floats(0.5, 6.0), r=st.sampled_from([1.0, 0.95, 0.8, 0.5]), start=st.floats(0.1, 0.95))
 def test_energy(name: str, alpha: float, p: float, r: float, start: float) -> None:
-    """Between impacts energy stays, at each it drops by r^2 exactly: after n impacts r^(2 n) is left, with r = 1 all."""
+    """Between impacts energy stays, at each it drops by r^2 exactly: after n of them r^(2 n) is left."""
     side = RockingSide(alpha, p, 1.0, r)
     # twelve units of time: quiet ground multiplies nothing, impacts are few enough to stay above rest
     found = histories(name, (side, side), Segments.still(0.02 / p, 600), rotation=start * alpha)

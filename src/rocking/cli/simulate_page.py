@@ -96,6 +96,8 @@ def _measures(answer: Answer) -> list[tuple[str, str]]:
     contact, error = response.contact, response.error_estimate
     fell = response.outcome is Outcome.OVERTURNED
     peak = f"{math.degrees(response.peak_rotation):.6g} deg, {_over_alpha(response):.6g} of the slenderness angle"
+    demand = contact.friction_demand
+    needed = "more than any surface has" if math.isinf(demand) else f"{demand:.3g}"
     doubt = (
         "another step changes the outcome: it hangs by a thread"
         if math.isinf(error)
@@ -104,7 +106,7 @@ def _measures(answer: Answer) -> list[tuple[str, str]]:
     return [
         ("peak rotation", "it overturned" if fell else peak),
         ("energy closure", f"{response.energy.closure:.1e} of the largest energy"),
-        ("friction", f"{contact.friction_demand:.3g} needed, {answer.friction:g} given"),
+        ("friction", f"{needed} needed, {answer.friction:g} given"),
         ("error estimate", doubt),
     ]
 

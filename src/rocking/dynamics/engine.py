@@ -155,25 +155,43 @@ class Library:
             raise InvalidValueError("motions in one batch must be all records or all pulses; sample the pulses")
         if self.degree > 1 and self.vertical:
             raise InvalidValueError("a pulse has no vertical part; sample it")
-        data = [self._flat(s) for s in segments]
+        laid = [self._flat(s) for s in segments]
+        data, counts, still = [d for d, _, _ in laid], [n for _, n, _ in laid], [m for _, _, m in laid]
         first = np.concatenate([[0], np.cumsum([d.size for d in data])[:-1]]).astype(np.int64)
-        counts = np.array([s.count for s in segments], dtype=np.int64)
         steps = np.array([s.step for s in segments])
-        self.segments = counts
-        self.handle = module().Library(np.concatenate(data), self.degree, self.vertical, first, counts, steps)
+        self.handle = module().Library(
+            np.concatenate(data), self.degree, self.vertical, first, np.array(counts, np.int64),
+            np.array(still, np.int64), steps,
+        )  # fmt: skip
 
-    def _flat(self, segments: Segments) -> FloatArray:
+    def _flat(self, segments: Segments) -> tuple[FloatArray, int, int]:
+        """Numbers one after another, stretches up to the jump to rest if there is one, and stretches after it."""
         if self.degree > 1:
-            return np.ascontiguousarray(segments.horizontal).ravel()
-        columns = [_samples(segments.horizontal)]
+            return np.ascontiguousarray(segments.horizontal).ravel(), segments.count, 0
+        parts = [segments.horizontal]
         if self.vertical:
             vertical = segments.vertical
-            columns.append(np.zeros(segments.count + 1) if vertical is None else _samples(vertical))
-        return np.ascontiguousarray(np.column_stack(columns)).ravel()
+            parts.append(np.zeros_like(segments.horizontal) if vertical is None else vertical)
+        jumps = np.flatnonzero(np.any([_jumps(lines) for lines in parts], axis=0))
+        if not jumps.size:
+            return np.ascontiguousarray(np.column_stack([_samples(x) for x in parts])).ravel(), segments.count, 0
+        before = int(jumps[0]) + 1
+        if jumps.size > 1 or any(np.any(lines[before:]) for lines in parts):
+            raise InvalidValueError(
+                f"the fast engine takes records without jumps between their samples, got {jumps.size}, the first "
+                f'after {before * segments.step:g} s; engine="reference" takes them'
+            )
+        rows = [np.append(_samples(lines[:before]), np.zeros(segments.count - before + 1)) for lines in parts]
+        return np.ascontiguousarray(np.column_stack(rows)).ravel(), before, segments.count - before
 
 
 def _samples(lines: FloatArray) -> FloatArray:
     return np.append(lines[:, 0], lines[-1].sum())
+
+
+def _jumps(lines: FloatArray) -> np.ndarray:
+    gap = np.abs(lines[:-1].sum(axis=1) - lines[1:, 0])
+    return np.asarray(gap > 1e-14 * np.abs(lines[:, 0]).max(initial=0.0))
 
 
 def empty_results(count: int) -> Arrays:

@@ -165,7 +165,8 @@ function drawCurve() {
   pen.textAlign = "left";
   pen.fillText("0 s", left, h - 8);
   pen.textAlign = "center";
-  pen.fillText(w < 520 ? "rotation, impacts (dots)" : "rotation, impacts (dots), slenderness angle (dashed)", (left + right) / 2, h - 8);
+  const dashed = w >= 520 && Math.min(...data.alpha) < span ? ", slenderness angle (dashed)" : "";
+  pen.fillText("rotation, impacts (dots)" + dashed, (left + right) / 2, h - 8);
   line(pen, [[x(now), 4], [x(now), bottom]], colours.ink, 1.5);
   pen.beginPath();
   pen.fillStyle = colours.ink;

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,9 +11,9 @@ from PIL import Image
 
 import rocking as rk
 from rocking.cli import main
+from rocking.cli.simulate_json import as_json
 from rocking.cli.simulate_output import Answer
-from rocking.cli.simulate_question import Question
-from rocking.dynamics.export import provenance
+from rocking.cli.simulate_page import show
 from rocking.evidence.coefficient_table import default_models
 
 G = 9.80665
@@ -20,8 +21,19 @@ BLOCK = rk.Block(width=0.5, height=2.0)
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=3.2,period=0.8"
 ALPHA = math.atan(0.25)
+STATUE = Path(__file__).parents[3] / "examples" / "bodies" / "statue_on_pedestal.toml"
+MINE = """import rocking as rk
+
+
+class Mine(rk.RestitutionModel):
+    name = "mine"
+
+    def raw_coefficient(self, body, onto):
+        return 0.9
+"""
 BODY = 'units = "m"\n[block]\nwidth = 0.5\nheight = 2.0\n'
-COLUMNS = "0.0 0.0 0.0 0.1\n0.1 3.0 -4.0 0.3\n0.4 3.0 -4.0 0.3\n0.5 0.0 0.0 -0.2\n"
+DECIDES = ("sine:amplitude=4.25,period=0.6", rk.pulses.sine(4.25, 0.6))
+"""Here Housner's block stays standing and KED's falls."""
 
 
 def run(capsys, *words):
@@ -65,8 +77,191 @@ def body(tmp_path):
 
 @pytest.fixture
 def record(tmp_path):
-    """Four samples of 0.1 s in three columns, in m/s2."""
-    rows = np.column_stack([np.arange(60) * 0.02, 3.0 * np.sin(np.arange(60) * 0.2), np.linspace(0, -5, 60)])
+    """Time and two components in three columns: a sine of 3 m/s2, and one of 1 m/s2."""
+    k = np.arange(60)
+    rows = np.column_stack([k * 0.02, 3.0 * np.sin(k * 0.2), np.cos(k * 0.3)])
     path = tmp_path / "record.txt"
     path.write_text("\n".join(" ".join(f"{x:.6f}" for x in row) for row in rows) + "\n", encoding="utf-8")
     return path
+
+
+def test_json_is_python_to_the_last_digit(capsys, body):
+    """Size on the command line, body file with the pulse as word or option: all are rk.simulate, bit by bit."""
+    expected = rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8))
+    for words in ((*SIZE, "--motion", PULSE), (*SIZE, PULSE), (body, PULSE), (body, "--motion", PULSE)):
+        answer = answered(capsys, *words)
+        assert same(answer, expected)
+        assert answer["body"]["sides"]["left"]["slenderness_angle_rad"] == pytest.approx(ALPHA, rel=1e-15)
+        assert answer["motion"]["peak_acceleration_m_s2"] == pytest.approx(3.2, rel=1e-12)
+    angle = answered(capsys, "--angle", ALPHA, "--semi-diagonal", 0.5 * math.hypot(0.5, 2.0), PULSE)
+    assert angle["peak_rotation_rad"] == pytest.approx(expected.peak_rotation, rel=1e-9)
+    assert same(answered(capsys, "--width", 50, "--height", 200, "--unit", "cm", PULSE), expected)
+    # negative control: another pulse is another response
+    assert not same(answered(capsys, *SIZE, "sine:amplitude=3.3,period=0.8"), expected)
+
+
+OPTIONS = {
+    "model": (["--restitution", "housner"], {"restitution": "housner"}),
+    "factor": (["--restitution", "0.98*shifted-impulse:k=0.6"], {"restitution": "0.98*shifted-impulse:k=0.6"}),
+    "number": (["--restitution", "0.9"], {"restitution": 0.9}),
+    "scale": (["--scale", "-1.25"], {"scale": -1.25}),
+    "linear": (["--linear"], {"linear": True}),
+    "reference": (["--engine", "reference"], {"engine": "reference"}),
+    "gravity": (["--gravity", "9.81"], {"gravity": 9.81}),
+}
+
+
+@pytest.mark.parametrize(("words", "options"), OPTIONS.values(), ids=list(OPTIONS))
+def test_each_option_reaches_the_engine(capsys, words, options):
+    """With each option the answer is that of Python with the same argument, and not the one without it."""
+    answer = answered(capsys, *SIZE, PULSE, *words)
+    assert same(answer, rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8), **options))
+    assert not same(answer, rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)))
+
+
+def test_size_in_three_dimensions_changes_the_mass_alone(capsys):
+    """Depth 2 m and 1000 kg/m3 make 2000 kg of 0.5 x 2 m; it rocks as any other."""
+    answer = answered(capsys, *SIZE, PULSE, "--depth", 2, "--density", 1000)
+    assert answer["body"]["mass_kg"] == pytest.approx(2000.0)
+    assert answer["peak_rotation_rad"] == rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)).peak_rotation
+
+
+def test_own_model_from_a_file(capsys, tmp_path):
+    """A class in the user's file is a model like the others."""
+    path = tmp_path / "mine.py"
+    path.write_text(MINE, encoding="utf-8")
+    answer = answered(capsys, *SIZE, PULSE, "--restitution", f"{path}:Mine")
+    assert answer["peak_rotation_rad"] == rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8), 0.9).peak_rotation
+
+
+def test_free_rocking_by_closed_form(capsys):
+    """Let go at 0.6 alpha the linear block lands after acosh(2.5) / p at p alpha sqrt(1 - 0.16), leftwards mirrored."""
+    p = math.sqrt(3.0 * G / (4.0 * 0.5 * math.hypot(0.5, 2.0)))
+    for share, onto in ((0.6, "left"), (-0.6, "right")):
+        answer = answered(capsys, *SIZE, "--free", share, "--linear", "--restitution", "0.9")
+        first = answer["impacts"][0]
+        assert first["time_s"] == pytest.approx(math.acosh(2.5) / p, rel=1e-10)
+        assert abs(first["velocity_before_rad_s"]) == pytest.approx(p * ALPHA * math.sqrt(1.0 - 0.16), rel=1e-10)
+        assert first["onto"] == onto
+        assert answer["initial_rotation_rad"] == pytest.approx(share * ALPHA, rel=1e-15)
+        assert answer["motion"] is None
+        assert answer["peak_rotation_over_alpha"] == pytest.approx(0.6, rel=1e-12)
+    assert same(answered(capsys, *SIZE, "--free", "0.6"), rk.free_rocking(BLOCK, 0.6 * BLOCK.slenderness_angle))
+
+
+def test_record_options(capsys, body, record):
+    """Units, format, component, vertical component of a record are those of read_motion; a step at odds is refused."""
+    words = ["--units", "m/s2", "--component", "column 2"]
+    motion = rk.read_motion(record, "columns", "m/s2", component="column 2", vertical="column 3")
+    both = answered(capsys, body, record, *words, "--vertical", "column 3", "--format", "columns")
+    assert same(both, rk.simulate(BLOCK, motion))
+    assert (both["motion"]["kind"], both["motion"]["name"]) == ("record", motion.name)
+    assert not same(answered(capsys, body, record, *words), rk.simulate(BLOCK, motion))
+    assert run(capsys, body, record, *words, "--time-step", 0.5)[0] == 2
+    in_g = answered(capsys, body, record, "--units", "g", "--component", "column 2", "--scale", "0.1")
+    peak = max(abs(3.0 * math.sin(0.2 * k)) for k in range(60))
+    assert in_g["motion"]["peak_acceleration_m_s2"] == pytest.approx(0.1 * G * peak, rel=1e-6)
+    page = run(capsys, body, record, *words, "--scale", "2", "--linear")[1]
+    assert f"2 times {motion.name}, 1.18 s, peak {2.0 * peak:.4g} m/s2" in page
+    assert "slender-linear equations" in page
+    assert "2 times sine pulse, 3.2 m/s2, 0.8 s, peak 6.4 m/s2" in run(capsys, body, PULSE, "--scale", "2")[1]
+
+
+def test_other_models_are_asked_too(capsys):
+    """Every model without parameters has its outcome and peak, those of Python; the page says who decides."""
+    word, pulse = DECIDES
+    answer = answered(capsys, *SIZE, word)
+    others = {model.label: model for model in default_models()}
+    del others["ked"]
+    assert list(answer["other_models"]) == list(others)
+    for label, model in others.items():
+        response, found = rk.simulate(BLOCK, pulse, model), answer["other_models"][label]
+        assert found["outcome"] == response.outcome.name.lower()
+        assert found["peak_rotation_rad"] == response.peak_rotation
+        assert found["coefficients"]["left"] == model.coefficient(BLOCK, "left")
+    assert (answer["outcome"], answer["other_models"]["housner"]["outcome"]) == ("overturned", "rocked")
+    out = run(capsys, *SIZE, word)[1]
+    assert "The model decides: the body overturns with ked" in out
+    assert "stays standing with housner" in out
+    assert "With every one of these models the body stays standing." in run(capsys, *SIZE, PULSE)[1]
+    assert "the body is never lifted" in run(capsys, *SIZE, "sine:amplitude=1,period=1")[1]
+
+
+def test_printed_page(capsys):
+    """Body, motion, coefficient, engine, sentence, impacts, peak, energy, friction and error are on the page."""
+    response = rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8), 0.9)
+    code, out, err = run(capsys, *SIZE, "--motion", PULSE, "--restitution", "0.9")
+    assert (code, err) == (0, "")
+    assert response.summary[1:] in out
+    # closed forms of the block, and the pulse as it was asked for
+    for words in ("2400 kg", "alpha = 0.245 rad", "R = 1.031 m", "p = 2.671 rad/s", "sine pulse, 3.2 m/s2, 0.8 s"):
+        assert words in out
+    assert f"engine:       {response.engine}" in out
+    for time in response.impacts["time"][:10]:
+        assert f"{time:.6f}" in out
+    assert f"... and {response.impacts.size - 10} more" in out
+    for words in ("of the slenderness angle", "of the largest energy", "needed, 0.5 given", "error estimate"):
+        assert words in out
+    statue = run(capsys, STATUE, "--free", "-0.3")[1]
+    table = statue[statue.index("With other") :].splitlines()
+    assert len(table) == 9
+    assert all(len(line) <= 80 for line in table)
+    assert "left alpha = " in statue
+    assert "let go at -6.1" in statue
+
+
+def test_warnings_are_in_plain_words(capsys):
+    """A body of slope 1/4 takes friction of about 1/4: with 0.2 it slides, with 0.5 not; a squat one would fly."""
+    words = (*SIZE, PULSE)
+    assert answered(capsys, *words)["warnings"] == []
+    slippery = answered(capsys, *words, "--friction", "0.2")
+    assert slippery["friction"]["given"] == 0.2
+    assert "with 0.2 the body would slide" in slippery["warnings"][0]
+    assert "would slide" in run(capsys, *words, "--friction", "0.2")[1]
+    hard = ("--width", 3, "--height", 1, "sine:amplitude=40,period=1", "--restitution", "0.5")
+    flying = answered(capsys, *hard)
+    assert flying["friction"]["of_motion"] is None
+    assert flying["least_vertical_force_N"] <= 0.0
+    assert "more than any surface has" in run(capsys, *hard)[1]
+
+
+def test_a_model_that_does_not_fit_says_why(capsys):
+    """Where a model has no coefficient for a body, the row and the JSON say so, and the verdict leaves it out."""
+    answer = Answer(rk.free_rocking(BLOCK, 0.1), 0.5, {"odd": "the impact would create energy"})
+    show(answer)
+    out = capsys.readouterr().out
+    assert "not for this body" in out
+    assert "! odd: the impact would create energy" in out
+    assert json.loads(as_json(answer))["other_models"]["odd"] == {"error": "the impact would create energy"}
+
+
+def test_files(capsys, tmp_path):
+    """Picture, page, GIF, CSV and MATLAB files are written and named; the CSV holds Python's rotation."""
+    names = {"--picture": "a.svg", "--animation": "a.html", "--csv": "a.csv", "--mat": "a.mat"}
+    paths = {option: tmp_path / name for option, name in names.items()}
+    code, out, _ = run(capsys, *SIZE, PULSE, *(word for pair in paths.items() for word in pair))
+    assert code == 0
+    assert out.splitlines()[-4:] == [f"wrote {path}" for path in paths.values()]
+    expected = rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8))
+    with paths["--csv"].open(encoding="utf-8") as file:
+        rows = [row for row in csv.reader(file) if not row[0].startswith("#")]
+    column = next(k for k, word in enumerate(rows[0]) if word.startswith("rotation"))
+    np.testing.assert_array_equal([float(row[column]) for row in rows[1:]], expected.rotation)
+    assert expected.summary[1:] in paths["--animation"].read_text(encoding="utf-8")
+    assert "angular" in paths["--picture"].read_text(encoding="utf-8")
+    assert paths["--mat"].stat().st_size > 1000
+    gif = tmp_path / "a.GIF"
+    assert run(capsys, *SIZE, "--free", "0.1", "--restitution", "0.1", "--animation", gif)[0] == 0
+    with Image.open(gif) as film:
+        assert film.format == "GIF"
+
+
+def test_netcdf(capsys, tmp_path):
+    """--netcdf writes what xarray reads, to the last digit."""
+    pytest.importorskip("h5py")
+    import xarray
+
+    path = tmp_path / "a.nc"
+    assert run(capsys, *SIZE, PULSE, "--netcdf", path)[0] == 0
+    with xarray.open_dataset(path, engine="h5netcdf") as found:
+        np.testing.assert_array_equal(found["rotation"], rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)).rotation)

@@ -12,6 +12,9 @@ from rocking.dynamics import engine
 from rocking.dynamics.impact_law import ConstantRestitution, interpolated, uniform
 from rocking.errors import InvalidValueError
 
+# these take rows, whatever their type
+SPEED: Any = rk.SpeedRestitution
+RANDOM: Any = rk.RandomRestitution
 BLOCK = rk.Block(width=0.5, height=2.0)
 ENGINES = [
     pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
@@ -92,7 +95,7 @@ def test_law_of_a_sample() -> None:
 
 def test_speed_law() -> None:
     """Straight lines through the points, constant outside; a row given as list is copied and frozen."""
-    law = rk.SpeedRestitution([0.1, 0.5, 1.0], [0.9, 0.7, 0.6])
+    law = SPEED([0.1, 0.5, 1.0], [0.9, 0.7, 0.6])
     for speed, expected in ((0.0, 0.9), (0.1, 0.9), (0.3, 0.8), (0.5, 0.7), (0.75, 0.65), (1.0, 0.6), (9.0, 0.6)):
         assert law.factor(speed, 0, 0) == pytest.approx(expected, rel=1e-15)
     assert law.largest == 0.9
@@ -116,7 +119,7 @@ def test_coefficients_by_side(name: str) -> None:
 def test_speed_law_in_a_response(name: str) -> None:
     """Each impact has the coefficient of its own speed, times Housner's 1 - 3/2 sin^2(alpha)."""
     housner = 1.0 - 1.5 * math.sin(math.atan(0.25)) ** 2
-    found = impacts_of(rk.SpeedRestitution([0.05, 0.3], [1.0, 0.9], times="housner"), name)
+    found = impacts_of(SPEED([0.05, 0.3], [1.0, 0.9], times="housner"), name)
     speeds = np.abs(found["velocity_before"])
     assert speeds[0] > 0.3 > speeds[-1], "both sides of a corner are met"
     np.testing.assert_allclose(found["coefficient"], housner * np.interp(speeds, [0.05, 0.3], [1.0, 0.9]), rtol=1e-13)
@@ -125,7 +128,7 @@ def test_speed_law_in_a_response(name: str) -> None:
 @pytest.mark.parametrize("name", ENGINES)
 def test_random_law_in_a_response(name: str) -> None:
     """The n-th impact has the n-th draw of its history, times 0.95, and another key other draws."""
-    law = rk.RandomRestitution([0.7, 0.8, 1.0], 12, times=0.95)
+    law = RANDOM([0.7, 0.8, 1.0], 12, times=0.95)
     for key in (0, 5, 2**63 - 1):
         found = impacts_of(law, name, key)["coefficient"]
         assert found.size > 5
@@ -134,9 +137,7 @@ def test_random_law_in_a_response(name: str) -> None:
 
 
 @pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
-@pytest.mark.parametrize(
-    "law", [rk.SpeedRestitution([0.0, 0.4], [0.95, 0.8]), rk.RandomRestitution.normal(0.9, 0.05, seed=8)]
-)
+@pytest.mark.parametrize("law", [SPEED([0.0, 0.4], [0.95, 0.8]), rk.RandomRestitution.normal(0.9, 0.05, seed=8)])
 def test_both_engines_give_the_same_coefficients(law: Any) -> None:
     """Impact by impact the two engines agree: coefficients to 1e-10, and the draws to the last bit or two."""
     fast, slow = impacts_of(law, "fast", 3), impacts_of(law, "reference", 3)
@@ -166,17 +167,17 @@ def test_both_engines_give_the_same_coefficients(law: Any) -> None:
 def test_bad_tables(at: Any, factors: Any, message: str) -> None:
     """Speeds that do not increase and coefficients outside [0, 1] are refused."""
     with pytest.raises(InvalidValueError, match=message):
-        rk.SpeedRestitution(at, factors)
+        SPEED(at, factors)
 
 
 def test_bad_distributions() -> None:
     """Decreasing quantiles, seeds that are no whole numbers, means and deviations out of range are refused."""
     with pytest.raises(InvalidValueError, match="quantiles, which never decrease"):
-        rk.RandomRestitution([0.6, 0.5], 1)  # type: ignore[arg-type]
+        RANDOM([0.6, 0.5], 1)
     seed: Any
     for seed in (-1, 2**64, 1.0, None, True, "1"):
         with pytest.raises(InvalidValueError, match=r"seed must be a whole number in \[0, 2\^64\), got"):
-            rk.RandomRestitution([0.5, 0.6], seed)  # type: ignore[arg-type]
+            RANDOM([0.5, 0.6], seed)
     bad: Any
     for bad in (-0.1, 1.1, math.nan, None, "1"):
         with pytest.raises(InvalidValueError, match="mean must be"):

@@ -10,7 +10,7 @@ from rocking.dynamics.histories import settings_of
 from rocking.errors import InvalidValueError
 
 NO_NUMBERS: list[Any] = [math.nan, math.inf, -math.inf, None, "1", True, [1.0, 2.0], 1j]
-RANGES = {
+RANGES: dict[str, Any] = {
     "gravity": (r"\(0, 1e\+06\] m/s2", [0.0, -9.81, 1.1e6], [1e-9, 1e6]),
     "rest_speed": (r"\[0, 0.1\]", [-1e-9, 0.11], [0.0, 0.1]),
     "longest_step": (r"\[1e-06, 1\]", [0.0, 0.9e-6, 1.01], [1e-6, 1.0]),
@@ -30,11 +30,14 @@ def test_no_numbers(name: str, value: Any) -> None:
 def test_ranges(name: str) -> None:
     """Numbers outside the range are refused with the range; the ends that belong to it are taken."""
     allowed, outside, inside = RANGES[name]
+    changed: Any
     for value in outside:
+        changed = {name: value}
         with pytest.raises(InvalidValueError, match=f"{name} must be in {allowed}, got"):
-            Settings(**{name: value})
+            Settings(**changed)
     for value in inside:
-        assert getattr(Settings(**{name: value}), name) == value
+        changed = {name: value}
+        assert getattr(Settings(**changed), name) == value
 
 
 @pytest.mark.parametrize("value", [0, -1, 1.0, 2.5, True, None, "5", math.nan, math.inf, [1]])

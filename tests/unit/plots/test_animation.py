@@ -241,6 +241,19 @@ def test_gif_moves_and_ends_at_the_end(tmp_path):
     assert np.abs(first - last).max() > 50.0
 
 
+def test_gif_follows_a_ground_that_runs_away(tmp_path):
+    """Where the ground ends 4 m away, the body stays within the frame: its middle third is never empty."""
+    response = simulate(BLOCK, rectangular(2.6, 0.5), 0.9)
+    path = animate_gif(response, tmp_path / "far.gif", fps=10, speed=3.0)
+    with Image.open(path) as film:
+        for k in range(film.n_frames):
+            film.seek(k)
+            frame = np.asarray(film.convert("L"), dtype=float)
+            middle = frame[150:250, 160:320]
+            # the body is grey of 65 %
+            assert np.mean(np.abs(middle - 166.0) < 12.0) > 0.2
+
+
 def test_refusals(rocked, tmp_path):
     """Other suffixes, folders that are not there, too many frames, and impossible speeds are refused in a sentence."""
     with pytest.raises(RockingError, match=r"\.html"):

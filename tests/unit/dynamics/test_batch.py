@@ -1,0 +1,212 @@
+"""Rows and batches: what they take, what they refuse, and that a bad row spoils nothing but itself."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rocking.dynamics import Outcome, Settings, Status, engine
+from rocking.dynamics.batch import ROWS, Batch, Rows, valid_row
+from rocking.dynamics.engine import RESULTS, Library
+from rocking.errors import InvalidValueError
+from rocking.motions import pulses
+from rocking.motions.segments import Segments
+
+ENGINES = [
+    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    "reference",
+]
+built = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+every_engine = pytest.mark.parametrize("name", ENGINES)
+GOOD: dict[str, Any] = {
+    "alpha_right": 0.25, "alpha_left": 0.2, "p_right": 2.5, "p_left": 2.6, "r_right": 0.9, "r_left": 0.85,
+}  # fmt: skip
+MOTION = Segments.between_samples(0.05, 4.0 * np.sin(0.3 * np.arange(60)))
+SCALES = np.linspace(0.3, 1.4, 9)
+
+
+def run(name: str, count: int = 9, motion: Any = 0, motions: Any = (MOTION,), **changed: Any) -> dict[str, Any]:
+    values = {**GOOD, "scale": SCALES, **changed}
+
+    def rows(first: int, last: int) -> Rows:
+        return Rows.of(last - first, motion, **values)
+
+    return Batch(motions, settings=Settings(most_impacts=500), threads=2, engine=name).run(count, rows)[0]
+
+
+def same(one: dict[str, Any], other: dict[str, Any], where: Any = slice(None)) -> bool:
+    return all(one[key][where].tobytes() == other[key][where].tobytes() for key in RESULTS)
+
+
+# ---- rows -----------------------------------------------------------------------------------------------------------
+
+
+def test_rows_are_repeated() -> None:
+    """One number stands for all rows; scale is 1, motion, rotation and velocity are 0, keys count up."""
+    rows = Rows.of(3, **{**GOOD, "alpha_left": [0.1, 0.2, 0.3]})
+    assert len(rows) == 3
+    assert list(rows.values) == list(ROWS)
+    assert rows.values["alpha_left"].tolist() == [0.1, 0.2, 0.3]
+    assert rows.values["scale"].tolist() == [1.0, 1.0, 1.0]
+    assert not any(rows.values[key].any() for key in ("rotation", "velocity"))
+    assert (rows.key.tolist(), rows.motion.tolist()) == ([0, 1, 2], [0, 0, 0])
+    assert all(v.dtype == np.float64 and v.flags.c_contiguous for v in rows.values.values())
+    assert Rows.of(2, 1, 5, **GOOD).key.tolist() == [5, 5]
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"scale": [1.0, 2.0]}, "rows must be numbers, or arrays of 3"),
+        ({"scale": np.ones((3, 3))}, "rows must be numbers, or arrays of 3"),
+        ({"scale": "one"}, "rows must be numbers, or arrays of 3"),
+        ({"r_left": [0.1, {}, 0.2]}, "rows must be numbers, or arrays of 3"),
+        ({"colour": 1.0}, "missing or unknown: colour"),
+    ],
+)
+def test_bad_rows(changed: dict[str, Any], message: str) -> None:
+    """Arrays of another length, words, and keys that no row has are refused."""
+    with pytest.raises(InvalidValueError, match=message):
+        Rows.of(3, **{**GOOD, **changed})
+
+
+def test_missing_keys() -> None:
+    """A row without its coefficients is refused, with the keys that rows have."""
+    with pytest.raises(InvalidValueError, match=r"rows have alpha_right, .*; missing or unknown: r_left, r_right"):
+        Rows.of(1, **{k: v for k, v in GOOD.items() if not k.startswith("r_")})
+    with pytest.raises(InvalidValueError, match="rows must be numbers"):
+        Rows.of(2, [0, 1, 2], **GOOD)
+    with pytest.raises(InvalidValueError, match="rows must be numbers"):
+        Rows.of(2, 0, ["a", "b"], **GOOD)
+
+
+@pytest.mark.parametrize("threads", [0, -2, 1.5, True, "2", math.nan])
+def test_threads(threads: Any) -> None:
+    """Threads are a whole number from 1, or not given."""
+    with pytest.raises(InvalidValueError, match="threads must be a whole number >= 1, got"):
+        Batch([MOTION], threads=threads)
+    assert Batch([MOTION]).threads is None
+
+
+# ---- results --------------------------------------------------------------------------------------------------------
+
+
+@every_engine
+def test_all_outcomes_and_types(name: str) -> None:
+    """Weak, middling and strong motions end in the three ways; results have the types that they promise."""
+    found = run(name)
+    assert set(found) == set(RESULTS)
+    assert all(found[key].dtype == dtype and found[key].shape == (9,) for key, dtype in RESULTS.items())
+    assert set(found["outcome"].tolist()) == {o.code for o in Outcome} - {Outcome.FAILED.code}
+    still, down = found["outcome"] == Outcome.NO_UPLIFT.code, found["outcome"] == Outcome.OVERTURNED.code
+    assert not found["peak_rotation"][still].any()
+    np.testing.assert_array_equal(np.abs(found["peak_rotation"][down]), 0.5 * math.pi)
+    np.testing.assert_array_equal(np.isnan(found["overturning_time"]), ~down)
+    np.testing.assert_array_equal(np.isnan(found["first_uplift"]), still)
+    np.testing.assert_array_equal(found["side"] != 0, down)
+
+
+@built
+def test_engines_agree() -> None:
+    """Both engines give the same outcomes, counts and sides, and peaks to 1e-9."""
+    fast, slow = run("fast"), run("reference")
+    for key in ("outcome", "status", "side", "impacts", "uplifts"):
+        np.testing.assert_array_equal(fast[key], slow[key])
+    for key in ("peak_rotation", "first_uplift", "overturning_time", "peak_time"):
+        np.testing.assert_allclose(fast[key], slow[key], rtol=1e-9)
+
+
+BAD = [(key, value) for key in ROWS for value in (math.nan, math.inf, -math.inf)] + [
+    ("alpha_right", 0.0), ("alpha_left", 0.5 * math.pi), ("alpha_left", -0.1), ("p_right", 0.0), ("p_left", 1e9),
+    ("r_right", -0.1), ("r_left", 101.0), ("scale", 1.1e9), ("rotation", 1.6), ("rotation", -1.6), ("velocity", 1e9),
+]  # fmt: skip
+
+
+@every_engine
+def test_bad_rows_spoil_nothing(name: str) -> None:
+    """A row with a value out of range is refused by its status, all its numbers NaN; the others keep their bits."""
+    ordinary = run(name)
+    others = np.arange(9) != 4
+    for key, value in BAD:
+        values = np.broadcast_to({"scale": SCALES}.get(key, GOOD.get(key, 0.0)), 9).astype(float)
+        values[4] = value
+        changed: Any = {key: values}
+        found = run(name, **changed)
+        assert (found["status"][4], found["outcome"][4]) == (Status.INVALID.code, Outcome.FAILED.code), (key, value)
+        numbers = [found[k][4] for k, dtype in RESULTS.items() if dtype is np.float64]
+        assert np.isnan(numbers).all(), (key, value)
+        assert same(found, ordinary, others), (key, value)
+
+
+@every_engine
+@pytest.mark.parametrize("number", [-1, 1, 2**40, -(2**62)])
+def test_a_motion_that_is_not_there(name: str, number: int) -> None:
+    """A row that asks for a motion beyond the list is refused, and reads no memory but its own."""
+    which = np.zeros(9, dtype=np.int64)
+    which[2] = number
+    found = run(name, motion=which)
+    assert found["status"][2] == Status.INVALID.code
+    assert same(found, run(name), np.arange(9) != 2)
+
+
+@every_engine
+def test_too_many_impacts(name: str) -> None:
+    """A history of more impacts than allowed is stopped with its own status, and has no outcome."""
+    still = Segments.still(0.05, 400)
+    rotation = np.where(np.arange(3) == 1, 0.1, 0.0)
+    batch = Batch([still], settings=Settings(most_impacts=4), engine=name)
+    found, _ = batch.run(3, lambda first, last: Rows.of(last - first, **{**GOOD, "rotation": rotation}))
+    assert found["status"].tolist() == [Status.GOOD.code, Status.TOO_MANY_IMPACTS.code, Status.GOOD.code]
+    assert (found["outcome"][1], found["impacts"][1]) == (Outcome.FAILED.code, 4)
+    assert math.isnan(found["peak_rotation"][1])
+
+
+@every_engine
+def test_pieces_and_progress(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows are asked for piece after piece, progress counts them all, and pieces leave no trace."""
+    whole = run(name)
+    asked: list[tuple[int, int]] = []
+    done: list[int] = []
+    monkeypatch.setattr("rocking.dynamics.batch.PIECE", 4)
+
+    def rows(first: int, last: int) -> Rows:
+        asked.append((first, last))
+        return Rows.of(last - first, **{**GOOD, "scale": SCALES[first:last]})
+
+    found, work = Batch([MOTION], settings=Settings(most_impacts=500), engine=name).run(9, rows, done.append)
+    assert asked == [(0, 4), (4, 8), (8, 9)]
+    assert done == [4, 4, 1]
+    assert same(found, whole)
+    assert (work == {}) is (name == "reference")
+    assert all(value > 0 for value in work.values())
+
+
+@every_engine
+def test_no_rows(name: str) -> None:
+    """No histories are no results, and no error."""
+    found, _ = Batch([MOTION], engine=name).run(0, lambda *_: Rows.of(0, **GOOD))
+    assert all(values.size == 0 for values in found.values())
+
+
+def test_valid_row() -> None:
+    """The check of the reference engine takes a good row and refuses every bad one."""
+    row = {**GOOD, "scale": 1.0, "rotation": 0.0, "velocity": 0.0}
+    assert valid_row(row)
+    assert not any(valid_row({**row, key: value}) for key, value in BAD)
+
+
+@built
+def test_libraries() -> None:
+    """Motions of one batch are of one kind; none at all, a pulse with a vertical part, or other degrees are refused."""
+    pulse = pulses.sine(1.0, 0.5).segments()
+    for motions, message in (
+        ([], "motions must be at least one, got none"),
+        ([MOTION, pulse], "all records or all pulses; sample the pulses"),
+        ([Segments(0.1, np.zeros((3, 4)))], "all records or all pulses"),
+        ([Segments(0.1, np.zeros((3, 8)), np.zeros((3, 8)))], "a pulse has no vertical part; sample it"),
+    ):
+        with pytest.raises(InvalidValueError, match=message):
+            Library(motions)
+    with_vertical = Segments.between_samples(0.05, np.zeros(60), np.zeros(60))
+    assert same(run("fast", motions=(MOTION, with_vertical)), run("fast")), "zeros stand for no vertical part"

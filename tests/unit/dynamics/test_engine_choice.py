@@ -1,0 +1,121 @@
+"""Which engine runs: names, an installation without the compiled module, and instruction sets."""
+
+import sys
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.dynamics import engine
+from rocking.dynamics.batch import Batch
+from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
+
+BLOCK = rk.Block(width=0.5, height=2.0)
+RECORD = rk.GroundMotion(4.0 * np.sin(0.3 * np.arange(43)), 0.05)
+built = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+
+
+@pytest.fixture
+def _not_built(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An installation without the compiled module: its import fails, and nothing is remembered."""
+    monkeypatch.setitem(sys.modules, "rocking.dynamics._engine", None)
+    monkeypatch.delattr(sys.modules["rocking.dynamics"], "_engine", raising=False)
+    monkeypatch.setattr(engine, "_module", engine._module.__wrapped__)
+
+
+@pytest.mark.usefixtures("_not_built")
+def test_without_the_module_the_reference_runs() -> None:
+    """ "auto" warns, at the user's own line, and gives the reference engine's numbers bit for bit."""
+    assert not engine.available()
+    calls: tuple[Any, ...] = (
+        lambda name: rk.simulate(BLOCK, RECORD, 0.9, duration=2.0, engine=name).rotation,
+        lambda name: rk.free_rocking(BLOCK, 0.1, 0.9, duration=1.0, engine=name).rotation,
+        lambda name: rk.simulate_many(BLOCK, RECORD, 0.9, engine=name)["peak_rotation"].to_numpy(),
+    )
+    for call in calls:
+        with pytest.warns(SlowEngineWarning, match="was not built.*; the reference engine runs instead") as caught:
+            found = call("auto")
+        assert len(caught) == 1
+        assert caught[0].filename == __file__
+        np.testing.assert_array_equal(found, call("reference"))
+        assert np.abs(found).max() > 1e-3
+
+
+@pytest.mark.usefixtures("_not_built")
+def test_without_the_module_the_fast_one_is_refused() -> None:
+    """ "fast" is refused, saying what it takes and what serves instead; so is the list of instruction sets."""
+    message = 'C\\+\\+17 compiler .*; engine="reference" gives the same results, slowly'
+    for call in (
+        lambda: rk.simulate(BLOCK, RECORD, engine="fast"),
+        lambda: rk.free_rocking(BLOCK, 0.1, engine="fast"),
+        lambda: rk.simulate_many(BLOCK, RECORD, engine="fast"),
+        engine.instruction_sets,
+        engine.module,
+    ):
+        with pytest.raises(MissingExtraError, match=message):
+            call()
+    assert issubclass(MissingExtraError, ImportError)
+
+
+@pytest.mark.usefixtures("_not_built")
+def test_asking_for_the_reference_does_not_warn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """ "reference" runs in silence, whatever the environment says about a module that is not there."""
+    monkeypatch.setenv("ROCKING_ISA", "nonsense")
+    assert rk.simulate(BLOCK, RECORD, engine="reference", duration=0.5).engine.startswith("reference")
+
+
+@pytest.mark.parametrize("name", ["", "FAST", "slow", None, 3, True, ["fast"], ("auto",)])
+def test_wrong_names(name: Any) -> None:
+    """An engine that does not exist is refused with those that do."""
+    with pytest.raises(InvalidValueError, match="engine must be one of auto, fast, reference, got"):
+        engine.chosen(name)
+    with pytest.raises(InvalidValueError, match="engine must be one of"):
+        Batch([RECORD.segments()], engine=name).run(0, lambda *_: None)  # type: ignore[arg-type]
+
+
+@built
+def test_auto_is_the_fast_one() -> None:
+    """Where it was built "auto" takes the fast engine, without a warning, and the response says so."""
+    assert engine.available()
+    assert (engine.chosen("auto"), engine.chosen("fast"), engine.chosen("reference")) == ("fast", "fast", "reference")
+    assert isinstance(engine.module(), ModuleType)
+    auto, fast = (rk.simulate(BLOCK, RECORD, engine=name, duration=2.0) for name in ("auto", "fast"))
+    assert auto.engine == fast.engine
+    np.testing.assert_array_equal(auto.rotation, fast.rotation)
+
+
+@built
+def test_instruction_sets(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each set that the processor has can be asked for, and the response names it; the first is the default."""
+    known = engine.instruction_sets()
+    assert known == [name for name in ("avx512", "avx2", "plain") if name in known]
+    assert known[-1] == "plain"
+    peaks = []
+    for wanted in known:
+        monkeypatch.setenv("ROCKING_ISA", wanted)
+        assert engine.instruction_set() == wanted
+        response = rk.simulate(BLOCK, RECORD, 0.9, engine="fast", duration=2.1)
+        assert response.engine == f"fast (Taylor, order 8, {wanted})"
+        peaks.append(response.peak_rotation)
+    np.testing.assert_allclose(peaks, peaks[0], rtol=1e-10)
+    for empty in ("", None):
+        monkeypatch.delenv("ROCKING_ISA") if empty is None else monkeypatch.setenv("ROCKING_ISA", empty)
+        assert engine.instruction_set() == known[0]
+
+
+@built
+@pytest.mark.parametrize("wanted", ["sse9", "AVX2", "avx2 ", "0"])
+def test_wrong_instruction_sets(wanted: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A set that the processor lacks is refused, with those that it has, by every door of the fast engine."""
+    monkeypatch.setenv("ROCKING_ISA", wanted)
+    message = f"ROCKING_ISA must be one of .*plain, got '{wanted}'"
+    for call in (
+        engine.instruction_set,
+        lambda: rk.simulate(BLOCK, RECORD, engine="fast"),
+        lambda: rk.simulate_many(BLOCK, RECORD, engine="auto"),
+    ):
+        with pytest.raises(InvalidValueError, match=message):
+            call()
+    assert rk.simulate(BLOCK, RECORD, engine="reference", duration=0.2).status.name == "GOOD"

@@ -1,0 +1,192 @@
+"""Tables and files of a response: read back by other programs, equal to the last bit, with units and provenance."""
+
+import csv
+import json
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.io import loadmat
+
+import rocking as rk
+from rocking.dynamics.export import columns, provenance
+from rocking.errors import InvalidValueError, MissingExtraError
+
+BLOCK = rk.Block(width=0.5, height=2.0)
+FORMULA = "=cmd|' /C calc'!A0"
+RECORD = rk.GroundMotion(
+    4.0 * np.sin(0.5 * np.arange(91)), 0.05, name=FORMULA,
+    metadata={"station": "=1+1"}, provenance=("Tōhoku, read by hand", "cut"),
+)  # fmt: skip
+RESPONSES = {
+    "rocked": rk.simulate(BLOCK, RECORD, "housner", duration=4.5, key=7),
+    "free": rk.free_rocking(BLOCK, -0.1, {"left": 0.8, "right": 0.9}),
+    "no uplift": rk.simulate(BLOCK, rk.pulses.sine(1.0, 0.5), "ked", duration=1.0),
+    "overturned": rk.simulate(BLOCK, rk.pulses.sine(9.0, 1.0), "ked", scale=-1.0),
+    "stopped": rk.free_rocking(BLOCK, 0.1, 0.95, most_impacts=4, duration=3.0, linear=True),
+}
+UNITS = {
+    "time": "s", "rotation": "rad", "angular_velocity": "rad/s", "ground_acceleration": "m/s2", "kinetic_energy": "J",
+    "potential_energy": "J", "work_of_ground": "J", "energy_lost": "J", "horizontal_force": "N", "vertical_force": "N",
+}  # fmt: skip
+every = pytest.mark.parametrize("kind", RESPONSES)
+
+
+@every
+def test_columns(kind: str) -> None:
+    """The columns are the response's own arrays under their names, all of one length and finite."""
+    response = RESPONSES[kind]
+    found = columns(response)
+    expected = (
+        response.time, response.rotation, response.angular_velocity, response.ground_acceleration,
+        response.energy.kinetic, response.energy.potential, response.energy.work, response.energy.lost,
+        response.contact.horizontal, response.contact.vertical,
+    )  # fmt: skip
+    assert list(found) == list(UNITS)
+    for values, wanted in zip(found.values(), expected, strict=True):
+        np.testing.assert_array_equal(values, wanted)
+        assert values.shape == response.time.shape
+        assert np.isfinite(values).all()
+
+
+@every
+def test_csv(kind: str, tmp_path: Path) -> None:
+    """Read back by csv every number is the same to the last bit; headings carry the units."""
+    path = RESPONSES[kind].to_csv(tmp_path / "out.csv")
+    assert path == tmp_path / "out.csv"
+    with path.open(newline="", encoding="utf-8") as file:
+        heading, *rows = csv.reader(file)
+    assert heading == [f"{name} [{unit}]" for name, unit in UNITS.items()]
+    table = np.array(rows, dtype=float)
+    for k, values in enumerate(columns(RESPONSES[kind]).values()):
+        assert table[:, k].tobytes() == values.tobytes()
+
+
+@every
+def test_csv_holds_no_formulas(kind: str, tmp_path: Path) -> None:
+    """No cell could be taken for a formula by a spreadsheet: headings are words, all else is a plain number."""
+    text = RESPONSES[kind].to_csv(str(tmp_path / "out.csv")).read_text(encoding="utf-8")
+    assert FORMULA not in text
+    heading, *lines = text.splitlines()
+    assert all(cell[0].isalpha() for cell in heading.split(","))
+    assert not set("".join(lines)) - set("0123456789.,-e+")
+    assert all(math.isfinite(float(cell)) for line in lines for cell in line.split(","))
+
+
+@every
+def test_dataframe(kind: str) -> None:
+    """The table has the columns of the CSV file, float64, bit for bit."""
+    pytest.importorskip("pandas")
+    frame = RESPONSES[kind].to_dataframe()
+    assert list(frame.columns) == [f"{name} [{unit}]" for name, unit in UNITS.items()]
+    for heading, values in zip(frame.columns, columns(RESPONSES[kind]).values(), strict=True):
+        assert frame[heading].to_numpy().tobytes() == values.tobytes()
+
+
+def same_dataset(found: Any, response: rk.Response) -> None:
+    for (name, unit), values in zip(UNITS.items(), columns(response).values(), strict=True):
+        assert found[name].dims == ("time",)
+        assert found[name].attrs["units"] == unit
+        assert found[name].attrs["long_name"]
+        assert found[name].to_numpy().tobytes() == values.tobytes()
+    for name in ("time", "velocity_before", "velocity_after", "coefficient"):
+        assert found[f"impact_{name}"].dims == ("impact",)
+        np.testing.assert_array_equal(found[f"impact_{name}"], response.impacts[name])
+    onto = {1: "right", -1: "left"}
+    assert [onto[int(side)] for side in found["impact_onto"]] == response.impacts["onto"].tolist()
+    assert found["impact_velocity_before"].attrs["units"] == "rad/s"
+    for name, value in provenance(response).items():
+        assert found.attrs[name] == value
+
+
+@every
+def test_xarray(kind: str) -> None:
+    """The dataset holds samples over time and impacts over impact, with units, long names and provenance."""
+    pytest.importorskip("xarray")
+    same_dataset(RESPONSES[kind].to_xarray(), RESPONSES[kind])
+
+
+@every
+def test_netcdf(kind: str, tmp_path: Path) -> None:
+    """Reopened by xarray the file holds the very same dataset."""
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    pytest.importorskip("h5py")
+    path = RESPONSES[kind].to_netcdf(tmp_path / "out.nc")
+    with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as found:
+        same_dataset(found.load(), RESPONSES[kind])
+
+
+@every
+def test_mat(kind: str, tmp_path: Path) -> None:
+    """Reopened by scipy the MATLAB structure holds samples, impacts, units and provenance, bit for bit."""
+    response = RESPONSES[kind]
+    path = response.to_mat(tmp_path / "out.mat")
+    assert path.name == "out.mat"
+    found = loadmat(path, simplify_cells=True)["rocking"]
+    for name, values in columns(response).items():
+        assert np.atleast_1d(found[name]).tobytes() == values.tobytes()
+        assert found["units"][name] == UNITS[name]
+    for name in ("time", "velocity_before", "velocity_after", "coefficient"):
+        np.testing.assert_array_equal(np.atleast_1d(found["impacts"][name]), response.impacts[name])
+    signs = np.where(response.impacts["onto"] == "right", 1.0, -1.0)
+    np.testing.assert_array_equal(np.atleast_1d(found["impacts"]["onto"]), signs)
+    assert json.loads(found["provenance"]) == provenance(response)
+
+
+def test_provenance() -> None:
+    """What was computed from what: version, engine, body, coefficients, motion with its history, every setting."""
+    found = provenance(RESPONSES["rocked"])
+    housner = 1.0 - 1.5 * math.sin(math.atan(0.25)) ** 2
+    assert found["software"] == f"rocking {rk.__version__}"
+    assert (found["body"], found["mass_kg"]) == ("Block", pytest.approx(2400.0))
+    assert found["coefficient_left"] == found["coefficient_right"] == pytest.approx(housner, rel=1e-14)
+    assert found["slenderness_angle_left"] == pytest.approx(math.atan(0.25), rel=1e-15)
+    assert (found["motion"], found["motion_provenance"]) == (FORMULA, "Tōhoku, read by hand; cut")
+    assert (found["random_key"], found["scale"], found["setting_gravity"]) == (7, 1.0, 9.80665)
+    assert (found["outcome"], found["status"]) == ("ROCKED", "GOOD")
+    assert found["summary"] == RESPONSES["rocked"].summary
+    free = provenance(RESPONSES["free"])
+    assert (free["motion"], free["restitution"]) == ("none: free rocking", "left 0.8, right 0.9")
+    pulse = provenance(RESPONSES["overturned"])
+    assert "Sinusoids" in pulse["motion_provenance"]
+    assert pulse["scale"] == -1.0
+    assert provenance(RESPONSES["stopped"])["setting_linear"] is True
+    json.dumps(found, allow_nan=False)
+
+
+@pytest.mark.parametrize("write", ["to_csv", "to_mat", "to_netcdf"])
+def test_no_such_folder(write: str, tmp_path: Path) -> None:
+    """A folder that does not exist is named, and nothing is made."""
+    with pytest.raises(InvalidValueError, match=r"no folder .*nowhere to write out"):
+        getattr(RESPONSES["free"], write)(tmp_path / "nowhere" / "out")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("missing", "write", "what"),
+    [
+        ("xarray", "to_xarray", "a labelled dataset"),
+        ("pandas", "to_dataframe", "a table"),
+        ("h5netcdf", "to_netcdf", "netCDF"),
+    ],
+)
+def test_missing_extras(missing: str, write: str, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the optional package the error names it and how to get it; files that do not need it are written."""
+    monkeypatch.setitem(sys.modules, missing, None)
+    arguments = [tmp_path / "out"] if write == "to_netcdf" else []
+    with pytest.raises(MissingExtraError, match=rf"{what} needs {missing}: pip install rocking\[data\]"):
+        getattr(RESPONSES["free"], write)(*arguments)
+    assert not list(tmp_path.iterdir())
+    assert RESPONSES["free"].to_csv(tmp_path / "out.csv").stat().st_size > 1000
+    assert RESPONSES["free"].to_mat(tmp_path / "out.mat").stat().st_size > 1000
+
+
+def test_many_needs_xarray(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So does `simulate_many`, before it computes anything."""
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    with pytest.raises(MissingExtraError, match="simulate_many needs xarray"):
+        rk.simulate_many(BLOCK, RECORD)

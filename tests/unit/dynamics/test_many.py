@@ -1,0 +1,151 @@
+"""`simulate_many`: the table that it gives, and that each entry is what `simulate` gives for it alone."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.dynamics import Outcome, Status, engine
+from rocking.restitution import model
+
+pytest.importorskip("xarray")
+
+ENGINES = [
+    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    "reference",
+]
+every_engine = pytest.mark.parametrize("name", ENGINES)
+# these take rows, whatever their type
+SPEED: Any = rk.SpeedRestitution
+RANDOM: Any = rk.RandomRestitution
+BODIES = [rk.Block(width=0.5, height=2.0), rk.Block(width=0.4, height=2.4), rk.Block(width=1.0, height=2.0)]
+T = np.arange(61)
+MOTIONS = [
+    rk.GroundMotion(4.0 * np.sin(0.3 * T) * np.sin(math.pi * T / 60.0), 0.05, name="one"),
+    rk.GroundMotion(
+        3.0 * np.cos(0.25 * T) * np.sin(math.pi * T / 60.0), 0.04, vertical=np.sin(0.9 * T), name="two"
+    ),
+]  # fmt: skip
+CHOICES = ["housner", 0.9, {"left": 0.8, "right": 0.7}]
+SCALES = [0.4, 1.0, -1.6]
+
+
+@pytest.fixture(scope="module")
+def tables() -> dict[str, Any]:
+    made = {"reference": rk.simulate_many(BODIES, MOTIONS, CHOICES, scale=SCALES, engine="reference")}
+    if engine.available():
+        made["fast"] = rk.simulate_many(BODIES, MOTIONS, CHOICES, scale=SCALES, engine="fast", threads=2)
+    return made
+
+
+@every_engine
+def test_labels(name: str, tables: dict[str, Any]) -> None:
+    """Dimensions in the order of the question, names of motions, scales, words for the restitutions, units."""
+    found = tables[name]
+    assert dict(found.sizes) == {"body": 3, "motion": 2, "scale": 3, "restitution": 3}
+    assert found["motion"].to_numpy().tolist() == ["one", "two"]
+    assert found["scale"].to_numpy().tolist() == SCALES
+    assert found["restitution"].to_numpy().tolist() == ["housner", "0.9", "{'left': 0.8, 'right': 0.7}"]
+    units = {"peak_rotation": "rad", "peak_velocity": "rad/s", "overturning_time": "s", "impacts": "1", "outcome": "1"}
+    for key, unit in units.items():
+        assert found[key].attrs["units"] == unit
+        assert found[key].dims == ("body", "motion", "scale", "restitution")
+    assert found["outcome"].attrs["long_name"] == "0 no_uplift, 1 rocked, 2 overturned, 3 failed"
+    assert found.attrs["software"] == f"rocking {rk.__version__}"
+    assert (found.attrs["setting_gravity"], found.attrs["setting_linear"]) == (9.80665, 0)
+
+
+@every_engine
+def test_entries_are_single_histories(name: str, tables: dict[str, Any]) -> None:
+    """Every entry is what `simulate` gives over the motion alone, bit for bit."""
+    found = tables[name]
+    seen = set()
+    for place in np.ndindex(3, 2, 3, 3) if name == "fast" else [(0, 0, 1, 1), (1, 1, 2, 2), (2, 0, 0, 0)]:
+        body, motion, scale, choice = place
+        record = MOTIONS[motion]
+        alone = rk.simulate(
+            BODIES[body], record, CHOICES[choice], scale=SCALES[scale], duration=record.duration, engine=name
+        )
+        run = alone.trajectory
+        expected = {
+            "outcome": run.outcome.code, "status": run.status.code, "side": run.side, "impacts": run.impacts,
+            "peak_rotation": run.peak_rotation, "overturning_time": run.overturning_time, "uplifts": run.uplifts,
+            "first_uplift": alone.uplifts[0] if alone.uplifts.size else math.nan,
+        }  # fmt: skip
+        if run.outcome is not Outcome.OVERTURNED:
+            expected |= {"peak_time": run.peak_time, "peak_velocity": run.peak_angular_velocity, "error": run.error}
+        for key, value in expected.items():
+            np.testing.assert_array_equal(found[key].to_numpy()[place], value, err_msg=f"{key} at {place}")
+        seen.add(run.outcome)
+    assert seen == {Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED}, "all outcomes are met"
+
+
+@every_engine
+def test_outcomes_are_those_of_long_histories(name: str, tables: dict[str, Any]) -> None:
+    """What energy decides at the end of the motion is what following the body for 15 / p after it gives."""
+    found = tables[name]
+    for body in range(3):
+        alone = rk.simulate(BODIES[body], MOTIONS[0], 0.9, scale=-1.6, engine=name)
+        assert int(found["outcome"][body, 0, 2, 1]) == alone.outcome.code
+        assert abs(float(found["peak_rotation"][body, 0, 2, 1])) == pytest.approx(alone.peak_rotation, rel=1e-9)
+
+
+@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+def test_both_engines(tables: dict[str, Any]) -> None:
+    """The engines agree on outcomes and counts, and on peaks to 1e-9."""
+    fast, slow = tables["fast"], tables["reference"]
+    for key in ("outcome", "status", "side", "impacts", "uplifts"):
+        np.testing.assert_array_equal(fast[key], slow[key])
+    np.testing.assert_allclose(fast["peak_rotation"], slow["peak_rotation"], rtol=1e-9)
+    assert fast.attrs["work_steps"] > 0
+    assert "work_steps" not in slow.attrs
+
+
+@every_engine
+def test_stopped_histories_are_told(name: str, tables: dict[str, Any]) -> None:
+    """With two impacts allowed the others are stopped by status; histories of fewer keep their bits."""
+    short = rk.simulate_many(BODIES, MOTIONS, CHOICES, scale=SCALES, engine=name, most_impacts=2)
+    whole = tables[name]
+    few = whole["impacts"].to_numpy() < 2
+    assert 0 < few.sum() < few.size
+    stopped = short["status"].to_numpy() == Status.TOO_MANY_IMPACTS.code
+    np.testing.assert_array_equal(stopped, ~few)
+    assert np.isnan(short["peak_rotation"].to_numpy()[stopped]).all()
+    for key in short.data_vars:
+        np.testing.assert_array_equal(short[key].to_numpy()[few], whole[key].to_numpy()[few])
+
+
+@every_engine
+def test_one_of_each(name: str) -> None:
+    """One body, motion, scale and model need no lists; progress is told."""
+    done: list[int] = []
+    found = rk.simulate_many(BODIES[0], rk.pulses.sine(4.0, 0.6), engine=name, progress=done.append)
+    assert dict(found.sizes) == {"body": 1, "motion": 1, "scale": 1, "restitution": 1}
+    assert done == [1]
+    assert found["restitution"].item() == "ked"
+    assert found["motion"].item() == "sine pulse, 4 m/s2, 0.6 s"
+
+
+@every_engine
+def test_random_restitution(name: str) -> None:
+    """The k-th history of the table has the draws of key k: it is `simulate` with that key; the label says so."""
+    law = RANDOM([0.6, 0.95], 3)
+    found = rk.simulate_many(BODIES[0], MOTIONS[0], law, scale=[1.0, 1.0, 1.0], engine=name)
+    peaks = found["peak_rotation"].to_numpy().ravel()
+    assert len(set(peaks.tolist())) > 1, "one scale, other draws"
+    assert found["restitution"].item() == "at random: 0.6 to 0.95 times 1"
+    for key in range(3):
+        alone = rk.simulate(BODIES[0], MOTIONS[0], law, key=key, duration=MOTIONS[0].duration, engine=name)
+        assert peaks[key] == alone.trajectory.peak_rotation
+    speed = rk.simulate_many(BODIES[0], MOTIONS[0], [SPEED([0.0, 1.0], [0.9, 0.5])], engine=name)
+    assert speed["restitution"].item() == "of the speed: 0.5 to 0.9 times 1"
+
+
+def test_models_as_objects() -> None:
+    """A model object is labelled by its own label, and gives what its name gives."""
+    made = model("housner")
+    found = rk.simulate_many(BODIES[0], MOTIONS[0], [made, "housner"], engine="auto")
+    assert found["restitution"].to_numpy().tolist() == [made.label, "housner"]
+    assert found["peak_rotation"].to_numpy()[0, 0, 0, 0] == found["peak_rotation"].to_numpy()[0, 0, 0, 1]

@@ -1,0 +1,164 @@
+"""At rest: when the ground lifts a body, by hand, and impacts that die out, by their geometric series."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.conventions import g
+from rocking.dynamics import Outcome, Rocker, RockingSide, engine
+from rocking.dynamics.impact_law import ConstantRestitution
+from rocking.dynamics.resting import Ground, Push, comes_to_rest
+
+ENGINES = [
+    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    "reference",
+]
+every_engine = pytest.mark.parametrize("name", ENGINES)
+ALPHA, P = 0.25, 2.0
+
+
+def rocker(r: float = 0.8, left: float = ALPHA) -> Rocker:
+    return Rocker(RockingSide(ALPHA, P, 1.8, r), RockingSide(left, P, 1.8, r), ConstantRestitution(), "")
+
+
+def ground(horizontal: Any, vertical: Any = None, left: float = ALPHA, step: float = 0.1) -> Ground:
+    x = np.array(horizontal, dtype=float)
+    return Ground(
+        rocker(left=left), Push(step, x, np.zeros_like(x) if vertical is None else np.array(vertical)), linear=True
+    )
+
+
+def test_uplift_by_lines() -> None:
+    """A push of alpha lifts: onto the left foot where it is positive, onto the right where negative; where by rule
+    of three."""
+    assert uplift(ground([[0.0, 0.5], [0.5, 0.0]])) == (0, pytest.approx(0.5), -1)
+    assert uplift(ground([[0.0, 0.1], [0.1, -0.5]])) == (1, pytest.approx(0.7), 1)
+    assert uplift(ground([[0.0, 0.5]], left=0.3)) == (0, pytest.approx(0.6), -1)
+    assert uplift(ground([[0.0, 0.2499], [0.2499, -0.49]])) is None
+
+
+def test_uplift_from_within_a_stretch() -> None:
+    """Asked from within a stretch only what comes after counts; where the body is pushed already it is at once."""
+    rising_and_back = ground([[0.0, 0.5], [0.5, -0.5], [0.0, -0.4]])
+    assert uplift(rising_and_back, 0, 0.75) == (0, 0.75, -1)
+    assert uplift(rising_and_back, 1, 0.75) == (2, pytest.approx(0.625), 1)
+    assert uplift(rising_and_back, 3, 0.0) is None
+    assert rising_and_back.held(1, 2, 0.5) == pytest.approx(ALPHA - 0.2)
+
+
+def test_uplift_of_smooth_motions() -> None:
+    """On parabolas the first of two crossings counts, and one that only touches does not."""
+    bow = [[0.0, 2.0, -2.0] + 5 * [0.0]]
+    expected = 0.5 - math.sqrt(0.25 - 0.125)
+    assert uplift(ground(bow)) == (0, pytest.approx(expected, rel=1e-12), -1)
+    assert uplift(ground([[0.0, 0.996, -0.996] + 5 * [0.0]])) is None
+
+
+def test_ground_that_falls_away() -> None:
+    """Under ground that falls faster than g both feet are free: the push decides, and without one nothing turns."""
+    falling = [[-1.5, 0.0]]
+    assert uplift(ground([[0.01, 0.0]], falling)) == (0, 0.0, -1)
+    assert uplift(ground([[-0.01, 0.0]], falling)) == (0, 0.0, 1)
+    assert uplift(ground([[0.0, 0.0]], falling)) is None
+
+
+@every_engine
+@pytest.mark.parametrize("push", [0.5, -0.5])
+def test_ground_that_falls_away_in_a_history(name: str, push: float) -> None:
+    """Both engines lift the body to the side away from the push, at once."""
+    record = rk.GroundMotion(np.array([push, push, 0.0]), 0.05, vertical=np.array([-1.5 * g, -1.5 * g, 0.0]))
+    response = rk.simulate(rk.Block(width=0.5, height=2.0), record, 0.5, engine=name, duration=1.0)
+    assert response.uplifts[0] == 0.0
+    assert math.copysign(1.0, float(response.rotation[1])) == -math.copysign(1.0, push)
+
+
+@every_engine
+def test_time_of_rest_is_the_geometric_series(name: str) -> None:
+    """Slow rocking of r = 0.5 dies out at the sum of its flights, 2 v / (p^2 alpha) / (1 - r), to 1e-4."""
+    block = rk.Block(width=0.5, height=2.0)
+    alpha, p = block.slenderness_angle, block.frequency_parameter
+    speed = 5e-3 * p * alpha
+    response = rk.free_rocking(block, 0.0, 0.5, angular_velocity=speed, engine=name, linear=True, rest_speed=1e-8)
+    flights = 2.0 * speed / (p**2 * alpha) / (1.0 - 0.5)
+    early = rk.free_rocking(block, 0.0, 0.5, angular_velocity=speed, engine=name, linear=True)
+    assert early.impacts.size < response.impacts.size
+    # flights differ from 2 v / (p^2 alpha) by (v / p alpha)^2, far below 1e-4
+    assert response.impacts["time"][-1] == pytest.approx(flights, rel=1e-4)
+    assert early.outcome is response.outcome is Outcome.ROCKED
+    assert not early.rotation[1:].any()
+
+
+@pytest.mark.parametrize(
+    ("after", "horizontal", "r", "expected"),
+    [
+        (1e-3, [[0.0, 0.0]] * 50, 0.8, True),
+        (1e-3, [[0.0, 0.0]] * 50, 1.0, False),
+        (1e-1, [[0.0, 0.0]] * 50, 0.8, False),
+        (1e-3, [[0.2499, 0.0]] * 50, 0.8, False),
+        (1e-3, [[0.26, 0.0]] * 50, 0.8, False),
+        (1e-11, [[0.24, 0.0]] * 50, 1.0, True),
+        (3e-3, [[0.0, 0.0]], 0.97, False),
+        (3e-3, [[0.0, 0.0]] * 2 + [[0.0, 0.5]] * 3, 0.97, False),
+        (3e-3, [[0.0, 0.0]] * 50, 0.97, True),
+        (3e-3, [[0.0] * 8] * 50, 0.97, False),
+        (1e-3, [[0.0] * 8] * 50, 0.8, True),
+        (3e-3, [[0.0, 0.0]] * 5000, 0.99999, False),
+    ],
+)
+def test_impacts_that_end(after: float, horizontal: Any, r: float, expected: bool) -> None:
+    """Summed up: slow impacts with r < 1 that end within the motion known to hold the body. Not summed up: fast ones,
+    r = 1, near uplift, beyond the end of the record, beyond one stretch of a smooth pulse, or for far too long."""
+    x = np.array(horizontal)
+    body = rocker(r)
+    where = Ground(body, Push(0.1, x, np.zeros_like(x)), linear=True)
+    # v / p alpha times 2 alpha / p is a flight: 2.5e-3 s, and 1 / (1 - r) of them follow
+    assert bool(comes_to_rest(body, where, 1, after, 0, 0.2, 0.01)) is expected
+
+
+@every_engine
+@pytest.mark.parametrize("linear", [False, True])
+def test_let_go_beyond_the_top(name: str, linear: bool) -> None:
+    """A body let go past its balance falls from the start; just before it comes back and rocks."""
+    block = rk.Block(width=0.5, height=2.0)
+    alpha = block.slenderness_angle
+    over = rk.free_rocking(block, -1.01 * alpha, 0.8, engine=name, linear=linear)
+    assert (over.outcome, over.overturning_time, over.trajectory.side) == (Outcome.OVERTURNED, 0.0, -1)
+    assert rk.free_rocking(block, -0.99 * alpha, 0.8, engine=name, linear=linear).outcome is Outcome.ROCKED
+
+
+@every_engine
+@pytest.mark.parametrize("linear", [False, True])
+@pytest.mark.parametrize(("share", "expected"), [(0.999, Outcome.ROCKED), (1.001, Outcome.OVERTURNED)])
+def test_energy_decides_at_the_end(name: str, linear: bool, share: float, expected: Outcome) -> None:
+    """Pushed up from rest by a share of the speed that reaches the top, a history cut at once knows how it ends; so
+    does one that is pushed down from 0.1 and, after an impact of r = 1, climbs the other side."""
+    block = rk.Block(width=0.5, height=2.0)
+    alpha, p = block.slenderness_angle, block.frequency_parameter
+    top = 0.5 * alpha**2 if linear else 1.0 - math.cos(alpha)
+    start = 0.1 * (alpha - 0.05) if linear else math.cos(alpha - 0.1) - math.cos(alpha)
+    options: Any = {"engine": name, "linear": linear, "duration": 1e-3}
+    up = rk.free_rocking(block, 0.0, 1.0, angular_velocity=share * p * math.sqrt(2.0 * top), **options)
+    down = rk.free_rocking(block, 0.1, 1.0, angular_velocity=-share * p * math.sqrt(2.0 * (top - start)), **options)
+    assert up.outcome is down.outcome is expected
+    assert up.time[-1] < 0.05 / p * 1.01
+    if expected is Outcome.ROCKED:
+        size = 1.0 - math.sqrt(1.0 - share**2) if linear else 1.0 - math.acos(1.0 - top * (1.0 - share**2)) / alpha
+        assert up.peak_rotation == pytest.approx(alpha * size, rel=1e-9)
+
+
+def test_angular_acceleration_is_the_slope_of_the_energy() -> None:
+    """For linear and exact equations dE/dt = 0 makes theta'' = -p^2 dV/dtheta: by central differences to 1e-8."""
+    from rocking.dynamics import equations
+
+    for linear in (False, True):
+        at, h = 0.1, 1e-5
+        potential = [float(equations.energy(x, 0.0, ALPHA, P, linear=linear)) for x in (at - h, at + h)]
+        slope = (potential[1] - potential[0]) / (2.0 * h)
+        found = float(equations.angular_acceleration(at, 1, ALPHA, P, 0.0, linear=linear))
+        assert found == pytest.approx(-(P**2) * slope, rel=1e-8)
+        assert float(equations.holding_moment(1, ALPHA, 0.0, linear=linear)) == pytest.approx(
+            ALPHA if linear else math.sin(ALPHA), rel=1e-15
+        )
