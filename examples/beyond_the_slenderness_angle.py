@@ -6,7 +6,7 @@ import rocking as rk
 from rocking.plots import animate_html, response_picture, write
 
 block = rk.Block(width=0.5, height=1.5)
-overturned, standing = 12.0, 6.0  # m/s2; a bracket of the least amplitude that overturns
+overturned, standing = 12.0, 10.6  # m/s2; a bracket of the least amplitude that overturns
 assert rk.simulate(block, rk.pulses.sine(overturned, 0.75), 0.85).outcome is rk.Outcome.OVERTURNED
 while overturned - standing > 1e-9:
     middle = 0.5 * (overturned + standing)

@@ -5,7 +5,7 @@ import math
 import rocking as rk
 
 block = rk.Block(width=0.4, height=1.6)
-alpha, p = block.slenderness_angle, block.frequency_parameter()
+alpha, p = block.slenderness_angle, block.frequency_parameter
 response = rk.free_rocking(block, rotation=0.5 * alpha, restitution=0.92)
 quarter = response.impacts["time"][0]
 

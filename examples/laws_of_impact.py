@@ -5,7 +5,7 @@ import numpy as np
 import rocking as rk
 
 block = rk.Block(width=0.5, height=2.0)
-shaking = rk.synthetic.kanai_tajimi_motion(rk.synthetic.KanaiTajimi(), seed=7).scaled(1.0)
+shaking = rk.synthetic.kanai_tajimi_motion(rk.synthetic.KanaiTajimi(density=0.01), seed=7)
 shaking = rk.motions.bandpassed(rk.motions.scaled_to_pga(shaking, 5.0), 0.2, 8.0)
 
 by_side = rk.simulate(block, shaking, restitution={"left": 0.80, "right": 0.95})
@@ -13,7 +13,7 @@ print("by side:    ", by_side.summary)
 onto = by_side.impacts["onto"]
 assert set(by_side.impacts["coefficient"][onto == "left"]) == {0.80}
 
-harder = rk.SpeedRestitution(speeds=[0.0, 0.2, 1.0], factors=[1.0, 0.97, 0.90], times="housner")
+harder = rk.SpeedRestitution(at=[0.0, 0.2, 1.0], factors=[1.0, 0.97, 0.90], times="housner")
 by_speed = rk.simulate(block, shaking, restitution=harder)
 print("by velocity:", by_speed.summary)
 fast = np.abs(by_speed.impacts["velocity_before"])

@@ -21,15 +21,19 @@ pulses = [
     rk.pulses.mavroeidis_papageorgiou(velocity=0.6, period=1.0, cycles=2.0, phase=0.5),
 ]
 figure, axes = new_figure(7.0, 9.0, rows=5, columns=2)
-for axis, pulse in zip(axes.flat, pulses, strict=True):
+for axis, pulse in zip(axes, pulses, strict=True):
     time = np.linspace(0.0, pulse.duration, 400)
-    for label, values in (("a [m/s2]", pulse.acceleration), ("10 v [m/s]", pulse.velocity), ("10 d [m]", pulse.displacement)):
+    for label, values in (
+        ("a [m/s2]", pulse.acceleration),
+        ("10 v [m/s]", pulse.velocity),
+        ("10 d [m]", pulse.displacement),
+    ):
         axis.plot(time, values(time) * (1.0 if label[0] == "a" else 10.0), label=label)
     outcome = rk.simulate(block, pulse, restitution="housner")
     axis.set_title(f"{pulse.name}\n{outcome.outcome.value}, {len(outcome.impacts)} impacts", fontsize=7, loc="left")
     print(f"{pulse.name:60s} {outcome.summary}")
-axes.flat[0].legend(fontsize=6)
-for axis in axes[-1]:
+axes[0].legend(fontsize=6)
+for axis in axes[-2:]:
     axis.set_xlabel("time [s]")
 
 middle = pulses[2]

@@ -6,7 +6,7 @@ import rocking as rk
 from rocking.plots import response_picture, write
 
 cabinet = rk.Block(width=0.6, height=2.0, depth=0.5, density=300.0)
-pulse = rk.pulses.sine(amplitude=5.6, period=0.65)
+pulse = rk.pulses.sine(amplitude=7.6, period=0.5)
 
 folder = Path("gallery-output")
 folder.mkdir(exist_ok=True)
@@ -18,4 +18,5 @@ for model in ("housner", "ked", "horizontal-momentum"):
 assert response.energy.closure < 1e-10
 
 write(response_picture(rk.simulate(cabinet, pulse, restitution="ked")), folder / "response_to_a_pulse.png")
-assert set(verdicts) == {"housner", "ked", "horizontal-momentum"}
+assert verdicts["housner"] is rk.Outcome.ROCKED
+assert verdicts["ked"] is rk.Outcome.OVERTURNED

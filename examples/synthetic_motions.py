@@ -12,7 +12,7 @@ modulation = rk.synthetic.modulation_from_intensity(arias_intensity=1.0, signifi
 motions = [
     rk.synthetic.nonstationary_motion(modulation, rk.synthetic.NonstationaryFilter(), seed=1),
     rk.synthetic.point_source_motion(rk.synthetic.PointSource(magnitude=6.8, distance=12e3), seed=1),
-    rk.synthetic.kanai_tajimi_motion(rk.synthetic.KanaiTajimi(), seed=1),
+    rk.synthetic.kanai_tajimi_motion(rk.synthetic.KanaiTajimi(density=0.01), seed=1),
 ]
 figure, axes = new_figure(7.0, 6.0, rows=4)
 periods = np.geomspace(0.05, 4.0, 50)

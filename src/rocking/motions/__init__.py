@@ -1,7 +1,19 @@
 """What shakes: records, pulses, synthetic motions, and what is measured on them."""
 
 from rocking.motions import pulses, synthetic
-from rocking.motions.intensity import Measure, intensity_measures
+from rocking.motions.energy import arias_intensity, significant_duration
+from rocking.motions.intensity import (
+    Measure,
+    cumulative_absolute_velocity,
+    housner_intensity,
+    intensity_measures,
+    normalised_acceleration,
+    normalised_velocity,
+    peak_ground_acceleration,
+    peak_ground_displacement,
+    peak_ground_velocity,
+    spectral_acceleration,
+)
 from rocking.motions.kinematics import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.processing import bandpassed, demeaned, detrended, tapered
@@ -18,13 +30,21 @@ __all__ = [
     "Pulse",
     "ResponseSpectrum",
     "Segments",
+    "arias_intensity",
     "bandpassed",
+    "cumulative_absolute_velocity",
     "demeaned",
     "detrended",
     "ground_displacement",
     "ground_velocity",
+    "housner_intensity",
     "intensity_measures",
+    "normalised_acceleration",
+    "normalised_velocity",
     "padded",
+    "peak_ground_acceleration",
+    "peak_ground_displacement",
+    "peak_ground_velocity",
     "pulses",
     "resampled",
     "response_spectrum",
@@ -33,6 +53,8 @@ __all__ = [
     "scaled_to_pga",
     "scaled_to_pgv",
     "scaled_to_sa",
+    "significant_duration",
+    "spectral_acceleration",
     "synthetic",
     "tapered",
     "trimmed",

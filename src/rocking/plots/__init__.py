@@ -1,5 +1,6 @@
-"""Pictures: the paper's figures, bodies, models against measurements, ground motions."""
+"""Pictures: the paper's figures, bodies, models against measurements, ground motions, responses, animations."""
 
+from rocking.plots.animation import animate_gif, animate_html
 from rocking.plots.body_picture import body_picture, coefficient_picture
 from rocking.plots.figure_1 import figure_1
 from rocking.plots.figure_2 import figure_2
@@ -7,9 +8,12 @@ from rocking.plots.ground_motion import ground_motion_picture
 from rocking.plots.hero import hero
 from rocking.plots.overview import calibration_figure, league_figure, models_and_measurements
 from rocking.plots.paper_figures import figure_3, figure_5, figure_6, figure_7, figure_8, figure_9
+from rocking.plots.response import response_picture
 from rocking.plots.style import save, write
 
 __all__ = [
+    "animate_gif",
+    "animate_html",
     "body_picture",
     "calibration_figure",
     "coefficient_picture",
@@ -25,6 +29,7 @@ __all__ = [
     "hero",
     "league_figure",
     "models_and_measurements",
+    "response_picture",
     "save",
     "write",
 ]
