@@ -24,7 +24,7 @@ ENGINES = ("fast", "reference")
 G = conventions.g
 POINTS = ((0.0, 0.3), (0.5, 1.1), (0.1, 2.2))
 MASSES = (300.0, 120.0, 160.0)
-FEET = (-0.3, 0.55)
+FEET = (-0.2, 0.65)
 LEANING = rk.MassPoints(POINTS, MASSES, feet=FEET)
 BLOCK = rk.Block(width=0.6, height=2.4)
 DEMAND = {1.0: 0.25, 1.5: 0.280575539568, 2.0: 0.30985915493, 5.0: 0.4625}  # A / tan(alpha), slenderness 4

@@ -76,9 +76,6 @@ def block(alpha: float, size: float = 1.0) -> rk.Block:
     return rk.Block(width=2.0 * size * math.sin(alpha), height=2.0 * size * math.cos(alpha))
 
 
-# ---- scales ---------------------------------------------------------------------------------------------------------
-
-
 @ENGINES
 @FEW
 @given(alpha=slenderness, s=factors, r=coefficients, strength=strengths, seed=seeds)
@@ -137,9 +134,6 @@ def test_constant_vertical(
         wrong = respond(body, still, r, name, linear=linear)
         n = min(n, wrong.rotation.size)
         assert np.abs(one.rotation[:n] - wrong.rotation[:n]).max() > 1e-8
-
-
-# ---- the same body in other clothes ---------------------------------------------------------------------------------
 
 
 @ENGINES
@@ -245,9 +239,6 @@ def test_mirrored_body(name: str, lean: float, strength: float, seed: int) -> No
     assert np.abs(one.rotation[:n] + other.rotation[:n]).max() < 1e-8
 
 
-# ---- energy and time ------------------------------------------------------------------------------------------------
-
-
 @ENGINES
 @FEW
 @given(alpha=slenderness, p=st.floats(0.5, 6.0), r=st.sampled_from([1.0, 0.95, 0.8, 0.5]), start=st.floats(0.1, 0.95))
@@ -288,9 +279,6 @@ def test_time_reversal(name: str, alpha: float, seed: int, strength: float, star
         ends.append(np.abs(again.rotation[::-1] - there.rotation).max())
     assert ends[0] < 1e-8
     assert not ends[1] < 1e-5
-
-
-# ---- West's formula -------------------------------------------------------------------------------------------------
 
 
 @ENGINES

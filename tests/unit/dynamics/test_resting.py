@@ -24,11 +24,14 @@ def rocker(r: float = 0.8, left: float = ALPHA) -> Rocker:
     return Rocker(RockingSide(ALPHA, P, 1.8, r), RockingSide(left, P, 1.8, r), ConstantRestitution(), "")
 
 
-def ground(horizontal: Any, vertical: Any = None, left: float = ALPHA, step: float = 0.1) -> Ground:
+def ground(horizontal: Any, vertical: Any = None, left: float = ALPHA) -> Ground:
     x = np.array(horizontal, dtype=float)
-    return Ground(
-        rocker(left=left), Push(step, x, np.zeros_like(x) if vertical is None else np.array(vertical)), linear=True
-    )
+    z = np.zeros_like(x) if vertical is None else np.array(vertical)
+    return Ground(rocker(left=left), Push(0.1, x, z), linear=True)
+
+
+def uplift(where: Ground, stretch: int = 0, tau: float = 0.0) -> Any:
+    return where.next_uplift(stretch, tau)
 
 
 def test_uplift_by_lines() -> None:
