@@ -93,10 +93,12 @@ def _duel(session: Session, duel: engine_duels.Duel) -> None:
 def _page(session: Session) -> list[str]:
     batch, out = session.batch, Fast(session.batch)()[0]
     parts = np.bincount(session.truth, minlength=4)
+    minutes = (time.perf_counter() - session.began) / 60.0
     text = [
         "# Speed of the engines",
         "",
-        f"Made by `{COMMAND}{' --full' if session.full else ''}`; peers that are not installed are left out.",
+        f"Made by `{COMMAND}{' --full' if session.full else ''}` in {minutes:.0f} minutes. Peers that are not installed"
+        " are left out.",
         "Medians of interleaved repeats in one run, CPU time of all threads, with their spread. Slow peers take a part",
         "of the batch: every n-th history in order of impacts, other ones each time.",
         "",

@@ -67,7 +67,7 @@ def fight(duel: Duel, batch: Histories, truth: np.ndarray, *, full: bool) -> Row
         which = spread_out(batch, impacts, count, turn)
         if peer is None or not whole:
             peer = duel.make(batch.some(which))
-        mine = min(cpu_seconds(ours), cpu_seconds(ours)) / len(batch)
+        mine = statistics.median(cpu_seconds(ours) for _ in range(3)) / len(batch)
         verdicts: list[np.ndarray] = []
         spent.append(cpu_seconds(lambda: verdicts.append(peer())) / which.size)  # noqa: B023 - called at once
         ratios.append(spent[-1] / mine)

@@ -33,6 +33,9 @@ for axis, pulse in zip(axes, pulses, strict=True):
     axis.set_title(f"{pulse.name}\n{outcome.outcome.value}, {len(outcome.impacts)} impacts", fontsize=7, loc="left")
     print(f"{pulse.name:60s} {outcome.summary}")
 axes[0].legend(fontsize=6)
+for axis in axes:
+    axis.tick_params(labelsize=7)
+    axis.locator_params(axis="x", nbins=6)
 for axis in axes[-2:]:
     axis.set_xlabel("time [s]")
 

@@ -151,12 +151,12 @@ def test_friction_demand_at_uplift(ratio):
 def test_friction_demand_of_a_response(engine):
     """REF: the same at the first instant of a rectangular pulse; 5 / 3 is the limit of strong ones."""
     block = rk.Block(width=1.0, height=4.0)
-    for ratio, expected in {**{k: v for k, v in DEMAND.items() if k > 1.0}, 1e9: 5.0 / 3.0}.items():
-        pulse = rk.pulses.rectangular(ratio / 4.0 * G, 0.3 / math.sqrt(ratio))
-        pulse = pulse if ratio < 10.0 else rk.pulses.rectangular(2e5, 1e-6)
+    cases = [(0.25 * G * ratio, 0.1, demand) for ratio, demand in DEMAND.items() if ratio > 1.0]
+    for push, length, expected in [*cases, (2e5, 1e-3, 5.0 / 3.0)]:
+        pulse = rk.pulses.rectangular(push, length)
         contact = rk.simulate(block, pulse, 0.9, engine=engine).contact
         # at 2e5 m/s2 the limit is reached to 1 / 20 000
-        assert contact.horizontal[0] / contact.vertical[0] == pytest.approx(expected, rel=1e-10 if ratio < 10 else 4e-4)
+        assert contact.horizontal[0] / contact.vertical[0] == pytest.approx(expected, rel=1e-10 if push < 1e5 else 4e-4)
 
 
 def record(seed, step=0.01, count=1500, *, vertical=False):
@@ -176,10 +176,10 @@ def record(seed, step=0.01, count=1500, *, vertical=False):
 
 
 MOTIONS = {
-    "pulse": (rk.pulses.sine(1.0, 0.8), 1.6),
-    "long pulse": (rk.pulses.ricker(-1.0, 1.0), 1.7),
-    "record": (record(1), 1.4),
-    "record with vertical": (record(2, vertical=True), 1.4),
+    "pulse": (rk.pulses.sine(1.0, 0.8), 1.35),
+    "long pulse": (rk.pulses.ricker(-1.0, 1.0), 1.5),
+    "record": (record(1), 1.35),
+    "record with vertical": (record(2, vertical=True), 1.35),
 }
 """Motions of 1 m/s2, and how many times the acceleration that lifts a body."""
 
@@ -197,7 +197,7 @@ def test_the_ledger_closes(motion, body, linear, engine):
     print(f"\n{motion}, {engine}: closure {energy.closure:.1e}, {response.impacts.size} impacts, {response.summary}")
     assert response.impacts.size >= 2
     assert energy.closure < 1e-10
-    assert energy.lost[-1] > 0.1 * (energy.kinetic + energy.potential).max()
+    assert energy.lost[-1] > 0.01 * (energy.kinetic + energy.potential).max()
     # negative control: work by the rule of trapezoids from sample to sample does not close
     alpha = np.where(response.rotation < 0.0, response.rocker.left.slenderness_angle, 0.0)
     alpha = np.where(response.rotation > 0.0, response.rocker.right.slenderness_angle, alpha)
@@ -251,7 +251,10 @@ def test_energies_by_a_general_purpose_integrator(engine):
 @pytest.mark.parametrize("engine", ENGINES)
 def test_forces_of_a_response_obey_newton(engine):
     """Forces at the samples are mass times acceleration of the centre, from differences of its velocity."""
-    response = rk.simulate(LEANING, MOTIONS["record with vertical"][0], 0.85, scale=6.0, engine=engine)
+    t = np.arange(0.0, 6.0, 0.005)
+    fade = np.cos(t * math.pi / 12.0) ** 2  # no jump at the end
+    ground = rk.GroundMotion(5.0 * np.sin(6.0 * t) * fade, 0.005, vertical=3.0 * np.sin(8.0 * t) * fade)
+    response = rk.simulate(LEANING, ground, 0.85, engine=engine)
     mass, h = sum(MASSES), response.time[1]
     theta, rate, sign = response.rotation, response.angular_velocity, np.sign(response.rotation)
     alpha, _, radius = np.array([leaning(s if s else 1) for s in sign]).T
@@ -262,7 +265,7 @@ def test_forces_of_a_response_obey_newton(engine):
     ground = np.array([response.ground_acceleration[2:-2], G + vertical[2 : theta.size - 2]])
     flight = (np.lib.stride_tricks.sliding_window_view(sign, 5) == sign[2:-2, None]).all(axis=1) & (sign[2:-2] != 0.0)
     found = np.array([response.contact.horizontal, response.contact.vertical])[:, 2:-2]
-    # the ground's kinks at the samples leave differences h / 12 of the change of slope: a hundredth of g at most
-    assert flight.sum() > 300
-    np.testing.assert_allclose(found[:, flight] / mass, (ground + bend)[:, flight], atol=0.01 * G)
-    assert not np.allclose(found[:, flight] / mass, (ground - bend)[:, flight], atol=0.1 * G)  # negative control
+    # straight lines between samples bend the ground's acceleration by h^2 a'', which differences see as a twelfth
+    assert flight.sum() > 200
+    np.testing.assert_allclose(found[:, flight] / mass, (ground + bend)[:, flight], atol=1e-3)
+    assert not np.allclose(found[:, flight] / mass, (ground - bend)[:, flight], atol=1.0)  # negative control

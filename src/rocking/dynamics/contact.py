@@ -65,7 +65,7 @@ class Contact:
             found.append(
                 "the vertical force falls to zero: the body would leave the ground, which this model cannot do"
             )
-        if self.friction_of_motion > friction:
+        elif self.friction_of_motion > friction:
             found.append(
                 f"rocking without slip takes a coefficient of friction of {self.friction_of_motion:.2f}; "
                 f"with {friction:g} the body would slide"

@@ -236,6 +236,7 @@ def to_netcdf(response: "Response", path: str | Path) -> Path:
     Path
         The file.
     """
+    extra("h5py", "netCDF")
     extra("h5netcdf", "netCDF")
     target = _target(path)
     to_xarray(response).to_netcdf(target, engine="h5netcdf")

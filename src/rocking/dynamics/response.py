@@ -142,7 +142,7 @@ class Response:
             ratio = self.peak_rotation / angle
             return (
                 f"rocked and stayed standing: largest rotation {np.degrees(self.peak_rotation):.4g} degrees, "
-                f"{ratio:.3g} of the slenderness angle, {run.impacts} impacts"
+                f"{ratio:.3g} of the slenderness angle, {run.impacts} impact{'s' * (run.impacts != 1)}"
             )
         return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
 

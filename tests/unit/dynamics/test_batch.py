@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rocking.dynamics import Outcome, Settings, Status, engine
-from rocking.dynamics.batch import ROWS, Batch, Rows, valid_row
+from rocking.dynamics.batch import ROWS, Batch, Rows, _processors, valid_row
 from rocking.dynamics.engine import RESULTS, Library
 from rocking.errors import InvalidValueError
 from rocking.motions import pulses
@@ -194,6 +194,28 @@ def test_valid_row() -> None:
     row = {**GOOD, "scale": 1.0, "rotation": 0.0, "velocity": 0.0}
     assert valid_row(row)
     assert not any(valid_row({**row, key: value}) for key, value in BAD)
+
+
+@built
+def test_a_record_that_ends_in_mid_motion() -> None:
+    """The jump to rest after a last sample that is not zero is the same jump for both engines; two are refused."""
+    cut = Segments.between_samples(0.05, 4.0 * np.sin(0.3 * np.arange(27))).extended(3.0)
+    fast, slow = run("fast", motions=(cut,)), run("reference", motions=(cut,))
+    np.testing.assert_array_equal(fast["outcome"], slow["outcome"])
+    np.testing.assert_allclose(fast["peak_rotation"], slow["peak_rotation"], rtol=1e-9)
+    assert not same(fast, run("fast", motions=(Segments(0.05, cut.horizontal[:25]).extended(3.0),))), "control"
+    lines = cut.horizontal.copy()
+    lines[5] = 0.0
+    with pytest.raises(InvalidValueError, match="records without jumps between their samples, got 3"):
+        Library([Segments(0.05, lines)])
+
+
+def test_processors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the system does not tell which processors may be used, all are counted, and at least one."""
+    monkeypatch.delattr("os.sched_getaffinity", raising=False)
+    for told, expected in ((6, 6), (None, 1)):
+        monkeypatch.setattr("os.cpu_count", lambda told=told: told)
+        assert _processors() == expected
 
 
 @built

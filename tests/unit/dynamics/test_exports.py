@@ -172,6 +172,7 @@ def test_no_such_folder(write: str, tmp_path: Path) -> None:
         ("xarray", "to_xarray", "a labelled dataset"),
         ("pandas", "to_dataframe", "a table"),
         ("h5netcdf", "to_netcdf", "netCDF"),
+        ("h5py", "to_netcdf", "netCDF"),
     ],
 )
 def test_missing_extras(missing: str, write: str, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
