@@ -80,6 +80,7 @@ def _peak(session: Session) -> None:
 
 def _variants(session: Session) -> None:
     session.rows += engine_duels.variants(session.batch, session.truth == 2)
+    session.rows.append(engine_duels.layout(session.batch))
 
 
 def _duel(session: Session, duel: engine_duels.Duel) -> None:

@@ -14,7 +14,7 @@ from benchmarks.engine_batch import Fast, Histories, overturned
 from benchmarks.engine_peers import Verdicts
 from benchmarks.table import Row
 from benchmarks.timing import cpu_seconds
-from rocking.dynamics.engine import instruction_set, instruction_sets
+from rocking.dynamics.engine import Library, instruction_set, instruction_sets
 
 
 @dataclass(frozen=True)
@@ -111,6 +111,18 @@ def variants(batch: Histories, truth: np.ndarray) -> list[Row]:
             orders = (8, 6, 4) if isa == instruction_sets()[0] else (8,)
             found += [_variant(batch, truth, f"order {order}, {instruction_set()}", order) for order in orders]
     return found
+
+
+def layout(batch: Histories) -> Row:
+    """What it takes to lay out the records for the engine, which the other lines leave out, for peers as well."""
+    segments = batch.segments()
+    spent = statistics.median(cpu_seconds(lambda: Library(segments)) for _ in range(3))
+    return Row(
+        f"Laying out {len(batch):,} records for the fast engine",
+        "-",
+        f"{spent * 1e3:.0f} ms, {_time(spent / len(batch))} a record, once a batch; not in the other lines",
+        "for information",
+    )
 
 
 def _variant(batch: Histories, truth: np.ndarray, name: str, order: int) -> Row:

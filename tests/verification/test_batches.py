@@ -141,19 +141,6 @@ def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
             assert np.array_equal(getattr(one, columns.get(name, name)), whole[name][k], equal_nan=True), (k, name)
 
 
-@pytest.mark.parametrize("name", ["fast", "reference"])
-def test_a_negative_scale_turns_the_motion_round(name: str) -> None:
-    """A scale of -1 gives the bits of the motion with its signs turned by hand: what went up lifts the body."""
-    x, z = np.full(20, 1.0), np.append(0.0, np.full(19, 9.0))
-    motions = [Segments.between_samples(0.05, x, z), Segments.between_samples(0.05, -x, -z)]
-    sides = {"alpha": 0.25, "p": 2.0, "r": 0.9}
-    values = {f"{key}_{side}": np.full(2, value) for key, value in sides.items() for side in ("right", "left")}
-    values |= {"scale": np.array([-1.0, 1.0]), "rotation": np.zeros(2), "velocity": np.zeros(2)}
-    found = Table(motions, values, np.arange(2), np.zeros(2, np.int64)).run(name=name)
-    assert found["uplifts"].tolist() == [1, 1]
-    assert same_bits(*({key: v[k : k + 1] for key, v in found.items()} for k in (0, 1)))
-
-
 @pytest.mark.parametrize("linear", [False, True])
 @pytest.mark.parametrize("kind", KINDS)
 def test_instruction_sets(kind: str, linear: bool, monkeypatch: pytest.MonkeyPatch) -> None:

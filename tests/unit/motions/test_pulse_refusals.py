@@ -61,6 +61,12 @@ def test_other_ranges() -> None:
             pulses.type_c(1.0, 1.0, n)
 
 
+def test_a_pulse_of_nothing() -> None:
+    """Amplitude zero is allowed: no motion, peak zero."""
+    assert pulses.mavroeidis_papageorgiou(0.0, 0.8).peak == 0.0
+    assert not pulses.sine(0.0, 0.8).displacement(np.linspace(0.0, 1.0, 9)).any()
+
+
 def test_words_for_times_are_refused() -> None:
     """Times that are no numbers are refused by acceleration, velocity and displacement."""
     pulse = pulses.sine(3.0, 0.8)

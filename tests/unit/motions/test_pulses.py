@@ -203,12 +203,6 @@ def test_peak_of_mavroeidis_papageorgiou(gamma: float, nu: float) -> None:
     assert pulses.mavroeidis_papageorgiou(0.9, T, gamma, nu).peak == pytest.approx(-best, rel=1e-7)
 
 
-def test_a_pulse_of_nothing() -> None:
-    """Amplitude zero is allowed: no motion, peak zero."""
-    assert pulses.mavroeidis_papageorgiou(0.0, T).peak == 0.0
-    assert not pulses.sine(0.0, T).displacement(np.linspace(0.0, 1.0, 9)).any()
-
-
 @every
 def test_segments_agree_to_rounding(name: str) -> None:
     """The polynomials of degree 7 are the pulse itself, within 20 roundings of its peak."""
