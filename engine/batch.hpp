@@ -8,7 +8,7 @@
 namespace rocking {
 
 enum Outcome : std::int8_t { kNoUplift = 0, kRocked = 1, kOverturned = 2, kFailed = 3 };
-enum Status : std::int8_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyImpacts = 3 };
+enum Status : std::int8_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyImpacts = 3, kNotResolved = 4 };
 enum EventKind : std::int8_t { kUplift = 0, kImpact = 1, kRest = 2 };
 
 // One ground motion within the common array of coefficients.
@@ -22,8 +22,8 @@ struct Shake {
 
 // Least and largest accelerations within blocks of stretches, and from each block to the end [m/s2].
 struct Bounds {
-    double low, high, vertical_low;
-    double later_low, later_high, later_vertical_low;
+    double low, high, vertical_low, vertical_high;
+    double later_low, later_high, later_vertical_low, later_vertical_high;
 };
 constexpr int kBlock = 32;
 

@@ -5,25 +5,26 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Four registers' worth of lanes side by side hide the latency of the multiply-adds; a single history takes one.
-constexpr int kMany = 4;
+// Four registers' worth of lanes side by side hide the latency of the multiply-adds, and two groups of them fill the
+// registers of those that land; a single history takes one.
+constexpr int kMany = 4, kGroups = 2;
 
 Run kernel_for(bool single, const Choice& c) {
     if (c.order == 8) {
         if (c.degree == 7) {
-            if (c.linear) return single ? run_rows<1, 8, 7, false, true> : run_rows<kMany, 8, 7, false, true>;
-            return single ? run_rows<1, 8, 7, false, false> : run_rows<kMany, 8, 7, false, false>;
+            if (c.linear) return single ? run_rows<1, 1, 8, 7, false, true> : run_rows<kGroups, kMany, 8, 7, false, true>;
+            return single ? run_rows<1, 1, 8, 7, false, false> : run_rows<kGroups, kMany, 8, 7, false, false>;
         }
         if (c.vertical) {
-            if (c.linear) return single ? run_rows<1, 8, 1, true, true> : run_rows<kMany, 8, 1, true, true>;
-            return single ? run_rows<1, 8, 1, true, false> : run_rows<kMany, 8, 1, true, false>;
+            if (c.linear) return single ? run_rows<1, 1, 8, 1, true, true> : run_rows<kGroups, kMany, 8, 1, true, true>;
+            return single ? run_rows<1, 1, 8, 1, true, false> : run_rows<kGroups, kMany, 8, 1, true, false>;
         }
-        if (c.linear) return single ? run_rows<1, 8, 1, false, true> : run_rows<kMany, 8, 1, false, true>;
-        return single ? run_rows<1, 8, 1, false, false> : run_rows<kMany, 8, 1, false, false>;
+        if (c.linear) return single ? run_rows<1, 1, 8, 1, false, true> : run_rows<kGroups, kMany, 8, 1, false, true>;
+        return single ? run_rows<1, 1, 8, 1, false, false> : run_rows<kGroups, kMany, 8, 1, false, false>;
     }
     if (c.linear || c.vertical) return nullptr;
-    if (c.order == 6) return c.degree == 7 ? run_rows<kMany, 6, 7, false, false> : run_rows<kMany, 6, 1, false, false>;
-    if (c.order == 4) return c.degree == 7 ? run_rows<kMany, 4, 7, false, false> : run_rows<kMany, 4, 1, false, false>;
+    if (c.order == 6) return c.degree == 7 ? run_rows<kGroups, kMany, 6, 7, false, false> : run_rows<kGroups, kMany, 6, 1, false, false>;
+    if (c.order == 4) return c.degree == 7 ? run_rows<kGroups, kMany, 4, 7, false, false> : run_rows<kGroups, kMany, 4, 1, false, false>;
     return nullptr;
 }
 

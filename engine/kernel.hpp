@@ -20,15 +20,18 @@ namespace rocking {
 namespace ROCKING_ISA {
 
 constexpr double kWhole = 1.0 - 1e-13;  // a step that ends this close to the end of its stretch ends with it
+constexpr double kMostError = 0.01;     // sum of error estimates above which nothing is claimed [rad]
+constexpr double kMostParts = 10000.0;  // parts of a stretch
+constexpr double kNothing = 1e-9;       // speeds over p alpha that are as good as none
 constexpr double kHalfPi = 1.57079632679489661923;
 
-#define ROCKING_KERNEL template <int U, int N, int D, bool Z, bool L>
+#define ROCKING_KERNEL template <int G, int U, int N, int D, bool Z, bool L>
 #define ROCKING_LANES ROCKING_UNROLL for (int j = 0; j < U; ++j)
 
-// U registers of lanes, order N, motions of degree D, with a vertical part if Z, slender-linear if L.
+// G groups of U registers of lanes, order N, motions of degree D, with a vertical part if Z, slender-linear if L.
 ROCKING_KERNEL
 class Kernel {
-    static constexpr int P = Pack::width, W = U * P;
+    static constexpr int P = Pack::width, W = G * U * P;
 
     // state of the lanes; unused ones stay at rest on stretch zero
     alignas(64) double u[W], v[W], tau[W], len[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], idx[W], last[W],
@@ -53,7 +56,7 @@ class Kernel {
     Trace* trace;
     Queue& queue;
     std::int64_t next = 0, end = 0;  // rows taken from the queue and not yet begun
-    int active = 0;
+    int active = 0, busy[G] = {};
 
   public:
     Work work;
@@ -87,9 +90,10 @@ class Kernel {
 
     // ---- all lanes at once ------------------------------------------------------------------------------------------
     void sweep();
-    void visit_all(unsigned long flagged, unsigned long near);
+    void step(int group, unsigned long& flagged, unsigned long& near);
+    template <int M>
     void land(const int* who, int count);
-    void forcing(const Pack* i0, const Pack* t0, const Pack* h, Pack (*b)[U], Pack (*z)[U]) const;
+    void forcing(int base, const Pack* i0, const Pack* t0, const Pack* h, Pack (*b)[U], Pack (*z)[U]) const;
 
     // ---- one lane ---------------------------------------------------------------------------------------------------
 
@@ -100,7 +104,7 @@ class Kernel {
     }
     void sample(int i);
     void note(int i, EventKind kind, double time, double before, double after, double coefficient);
-    void touch(int i, double zero, double slope);
+    void touch(int i, double zero, double speed);
     void visit(int i, bool near);
     double first_contact(double* c) const;
     void note_peak(int i, const double* c, double upto);
@@ -142,12 +146,13 @@ class Kernel {
     static bool valid(const Rows& r, std::int64_t k, std::size_t motions);
     void fill(int i);
     void write_invalid(std::int64_t row);
+    double parts_of_step(const Lane& lane, double p) const;
     void start(int i, std::int64_t row);
 };
 
 ROCKING_KERNEL
 Work run_rows(const Motions& m, const Law& law, const Rows& r, const Settings& s, Trace* t, Queue& q) {
-    Kernel<U, N, D, Z, L> kernel(m, law, r, s, t, q);
+    Kernel<G, U, N, D, Z, L> kernel(m, law, r, s, t, q);
     kernel.run();
     return kernel.work;
 }

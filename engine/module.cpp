@@ -28,7 +28,7 @@ void Motions::find_bounds() {
         shake.block = static_cast<std::int64_t>(bounds.size());
         const std::int64_t whole = shake.segments + shake.still, blocks = (whole + kBlock - 1) / kBlock;
         for (std::int64_t b = 0; b < blocks; ++b) {
-            Bounds found{1e300, -1e300, 1e300, 0, 0, 0};
+            Bounds found{1e300, -1e300, vertical ? 1e300 : 0.0, vertical ? -1e300 : 0.0, 0, 0, 0, 0};
             const std::int64_t stop = std::min(whole, (b + 1) * kBlock);
             for (std::int64_t k = b * kBlock; k < stop + (degree == 1); ++k) {
                 const double* a = data + shake.first + k * hop;
@@ -37,16 +37,20 @@ void Motions::find_bounds() {
                     for (int j = 1; j <= degree; ++j) (a[j] < 0.0 ? low : high) += a[j];
                 found.low = std::min(found.low, low);
                 found.high = std::max(found.high, high);
-                found.vertical_low = vertical ? std::min(found.vertical_low, a[1]) : 0.0;
+                if (vertical) {
+                    found.vertical_low = std::min(found.vertical_low, a[1]);
+                    found.vertical_high = std::max(found.vertical_high, a[1]);
+                }
             }
             bounds.push_back(found);
         }
-        double low = 0.0, high = 0.0, vertical_low = 0.0;
+        double low = 0.0, high = 0.0, vertical_low = 0.0, vertical_high = 0.0;
         for (std::int64_t b = blocks; b-- > 0;) {
             Bounds& found = bounds[shake.block + b];
             found.later_low = low = std::min(low, found.low);
             found.later_high = high = std::max(high, found.high);
             found.later_vertical_low = vertical_low = std::min(vertical_low, found.vertical_low);
+            found.later_vertical_high = vertical_high = std::max(vertical_high, found.vertical_high);
         }
     }
 }

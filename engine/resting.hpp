@@ -8,7 +8,7 @@ namespace ROCKING_ISA {
 // Moment that holds the body down on a side, over m g R: D = (1 + a_z / g) sin alpha + s (a_x / g) cos alpha,
 // as a polynomial of the time within a stretch.
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double* d) const {
+void Kernel<G, U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double* d) const {
     const Lane& lane = lanes[i];
     const Side& s = lane.sides[side > 0 ? 0 : 1];
     const double* a = motions.data + at;
@@ -28,7 +28,7 @@ void Kernel<U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double* d)
 
 // First instant of the stretch, from `from` on, at which a side is no longer held down; 2 if it is throughout.
 ROCKING_KERNEL
-double Kernel<U, N, D, Z, L>::release(int i, int side, std::int64_t at, double from) const {
+double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, double from) const {
     double d[D + 1];
     holding(i, side, at, d);
     double spread = 0.0;
@@ -52,7 +52,7 @@ double Kernel<U, N, D, Z, L>::release(int i, int side, std::int64_t at, double f
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::extremes(const double* a, std::int64_t count, double& least, double& most) {
+void Kernel<G, U, N, D, Z, L>::extremes(const double* a, std::int64_t count, double& least, double& most) {
     std::int64_t k = 0;
     if (count >= P) {
         Pack low = Pack::unaligned(a), high = low;
@@ -78,7 +78,7 @@ void Kernel<U, N, D, Z, L>::extremes(const double* a, std::int64_t count, double
 }
 
 ROCKING_KERNEL
-bool Kernel<U, N, D, Z, L>::window(int i, std::int64_t stretches, Window& w) const {
+bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, Window& w) const {
     const Lane& lane = lanes[i];
     const int hop = motions.stride();
     const double* a = motions.data + static_cast<std::int64_t>(idx[i]);
@@ -122,18 +122,20 @@ bool Kernel<U, N, D, Z, L>::window(int i, std::int64_t stretches, Window& w) con
 // flights are bounded by those under the least and the largest moment of the time they take, so that `true` is
 // proven and nothing is lost by not resolving them one by one.
 ROCKING_KERNEL
-bool Kernel<U, N, D, Z, L>::comes_to_rest(int i, double after) const {
+bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [rad per stretch]
     const Lane& lane = lanes[i];
     const Side& s = here(i);
     const double unit = s.p * s.alpha;
-    if (!(after <= set.rest * unit)) return false;
+    if (!(after <= std::max(set.rest, kNothing) * unit * lane.step)) return false;
     const Side& o = lane.sides[lane.side > 0 ? 1 : 0];
     const std::int64_t at = static_cast<std::int64_t>(idx[i]);
     double d[D + 1];
     holding(i, lane.side, at, d);
     const double held = value_of<D>(d, tau[i]);
     if (!(held > 0.0)) return false;
-    if (after <= 1e-9 * unit) return true;  // what is left is below all digits that count
+    after /= lane.step;
+    if (after <= kNothing * unit) return true;  // what is left is below all digits that count
+    if (!(after <= set.rest * unit)) return false;
     holding(i, -lane.side, at, d);
     // the flights under the moments of now, as a guess of the time they take
     const double across = value_of<D>(d, tau[i]), here_ = s.p * s.p * held, there = o.p * o.p * across;
@@ -153,7 +155,7 @@ bool Kernel<U, N, D, Z, L>::comes_to_rest(int i, double after) const {
 
 // Longest time that the flights to come can take in all under the moments of a window; infinite if unknown.
 ROCKING_KERNEL
-double Kernel<U, N, D, Z, L>::time_to_rest(int i, double after, Window w) const {
+double Kernel<G, U, N, D, Z, L>::time_to_rest(int i, double after, Window w) const {
     const Lane& lane = lanes[i];
     const int k = lane.side > 0 ? 0 : 1, o = 1 - k;
     const Side &s = lane.sides[k], &t = lane.sides[o];
@@ -179,7 +181,7 @@ double Kernel<U, N, D, Z, L>::time_to_rest(int i, double after, Window w) const 
 
 // At rest: find where the ground next lifts the body, skipping blocks in which it cannot.
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::rest(int i) {
+void Kernel<G, U, N, D, Z, L>::rest(int i) {
     Lane& lane = lanes[i];
     const int stride_ = motions.stride();
     std::int64_t at = static_cast<std::int64_t>(idx[i]);
@@ -205,9 +207,9 @@ void Kernel<U, N, D, Z, L>::rest(int i) {
 }
 
 ROCKING_KERNEL
-bool Kernel<U, N, D, Z, L>::may_lift(int i, const Bounds& b) const {
+bool Kernel<G, U, N, D, Z, L>::may_lift(int i, const Bounds& b) const {
     const Lane& lane = lanes[i];
-    const double weight = 1.0 + (Z ? std::min({0.0, lane.az * b.vertical_low, lane.az * -b.vertical_low}) : 0.0);
+    const double weight = 1.0 + (Z ? std::min({0.0, lane.az * b.vertical_low, lane.az * b.vertical_high}) : 0.0);
     const double push = std::max(lane.ax * b.low, lane.ax * b.high), pull = std::max(-lane.ax * b.low, -lane.ax * b.high);
     const Side &r = lane.sides[0], &l = lane.sides[1];
     return pull * r.cosine >= weight * r.sine * (1.0 - 1e-12) || push * l.cosine >= weight * l.sine * (1.0 - 1e-12);
@@ -215,7 +217,7 @@ bool Kernel<U, N, D, Z, L>::may_lift(int i, const Bounds& b) const {
 
 // Both sides let go at once, which takes a ground that falls faster than gravity: against the ground's push.
 ROCKING_KERNEL
-int Kernel<U, N, D, Z, L>::preferred(int i, std::int64_t at, double from) const {
+int Kernel<G, U, N, D, Z, L>::preferred(int i, std::int64_t at, double from) const {
     const double* a = motions.data + at;
     constexpr int hop = Z ? 2 : 1;
     const double push = lanes[i].ax * (D == 1 ? a[0] + (a[hop] - a[0]) * from : value_of<D>(a, from));
@@ -223,7 +225,7 @@ int Kernel<U, N, D, Z, L>::preferred(int i, std::int64_t at, double from) const 
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::lift(int i, std::int64_t at, int side, double when) {
+void Kernel<G, U, N, D, Z, L>::lift(int i, std::int64_t at, int side, double when) {
     Lane& lane = lanes[i];
     idx[i] = static_cast<double>(at);
     lane.side = side;

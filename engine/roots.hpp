@@ -80,6 +80,30 @@ struct Isolation {
         right.high = piece.high;
     }
 
+    // Reports every place in (0, 1) at which the polynomial changes from plus to minus, in order.
+    template <class Report>
+    static void each(const double* c, const double* d, double curve, Report report) {
+        Piece stack[64];
+        stack[0].low = 0.0;
+        stack[0].high = 1.0;
+        convert(c, stack[0].b);
+        for (int depth = 1; depth > 0;) {
+            const Piece piece = stack[--depth];
+            int changes = 0;
+            for (int i = 1; i <= degree; ++i) changes += (piece.b[i] < 0.0) != (piece.b[i - 1] < 0.0);
+            const bool narrow = depth + 2 > 64 || piece.high - piece.low < 1e-14;
+            if (changes == 0 || (changes == 1 && piece.b[0] < 0.0)) continue;
+            if (narrow || (changes == 1 && piece.b[0] == 0.0)) {
+                if (piece.b[degree] < 0.0 && !(piece.b[0] < 0.0) && piece.low > 0.0) report(piece.low);
+            } else if (changes == 1) {
+                report(polished<degree>(c, d, piece.low, piece.high, 0.5 * (piece.low + piece.high), curve));
+            } else {
+                halve(piece, stack[depth + 1], stack[depth]);
+                depth += 2;
+            }
+        }
+    }
+
     static double first(const double* c, const double* d, double curve) {
         Piece stack[64];
         stack[0].low = 0.0;
@@ -105,6 +129,15 @@ struct Isolation {
         return 2.0;
     }
 };
+
+// Every place in (0, 1) at which a polynomial changes from plus to minus, in order.
+template <int degree, class Report>
+inline void each_fall(const double* c, Report report) {
+    double curve = 0.0, d[degree];
+    for (int k = 2; k <= degree; ++k) curve = fma(0.5 * k * (k - 1), std::fabs(c[k]), curve);
+    slopes_of<degree>(c, d);
+    Isolation<degree>::each(c, d, curve, report);
+}
 
 // First zero in (0, 1] of a polynomial that starts above zero, or 2 if there is none.
 template <int degree>

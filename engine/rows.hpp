@@ -6,9 +6,13 @@ namespace rocking {
 namespace ROCKING_ISA {
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
+void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     Lane& lane = lanes[i];
     const std::int64_t row = lane.row;
+    if (status == kGood && !(err[i] <= kMostError)) {
+        outcome = kFailed;
+        status = kNotResolved;
+    }
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const bool good = status == kGood, down = outcome == kOverturned;
     rows.outcome[row] = outcome;
@@ -23,11 +27,12 @@ void Kernel<U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     rows.impacts[row] = lane.impacts;
     rows.uplifts[row] = lane.uplifts;
     --active;
+    --busy[i / (U * P)];
     idle(i);
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::idle(int i) {
+void Kernel<G, U, N, D, Z, L>::idle(int i) {
     lanes[i].row = -1;
     u[i] = 0.0;
     v[i] = tau[i] = kappa[i] = ca[i] = cz[i] = idx[i] = stride[i] = err[i] = fastest[i] = gate[i] = 0.0;
@@ -36,7 +41,7 @@ void Kernel<U, N, D, Z, L>::idle(int i) {
 }
 
 ROCKING_KERNEL
-bool Kernel<U, N, D, Z, L>::valid(const Rows& r, std::int64_t k, std::size_t motions) {
+bool Kernel<G, U, N, D, Z, L>::valid(const Rows& r, std::int64_t k, std::size_t motions) {
     for (const double* angle : {r.alpha_right, r.alpha_left})
         if (!(angle[k] > 0.0 && angle[k] < kHalfPi)) return false;
     for (const double* p : {r.p_right, r.p_left})
@@ -49,7 +54,7 @@ bool Kernel<U, N, D, Z, L>::valid(const Rows& r, std::int64_t k, std::size_t mot
 
 // Take rows from the queue until one needs steps.
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::fill(int i) {
+void Kernel<G, U, N, D, Z, L>::fill(int i) {
     idle(i);
     while (lanes[i].row < 0) {
         if (next == end && !queue.take(next, end)) return;
@@ -60,7 +65,7 @@ void Kernel<U, N, D, Z, L>::fill(int i) {
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::write_invalid(std::int64_t row) {
+void Kernel<G, U, N, D, Z, L>::write_invalid(std::int64_t row) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     rows.outcome[row] = kFailed;
     rows.status[row] = kInvalid;
@@ -70,10 +75,20 @@ void Kernel<U, N, D, Z, L>::write_invalid(std::int64_t row) {
     rows.impacts[row] = rows.uplifts[row] = 0;
 }
 
+// Into how many parts a stretch is cut: a ground that shakes with many g moves the body faster than gravity does.
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::start(int i, std::int64_t row) {
+double Kernel<G, U, N, D, Z, L>::parts_of_step(const Lane& lane, double p) const {
+    const Bounds& b = motions.bounds[lane.shake->block];
+    const double push = std::fabs(lane.ax) * std::max(b.later_high, -b.later_low);
+    const double lift = std::fabs(lane.az) * std::max(b.later_vertical_high, -b.later_vertical_low);
+    return std::max(1.0, std::ceil(p * lane.step * std::sqrt(1.0 + push + lift) / set.longest_step));
+}
+
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::start(int i, std::int64_t row) {
     Lane& lane = lanes[i];
     ++active;
+    ++busy[i / (U * P)];
     lane = Lane();
     lane.row = row;
     lane.peak_signed = lane.peak_time = 0.0;
@@ -90,13 +105,14 @@ void Kernel<U, N, D, Z, L>::start(int i, std::int64_t row) {
     last[i] = lane.first + static_cast<double>(shake.segments) * motions.stride();
     lane.still = shake.still;
     cz[i] = lane.az;
-    const double reach = std::max(rows.p_right[row], rows.p_left[row]) * shake.step;
-    sub[i] = 1.0 / std::max(1.0, std::ceil(reach / set.longest_step));
+    const double parts = parts_of_step(lane, std::max(rows.p_right[row], rows.p_left[row]));
+    sub[i] = 1.0 / parts;
     tau[i] = 0.0;
     len[i] = sub[i];
+    if (!(parts <= kMostParts)) return finish(i, kFailed, kNotResolved);
     const double angle = rows.rotation[row], speed = rows.velocity[row];
     const Side& turned = lane.sides[angle > 0.0 ? 0 : 1];
-    if (turned.alpha - std::fabs(angle) == turned.alpha && speed == 0.0) {  // by less than alpha's own rounding
+    if (turned.alpha - std::fabs(angle) == turned.alpha && std::fabs(speed) <= kNothing * turned.p * turned.alpha) {
         peak[i] = 0.0;
         return rest(i);
     }

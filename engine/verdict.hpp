@@ -6,20 +6,20 @@ namespace rocking {
 namespace ROCKING_ISA {
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::overturned(int i) {
+void Kernel<G, U, N, D, Z, L>::overturned(int i) {
     finish(i, kOverturned, kGood);
 }
 
 // Whether nothing that is still to come can bring the body back: beyond the top, moving out, and even the
 // strongest acceleration left, with the weakest gravity left, leaves it accelerating outwards.
 ROCKING_KERNEL
-bool Kernel<U, N, D, Z, L>::beyond_return(int i) const {
+bool Kernel<G, U, N, D, Z, L>::beyond_return(int i) const {
     const Lane& lane = lanes[i];
     if (!(v[i] <= 0.0)) return false;
     if (idx[i] >= last[i]) return true;
     const Bounds& b = bounds_at(i);
     const double back = std::max({0.0, ca[i] * b.later_low, ca[i] * b.later_high});
-    const double weight = 1.0 + (Z ? std::min({0.0, lane.az * b.later_vertical_low, lane.az * -b.later_vertical_low}) : 0.0);
+    const double weight = 1.0 + (Z ? std::min({0.0, lane.az * b.later_vertical_low, lane.az * b.later_vertical_high}) : 0.0);
     if (L) return weight * -u[i] > back && weight > 0.0;
     if (!(u[i] > -kHalfPi)) return true;
     double s, c;
@@ -28,7 +28,7 @@ bool Kernel<U, N, D, Z, L>::beyond_return(int i) const {
 }
 
 ROCKING_KERNEL
-const Bounds& Kernel<U, N, D, Z, L>::bounds_at(int i) const {
+const Bounds& Kernel<G, U, N, D, Z, L>::bounds_at(int i) const {
     const Lane& lane = lanes[i];
     const std::int64_t k = static_cast<std::int64_t>((idx[i] - lane.first) / motions.stride());
     return motions.bounds[lane.shake->block + k / kBlock];
@@ -36,7 +36,7 @@ const Bounds& Kernel<U, N, D, Z, L>::bounds_at(int i) const {
 
 // The motion is over: energy decides. e = u'^2 / (2 p^2) + cos u - cos alpha against 1 - cos alpha at the top.
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::conclude(int i) {
+void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     Lane& lane = lanes[i];
     raise_peak(i, alpha[i] - u[i], now(i, 0.0));
     const double speed = v[i] / lane.step;
@@ -48,7 +48,7 @@ void Kernel<U, N, D, Z, L>::conclude(int i) {
     double arrival = here(i).p * std::sqrt(2.0 * std::max(e, 0.0));
     for (int flight = 0; flight < 2; ++flight) {  // each later visit to a side has less energy than the one before
         lane.side = -lane.side;
-        arrival *= coefficient(i, arrival);
+        arrival *= coefficient(i, arrival * lane.step);
         ++lane.impacts;
         const double f = 0.5 * arrival * arrival / (here(i).p * here(i).p);
         if (f > energy(here(i), 0.0, 0.0)) return falls(i, now(i, 0.0));
@@ -59,14 +59,14 @@ void Kernel<U, N, D, Z, L>::conclude(int i) {
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::falls(int i, double when) {
+void Kernel<G, U, N, D, Z, L>::falls(int i, double when) {
     lanes[i].over_time = when;
     finish(i, kOverturned, kGood);
 }
 
 // Energy over m g R above rest; 1 - cos x written as 2 sin^2(x / 2) keeps its digits.
 ROCKING_KERNEL
-double Kernel<U, N, D, Z, L>::energy(const Side& s, double u_, double speed) {
+double Kernel<G, U, N, D, Z, L>::energy(const Side& s, double u_, double speed) {
     const double kinetic = 0.5 * speed * speed / (s.p * s.p);
     if (L) return kinetic + 0.5 * (s.alpha * s.alpha - u_ * u_);
     double a, b, c;
@@ -77,7 +77,7 @@ double Kernel<U, N, D, Z, L>::energy(const Side& s, double u_, double speed) {
 
 // Rotation |theta| at which a body of energy e turns round.
 ROCKING_KERNEL
-double Kernel<U, N, D, Z, L>::height(const Side& s, double e) {
+double Kernel<G, U, N, D, Z, L>::height(const Side& s, double e) {
     if (L) return s.alpha - std::sqrt(std::max(0.0, s.alpha * s.alpha - 2.0 * e));
     const double half = std::sin(0.5 * s.alpha);
     return s.alpha - 2.0 * std::asin(std::sqrt(std::max(0.0, half * half - 0.5 * e)));

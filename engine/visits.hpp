@@ -5,44 +5,37 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Those that may touch the ground go side by side, a register at a time.
+// Visits to lanes that may touch the ground, in M registers.
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::visit_all(unsigned long flagged, unsigned long near) {
-    int who[P], count = 0;
-    for (unsigned long left = flagged & near; left;) {
-        who[count++] = lowest(left);
-        left &= left - 1;
-        if (count == P || !left) {
-            land(who, count);
-            count = 0;
+template <int M>
+void Kernel<G, U, N, D, Z, L>::land(const int* who, int count) {
+    alignas(64) double lane[M * P], zero[M * P], speed[M * P];
+    for (int s = 0; s < M * P; ++s) lane[s] = who[s < count ? s : 0];
+    Pack at[M], raw[N + 2][M];
+    ROCKING_UNROLL
+    for (int m = 0; m < M; ++m) {
+        at[m] = Pack::load(lane + m * P);
+        raw[0][m] = Pack::gather(alpha, at[m]) - Pack::gather(u, at[m]);
+        ROCKING_UNROLL
+        for (int k = 0; k <= N; ++k) raw[k + 1][m] = Pack::gather(terms[k], at[m]);
+    }
+    Landings<N, M> landings;
+    const unsigned long found = landings.solve(raw);
+    if (found) {
+        ROCKING_UNROLL
+        for (int m = 0; m < M; ++m) {
+            landings.zero[m].store(zero + m * P);
+            max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::gather(len, at[m])).store(speed + m * P);
         }
     }
-    for (unsigned long left = flagged & ~near; left; left &= left - 1) visit(lowest(left), false);
-    for (; flagged; flagged &= flagged - 1) {
-        ++work.events;
-        if (lanes[lowest(flagged)].row < 0) fill(lowest(flagged));
-    }
-}
-
-ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::land(const int* who, int count) {
-    alignas(64) double lane[P];
-    for (int s = 0; s < P; ++s) lane[s] = who[s < count ? s : 0];
-    const Pack at = Pack::load(lane);
-    Pack raw[N + 2];
-    raw[0] = Pack::gather(alpha, at) - Pack::gather(u, at);
-    ROCKING_UNROLL
-    for (int k = 0; k <= N; ++k) raw[k + 1] = Pack::gather(terms[k], at);
-    Landings<N> landings;
-    const unsigned found = landings.solve(raw);
     for (int s = 0; s < count; ++s) {
-        if (found >> s & 1) touch(who[s], landings.zero[s], landings.slope[s]);
+        if (found >> s & 1) touch(who[s], zero[s], speed[s]);
         else visit(who[s], true);
     }
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::sample(int i) {
+void Kernel<G, U, N, D, Z, L>::sample(int i) {
     const Lane& lane = lanes[i];
     const std::int64_t k = static_cast<std::int64_t>((idx[i] - lane.first) / motions.stride());
     trace->rotation[k] = lane.side * (alpha[i] - u[i]);
@@ -50,23 +43,23 @@ void Kernel<U, N, D, Z, L>::sample(int i) {
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::note(int i, EventKind kind, double time, double before, double after, double coefficient) {
+void Kernel<G, U, N, D, Z, L>::note(int i, EventKind kind, double time, double before, double after, double coefficient) {
     if (trace) trace->events.push_back({time, before, after, coefficient, kind, static_cast<std::int8_t>(lanes[i].side)});
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::touch(int i, double zero, double slope) {
+void Kernel<G, U, N, D, Z, L>::touch(int i, double zero, double speed) {
     const double c0 = alpha[i] - u[i], c1 = -terms[0][i];
     if (c1 > 0.0 && c0 + c1 > peak[i]) {
         double c[N + 2] = {c0};
         for (int k = 0; k <= N; ++k) c[k + 1] = -terms[k][i] * (1.0 / (k + 1));
         note_peak(i, c, zero);
     }
-    impact(i, zero, std::max(0.0, -slope / (len[i] * lanes[i].step)));
+    impact(i, zero, speed);
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::visit(int i, bool near) {
+void Kernel<G, U, N, D, Z, L>::visit(int i, bool near) {
     double V[N + 1], c[N + 2];
     double sum = 0.0;
     for (int k = 0; k <= N; ++k) {
@@ -81,12 +74,12 @@ void Kernel<U, N, D, Z, L>::visit(int i, bool near) {
     if (!(zero <= 1.0)) return advance(i, V);
     double slopes[N + 1];
     slopes_of<N + 1>(c, slopes);
-    impact(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / (len[i] * lanes[i].step)));
+    impact(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / len[i]));
 }
 
 // First return to y = 0; a step that starts there is divided by the known zero first.
 ROCKING_KERNEL
-double Kernel<U, N, D, Z, L>::first_contact(double* c) const {
+double Kernel<G, U, N, D, Z, L>::first_contact(double* c) const {
     if (c[0] > 0.0) return first_zero<N + 1>(c);
     if (c[0] < 0.0) return 0.0;
     if (c[1] > 0.0) return first_zero<N>(c + 1);
@@ -97,21 +90,28 @@ double Kernel<U, N, D, Z, L>::first_contact(double* c) const {
     return 2.0;
 }
 
+// The highest point within a step, up to a place in it, if it is a new peak.
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::note_peak(int i, const double* c, double upto) {
-    if (c[1] < 0.0) return;
-    double slopes[N + 1];
+void Kernel<G, U, N, D, Z, L>::note_peak(int i, const double* c, double upto) {
+    double top = c[0], slopes[N + 1], sway = 0.0;
+    for (int k = 1; k <= N + 1; ++k) top += std::max(c[k], 0.0);
+    if (!(top > peak[i])) return;
     slopes_of<N + 1>(c, slopes);
-    if (value_of<N>(slopes, upto) > 0.0) return;
-    double at = 2.0;
-    if (slopes[0] > 0.0) at = first_zero<N>(slopes);
-    else if (slopes[1] > 0.0) at = first_zero<N - 1>(slopes + 1);
-    else if (slopes[2] > 0.0) at = first_zero<N - 2>(slopes + 2);
-    if (at <= upto) raise_peak(i, value_of<N + 1>(c, at), now(i, at));
+    for (int k = 2; k <= N; ++k) sway += std::fabs(slopes[k]);
+    const double start = slopes[0], end = value_of<N>(slopes, upto);
+    // the slope leaves the straight line between its ends by less than its sway: one turn, none, or any number of them
+    if (start > sway && end < -sway) {
+        const double at = first_zero<N>(slopes);
+        if (at <= upto) raise_peak(i, value_of<N + 1>(c, at), now(i, at));
+    } else if (!(std::min(start, end) > sway) && !(std::max(start, end) < -sway)) {
+        each_fall<N>(slopes, [&](double at) {
+            if (at <= upto) raise_peak(i, value_of<N + 1>(c, at), now(i, at));
+        });
+    }
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::raise_peak(int i, double y, double time) {
+void Kernel<G, U, N, D, Z, L>::raise_peak(int i, double y, double time) {
     if (y > peak[i]) {
         peak[i] = y;
         lanes[i].peak_signed = lanes[i].side * y;
@@ -120,34 +120,32 @@ void Kernel<U, N, D, Z, L>::raise_peak(int i, double y, double time) {
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::impact(int i, double at, double speed) {
+void Kernel<G, U, N, D, Z, L>::impact(int i, double at, double speed) {  // [rad per stretch]
     Lane& lane = lanes[i];
-    const double time = now(i, at);
     const int old = lane.side;
-    fastest[i] = std::max(fastest[i], speed * lane.step);
+    fastest[i] = std::max(fastest[i], speed);
     lane.side = -old;
-    const double r = coefficient(i, speed);
-    const double after = r * speed;
+    const double r = coefficient(i, speed), after = r * speed;
     ++lane.impacts;
-    note(i, kImpact, time, -old * speed, -old * after, r);
+    if (trace) note(i, kImpact, now(i, at), -old * speed / lane.step, -old * after / lane.step, r);
     stand(i);
     u[i] = alpha[i];
-    v[i] = -after * lane.step;
+    v[i] = -after;
     move(i, tau[i] + at * len[i]);
     if (trace && tau[i] == 0.0) sample(i);
     if (lane.impacts >= set.most_impacts) return finish(i, kFailed, kTooManyImpacts);
     if (over(i)) return conclude(i);
     if (comes_to_rest(i, after)) {
-        note(i, kRest, time, 0.0, 0.0, 0.0);
+        note(i, kRest, now(i, 0.0), 0.0, 0.0, 0.0);
         rest(i);
     }
 }
 
 ROCKING_KERNEL
-double Kernel<U, N, D, Z, L>::coefficient(int i, double speed) const {
+double Kernel<G, U, N, D, Z, L>::coefficient(int i, double speed) const {  // [rad per stretch]
     const Lane& lane = lanes[i];
     const double r = here(i).r;
-    if (law.kind == LawKind::of_speed) return r * interpolated(law.at, law.value, speed);
+    if (law.kind == LawKind::of_speed) return r * interpolated(law.at, law.value, speed / lane.step);
     if (law.kind == LawKind::random)
         return r * interpolated(law.at, law.value, uniform(law.seed, rows.key[lane.row], lane.impacts));
     return r;
@@ -155,7 +153,7 @@ double Kernel<U, N, D, Z, L>::coefficient(int i, double speed) const {
 
 // Lane variables of the side on which the body stands.
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::stand(int i) {
+void Kernel<G, U, N, D, Z, L>::stand(int i) {
     const Lane& lane = lanes[i];
     const Side& s = here(i);
     alpha[i] = s.alpha;
@@ -164,7 +162,7 @@ void Kernel<U, N, D, Z, L>::stand(int i) {
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::move(int i, double to) {
+void Kernel<G, U, N, D, Z, L>::move(int i, double to) {
     if (to >= kWhole) {
         idx[i] += motions.stride();
         tau[i] = 0.0;
@@ -176,7 +174,7 @@ void Kernel<U, N, D, Z, L>::move(int i, double to) {
 
 // Whether the motion has ended; where rest of the ground follows, its jump to zero is passed.
 ROCKING_KERNEL
-bool Kernel<U, N, D, Z, L>::over(int i) {
+bool Kernel<G, U, N, D, Z, L>::over(int i) {
     Lane& lane = lanes[i];
     if (idx[i] < last[i]) return false;
     if (!lane.still) return true;
@@ -188,18 +186,19 @@ bool Kernel<U, N, D, Z, L>::over(int i) {
 }
 
 ROCKING_KERNEL
-void Kernel<U, N, D, Z, L>::advance(int i, const double* V) {
+void Kernel<G, U, N, D, Z, L>::advance(int i, const double* V) {
     Lane& lane = lanes[i];
     double u1 = V[N] * (1.0 / (N + 1)), v1 = V[0];
     for (int k = N; k-- > 0;) u1 = fma(V[k], 1.0 / (k + 1), u1);
     u1 = u[i] + u1;
     for (int k = 1; k <= N; ++k) v1 += V[k];
     v1 /= len[i];
-    if (u[i] >= 0.0 && u1 < 0.0) {
+    if (u1 < 0.0) {
         double c[N + 2];
         c[0] = u[i];
         for (int k = 0; k <= N; ++k) c[k + 1] = V[k] / (k + 1);
-        lane.over_time = now(i, u[i] > 0.0 ? std::min(first_zero<N + 1>(c), 1.0) : 0.0);
+        if (c[0] == 0.0) lane.over_time = now(i, 0.0);
+        each_fall<N + 1>(c, [&](double at) { lane.over_time = now(i, at); });
     }
     u[i] = u1;
     v[i] = v1;

@@ -11,7 +11,6 @@ from rocking.conventions import FloatArray
 from rocking.dynamics import engine as fast_engine
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.outcome import Outcome, Status
-from rocking.dynamics.reference import Reference
 from rocking.dynamics.rocker import Rocker, RockingSide
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
@@ -136,7 +135,16 @@ class Batch:
             One array for each key of `rocking.dynamics.engine.RESULTS`.
         work : dict of str to int
             Steps that were taken; empty for the reference engine.
+
+        Raises
+        ------
+        InvalidValueError
+            If the fast engine does not have the order for these equations and motions, or progress is no function.
         """
+        given: object = progress
+        if given is not None and not callable(given):
+            raise InvalidValueError(f"progress must be a function of the histories done, or None, got {given!r:.60}")
+        self._check_order()
         results = fast_engine.empty_results(count)
         total: dict[str, int] = {}
         quick = fast_engine.chosen(self.engine) == "fast"
@@ -158,6 +166,16 @@ class Batch:
                 progress(last - first)
         return results, total
 
+    def _check_order(self) -> None:
+        order, linear = self.settings.order, self.settings.linear
+        vertical = any(motion.vertical is not None for motion in self.motions)
+        if self.engine != "reference" and order != 8 and (linear or vertical):
+            which = "the linear equations" if linear else "motions with a vertical part"
+            raise InvalidValueError(
+                f"order must be 8 for {which}, got {order}: "
+                "orders 4 and 6 exist only for nonlinear equations and motions without a vertical part"
+            )
+
     def _one_by_one(self, rows: Rows, out: fast_engine.Arrays) -> None:
         for k in range(len(rows)):
             row = {name: float(values[k]) for name, values in rows.values.items()}
@@ -168,6 +186,8 @@ class Batch:
         if not valid_row(row) or not 0 <= motion < len(self.motions):
             bad = dict.fromkeys(fast_engine.RESULTS, np.nan) | {"outcome": Outcome.FAILED.code, "side": 0}
             return bad | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0}
+        from rocking.dynamics.reference import Reference
+
         sides = [RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"]) for s in ("right", "left")]
         reference = Reference(
             Rocker(sides[0], sides[1], self.law, ""), self.motions[motion], self.settings,

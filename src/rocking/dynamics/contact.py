@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot, opposite
 from rocking.dynamics import equations
@@ -59,7 +60,13 @@ class Contact:
         -------
         list of str
             Sentences.
+
+        Raises
+        ------
+        InvalidValueError
+            If the coefficient is not above zero and finite.
         """
+        friction = checks.positive("friction", friction)
         found = []
         if self.loses_contact:
             found.append(

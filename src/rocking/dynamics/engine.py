@@ -1,5 +1,6 @@
 """The fast engine as Python sees it: whether it is there, and arrays in and out."""
 
+import math
 import os
 import warnings
 from functools import cache
@@ -31,6 +32,7 @@ ENGINES = ("auto", "fast", "reference")
 _NOT_BUILT = (
     "the fast engine was not built: it takes a C++17 compiler when rocking is installed (in a checkout, `make engine`)"
 )
+_NOT_FINITE = "ground accelerations must be finite [m/s2], got NaN or infinity in a motion; a gap in a record?"
 
 
 @cache
@@ -143,7 +145,7 @@ class Library:
     Raises
     ------
     InvalidValueError
-        If there is none, or they are of different kinds.
+        If there is none, they are of different kinds, or one is not finite or has jumps other than one to rest.
     """
 
     def __init__(self, segments: list[Segments]) -> None:
@@ -155,43 +157,69 @@ class Library:
             raise InvalidValueError("motions in one batch must be all records or all pulses; sample the pulses")
         if self.degree > 1 and self.vertical:
             raise InvalidValueError("a pulse has no vertical part; sample it")
-        laid = [self._flat(s) for s in segments]
-        data, counts, still = [d for d, _, _ in laid], [n for _, n, _ in laid], [m for _, _, m in laid]
-        first = np.concatenate([[0], np.cumsum([d.size for d in data])[:-1]]).astype(np.int64)
+        columns = self.degree + 1 if self.degree > 1 else 1 + self.vertical
+        data = np.empty((sum(s.count + 2 for s in segments), columns))
+        places = np.empty((3, len(segments)), np.int64)
+        used = 0
+        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused by name
+            for k, motion in enumerate(segments):
+                rows, before, still = self._lay(motion, data[used:])
+                places[:, k] = used * columns, before, still
+                used += rows
         steps = np.array([s.step for s in segments])
-        self.handle = module().Library(
-            np.concatenate(data), self.degree, self.vertical, first, np.array(counts, np.int64),
-            np.array(still, np.int64), steps,
-        )  # fmt: skip
+        self.handle = module().Library(data[:used].ravel(), self.degree, self.vertical, *places, steps)
 
-    def _flat(self, segments: Segments) -> tuple[FloatArray, int, int]:
-        """Numbers one after another, stretches up to the jump to rest if there is one, and stretches after it."""
+    def _lay(self, segments: Segments, room: FloatArray) -> tuple[int, int, int]:
+        """Write a motion into the first rows; their number, stretches up to the jump to rest, and those after it."""
+        count, still = segments.count, 0
         if self.degree > 1:
-            return np.ascontiguousarray(segments.horizontal).ravel(), segments.count, 0
-        parts = [segments.horizontal]
-        if self.vertical:
-            vertical = segments.vertical
-            parts.append(np.zeros_like(segments.horizontal) if vertical is None else vertical)
-        jumps = np.flatnonzero(np.any([_jumps(lines) for lines in parts], axis=0))
-        if not jumps.size:
-            return np.ascontiguousarray(np.column_stack([_samples(x) for x in parts])).ravel(), segments.count, 0
-        before = int(jumps[0]) + 1
-        if jumps.size > 1 or any(np.any(lines[before:]) for lines in parts):
-            raise InvalidValueError(
-                f"the fast engine takes records without jumps between their samples, got {jumps.size}, the first "
-                f'after {before * segments.step:g} s; engine="reference" takes them'
-            )
-        rows = [np.append(_samples(lines[:before]), np.zeros(segments.count - before + 1)) for lines in parts]
-        return np.ascontiguousarray(np.column_stack(rows)).ravel(), before, segments.count - before
+            room[:count] = segments.horizontal
+            if not np.isfinite(room[:count]).all():
+                raise InvalidValueError(_NOT_FINITE)
+            return count, count, 0
+        parts = [segments.horizontal] if segments.vertical is None else [segments.horizontal, segments.vertical]
+        if len(parts) < room.shape[1]:
+            room[: count + 1, 1] = 0.0
+        joined = [_continuous(lines, room[: count + 1, k]) for k, lines in enumerate(parts)]
+        if not all(joined):
+            before = _jump(parts, room[: count + 1], segments.step)
+            still = count - before
+            room[before] = [lines[before - 1].sum() for lines in parts] + [0.0] * (room.shape[1] - len(parts))
+            room[before + 1 : count + 2] = 0.0
+        return count + (2 if still else 1), count - still, still
 
 
-def _samples(lines: FloatArray) -> FloatArray:
-    return np.append(lines[:, 0], lines[-1].sum())
+def _continuous(lines: FloatArray, samples: FloatArray) -> bool:
+    """Write the samples that lines join, and tell whether all lines end where the next one starts."""
+    samples[:-1], samples[-1] = lines[:, 0], lines[-1, 0] + lines[-1, 1]
+    return bool(_gaps(lines, samples).max(initial=0.0) <= _allowed(samples) < math.inf)
 
 
-def _jumps(lines: FloatArray) -> np.ndarray:
-    gap = np.abs(lines[:-1].sum(axis=1) - lines[1:, 0])
-    return np.asarray(gap > 1e-14 * np.abs(lines[:, 0]).max(initial=0.0))
+def _gaps(lines: FloatArray, samples: FloatArray) -> FloatArray:
+    """How far the lines miss the next ones."""
+    gaps = lines[:-1, 1] + samples[:-2]
+    gaps -= samples[1:-1]
+    return np.abs(gaps, out=gaps)
+
+
+def _allowed(samples: FloatArray) -> float:
+    """Gap that is rounding."""
+    return 1e-14 * float(max(samples.max(), -samples.min()))
+
+
+def _jump(parts: list[FloatArray], samples: FloatArray, step: float) -> int:
+    """Return how many stretches come before the jump to rest, or refuse any other jump."""
+    if not all(np.isfinite(x).all() for x in (*parts, samples)):
+        raise InvalidValueError(_NOT_FINITE)
+    columns = zip(parts, samples.T, strict=False)
+    jumps = np.flatnonzero(np.any([_gaps(lines, x) > _allowed(x) for lines, x in columns], axis=0))
+    before = int(jumps[0]) + 1
+    if jumps.size > 1 or any(np.any(lines[before:]) for lines in parts):
+        raise InvalidValueError(
+            f"the fast engine takes records without jumps between their samples, got {jumps.size}, the first "
+            f'after {before * step:g} s; engine="reference" takes them'
+        )
+    return before
 
 
 def empty_results(count: int) -> Arrays:

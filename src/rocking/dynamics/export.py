@@ -1,9 +1,7 @@
 """A response as tables and files: xarray, pandas, CSV, MATLAB, netCDF, each with units and provenance."""
 
-import csv
-import json
+import os
 from importlib import import_module
-from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +11,8 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, MissingExtraError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import pandas as pd
     import xarray as xr
 
@@ -164,7 +164,7 @@ def to_dataframe(response: "Response") -> "pd.DataFrame":
     return frame
 
 
-def to_csv(response: "Response", path: str | Path) -> Path:
+def to_csv(response: "Response", path: "str | Path") -> "Path":
     """Write the samples of a response as comma-separated values, all digits kept.
 
     Parameters
@@ -179,6 +179,8 @@ def to_csv(response: "Response", path: str | Path) -> Path:
     Path
         The file.
     """
+    import csv
+
     target = _target(path)
     values = columns(response)
     with target.open("w", newline="", encoding="utf-8") as file:
@@ -188,7 +190,7 @@ def to_csv(response: "Response", path: str | Path) -> Path:
     return target
 
 
-def to_mat(response: "Response", path: str | Path) -> Path:
+def to_mat(response: "Response", path: "str | Path") -> "Path":
     """Write a response as a MATLAB file (version 5): one structure ``rocking`` with the samples, impacts, units.
 
     Parameters
@@ -203,6 +205,8 @@ def to_mat(response: "Response", path: str | Path) -> Path:
     Path
         The file.
     """
+    import json
+
     from scipy.io import savemat
 
     target = _target(path)
@@ -221,7 +225,7 @@ def to_mat(response: "Response", path: str | Path) -> Path:
     return target
 
 
-def to_netcdf(response: "Response", path: str | Path) -> Path:
+def to_netcdf(response: "Response", path: "str | Path") -> "Path":
     """Write a response as netCDF 4, which xarray and MATLAB open.
 
     Parameters
@@ -243,8 +247,15 @@ def to_netcdf(response: "Response", path: str | Path) -> Path:
     return target
 
 
-def _target(path: str | Path) -> Path:
+def _target(path: "str | Path") -> "Path":
+    from pathlib import Path
+
+    given: object = path
+    if not isinstance(given, (str, os.PathLike)):
+        raise InvalidValueError(f"path must be the path of a file, got {path!r:.60}")
     target = Path(path)
+    if target.is_dir():
+        raise InvalidValueError(f"path must be the path of a file, got the folder {target}")
     if not target.parent.is_dir():
         raise InvalidValueError(f"no folder {target.parent} to write {target.name} into")
     return target

@@ -10,10 +10,11 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 
 _MASK = (1 << 64) - 1
+_MOST_POINTS = 100_000
 
 
 class ImpactLaw:
-    """A factor on the coefficient of restitution of the side onto which the body lands.
+    """A factor on the coefficient of restitution of the side onto which the body lands; the base of all laws.
 
     Attributes
     ----------
@@ -29,6 +30,11 @@ class ImpactLaw:
     at: FloatArray
     factors: FloatArray
     seed: int
+
+    def __init__(self) -> None:
+        raise InvalidValueError(
+            "ImpactLaw is the base of the laws: take ConstantRestitution, SpeedRestitution or RandomRestitution"
+        )
 
     @property
     def largest(self) -> float:
@@ -194,15 +200,23 @@ class RandomRestitution(ImpactLaw):
         times : optional
             What the draws multiply.
         points : int
-            Quantiles that stand for it.
+            Quantiles that stand for it, from 2 to 100,000.
 
         Returns
         -------
         RandomRestitution
             The law.
+
+        Raises
+        ------
+        InvalidValueError
+            If a value is outside its range.
         """
         from scipy.special import ndtr, ndtri
 
+        count: object = points
+        if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= _MOST_POINTS:
+            raise InvalidValueError(f"points must be a whole number in [2, {_MOST_POINTS}], got {points!r:.60}")
         mean = checks.within("mean", mean, 0.0, 1.0)
         deviation = checks.within("deviation", deviation, 0.0, 1.0, open_low=True)
         low, high = ndtr((0.0 - mean) / deviation), ndtr((1.0 - mean) / deviation)

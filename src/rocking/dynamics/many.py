@@ -1,14 +1,13 @@
 """`simulate_many`: every body under every motion at every scale with every restitution, as a labelled dataset."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.export import extra
+from rocking.conventions import FloatArray
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.outcome import Outcome, Status
@@ -20,6 +19,8 @@ from rocking.motions.pulse import Pulse
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from rocking.dynamics.batch import Rows
 
 _UNITS = {
     "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
@@ -92,13 +93,14 @@ def simulate_many(
     >>> dict(result.sizes)
     {'body': 3, 'motion': 1, 'scale': 2, 'restitution': 2}
     """
+    from rocking.dynamics.batch import Batch
+    from rocking.dynamics.export import extra
+
     xarray = extra("xarray", "simulate_many")
     settings = settings_of(gravity, options)
     body_list, motion_list = _several("bodies", bodies, (Body,)), _several("motions", motions, (GroundMotion, Pulse))
     choices = restitution if isinstance(restitution, (list, tuple)) else [restitution]
-    scales = np.atleast_1d(checks.real_array("scale", scale))
-    if scales.ndim != 1 or not scales.size or not np.all(np.abs(scales) <= 1e6):
-        raise InvalidValueError("scale must be one number or a row of finite numbers within 1e6")
+    scales = _scales(scale)
     if not choices:
         raise InvalidValueError("restitution must be at least one model, got none")
     law = _common_law(choices)
@@ -132,14 +134,16 @@ def simulate_many(
     return made
 
 
-def _pieces(rockers: list[list[Rocker]], scales: np.ndarray, shape: tuple[int, ...]) -> Callable[[int, int], Rows]:
+def _pieces(rockers: list[list[Rocker]], scales: np.ndarray, shape: tuple[int, ...]) -> "Callable[[int, int], Rows]":
+    from rocking.dynamics.batch import Rows
+
     table = {
         f"{short}_{side}": np.array([[getattr(getattr(r, side), name) for r in row] for row in rockers])
         for short, name in (("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"))
         for side in ("right", "left")
     }
 
-    def rows(first: int, last: int) -> Rows:
+    def rows(first: int, last: int) -> "Rows":
         body, motion, factor, choice = np.unravel_index(np.arange(first, last), shape)
         values = {name: array[body, choice] for name, array in table.items()}
         return Rows.of(last - first, motion, np.arange(first, last), scale=scales[factor], **values)
@@ -148,10 +152,28 @@ def _pieces(rockers: list[list[Rocker]], scales: np.ndarray, shape: tuple[int, .
 
 
 def _several(name: str, given: Any, kinds: tuple[type, ...]) -> list[Any]:
-    found = [given] if isinstance(given, kinds) else list(given)
-    if not found or not all(isinstance(item, kinds) for item in found):
-        raise InvalidValueError(f"{name} must be one or more of {', '.join(k.__name__ for k in kinds)}")
+    wanted = f"{name} must be one or more of {', '.join(k.__name__ for k in kinds)}"
+    if isinstance(given, kinds):
+        return [given]
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise InvalidValueError(f"{wanted}, got {given!r:.60}")
+    found = list(given)
+    if not found:
+        raise InvalidValueError(f"{wanted}, got none")
+    for k, item in enumerate(found):
+        if not isinstance(item, kinds):
+            raise InvalidValueError(f"{wanted}, got {item!r:.60} at index {k}")
     return found
+
+
+def _scales(given: Any) -> FloatArray:
+    scales = np.atleast_1d(checks.real_array("scale", given))
+    if scales.ndim != 1 or not scales.size:
+        raise InvalidValueError(f"scale must be one number or a row of numbers, got shape {scales.shape}")
+    bad = np.flatnonzero(~(np.abs(scales) <= 1e6))
+    if bad.size:
+        raise InvalidValueError(f"scale must be finite and within 1e6, got {scales[bad[0]]:g} at index {bad[0]}")
+    return scales
 
 
 def _common_law(choices: Sequence[Any]) -> ImpactLaw:

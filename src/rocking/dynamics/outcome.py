@@ -24,6 +24,7 @@ class Status(Enum):
     INVALID = "refused: a value is not finite or outside its range"
     NOT_FINITE = "stopped: the motion of the body is no longer a finite number"
     TOO_MANY_IMPACTS = "stopped: more impacts than allowed"
+    NOT_RESOLVED = "stopped: the motion changes too fast for the steps; a shorter longest_step may help"
 
     @property
     def code(self) -> int:

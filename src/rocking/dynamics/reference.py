@@ -12,11 +12,12 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics import equations
 from rocking.dynamics.outcome import Outcome, Status
-from rocking.dynamics.resting import Ground, Push, comes_to_rest
+from rocking.dynamics.resting import NOTHING, Ground, Push, comes_to_rest
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.taylor import first_fall, series, shifted, slope, value
+from rocking.dynamics.taylor import first_fall, last_fall, series, shifted, slope, turning_points, value
 from rocking.dynamics.trajectory import Event, EventKind, Trajectory
+from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 
 _ORDER = 30
@@ -45,6 +46,11 @@ class Reference:
         Number of the history, for random coefficients.
     to_the_ground : bool
         Follow a body that falls until it lies; otherwise stop once nothing can bring it back.
+
+    Raises
+    ------
+    InvalidValueError
+        If an acceleration is not finite.
     """
 
     def __init__(
@@ -59,6 +65,10 @@ class Reference:
     ) -> None:
         over_g = scale / settings.gravity
         vertical = np.zeros_like(segments.horizontal) if segments.vertical is None else segments.vertical
+        if not (np.isfinite(segments.horizontal).all() and np.isfinite(vertical).all()):
+            raise InvalidValueError(
+                "ground accelerations must be finite [m/s2], got NaN or infinity; a gap in a record"
+            )
         self.push = Push(segments.step, segments.horizontal * over_g, vertical * over_g)
         self.rocker, self.settings, self.key, self.to_the_ground = rocker, settings, key, to_the_ground
         self.ground = Ground(rocker, self.push, linear=settings.linear)
@@ -97,9 +107,9 @@ class Reference:
     def _start(self, rotation: float, velocity: float) -> _Ended | None:
         turned = self.rocker.side(1 if rotation > 0.0 else -1).slenderness_angle
         upright = turned - abs(rotation) == turned  # turned by less than the rounding of alpha
-        if upright and velocity == 0.0:
-            return self._rest()
         self.side = 1 if rotation > 0.0 or (rotation == 0.0 and velocity > 0.0) else -1
+        if upright and abs(velocity) <= NOTHING * self._p * self._alpha:
+            return self._rest()
         self.u, self.rate = self._alpha - abs(rotation), -self.side * velocity
         self._raise_peak(abs(rotation), 0.0)
         if self.u < 0.0:
@@ -136,7 +146,7 @@ class Reference:
             return 0.0
         if len(terms) <= _ORDER:
             return 1.0
-        bound = self.settings.tolerance * self._alpha
+        bound = self.settings.tolerance * max(self._alpha, abs(self.u))
         part = 1.0
         for k in (len(terms) - 2, len(terms) - 1):
             if abs(terms[k]) > bound:
@@ -147,6 +157,8 @@ class Reference:
         """Return the first return of |theta| to zero; a step that starts there is divided by that zero."""
         if gap[0] > 0.0:
             return first_fall(gap)
+        if gap[1] < 0.0:  # the last step ended on the ground, to rounding
+            return 0.0
         if gap[1] > 0.0:
             return first_fall(gap[1:])
         rest = gap[2:]
@@ -178,9 +190,9 @@ class Reference:
 
     def _advance(self, terms: list[float], length: float, tau: float) -> _Ended | None:
         start, end = self.u, value(terms, 1.0)
-        if start >= 0.0 > end:
-            crossing = first_fall(terms) if start > 0.0 else 0.0
-            self.over_time = self._now + (1.0 if crossing is None else crossing) * length
+        passing = last_fall(terms) if end < 0.0 else None
+        if passing is not None or start >= 0.0 > end:
+            self.over_time = self._now + (passing or 0.0) * length
         self.u, self.rate = end, slope(terms, 1.0) / length
         self.fastest = max(self.fastest, abs(self.rate))
         self._move(tau)
@@ -264,14 +276,9 @@ class Reference:
         self.velocities[self.stretch] = -self.side * self.rate
 
     def _note_peak(self, gap: list[float], until: float, length: float) -> None:
-        if gap[1] < 0.0 or slope(gap, until) > 0.0:
-            return
-        slopes = [k * c for k, c in enumerate(gap)][1:]
-        while len(slopes) > 1 and slopes[0] == 0.0:
-            slopes.pop(0)
-        at = first_fall(slopes) if slopes[0] > 0.0 else None
-        if at is not None and at <= until:
-            self._raise_peak(value(gap, at), self._now + at * length)
+        if gap[0] + sum(max(c, 0.0) for c in gap[1:]) > abs(self.peak):
+            for at in turning_points(gap, until):
+                self._raise_peak(value(gap, at), self._now + at * length)
 
     def _raise_peak(self, size: float, time: float) -> None:
         if size > abs(self.peak):
@@ -295,8 +302,6 @@ class Reference:
         weight = 1.0 + self.later_light[self.stretch]
         if self.settings.linear:
             return bool(weight > 0.0 and weight * -self.u > back)
-        if self.u <= -0.5 * math.pi:
-            return True
         return bool(weight > 0.0 and weight * math.sin(-self.u) > back * math.cos(self.u))
 
     def _trajectory(self, ended: _Ended) -> Trajectory:

@@ -2,29 +2,35 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact import Contact, contact_of
-from rocking.dynamics.intervals import Intervals
-from rocking.dynamics.ledger import ResponseEnergy, energy_of
 from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
+from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import pandas as pd
     import xarray as xr
 
+    from rocking.dynamics.contact import Contact
+    from rocking.dynamics.intervals import Intervals
+    from rocking.dynamics.ledger import ResponseEnergy
+
 Motion = GroundMotion | Pulse
+
+_ROUNDING = 1e-9
 
 IMPACT = np.dtype(
     [("time", "f8"), ("velocity_before", "f8"), ("velocity_after", "f8"), ("coefficient", "f8"), ("onto", "U5")]
@@ -147,25 +153,35 @@ class Response:
         return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
 
     @cached_property
-    def intervals(self) -> Intervals:
+    def intervals(self) -> "Intervals":
         """The response between its samples and events."""
+        from rocking.dynamics.intervals import Intervals
+
         return Intervals.of(self.trajectory, self.segments, self.rocker, self.settings, self.scale)
 
     @cached_property
-    def energy(self) -> ResponseEnergy:
+    def energy(self) -> "ResponseEnergy":
         """Kinetic and potential energy, work of the ground and losses at the samples [J]."""
+        from rocking.dynamics.ledger import energy_of
+
         return energy_of(self.intervals, self.time, self.body.mass, self.settings)
 
     @cached_property
-    def contact(self) -> Contact:
+    def contact(self) -> "Contact":
         """Forces of the ground, friction demand and loss of contact."""
+        from rocking.dynamics.contact import contact_of
+
         return contact_of(self.trajectory, self.intervals, self.time, self.body, self.settings)
 
     @cached_property
     def ground_acceleration(self) -> FloatArray:
-        """Horizontal acceleration of the ground at the samples [m/s2]."""
+        """Horizontal acceleration of the ground at the samples; the motion's last value where it ends [m/s2]."""
         h = self.scale * self.segments.horizontal
-        return np.append(h[:, 0], h[-1].sum())[: self._finite]
+        values = np.append(h[:, 0], 0.0)
+        moving = np.flatnonzero(h.any(axis=1))
+        if moving.size:
+            values[moving[-1] + 1] = h[moving[-1]].sum()
+        return values[: self._finite]
 
     @cached_property
     def error_estimate(self) -> float:
@@ -190,9 +206,18 @@ class Response:
         -------
         ndarray
             theta [rad].
+
+        Raises
+        ------
+        InvalidValueError
+            If a time is not finite, or before the start or after the last sample by more than rounding.
         """
-        intervals = self.intervals
-        t = np.clip(np.asarray(time, dtype=np.float64), 0.0, self.time[-1])
+        intervals, end = self.intervals, float(self.time[-1])
+        given = checks.real_array("time", time, "s")
+        bad = given[~((given >= -_ROUNDING * end) & (given <= (1.0 + _ROUNDING) * end))]
+        if bad.size:
+            raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
+        t = np.clip(given, 0.0, end)
         k = np.clip(np.searchsorted(intervals.start, t, side="right") - 1, 0, intervals.start.size - 1)
         x = (t - intervals.start[k]) / intervals.length[k]
         c = intervals.quintics()[k]
@@ -222,7 +247,7 @@ class Response:
 
         return to_dataframe(self)
 
-    def to_csv(self, path: str | Path) -> Path:
+    def to_csv(self, path: "str | Path") -> "Path":
         """Write the samples as comma-separated values.
 
         Parameters
@@ -239,7 +264,7 @@ class Response:
 
         return to_csv(self, path)
 
-    def to_mat(self, path: str | Path) -> Path:
+    def to_mat(self, path: "str | Path") -> "Path":
         """Write a file that MATLAB loads.
 
         Parameters
@@ -256,7 +281,7 @@ class Response:
 
         return to_mat(self, path)
 
-    def to_netcdf(self, path: str | Path) -> Path:
+    def to_netcdf(self, path: "str | Path") -> "Path":
         """Write a netCDF file, which xarray and MATLAB open.
 
         Parameters

@@ -10,7 +10,8 @@ from rocking.dynamics.rocker import Rocker, RockingSide
 from rocking.dynamics.taylor import first_fall, shifted, value
 
 _LONGEST_WINDOW = 40.0
-_NOTHING = 1e-9
+NOTHING = 1e-9
+"""Speed over p alpha that is none: a body that the ground holds, and that is no faster, is at rest."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,7 @@ class Window:
     steepness: float
 
 
-def comes_to_rest(  # noqa: PLR0917 - each way out is a reason
+def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     rocker: Rocker, ground: Ground, sign: int, after: float, stretch: int, tau: float, rest_speed: float
 ) -> bool:
     """Return whether the impacts to come provably add up to rest before the body could rise again.
@@ -171,7 +172,7 @@ def comes_to_rest(  # noqa: PLR0917 - each way out is a reason
     tau : float
         Time within it.
     rest_speed : float
-        Speed over p alpha above which the question is not asked [-].
+        Speed over p alpha above which the question is not asked; below `NOTHING` it always is [-].
 
     Returns
     -------
@@ -180,15 +181,14 @@ def comes_to_rest(  # noqa: PLR0917 - each way out is a reason
     """
     side = rocker.side(sign)
     unit = side.frequency_parameter * side.slenderness_angle
-    if not after <= rest_speed * unit or not ground.held(sign, stretch, tau) > 0.0:
-        return False
-    if after <= _NOTHING * unit:
+    held = ground.held(sign, stretch, tau)
+    if after <= NOTHING * unit and held > 0.0:
         return True
     other, across = rocker.side(-sign), ground.held(-sign, stretch, tau)
-    if not across > 0.0:
+    if not (after <= rest_speed * unit and held > 0.0 and across > 0.0):
         return False
     # the flights under the moments of now, as a guess of the time they take
-    here, there = side.frequency_parameter**2 * ground.held(sign, stretch, tau), other.frequency_parameter**2 * across
+    here, there = side.frequency_parameter**2 * held, other.frequency_parameter**2 * across
     r_here, r_there = (k.coefficient * rocker.law.largest for k in (side, other))
     step = ground.push.step
     flights, steps = 2.0 * after * (there + r_there * here), here * there * (1.0 - r_here * r_there) * step
@@ -197,7 +197,7 @@ def comes_to_rest(  # noqa: PLR0917 - each way out is a reason
     left, guess, (count, terms) = 1.0 - tau, 1.5 * flights / steps, ground.push.horizontal.shape
     stretches = min(int(guess - left) + 2, count - stretch) if terms == 2 and guess > left else 1
     window = _window(rocker, ground, stretch, tau, stretches)
-    return window is not None and _time_to_rest(rocker, sign, after, window) <= (left + (stretches - 1)) * step
+    return window is not None and bool(_time_to_rest(rocker, sign, after, window) <= (left + (stretches - 1)) * step)
 
 
 def _window(rocker: Rocker, ground: Ground, stretch: int, tau: float, stretches: int) -> Window | None:

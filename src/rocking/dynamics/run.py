@@ -6,12 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from rocking.dynamics import engine as fast_engine
-from rocking.dynamics.reference import Reference
 from rocking.dynamics.response import Response
 from rocking.dynamics.rocker import Rocker
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.dynamics.trajectory import Trajectory
+from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
+
+_ORDER = 8
 
 
 def run(
@@ -48,8 +50,21 @@ def run(
     -------
     Trajectory
         The history.
+
+    Raises
+    ------
+    InvalidValueError
+        If the order is not 8, unless the reference engine was asked for: there are no others for one history.
     """
-    if fast_engine.chosen(engine) == "reference":
+    taken = fast_engine.chosen(engine)
+    if engine != "reference" and settings.order != _ORDER:
+        raise InvalidValueError(
+            f"order must be {_ORDER} for one history, got {settings.order}: orders 4 and 6 exist only in batches "
+            "(simulate_many), for nonlinear equations and motions without a vertical part"
+        )
+    if taken == "reference":
+        from rocking.dynamics.reference import Reference
+
         made = Reference(rocker, segments, settings, scale=scale, key=key)
         return made.run(rotation, velocity)
     from rocking.dynamics.fast import run_fast
@@ -59,6 +74,8 @@ def run(
 
 def rerun_finer(response: Response) -> float:
     """Return how much a response changes when every step is halved.
+
+    Where the steps of the fast engine are as short as they may be, the reference engine stands in for shorter ones.
 
     Parameters
     ----------
@@ -70,8 +87,10 @@ def rerun_finer(response: Response) -> float:
     float
         Largest change of theta at the samples that both have; infinite if the outcome changes [rad].
     """
-    name = "reference" if response.engine.startswith("reference") else "fast"
-    settings = replace(response.settings, longest_step=0.5 * response.settings.longest_step)
+    name, settings = "reference", response.settings
+    half = 0.5 * settings.longest_step
+    if response.engine.startswith("fast") and half >= SHORTEST_STEP:
+        name, settings = "fast", replace(settings, longest_step=half)
     first = response.trajectory
     again = run(
         response.rocker, response.segments.refined(2), settings, engine=name, scale=response.scale, key=response.key,

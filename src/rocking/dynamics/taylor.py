@@ -6,6 +6,7 @@ from operator import mul
 import numpy as np
 
 _SMALLEST = 1e-22
+_NEAR = 1e-9
 
 
 def series(
@@ -135,32 +136,83 @@ def first_fall(polynomial: Sequence[float]) -> float | None:
     float, optional
         The zero, to rounding; None if there is none. Touching zero is not falling.
     """
-    rest = sum(map(abs, polynomial[1:]))
-    if polynomial[0] > rest:
+    if polynomial[0] + sum(min(c, 0.0) for c in polynomial[1:]) > 0.0:
         return None
-    # largest coefficients first cut away: they are below rounding and would spoil the eigenvalues
-    kept = len(polynomial)
-    while kept > 2 and abs(polynomial[kept - 1]) <= 1e-20 * rest:
-        kept -= 1
-    roots = np.roots(polynomial[kept - 1 :: -1] if kept < len(polynomial) else list(polynomial)[::-1])
-    near = sorted(float(x.real) for x in roots if abs(x.imag) < 1e-6 and -1e-9 < x.real < 1.0 + 1e-9)
-    for guess in near:
-        found = _polished(polynomial, guess)
-        if found is not None:
-            return found
+    for guess in _guesses(polynomial):
+        x = _polished(polynomial, guess)
+        if x is not None and 0.0 < x <= 1.0 and slope(polynomial, x) < 0.0:
+            return x
     return None
 
 
+def last_fall(polynomial: Sequence[float]) -> float | None:
+    """Return where on [0, 1) a polynomial that ends below zero last goes below it.
+
+    Parameters
+    ----------
+    polynomial : sequence of float
+        Coefficients from the power 0.
+
+    Returns
+    -------
+    float, optional
+        The zero, to rounding; None if the polynomial is below zero throughout.
+    """
+    if polynomial[0] + sum(max(c, 0.0) for c in polynomial[1:]) < 0.0:
+        return None
+    # backwards in time and upside down it is a first fall
+    back = first_fall([-c for c in shifted(polynomial, 1.0, -1.0)])
+    return None if back is None else 1.0 - back
+
+
+def turning_points(polynomial: Sequence[float], until: float) -> list[float]:
+    """Return where on (0, until] the slope of a polynomial is zero.
+
+    Parameters
+    ----------
+    polynomial : sequence of float
+        Coefficients from the power 0.
+    until : float
+        End of the range, at most 1.
+
+    Returns
+    -------
+    list of float
+        The zeros of the slope, in order; where it only just touches zero there may be one or none.
+
+    Examples
+    --------
+    >>> [round(x, 12) for x in turning_points([0.0, 0.5, -1.5, 1.0], 1.0)]
+    [0.211324865405, 0.788675134595]
+    """
+    slopes = [k * c for k, c in enumerate(polynomial)][1:]
+    rises = slopes[0] + sum(min(c, 0.0) for c in slopes[1:]) > 0.0
+    if rises or slopes[0] + sum(max(c, 0.0) for c in slopes[1:]) < 0.0:
+        return []
+    found = [_polished(slopes, guess) for guess in _guesses(slopes)]
+    return [min(x, until) for x in found if x is not None and 0.0 < x <= until + _NEAR]
+
+
+def _guesses(polynomial: Sequence[float]) -> list[float]:
+    """Zeros on [0, 1], and those that may be there but for rounding, by eigenvalues."""
+    rest = sum(map(abs, polynomial[1:]))
+    # highest powers first cut away: they are below rounding and would spoil the eigenvalues
+    kept = len(polynomial)
+    while kept > 2 and abs(polynomial[kept - 1]) <= 1e-20 * rest:
+        kept -= 1
+    roots = np.roots(polynomial[kept - 1 :: -1])
+    return sorted(float(x.real) for x in roots if abs(x.imag) < 1e-6 and -_NEAR < x.real < 1.0 + _NEAR)
+
+
 def _polished(polynomial: Sequence[float], guess: float) -> float | None:
+    """Improve a zero by Newton's method; None where that leads away."""
     x = guess
     for _ in range(50):
         rate = slope(polynomial, x)
         if rate == 0.0:
-            return None
+            break
         step = value(polynomial, x) / rate
         x -= step
         if abs(step) <= 2e-16 * abs(x):
             break
-    if not (0.0 < x <= 1.0 and abs(x - guess) < 1e-3) or slope(polynomial, x) >= 0.0:
-        return None
-    return x
+    return x if abs(x - guess) < 1e-3 else None

@@ -1,6 +1,6 @@
 """A ground motion: accelerations at equal steps, straight lines between them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
@@ -45,7 +45,7 @@ class GroundMotion:
     ------
     InvalidValueError
         If a sample is not finite or beyond 1e6 m/s2, there are fewer than two, the step is not above zero, or the
-        vertical part has another length.
+        vertical part has another length; or if the name, metadata or provenance are of another kind.
 
     Examples
     --------
@@ -73,8 +73,11 @@ class GroundMotion:
                     f"vertical must have as many samples as acceleration, {self.acceleration.size}, got {vertical.size}"
                 )
             object.__setattr__(self, "vertical", vertical)
-        object.__setattr__(self, "metadata", MappingProxyType({str(k): str(v) for k, v in self.metadata.items()}))
-        object.__setattr__(self, "provenance", tuple(str(line) for line in self.provenance))
+        name: object = self.name
+        if not isinstance(name, str):
+            raise InvalidValueError(f"name must be a string, got {name!r:.60}")
+        object.__setattr__(self, "metadata", _metadata(self.metadata))
+        object.__setattr__(self, "provenance", _provenance(self.provenance))
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -181,3 +184,15 @@ def _samples(name: str, values: Any) -> FloatArray:
         )
     given.setflags(write=False)
     return given
+
+
+def _metadata(given: Any) -> Mapping[str, str]:
+    if not isinstance(given, Mapping):
+        raise InvalidValueError(f"metadata must be a mapping of strings to strings, got {given!r:.60}")
+    return MappingProxyType({str(k): str(v) for k, v in given.items()})
+
+
+def _provenance(given: Any) -> tuple[str, ...]:
+    if isinstance(given, str) or not isinstance(given, Sequence) or not all(isinstance(line, str) for line in given):
+        raise InvalidValueError(f"provenance must be a sequence of strings, one sentence each, got {given!r:.60}")
+    return tuple(given)

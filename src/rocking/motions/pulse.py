@@ -8,8 +8,11 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.motions.motion import GroundMotion
+from rocking.motions.motion import LARGEST_ACCELERATION, LONGEST_STEP, SHORTEST_STEP, GroundMotion
 from rocking.motions.segments import Segments
+
+MOST_SAMPLES = 2_000_000
+"""No pulse is sampled to more than this: asking for more is a wrong unit."""
 
 _PER_RADIAN = 8.0
 
@@ -68,7 +71,7 @@ class Pulse(ABC):
         ndarray
             Acceleration, zero outside the pulse [m/s2].
         """
-        t = checks.real_array("time", time, "s")
+        t = _times(time)
         inside = (t >= 0.0) & (t <= self.duration)
         return np.where(inside, self._inside(np.clip(t, 0.0, self.duration), 2), 0.0)
 
@@ -85,8 +88,8 @@ class Pulse(ABC):
         ndarray
             Velocity [m/s].
         """
-        t = np.clip(checks.real_array("time", time, "s"), 0.0, self.duration)
-        return self._inside(t, 1) - self._inside(np.zeros(1), 1)
+        t = np.clip(_times(time), 0.0, self.duration)
+        return np.asarray(self._inside(t, 1) - self._inside(np.zeros(()), 1))
 
     def displacement(self, time: Any) -> FloatArray:
         """Return the ground displacement at any times, zero before the pulse.
@@ -101,11 +104,17 @@ class Pulse(ABC):
         ndarray
             Displacement [m].
         """
-        given = checks.real_array("time", time, "s")
+        given = _times(time)
         t = np.clip(given, 0.0, self.duration)
-        start = self._inside(np.zeros(1), 0) + self._inside(np.zeros(1), 1) * t
+        start = self._inside(np.zeros(()), 0) + self._inside(np.zeros(()), 1) * t
         coasting = np.maximum(given - self.duration, 0.0) * self.velocity(self.duration)
-        return self._inside(t, 0) - start + coasting
+        return np.asarray(self._inside(t, 0) - start + coasting)
+
+    def _check_peak(self) -> None:
+        if not self.peak <= LARGEST_ACCELERATION:
+            raise InvalidValueError(
+                f"the peak of a pulse must be in [0, {LARGEST_ACCELERATION:g}] m/s2, got {self.peak:g}; wrong unit?"
+            )
 
     def segments(self) -> Segments:
         """Return the pulse as polynomials that agree with it to rounding.
@@ -149,12 +158,26 @@ class Pulse(ABC):
         Raises
         ------
         InvalidValueError
-            If the step is not above zero or longer than the pulse.
+            If the step is not within the limits of a `GroundMotion`, longer than the pulse, or so short that there
+            would be more than 2,000,000 samples.
         """
-        step = checks.positive("time_step", time_step, "s")
+        step = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
         if step > self.duration:
             raise InvalidValueError(f"time_step must be at most the pulse's duration {self.duration:g} s, got {step:g}")
-        times = np.arange(int(np.ceil(self.duration / step - 1e-9)) + 2) * step
+        count = int(np.ceil(self.duration / step - 1e-9)) + 2
+        if count > MOST_SAMPLES:
+            raise InvalidValueError(
+                f"time_step must leave at most {MOST_SAMPLES:g} samples, got {step:g} s, "
+                f"which leaves {count:g}; wrong unit?"
+            )
+        times = np.arange(count) * step
         return GroundMotion(
             self.acceleration(times), step, name=self.name, provenance=(f"{self!r} sampled every {step!r} s",)
         )
+
+
+def _times(time: Any) -> FloatArray:
+    given = checks.real_array("time", time, "s")
+    if not np.isfinite(given).all():
+        raise InvalidValueError(f"time must be finite [s], got {given[~np.isfinite(given)][0]:g}")
+    return given

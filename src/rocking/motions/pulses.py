@@ -10,6 +10,7 @@ from typing import Any
 
 from rocking import checks
 from rocking.errors import InvalidValueError, UnknownModelError
+from rocking.motions.motion import LARGEST_ACCELERATION
 from rocking.motions.pulse import Pulse
 from rocking.motions.rickers import Ricker
 from rocking.motions.sinusoids import Sinusoids
@@ -271,12 +272,15 @@ def mavroeidis_papageorgiou(velocity: float, period: float, cycles: float = 1.5,
     main = 2.0 * math.pi / period
     # the product of cosines is a sum of three; the start of the pulse, t = -gamma / (2 f), becomes time zero
     waves = tuple(
-        (-velocity * share * frequency, frequency, phase - frequency * 0.5 * cycles * period)
+        (-share * frequency, frequency, phase - frequency * 0.5 * cycles * period)
         for share, frequency in ((0.5, main), (0.25, main * (1.0 + 1.0 / cycles)), (0.25, main * (1.0 - 1.0 / cycles)))
     )
     title = f"Mavroeidis-Papageorgiou pulse, {velocity:.3g} m/s, {period:.3g} s"
-    bare = Sinusoids(title, waves, cycles * period, 0.0)
-    return Sinusoids(title, waves, cycles * period, _largest(bare))
+    # of 1 m/s first: whether the velocity is too large is known before anything overflows
+    most = LARGEST_ACCELERATION / _largest(Sinusoids(title, waves, cycles * period, 0.0))
+    velocity = checks.within("velocity", velocity, -most, most, unit="m/s", hint="the acceleration would pass 1e6 m/s2")
+    scaled = tuple((velocity * amplitude, frequency, phase) for amplitude, frequency, phase in waves)
+    return Sinusoids(title, scaled, cycles * period, abs(velocity) / most * LARGEST_ACCELERATION)
 
 
 def harmonic(amplitude: float, period: float, cycles: float, phase: float = 0.0) -> Sinusoids:
@@ -336,13 +340,16 @@ def pulse(words: str) -> Pulse:
     UnknownModelError
         If there is no such pulse, or a parameter is unknown or missing.
     InvalidValueError
-        If a value is not a number in its range.
+        If it is no string, or a value is not a number in its range.
 
     Examples
     --------
     >>> pulse("sine:amplitude=3,period=0.8").duration
     0.8
     """
+    given_words: object = words
+    if not isinstance(given_words, str):
+        raise InvalidValueError(f"a pulse is written as sine:amplitude=3,period=0.8, got {words!r:.60}")
     name, _, tail = words.partition(":")
     known = catalogue()
     if name not in known:
@@ -386,7 +393,7 @@ def _windowed(title: str, amplitude: float, period: float, phase: float, cycles:
 
 
 def _amplitude(value: Any) -> float:
-    return checks.within("amplitude", value, -1e6, 1e6, unit="m/s2")
+    return checks.within("amplitude", value, -LARGEST_ACCELERATION, LARGEST_ACCELERATION, unit="m/s2")
 
 
 def _period(value: Any) -> float:

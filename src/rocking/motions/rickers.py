@@ -38,6 +38,10 @@ class Ricker(Pulse):
     period: float
     shape: Literal["symmetric", "antisymmetric"] = "symmetric"
 
+    def __post_init__(self) -> None:
+        """Check the peak."""
+        self._check_peak()
+
     @property
     def name(self) -> str:
         """What to call it in titles and tables."""

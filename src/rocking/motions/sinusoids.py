@@ -33,6 +33,10 @@ class Sinusoids(Pulse):
     length: float
     largest: float
 
+    def __post_init__(self) -> None:
+        """Check the peak."""
+        self._check_peak()
+
     @property
     def name(self) -> str:
         """What to call it in titles and tables."""

@@ -1,20 +1,25 @@
 """What an impact costs: published and derived restitution models, and what a coefficient implies."""
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from rocking.restitution.coefficient import coefficient_of_restitution
-from rocking.restitution.distributed_impulse import DistributedImpulse
-from rocking.restitution.fixed import Fixed
-from rocking.restitution.horizontal_momentum import HorizontalMomentum
-from rocking.restitution.housner import Housner
-from rocking.restitution.identities import IdentityCheck, identity_report
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.implied import Implication, implied
-from rocking.restitution.interface import Interface
-from rocking.restitution.ked import Ked, projected_moment
-from rocking.restitution.ledger import EnergyLedger, energy_ledger
 from rocking.restitution.model import Flag, InertiaModel, Restitution, RestitutionModel
-from rocking.restitution.plastic_winkler import PlasticWinkler
 from rocking.restitution.registry import model, models, register
-from rocking.restitution.shifted_impulse import ShiftedImpulse
+
+if TYPE_CHECKING:
+    from rocking.restitution.distributed_impulse import DistributedImpulse
+    from rocking.restitution.fixed import Fixed
+    from rocking.restitution.horizontal_momentum import HorizontalMomentum
+    from rocking.restitution.housner import Housner
+    from rocking.restitution.identities import IdentityCheck, identity_report
+    from rocking.restitution.interface import Interface
+    from rocking.restitution.ked import Ked, projected_moment
+    from rocking.restitution.ledger import EnergyLedger, energy_ledger
+    from rocking.restitution.plastic_winkler import PlasticWinkler
+    from rocking.restitution.shifted_impulse import ShiftedImpulse
 
 __all__ = [
     "DistributedImpulse",
@@ -42,3 +47,31 @@ __all__ = [
     "projected_moment",
     "register",
 ]
+
+_HOME = {
+    "DistributedImpulse": "distributed_impulse",
+    "EnergyLedger": "ledger",
+    "Fixed": "fixed",
+    "HorizontalMomentum": "horizontal_momentum",
+    "Housner": "housner",
+    "IdentityCheck": "identities",
+    "Interface": "interface",
+    "Ked": "ked",
+    "PlasticWinkler": "plastic_winkler",
+    "ShiftedImpulse": "shifted_impulse",
+    "energy_ledger": "ledger",
+    "identity_report": "identities",
+    "projected_moment": "ked",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a model when it is first asked for: a response needs one of them, not all."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'rocking.restitution' has no attribute {name!r}")
+    return getattr(import_module(f"rocking.restitution.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """Public names for completion."""
+    return sorted(__all__)

@@ -1,31 +1,22 @@
 """Names of the restitution models; a new one is one file and one line here, or one call of `register`."""
 
 import inspect
+from importlib import import_module
 from typing import Any
 
 from rocking import checks
 from rocking.errors import InvalidValueError, UnknownModelError
-from rocking.restitution.distributed_impulse import DistributedImpulse
-from rocking.restitution.fixed import Fixed
-from rocking.restitution.horizontal_momentum import HorizontalMomentum
-from rocking.restitution.housner import Housner
-from rocking.restitution.interface import Interface
-from rocking.restitution.ked import Ked
 from rocking.restitution.model import RestitutionModel
-from rocking.restitution.plastic_winkler import PlasticWinkler
-from rocking.restitution.shifted_impulse import ShiftedImpulse
 
-_MODELS: dict[str, type[RestitutionModel]] = {
-    kind.name: kind
-    for kind in (
-        Housner,
-        Ked,
-        HorizontalMomentum,
-        ShiftedImpulse,
-        DistributedImpulse,
-        PlasticWinkler,
-        Fixed,
-    )
+# the class, or where it is: those of this package are imported when first asked for
+_MODELS: dict[str, type[RestitutionModel] | tuple[str, str]] = {
+    "housner": ("rocking.restitution.housner", "Housner"),
+    "ked": ("rocking.restitution.ked", "Ked"),
+    "horizontal-momentum": ("rocking.restitution.horizontal_momentum", "HorizontalMomentum"),
+    "shifted-impulse": ("rocking.restitution.shifted_impulse", "ShiftedImpulse"),
+    "distributed-impulse": ("rocking.restitution.distributed_impulse", "DistributedImpulse"),
+    "plastic-winkler": ("rocking.restitution.plastic_winkler", "PlasticWinkler"),
+    "fixed": ("rocking.restitution.fixed", "Fixed"),
 }
 
 
@@ -43,7 +34,7 @@ def models() -> dict[str, type[RestitutionModel]]:
     >>> sorted(rk.restitution.models())[:3]
     ['distributed-impulse', 'fixed', 'horizontal-momentum']
     """
-    return dict(_MODELS)
+    return {name: _kind(name) for name in _MODELS}
 
 
 def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
@@ -70,8 +61,8 @@ def register(kind: type[RestitutionModel]) -> type[RestitutionModel]:
     name: object = getattr(kind, "name", None)
     if not isinstance(name, str) or not name:
         raise InvalidValueError(f"{kind.__name__} needs a class attribute name = '...'")
-    if _MODELS.get(name, kind) is not kind:
-        raise InvalidValueError(f"a restitution model named {name!r} exists already: {_MODELS[name].__name__}")
+    if name in _MODELS and _kind(name) is not kind:
+        raise InvalidValueError(f"a restitution model named {name!r} exists already: {_kind(name).__name__}")
     _MODELS[name] = kind
     return kind
 
@@ -115,7 +106,19 @@ def model(which: str | RestitutionModel, *, eta: float = 1.0, **parameters: Any)
         found = which
     else:
         raise UnknownModelError(f"a restitution model is a name or a RestitutionModel object, got {which!r:.60}")
-    return found if eta == 1.0 else Interface(found, eta=eta)
+    if eta == 1.0:
+        return found
+    from rocking.restitution.interface import Interface
+
+    return Interface(found, eta=eta)
+
+
+def _kind(name: str) -> type[RestitutionModel]:
+    found = _MODELS[name]
+    if isinstance(found, tuple):
+        where, word = found
+        found = _MODELS[name] = getattr(import_module(where), word)
+    return found
 
 
 def _factor(eta: Any) -> float:
@@ -136,7 +139,7 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
         given[key.strip()] = _value(key.strip(), value)
     if name not in _MODELS:
         raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(_MODELS)}")
-    kind = _MODELS[name]
+    kind = _kind(name)
     try:
         return kind(**given), eta
     except TypeError as error:

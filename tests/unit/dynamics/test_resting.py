@@ -109,16 +109,31 @@ def test_time_of_rest_is_the_geometric_series(name: str) -> None:
         (3e-3, [[0.0] * 8] * 50, 0.97, False),
         (1e-3, [[0.0] * 8] * 50, 0.8, True),
         (3e-3, [[0.0, 0.0]] * 5000, 0.99999, False),
+        (5e-3, [[0.2475, 0.0]] * 50, 0.8, False),
     ],
 )
 def test_impacts_that_end(after: float, horizontal: Any, r: float, expected: bool) -> None:
     """Summed up: slow impacts with r < 1 that end within the motion known to hold the body. Not summed up: fast ones,
-    r = 1, near uplift, beyond the end of the record, beyond one stretch of a smooth pulse, or for far too long."""
+    r = 1, near uplift, beyond the end of the record, beyond one stretch of a smooth pulse, for far too long, or where
+    one flight turns the body so far that it could be lifted."""
     x = np.array(horizontal)
     body = rocker(r)
     where = Ground(body, Push(0.1, x, np.zeros_like(x)), linear=True)
     # v / p alpha times 2 alpha / p is a flight: 2.5e-3 s, and 1 / (1 - r) of them follow
-    assert bool(comes_to_rest(body, where, 1, after, 0, 0.2, 0.01)) is expected
+    assert comes_to_rest(body, where, 1, after, 0, 0.2, 0.01) is expected
+
+
+@pytest.mark.parametrize("speed", [float, np.float64])
+def test_nothing_is_rest_whatever_the_rest_speed(speed: Any) -> None:
+    """At most 1e-9 p alpha is rest on ground that holds, also for a rest speed of zero; twice that is not, and
+    nothing is where the ground lifts."""
+    body, none = rocker(1.0), 1e-9 * P * ALPHA
+    holds, lifts = (
+        Ground(body, Push(0.1, x, np.zeros_like(x)), linear=True) for x in np.array([[[0.2, 0.0]], [[-0.3, 0.0]]])
+    )
+    assert comes_to_rest(body, holds, 1, speed(none), 0, 0.0, 0.0) is True
+    assert comes_to_rest(body, holds, 1, speed(2.0 * none), 0, 0.0, 0.0) is False
+    assert comes_to_rest(body, lifts, 1, speed(none), 0, 0.0, 0.0) is False
 
 
 @every_engine

@@ -99,6 +99,24 @@ def test_equality_is_identity() -> None:
     assert len({one, other}) == 2
 
 
+@pytest.mark.parametrize(
+    ("field", "values", "message"),
+    [
+        ("name", [None, 5, b"x", ["x"]], "name must be a string, got"),
+        ("metadata", [None, "a=b", ["a"], [("a", "b")]], "metadata must be a mapping of strings to strings, got"),
+        ("provenance", [None, "abc", b"abc", 5, {"abc"}, [None], ["made", 5]], "provenance must be a sequence of str"),
+    ],
+)
+def test_words_of_a_record(field: str, values: list[Any], message: str) -> None:
+    """Name, metadata and provenance of another kind are refused: no string taken for a row of letters."""
+    for value in values:
+        more: Any = {field: value}
+        with pytest.raises(InvalidValueError, match=message):
+            motion_of([0.0, 1.0], **more)
+    made = motion_of([0.0, 1.0], name="x", metadata={"a": "b"}, provenance=["made"])
+    assert (made.name, made.metadata, made.provenance) == ("x", {"a": "b"}, ("made",))
+
+
 def test_changed_adds_a_line_and_nothing_else() -> None:
     """A changed copy keeps what was not named; the original keeps its provenance; checks run again."""
     motion = motion_of([0.0, 1.0], vertical=[0.0, 2.0], name="old", metadata={"a": "b"}, provenance=("made",))
