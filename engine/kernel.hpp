@@ -21,7 +21,7 @@ namespace ROCKING_ISA {
 
 constexpr double kWhole = 1.0 - 1e-13;  // a step that ends this close to the end of its stretch ends with it
 constexpr double kMostError = 0.01;     // sum of error estimates above which nothing is claimed [rad]
-constexpr double kMostParts = 10000.0;  // parts of a stretch
+constexpr double kMostSteps = 2e8;      // steps of a history
 constexpr double kNothing = 1e-9;       // speeds over p alpha that are as good as none
 constexpr double kHalfPi = 1.57079632679489661923;
 
@@ -36,7 +36,7 @@ class Kernel {
     // state of the lanes; unused ones stay at rest on stretch zero
     alignas(64) double u[W], v[W], tau[W], len[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], idx[W], last[W],
         stride[W], err[W], fastest[W], gate[W];
-    alignas(64) double terms[N + 1][W];
+    alignas(64) double terms[N + 1][W], end_u[W], end_v[W];  // of the step that waits for a visit
 
     struct Side {
         double alpha, p, sine, cosine, r;

@@ -81,7 +81,7 @@ double Kernel<G, U, N, D, Z, L>::parts_of_step(const Lane& lane, double p) const
     const Bounds& b = motions.bounds[lane.shake->block];
     const double push = std::fabs(lane.ax) * std::max(b.later_high, -b.later_low);
     const double lift = std::fabs(lane.az) * std::max(b.later_vertical_high, -b.later_vertical_low);
-    return std::max(1.0, std::ceil(p * lane.step * std::sqrt(1.0 + push + lift) / set.longest_step));
+    return std::max(1.0, std::ceil(p * lane.step * std::sqrt(std::max(1.0, 0.5 * (push + lift))) / set.longest_step));
 }
 
 ROCKING_KERNEL
@@ -109,7 +109,7 @@ void Kernel<G, U, N, D, Z, L>::start(int i, std::int64_t row) {
     sub[i] = 1.0 / parts;
     tau[i] = 0.0;
     len[i] = sub[i];
-    if (!(parts <= kMostParts)) return finish(i, kFailed, kNotResolved);
+    if (!(parts * static_cast<double>(shake.segments + shake.still) <= kMostSteps)) return finish(i, kFailed, kNotResolved);
     const double angle = rows.rotation[row], speed = rows.velocity[row];
     const Side& turned = lane.sides[angle > 0.0 ? 0 : 1];
     if (turned.alpha - std::fabs(angle) == turned.alpha && std::fabs(speed) <= kNothing * turned.p * turned.alpha) {

@@ -118,7 +118,10 @@ void Kernel<G, U, N, D, Z, L>::step(int group, unsigned long& flagged, unsigned 
         select(visit, t0[j], t2).store(tau + at);
         select(visit, h[j], min(Pack::load(sub + at), Pack(1.0) - t2)).store(len + at);
         select(visit, i0[j], i1).store(idx + at);
-        (Pack::load(err + at) + abs(V[N][j])).store(err + at);
+        u1.store(end_u + at);
+        v1.store(end_v + at);
+        // what happens beyond a quarter turn is of no interest
+        (Pack::load(err + at) + select(u1 > Pack(-kHalfPi), abs(V[N][j]), zero)).store(err + at);
         const Pack top = Pack::load(fastest + at);
         select(visit, top, max(top, abs(v1))).store(fastest + at);
         ROCKING_UNROLL

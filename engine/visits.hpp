@@ -127,7 +127,7 @@ void Kernel<G, U, N, D, Z, L>::impact(int i, double at, double speed) {  // [rad
     lane.side = -old;
     const double r = coefficient(i, speed), after = r * speed;
     ++lane.impacts;
-    if (trace) note(i, kImpact, now(i, at), -old * speed / lane.step, -old * after / lane.step, r);
+    if (trace) note(i, kImpact, now(i, at), -old * speed / lane.step, r * (-old * speed / lane.step), r);
     stand(i);
     u[i] = alpha[i];
     v[i] = -after;
@@ -188,11 +188,7 @@ bool Kernel<G, U, N, D, Z, L>::over(int i) {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::advance(int i, const double* V) {
     Lane& lane = lanes[i];
-    double u1 = V[N] * (1.0 / (N + 1)), v1 = V[0];
-    for (int k = N; k-- > 0;) u1 = fma(V[k], 1.0 / (k + 1), u1);
-    u1 = u[i] + u1;
-    for (int k = 1; k <= N; ++k) v1 += V[k];
-    v1 /= len[i];
+    const double u1 = end_u[i], v1 = end_v[i];
     if (u1 < 0.0) {
         double c[N + 2];
         c[0] = u[i];

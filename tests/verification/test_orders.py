@@ -52,6 +52,12 @@ def record_with_vertical(rng, strength):
     return Segments.between_samples(1.0, horizontal, 0.2 * conventions.g * rng.uniform(-1.0, 1.0, LENGTH + 1))
 
 
+def strongest(motion):
+    """Bound on the acceleration over g; where it passes 2 the engine takes shorter steps than the longest."""
+    rows = motion.horizontal
+    return max(x[:, 0].max() + np.maximum(x[:, 1:], 0.0).sum(axis=1).max() for x in (rows, -rows)) / conventions.g
+
+
 class Histories:
     """Random histories whose result comes after a number of impacts, and their results by the oracle."""
 
@@ -61,6 +67,8 @@ class Histories:
         strength = 1.0 if impacts else 4.0
         while len(self.true) < count:
             motion, velocity = kind(rng, strength), 0.3 * rng.uniform(0.3, 1.0)
+            if strongest(motion) > 2.0:
+                continue
             rocker = Rocker(RIGHT, LEFT, ConstantRestitution(), "")
             settings = Settings(linear=linear, tolerance=1e-16)
             # shorter stretches, so that the oracle takes steps of at most p h = 1/4

@@ -7,7 +7,10 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics import Outcome, engine
+from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.trajectory import EventKind
+from rocking.errors import InvalidValueError
+from rocking.motions.segments import Segments
 
 ENGINES = [
     pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
@@ -81,3 +84,38 @@ def test_error_and_peaks_are_finite(name: str) -> None:
     assert run.side == 0
     with pytest.raises(AttributeError):
         run.side = 1  # type: ignore[misc]
+
+
+def peaks(name: str, motions: list[Segments]) -> np.ndarray:
+    """Peaks of one body under some motions laid out in one library."""
+    body = {f"{key}_{side}": x for key, x in (("alpha", 0.25), ("p", 2.0), ("r", 0.6)) for side in ("right", "left")}
+    rows = Rows.of(len(motions), motion=np.arange(len(motions)), **body)
+    found, _ = Batch(motions, engine=name).run(len(motions), lambda a, b: rows)
+    return np.asarray(found["peak_rotation"])
+
+
+@every_engine
+@pytest.mark.parametrize("poison", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("degree", [1, 7])
+def test_motions_that_are_not_finite_are_refused(name: str, degree: int, poison: float) -> None:
+    """NaN and infinity in any coefficient of any motion are refused before anything is computed."""
+    for at in [(0, 0), (3, 1), (8, 0), (8, 1)]:
+        lines = np.zeros((9, degree + 1))
+        lines[at] = poison
+        with pytest.raises(InvalidValueError, match="must be finite"):
+            peaks(
+                name, [Segments.still(0.1, 4) if degree == 1 else Segments(0.1, np.zeros((4, 8))), Segments(0.1, lines)]
+            )
+
+
+@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+def test_records_of_all_kinds_in_one_library() -> None:
+    """Records with and without a vertical part, cut off in mid-motion and not, of different lengths: each has the peak
+    that it has by the reference engine, and the one it has alone."""
+    wave, lift = 4.0 * np.sin(0.3 * np.arange(40)), 2.0 * np.cos(0.4 * np.arange(40))
+    cut = [Segments.between_samples(0.05, wave[:n], v) for n, v in ((8, None), (8, lift[:8]), (17, lift[:17]))]
+    motions = [Segments.between_samples(0.05, wave), *(c.extended(3.0) for c in cut), cut[0], Segments.still(0.1, 1)]
+    together = peaks("fast", motions)
+    np.testing.assert_allclose(together, peaks("reference", motions), rtol=1e-8, atol=1e-12)
+    np.testing.assert_array_equal(together, np.concatenate([peaks("fast", [motion]) for motion in motions]))
+    assert np.unique(together).size > 4, "the motions are told apart"
