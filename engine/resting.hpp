@@ -26,6 +26,15 @@ void Kernel<G, U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double*
     }
 }
 
+// The same at a sample.
+ROCKING_KERNEL
+double Kernel<G, U, N, D, Z, L>::held_at(int i, int side, std::int64_t at) const {
+    const Lane& lane = lanes[i];
+    const Side& s = lane.sides[side > 0 ? 0 : 1];
+    const double weight = Z ? 1.0 + lane.az * motions.data[at + 1] : 1.0;
+    return weight * s.sine + side * lane.ax * motions.data[at] * s.cosine;
+}
+
 // First instant of the stretch, from `from` on, at which a side is no longer held down; 2 if it is throughout.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, double from) const {
@@ -148,6 +157,13 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
         const std::int64_t rest_of_it = static_cast<std::int64_t>(last[i] - idx[i]) / motions.stride();
         stretches = std::min(static_cast<std::int64_t>(guess - left) + 2, rest_of_it);
     }
+    if (D == 1) {  // most fail already by the moments of now and of the window's end: no need to look in between
+        const std::int64_t end = at + stretches * motions.stride();
+        const double held_ = held_at(i, lane.side, end), across_ = held_at(i, -lane.side, end);
+        const double rr = largest(s) * largest(o);
+        const double low = std::min(held, held_) * std::min(across, across_), high = std::max(held, held_) * std::max(across, across_);
+        if (rr * rr * high > (1.0 + 1e-8) * low) return false;
+    }
     Window w;
     return window(i, stretches, w) &&
            time_to_rest(i, after, w) <= (left + static_cast<double>(stretches - 1)) * lane.step;
@@ -187,10 +203,19 @@ void Kernel<G, U, N, D, Z, L>::rest(int i) {
     std::int64_t at = static_cast<std::int64_t>(idx[i]);
     const std::int64_t stop = static_cast<std::int64_t>(last[i]);
     double from = tau[i];
+    const Bounds& now_ = bounds_at(i);
+    const Bounds later{now_.later_low, now_.later_high, now_.later_vertical_low, now_.later_vertical_high, 0, 0, 0, 0};
+    if (!may_lift(i, later)) at = stop;
+    const double calm = (1.0 - 1e-12) * std::min(lane.sides[0].sine / lane.sides[0].cosine, lane.sides[1].sine / lane.sides[1].cosine);
     while (at < stop) {
         const std::int64_t k = (at - static_cast<std::int64_t>(lane.first)) / stride_;
         if (!may_lift(i, motions.bounds[lane.shake->block + k / kBlock])) {
             at = static_cast<std::int64_t>(lane.first) + (k / kBlock + 1) * kBlock * stride_;
+            from = 0.0;
+            continue;
+        }
+        if (D == 1 && !Z && std::fabs(lane.ax * motions.data[at]) < calm && std::fabs(lane.ax * motions.data[at + 1]) < calm) {
+            ++at;
             from = 0.0;
             continue;
         }

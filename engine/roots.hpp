@@ -93,7 +93,9 @@ struct Isolation {
             for (int i = 1; i <= degree; ++i) changes += (piece.b[i] < 0.0) != (piece.b[i - 1] < 0.0);
             const bool narrow = depth + 2 > 64 || piece.high - piece.low < 1e-14;
             if (changes == 0 || (changes == 1 && piece.b[0] < 0.0)) continue;
-            if (narrow || (changes == 1 && piece.b[0] == 0.0)) {
+            int first = 0;  // a piece that starts on a zero falls there, or rises first
+            while (piece.b[first] == 0.0) ++first;
+            if (narrow || (changes == 1 && piece.b[first] < 0.0)) {
                 if (piece.b[degree] < 0.0 && !(piece.b[0] < 0.0) && piece.low > 0.0) report(piece.low);
             } else if (changes == 1) {
                 report(polished<degree>(c, d, piece.low, piece.high, 0.5 * (piece.low + piece.high), curve));

@@ -75,8 +75,9 @@ def chosen(asked: str) -> str:
     MissingExtraError
         If the fast one was asked for and not built.
     """
-    if asked not in ENGINES:
-        raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {asked!r}")
+    given: object = asked
+    if not isinstance(given, str) or asked not in ENGINES:
+        raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {asked!r:.60}")
     if asked == "fast":
         module()
     if asked == "auto" and not available():
