@@ -33,6 +33,11 @@ $(VENV)/dev: $(VENV)/created requirements/dev.lock pyproject.toml
 	@$(PIP) install --no-deps --no-build-isolation --editable .
 	@touch $@ $(VENV)/demo
 
+$(VENV)/bench: $(VENV)/dev requirements/bench.lock
+	@echo "Installing the peers that the benchmark compares against (a minute or two, once) ..."
+	@$(PIP) install --require-hashes --only-binary=:all: -r requirements/bench.lock
+	@touch $@
+
 # The fast engine is built where it stands. Without a compiler the reference engine serves, and says so.
 ENGINE := build/engine/built
 engine: $(ENGINE)
@@ -65,7 +70,7 @@ test: lint
 fuzz: $(VENV)/dev
 	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py -q
 
-bench: $(VENV)/dev $(ENGINE)
+bench: $(VENV)/bench $(ENGINE)
 	$(BIN)/python -m benchmarks
 
 gallery: $(VENV)/dev $(ENGINE)
@@ -78,6 +83,9 @@ lock: $(VENV)/created
 	$(PIP) install uv
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
 		--no-annotate --no-emit-package rocking --upgrade --extra dev pyproject.toml -o requirements/dev.lock
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
+		--no-annotate --no-emit-package rocking --upgrade --extra bench --constraint requirements/dev.lock pyproject.toml \
+		-o requirements/bench.lock
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
 		--no-annotate --no-emit-package rocking --upgrade --extra demo --constraint requirements/dev.lock pyproject.toml \
 		-o requirements/demo.lock
