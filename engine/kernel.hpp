@@ -22,6 +22,8 @@ namespace ROCKING_ISA {
 constexpr double kWhole = 1.0 - 1e-13;  // a step that ends this close to the end of its stretch ends with it
 constexpr double kMostError = 0.01;     // sum of error estimates above which nothing is claimed [rad]
 constexpr double kMostSteps = 2e8;      // steps of a history
+constexpr double kLongest = 40.0;       // stretches that flights to rest may take
+constexpr double kHeights = 0.1;        // what the heights of these flights may add to the logarithm of their gain
 constexpr double kNothing = 1e-9;       // speeds over p alpha that are as good as none
 constexpr double kHalfPi = 1.57079632679489661923;
 
@@ -122,16 +124,13 @@ class Kernel {
     double held_at(int i, int side, std::int64_t at) const;
     double release(int i, int side, std::int64_t at, double from) const;
 
-    // Least and largest holding moment of each side over a window of time, and a bound on how fast they change with y.
     struct Window {
-        double low[2], high[2], steepness;
+        double low[2], variation, steepness;
     };
-    static void extremes(const double* a, std::int64_t count, double& least, double& most);
     bool window(int i, std::int64_t stretches, Window& w) const;
     bool comes_to_rest(int i, double after) const;
 
     double largest(const Side& s) const { return law.kind == LawKind::constant ? s.r : s.r * law.largest; }
-    double time_to_rest(int i, double after, Window w) const;
     void rest(int i);
     bool may_lift(int i, const Bounds& b) const;
     int preferred(int i, std::int64_t at, double from) const;

@@ -60,139 +60,95 @@ double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, doubl
     return zero > 1.0 ? 2.0 : from + zero * (1.0 - from);
 }
 
-ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::extremes(const double* a, std::int64_t count, double& least, double& most) {
-    std::int64_t k = 0;
-    if (count >= P) {
-        Pack low = Pack::unaligned(a), high = low;
-        for (k = P; k + P <= count; k += P) {
-            const Pack x = Pack::unaligned(a + k);
-            low = min(low, x);
-            high = max(high, x);
-        }
-        const Pack x = Pack::unaligned(a + count - P);
-        alignas(64) double lows[P], highs[P];
-        min(low, x).store(lows);
-        max(high, x).store(highs);
-        for (int m = 0; m < P; ++m) {
-            least = std::min(least, lows[m]);
-            most = std::max(most, highs[m]);
-        }
-        return;
-    }
-    for (; k < count; ++k) {
-        least = std::min(least, a[k]);
-        most = std::max(most, a[k]);
-    }
-}
-
+// What holds the body down over some stretches from now on: least moments of both sides, how much they vary in all over
+// their least values, and how steeply they change with the rotation.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, Window& w) const {
     const Lane& lane = lanes[i];
     const int hop = motions.stride();
     const double* a = motions.data + static_cast<std::int64_t>(idx[i]);
-    double least = 1e300, most = -1e300, least_weight = 1.0, most_weight = 1.0;
+    double least, most, varies = 0.0, least_weight = 1.0, most_weight = 1.0, weight_varies = 0.0;
     if (D == 1) {
-        if (Z) {
-            const double z = lane.az * (a[1] + (a[hop + 1] - a[1]) * tau[i]);
-            least_weight = most_weight = 1.0 + z;
-        }
-        const double first = a[0] + (a[hop] - a[0]) * tau[i];
-        least = most = first;
-        if (Z) {
-            for (std::int64_t k = 1; k <= stretches; ++k) {
-                least = std::min(least, a[k * hop]);
-                most = std::max(most, a[k * hop]);
+        double last_a = least = most = a[0] + (a[hop] - a[0]) * tau[i];
+        double last_z = Z ? 1.0 + lane.az * (a[1] + (a[hop + 1] - a[1]) * tau[i]) : 1.0;
+        least_weight = most_weight = last_z;
+        for (std::int64_t k = 1; k <= stretches; ++k) {
+            const double x = a[k * hop];
+            least = std::min(least, x);
+            most = std::max(most, x);
+            varies += std::fabs(x - last_a);
+            last_a = x;
+            if (Z) {
                 const double z = 1.0 + lane.az * a[k * hop + 1];
                 least_weight = std::min(least_weight, z);
                 most_weight = std::max(most_weight, z);
+                weight_varies += std::fabs(z - last_z);
+                last_z = z;
             }
-        } else {
-            extremes(a + 1, stretches, least, most);
         }
-        least *= lane.ax;
-        most *= lane.ax;
-        if (least > most) std::swap(least, most);
     } else {
-        least = most = lane.ax * a[0];
-        for (int k = 1; k <= D; ++k) (lane.ax * a[k] < 0.0 ? least : most) += lane.ax * a[k];
+        least = 1e300, most = -1e300;
+        double end = a[0];
+        for (std::int64_t k = 0; k < stretches; ++k, a += hop) {
+            double low = a[0], high = a[0];
+            varies += std::fabs(a[0] - end);
+            end = a[0];
+            for (int m = 1; m <= D; ++m) {
+                (a[m] < 0.0 ? low : high) += a[m];
+                varies += std::fabs(a[m]);
+                end += a[m];
+            }
+            least = std::min(least, low);
+            most = std::max(most, high);
+        }
     }
-    for (int k = 0; k < 2; ++k) {
-        const Side& s = lane.sides[k];
-        const double sign = k == 0 ? 1.0 : -1.0, x = sign * least, y = sign * most;
-        w.low[k] = least_weight * s.sine + std::min(x, y) * s.cosine;
-        w.high[k] = most_weight * s.sine + std::max(x, y) * s.cosine;
-    }
-    w.steepness = std::fabs(most_weight) + std::max(std::fabs(least), std::fabs(most));
-    return w.low[0] > 0.0 && w.low[1] > 0.0;
+    least *= lane.ax;
+    most *= lane.ax;
+    varies *= std::fabs(lane.ax);
+    if (least > most) std::swap(least, most);
+    w.low[0] = least_weight * lane.sides[0].sine + least * lane.sides[0].cosine;
+    w.low[1] = least_weight * lane.sides[1].sine - most * lane.sides[1].cosine;
+    if (!(w.low[0] > 0.0 && w.low[1] > 0.0)) return false;
+    w.variation = varies * std::max(lane.sides[0].cosine / w.low[0], lane.sides[1].cosine / w.low[1]);
+    if (Z) w.variation += weight_varies * std::max(lane.sides[0].sine / w.low[0], lane.sides[1].sine / w.low[1]);
+    w.steepness = std::max(std::fabs(least_weight), std::fabs(most_weight)) + std::max(std::fabs(least), std::fabs(most));
+    return true;
 }
 
-// After an impact with a small speed: do the impacts to come add up to rest before the body could rise again? Their
-// flights are bounded by those under the least and the largest moment of the time they take, so that `true` is
-// proven and nothing is lost by not resolving them one by one.
+// After an impact with a small speed: do the impacts to come add up to rest before the body could rise again? If so,
+// that is proven (docs/theory.md, Rest), and nothing is lost by not resolving them one by one.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [rad per stretch]
     const Lane& lane = lanes[i];
-    const Side& s = here(i);
-    const double unit = s.p * s.alpha;
-    if (!(after <= std::max(set.rest, kNothing) * unit * lane.step)) return false;
-    const Side& o = lane.sides[lane.side > 0 ? 1 : 0];
+    const Side &s = here(i), &o = lane.sides[lane.side > 0 ? 1 : 0];
+    const double unit = s.p * s.alpha * lane.step;
+    if (!(after <= std::max(set.rest, kNothing) * unit)) return false;
     const std::int64_t at = static_cast<std::int64_t>(idx[i]);
     double d[D + 1];
     holding(i, lane.side, at, d);
     const double held = value_of<D>(d, tau[i]);
     if (!(held > 0.0)) return false;
-    after /= lane.step;
     if (after <= kNothing * unit) return true;  // what is left is below all digits that count
     if (!(after <= set.rest * unit)) return false;
     holding(i, -lane.side, at, d);
+    const double across = value_of<D>(d, tau[i]), r = largest(s), q = largest(o), lost = 1.0 - r * q;
+    const double one = s.p * s.p * lane.step * lane.step, other = o.p * o.p * lane.step * lane.step;
     // the flights under the moments of now, as a guess of the time they take
-    const double across = value_of<D>(d, tau[i]), here_ = s.p * s.p * held, there = o.p * o.p * across;
-    const double flights = 2.0 * after * (there + largest(o) * here_);
-    const double steps = here_ * there * (1.0 - largest(s) * largest(o)) * lane.step;
-    if (!(across > 0.0 && flights < 40.0 * steps)) return false;
-    const double left = 1.0 - tau[i], guess = 1.5 * (flights / steps);
-    std::int64_t stretches = 1;
-    if (D == 1 && guess > left) {
-        const std::int64_t rest_of_it = static_cast<std::int64_t>(last[i] - idx[i]) / motions.stride();
-        stretches = std::min(static_cast<std::int64_t>(guess - left) + 2, rest_of_it);
-    }
-    if (D == 1) {  // most fail already by the moments of now and of the window's end: no need to look in between
-        const std::int64_t end = at + stretches * motions.stride();
-        const double held_ = held_at(i, lane.side, end), across_ = held_at(i, -lane.side, end);
-        const double rr = largest(s) * largest(o);
-        const double low = std::min(held, held_) * std::min(across, across_), high = std::max(held, held_) * std::max(across, across_);
-        if (rr * rr * high > (1.0 + 1e-8) * low) return false;
-    }
+    const double flights = 2.0 * after * (other * across + q * one * held), rate = one * held * (other * across) * lost;
+    if (!(across > 0.0 && flights < kLongest * rate)) return false;
+    const double left = 1.0 - tau[i], guess = 1.5 * (flights / rate);
+    const std::int64_t rest_of_it = static_cast<std::int64_t>(last[i] - idx[i]) / motions.stride();
+    const std::int64_t stretches = guess > left ? std::min(static_cast<std::int64_t>(guess - left) + 2, rest_of_it) : 1;
     Window w;
-    return window(i, stretches, w) &&
-           time_to_rest(i, after, w) <= (left + static_cast<double>(stretches - 1)) * lane.step;
-}
-
-// Longest time that the flights to come can take in all under the moments of a window; infinite if unknown.
-ROCKING_KERNEL
-double Kernel<G, U, N, D, Z, L>::time_to_rest(int i, double after, Window w) const {
-    const Lane& lane = lanes[i];
-    const int k = lane.side > 0 ? 0 : 1, o = 1 - k;
-    const Side &s = lane.sides[k], &t = lane.sides[o];
-    const double r_here = largest(s), r_there = largest(t);
-    const double never = std::numeric_limits<double>::infinity();
-    // the ratio below cannot be less than this one: no square roots for those that fail anyway
-    const double spread = r_here * r_here * r_there * r_there * w.high[k] * w.high[o];
-    if (spread > (1.0 + 1e-9) * (w.low[k] * w.low[o])) return never;
-    double speed = after;
-    for (int side : {k, o}) {  // a higher flight meets a moment that differs by its steepness times the height
-        const double p2 = lane.sides[side].p * lane.sides[side].p, height = speed * speed / (p2 * w.low[side]);
-        const double change = height * w.steepness;
-        if (!(change < 0.5 * w.low[side])) return never;
-        w.low[side] -= change;
-        w.high[side] += change;
-        speed *= r_there * std::sqrt(w.high[side] / w.low[side]);
-    }
-    const double gain_here = std::sqrt(w.high[k] / w.low[k]), gain_there = std::sqrt(w.high[o] / w.low[o]);
-    const double ratio = r_here * r_there * gain_here * gain_there;
-    if (!(ratio < 1.0)) return never;
-    return 2.0 * after * (1.0 / (s.p * s.p * w.low[k]) + r_there * gain_here / (t.p * t.p * w.low[o])) / (1.0 - ratio);
+    if (!window(i, stretches, w)) return false;
+    const int k = lane.side > 0 ? 0 : 1;
+    const double low = w.low[k], low_ = w.low[1 - k], x = 0.5 * (w.variation + kHeights);
+    if (!(x <= 1.0)) return false;
+    const double gain = 1.0 + x + x * x;  // more than exp(x)
+    const double heights = w.steepness * (after * after) * (gain * gain) / std::min(one * low * low, other * low_ * low_);
+    if (!(2.2 * heights * (1.0 + q * q) <= kHeights * (1.0 - r * r * q * q) && heights <= 0.3)) return false;
+    const double all = 2.0 * after * gain * (1.0 / (one * low) + q / (other * low_)) / (lost * (1.0 - heights));
+    return all <= left + static_cast<double>(stretches - 1);
 }
 
 // At rest: find where the ground next lifts the body, skipping blocks in which it cannot.

@@ -11,8 +11,9 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics import equations
+from rocking.dynamics.ground import Ground, Push
 from rocking.dynamics.outcome import Outcome, Status
-from rocking.dynamics.resting import NOTHING, Ground, Push, comes_to_rest
+from rocking.dynamics.resting import NOTHING, comes_to_rest
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, last_fall, series, shifted, slope, turning_points, value

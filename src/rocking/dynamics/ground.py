@@ -1,0 +1,231 @@
+"""What holds a body down, stretch by stretch: when it is lifted, and how firmly it is held for a while."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.taylor import first_fall, shifted, value
+
+
+@dataclass(frozen=True)
+class Push:
+    """Ground accelerations over gravity, as polynomials of the stretches.
+
+    Parameters
+    ----------
+    step : float
+        Duration of a stretch [s].
+    horizontal : ndarray, shape (n, degree + 1)
+        a_x / g [-].
+    vertical : ndarray, shape (n, degree + 1)
+        a_z / g [-].
+    """
+
+    step: float
+    horizontal: FloatArray
+    vertical: FloatArray
+
+    def at_end(self, series: FloatArray) -> FloatArray:
+        """Return the values at the ends of the stretches.
+
+        Parameters
+        ----------
+        series : ndarray
+            Either component.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            The values [-].
+        """
+        return np.asarray(series.sum(axis=1))
+
+
+@dataclass(frozen=True)
+class Window:
+    """What holds a body down over some time.
+
+    Parameters
+    ----------
+    low : dict of int to float
+        Least holding moment on each side [-].
+    variation : float
+        Bound on the total variation of the logarithm of the holding moments [-].
+    steepness : float
+        Bound on the change of the moments with the rotation [1/rad].
+    """
+
+    low: dict[int, float]
+    variation: float
+    steepness: float
+
+
+class Ground:
+    """What holds a body down, stretch by stretch.
+
+    Parameters
+    ----------
+    rocker : Rocker
+        The body.
+    push : Push
+        The motion.
+    linear : bool
+        Slender-linear equations.
+    """
+
+    def __init__(self, rocker: Rocker, push: Push, *, linear: bool) -> None:
+        self.push = push
+        self.linear = linear
+        alphas = {sign: rocker.side(sign).slenderness_angle for sign in (1, -1)}
+        self._sines = {sign: alpha if linear else math.sin(alpha) for sign, alpha in alphas.items()}
+        self._cosines = {sign: 1.0 if linear else math.cos(alpha) for sign, alpha in alphas.items()}
+        self.moments = {side: self._holding(side) for side in (1, -1)}
+        low = {side: m[:, 0] + np.minimum(m[:, 1:], 0.0).sum(axis=1) for side, m in self.moments.items()}
+        self._candidates = np.flatnonzero((low[1] <= 0.0) | (low[-1] <= 0.0))
+        self._stops = np.append(
+            np.flatnonzero(_jumps(push.horizontal) | _jumps(push.vertical)) + 1, len(push.horizontal)
+        )
+
+    def _holding(self, sign: int) -> FloatArray:
+        sine, cosine = self._sines[sign], self._cosines[sign]
+        moment = self.push.vertical * sine + self.push.horizontal * (sign * cosine)
+        moment[:, 0] += sine
+        return moment
+
+    def held(self, sign: int, stretch: int, tau: float) -> float:
+        """Return the holding moment on a side, over m g R.
+
+        Parameters
+        ----------
+        sign : int
+            The side.
+        stretch : int
+            Number of the stretch.
+        tau : float
+            Time within it, from 0 to 1.
+
+        Returns
+        -------
+        float
+            Above zero where the body is held [-].
+        """
+        return value(self.moments[sign][stretch].tolist(), tau)
+
+    def next_uplift(self, stretch: int, tau: float) -> tuple[int, float, int] | None:
+        """Return when the body is next lifted.
+
+        Parameters
+        ----------
+        stretch : int
+            Number of the stretch in which it rests.
+        tau : float
+            Time within it, from 0 to 1.
+
+        Returns
+        -------
+        stretch : int
+            Number of the stretch.
+        tau : float
+            Time within it.
+        side : int
+            Side on which it then stands; None instead of all three if the ground never lifts it.
+        """
+        for k in self._candidates[np.searchsorted(self._candidates, stretch) :].tolist():
+            start = tau if k == stretch else 0.0
+            right, left = self._release(1, k, start), self._release(-1, k, start)
+            if right < left:
+                return k, right, 1
+            if left < right:
+                return k, left, -1
+            if right <= 1.0:  # both at once: the ground falls faster than the body would
+                pushed = value(self.push.horizontal[k].tolist(), right)
+                if pushed:
+                    return k, right, -1 if pushed > 0.0 else 1
+        return None
+
+    def until_jump(self, stretch: int) -> int:
+        """Return how many stretches there are up to the end, or to where a record jumps to rest.
+
+        Parameters
+        ----------
+        stretch : int
+            Number of the first stretch.
+
+        Returns
+        -------
+        int
+            Number of stretches, at least 1.
+        """
+        return int(self._stops[np.searchsorted(self._stops, stretch, side="right")]) - stretch
+
+    def window(self, stretch: int, tau: float, stretches: int) -> Window | None:
+        """Return what holds the body down from an instant to the end of some stretches.
+
+        Parameters
+        ----------
+        stretch : int
+            Number of the first stretch.
+        tau : float
+            Time within it, from 0 to 1.
+        stretches : int
+            How many.
+
+        Returns
+        -------
+        Window, optional
+            None if a side is not held down throughout.
+        """
+        rows = slice(stretch, stretch + stretches)
+        x, z = (_extent(part[rows], tau) for part in (self.push.horizontal, self.push.vertical))
+        low = {
+            sign: (1.0 + z.least) * self._sines[sign] + min(sign * x.least, sign * x.most) * self._cosines[sign]
+            for sign in (1, -1)
+        }
+        if not (low[1] > 0.0 and low[-1] > 0.0):
+            return None
+        variation = x.variation * max(self._cosines[k] / low[k] for k in low)
+        variation += z.variation * max(self._sines[k] / low[k] for k in low)
+        steepness = max(abs(1.0 + z.least), abs(1.0 + z.most)) + max(abs(x.least), abs(x.most))
+        return Window(low, variation, steepness)
+
+    def _release(self, sign: int, stretch: int, start: float) -> float:
+        moment = self.moments[sign][stretch].tolist()
+        if value(moment, start) < 0.0:
+            return start
+        rest = shifted(moment, start, 1.0 - start)
+        if len(rest) == 2:
+            if not rest[0] + rest[1] < 0.0:
+                return 2.0
+            return start + (1.0 - start) * min(max(-rest[0] / rest[1], 0.0), 1.0)
+        rest[0] = max(rest[0], 5e-324)
+        fall = first_fall(rest)
+        return 2.0 if fall is None else start + fall * (1.0 - start)
+
+
+@dataclass(frozen=True)
+class _Extent:
+    least: float
+    most: float
+    variation: float
+
+
+def _extent(rows: FloatArray, tau: float) -> _Extent:
+    """Bounds of a motion over some stretches, the first one from tau on; exact for straight lines."""
+    if rows.shape[1] == 2:
+        values = np.concatenate([[value(rows[0].tolist(), tau)], rows.sum(axis=1)])
+        return _Extent(float(values.min()), float(values.max()), float(np.abs(np.diff(values)).sum()))
+    least = rows[:, 0] + np.minimum(rows[:, 1:], 0.0).sum(axis=1)
+    most = rows[:, 0] + np.maximum(rows[:, 1:], 0.0).sum(axis=1)
+    jumps = np.abs(rows[1:, 0] - rows[:-1].sum(axis=1)).sum()
+    return _Extent(float(least.min()), float(most.max()), float(np.abs(rows[:, 1:]).sum() + jumps))
+
+
+def _jumps(lines: FloatArray) -> np.ndarray:
+    """Where records jump between two stretches; smooth motions count their jumps as variation."""
+    if lines.shape[1] > 2:
+        return np.zeros(len(lines) - 1, dtype=bool)
+    gap = np.abs(lines[:-1].sum(axis=1) - lines[1:, 0])
+    return np.asarray(gap > 1e-14 * np.abs(lines[:, 0]).max(initial=0.0))
