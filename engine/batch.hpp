@@ -2,7 +2,6 @@
 #pragma once
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -83,20 +82,12 @@ struct Settings {
     bool to_the_ground;   // follow an overturning body until it lies
 };
 
-struct Work {
-    std::int64_t steps = 0;  // Taylor steps of active lanes
-    std::int64_t sweeps = 0; // steps of all lanes together
-    std::int64_t events = 0; // visits to the lane-by-lane part
-};
-
 // Rows that wait; threads take a few at a time.
 struct Queue {
-    std::vector<std::int64_t> rows;
-    std::int64_t chunk = 1;
+    std::int64_t end, chunk;
     std::atomic<std::int64_t> next{0};
 
     bool take(std::int64_t& from, std::int64_t& to) {
-        const auto end = static_cast<std::int64_t>(rows.size());
         from = next.fetch_add(chunk);
         to = std::min(from + chunk, end);
         if (from < end) return true;
@@ -105,24 +96,10 @@ struct Queue {
     }
 };
 
-// A stretch as the body feels it, p times time; a ground that shakes with many g moves it faster than gravity does.
-inline double felt(const Motions& m, const Shake& shake, double p, double scale_over_g) {
-    const Bounds& b = m.bounds[shake.block];
-    const double push = std::fabs(scale_over_g) * std::max(b.later_high, -b.later_low);
-    const double lift = std::fabs(scale_over_g) * std::max(b.later_vertical_high, -b.later_vertical_low);
-    return p * shake.step * std::sqrt(std::max(1.0, 0.5 * (push + lift)));
-}
-
-inline double parts_of(double felt, const Settings& set) { return std::max(1.0, std::ceil(felt / set.longest_step)); }
-
-// Where steps are short enough terms beyond the sixth are below rounding.
-constexpr double kShort = 0.04;
-inline bool is_short(const Motions& m, const Rows& r, std::int64_t row, const Settings& set) {
-    const std::int64_t motion = r.motion[row];
-    if (motion < 0 || motion >= static_cast<std::int64_t>(m.shakes.size())) return false;
-    const double p = std::max(r.p_right[row], r.p_left[row]);
-    const double stretch = felt(m, m.shakes[motion], p, r.scale[row] / set.gravity);
-    return stretch <= kShort * parts_of(stretch, set);
-}
+struct Work {
+    std::int64_t steps = 0;  // Taylor steps of active lanes
+    std::int64_t sweeps = 0; // steps of all lanes together
+    std::int64_t events = 0; // visits to the lane-by-lane part
+};
 
 }  // namespace rocking

@@ -23,7 +23,6 @@ Run kernel_for(bool single, const Choice& c) {
         return single ? run_rows<1, 1, 8, 1, false, false> : run_rows<kGroups, kMany, 8, 1, false, false>;
     }
     if (c.linear || c.vertical) return nullptr;
-    if (c.order == 6 && single) return c.degree == 1 ? run_rows<1, 1, 6, 1, false, false> : nullptr;
     if (c.order == 6) return c.degree == 7 ? run_rows<kGroups, kMany, 6, 7, false, false> : run_rows<kGroups, kMany, 6, 1, false, false>;
     if (c.order == 4) return c.degree == 7 ? run_rows<kGroups, kMany, 4, 7, false, false> : run_rows<kGroups, kMany, 4, 1, false, false>;
     return nullptr;

@@ -57,7 +57,7 @@ class Kernel {
     const Settings& set;
     Trace* trace;
     Queue& queue;
-    std::int64_t next = 0, end = 0;  // places in the queue taken and not yet begun
+    std::int64_t next = 0, end = 0;  // rows taken from the queue and not yet begun
     int active = 0, busy[G] = {};
 
   public:
@@ -146,6 +146,7 @@ class Kernel {
     static bool valid(const Rows& r, std::int64_t k, std::size_t motions);
     void fill(int i);
     void write_invalid(std::int64_t row);
+    double parts_of_step(const Lane& lane, double p) const;
     void start(int i, std::int64_t row);
 };
 

@@ -196,26 +196,18 @@ static nb::dict run_batch(const Library& library, const nb::dict& in, const nb::
     const Law law = law_of(kind, at, value, seed);
     const Settings set = settings_of(gravity, longest_step, rest, most_impacts, linear, order, false);
     const Motions& m = library.motions;
-    const bool may_shorten = order == 8 && m.degree == 1 && !m.vertical && !linear;
     const Run run = kernel(isa, false, {order, m.degree, m.vertical, linear});
-    const Run quick = may_shorten ? kernel(isa, false, {6, m.degree, m.vertical, linear}) : nullptr;
     if (chunk < 1 || threads < 1) throw std::invalid_argument("threads and chunk must be at least 1");
     Work total;
     {
         nb::gil_scoped_release release;
-        Queue queues[2];
-        for (std::int64_t row = 0; row < rows.count; ++row)
-            queues[quick && is_short(m, rows, row, set) ? 1 : 0].rows.push_back(row);
-        for (Queue& queue : queues) queue.chunk = chunk;
+        Queue queue{rows.count, chunk};
         std::atomic<std::int64_t> steps{0}, sweeps{0}, events{0};
         auto labour = [&] {
-            for (int k = 0; k < 2; ++k) {
-                if (queues[k].rows.empty()) continue;
-                const Work work = (k ? quick : run)(m, law, rows, set, nullptr, queues[k]);
-                steps += work.steps;
-                sweeps += work.sweeps;
-                events += work.events;
-            }
+            const Work work = run(m, law, rows, set, nullptr, queue);
+            steps += work.steps;
+            sweeps += work.sweeps;
+            events += work.events;
         };
         std::vector<std::thread> crew;
         for (int k = 1; k < threads; ++k) crew.emplace_back(labour);
@@ -232,7 +224,7 @@ static nb::dict run_batch(const Library& library, const nb::dict& in, const nb::
     return work;
 }
 
-static nb::tuple run_single(const Library& library, const nb::dict& in, const nb::dict& out, int kind, In<double> at, In<double> value,
+static nb::list run_single(const Library& library, const nb::dict& in, const nb::dict& out, int kind, In<double> at, In<double> value,
                            std::uint64_t seed, double gravity, double longest_step, double rest, std::int64_t most_impacts,
                            bool linear, bool to_the_ground, Out<double> rotation, Out<double> velocity, const std::string& isa) {
     const Rows rows = rows_of(in, out);
@@ -247,14 +239,12 @@ static nb::tuple run_single(const Library& library, const nb::dict& in, const nb
     Trace trace{rotation.data(), velocity.data(), {}};
     trace.rotation[0] = rows.rotation[0];
     trace.velocity[0] = rows.velocity[0];
-    Queue queue;
-    queue.rows.push_back(0);
-    const int order = m.degree == 1 && !m.vertical && !linear && is_short(m, rows, 0, set) ? 6 : 8;
-    kernel(isa, true, {order, m.degree, m.vertical, linear})(m, law, rows, set, &trace, queue);
+    Queue queue{1, 1};
+    kernel(isa, true, {8, m.degree, m.vertical, linear})(m, law, rows, set, &trace, queue);
     nb::list events;
     for (const Event& e : trace.events)
         events.append(nb::make_tuple(e.time, static_cast<int>(e.kind), static_cast<int>(e.side), e.before, e.after, e.coefficient));
-    return nb::make_tuple(events, order);
+    return events;
 }
 
 }  // namespace rocking

@@ -58,7 +58,7 @@ void Kernel<G, U, N, D, Z, L>::fill(int i) {
     idle(i);
     while (lanes[i].row < 0) {
         if (next == end && !queue.take(next, end)) return;
-        const std::int64_t row = queue.rows[next++];
+        const std::int64_t row = next++;
         if (valid(rows, row, motions.shakes.size())) start(i, row);
         else write_invalid(row);
     }
@@ -73,6 +73,15 @@ void Kernel<G, U, N, D, Z, L>::write_invalid(std::int64_t row) {
     rows.peak[row] = rows.peak_time[row] = rows.peak_velocity[row] = nan;
     rows.overturning_time[row] = rows.first_uplift[row] = rows.error[row] = nan;
     rows.impacts[row] = rows.uplifts[row] = 0;
+}
+
+// Into how many parts a stretch is cut: a ground that shakes with many g moves the body faster than gravity does.
+ROCKING_KERNEL
+double Kernel<G, U, N, D, Z, L>::parts_of_step(const Lane& lane, double p) const {
+    const Bounds& b = motions.bounds[lane.shake->block];
+    const double push = std::fabs(lane.ax) * std::max(b.later_high, -b.later_low);
+    const double lift = std::fabs(lane.az) * std::max(b.later_vertical_high, -b.later_vertical_low);
+    return std::max(1.0, std::ceil(p * lane.step * std::sqrt(std::max(1.0, 0.5 * (push + lift))) / set.longest_step));
 }
 
 ROCKING_KERNEL
@@ -96,7 +105,7 @@ void Kernel<G, U, N, D, Z, L>::start(int i, std::int64_t row) {
     last[i] = lane.first + static_cast<double>(shake.segments) * motions.stride();
     lane.still = shake.still;
     cz[i] = lane.az;
-    const double parts = parts_of(felt(motions, shake, std::max(rows.p_right[row], rows.p_left[row]), lane.ax), set);
+    const double parts = parts_of_step(lane, std::max(rows.p_right[row], rows.p_left[row]));
     sub[i] = 1.0 / parts;
     tau[i] = 0.0;
     len[i] = sub[i];

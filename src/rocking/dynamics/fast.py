@@ -31,7 +31,7 @@ def run_fast(
     segments : Segments
         The motion, of degree 1 or 7 [m/s2].
     settings : Settings
-        How to integrate; the order is 8, or 6 where steps are short.
+        How to integrate; the order is 8.
     scale : float
         Factor on the motion [-].
     key : int
@@ -56,7 +56,7 @@ def run_fast(
     out = engine.empty_results(1)
     rotations, velocities = np.zeros(segments.count + 1), np.zeros(segments.count + 1)
     arguments = engine.common(settings, rocker.law)
-    noted, order = engine.module().run_single(
+    noted = engine.module().run_single(
         library.handle, rows, out, to_the_ground=True, rotation=rotations, velocity=velocities, **arguments
     )
     outcome = _OUTCOMES[out["outcome"][0]]
@@ -77,7 +77,7 @@ def run_fast(
         impacts=int(out["impacts"][0]),
         uplifts=int(out["uplifts"][0]),
         error=float(out["error"][0]),
-        engine=f"fast (Taylor, order {order}, {arguments['isa']})",
+        engine=f"fast (Taylor, order 8, {arguments['isa']})",
     )
 
 

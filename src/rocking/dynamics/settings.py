@@ -30,8 +30,7 @@ class Settings:
     longest_step : float
         Longest Taylor step of the fast engine as p times time [-].
     order : {4, 6, 8}
-        Order of the fast engine; 8 becomes 6 for records whose steps are so short, p times time at most 0.04, that
-        the terms in between are below rounding. Orders 4 and 6 exist only for many histories at once (`simulate_many`), with the
+        Order of the fast engine. Orders 4 and 6 exist only for many histories at once (`simulate_many`), with the
         nonlinear equations and motions without a vertical part; elsewhere they are refused. The reference engine
         chooses its own order.
     tolerance : float
