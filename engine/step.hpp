@@ -16,9 +16,6 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
         // every lane reads a motion of its own, more streams than processors foresee: lines ahead, every eighth turn
         for (int i = g * U * P + static_cast<int>(work.sweeps % 8); i < (g + 1) * U * P; i += 8)
             __builtin_prefetch(motions.data + static_cast<std::int64_t>(idx[i]) + 24);
-        // every lane reads a motion of its own, more streams than processors foresee: lines ahead, every eighth turn
-        for (int i = g * U * P + static_cast<int>(work.sweeps % 8); i < (g + 1) * U * P; i += 8)
-            __builtin_prefetch(motions.data + static_cast<std::int64_t>(idx[i]) + 24);
         unsigned long flagged, near;
         step(g, flagged, near);
         for (unsigned long left = near; left; left &= left - 1) landing[landings++] = g * U * P + lowest(left);

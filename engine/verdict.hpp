@@ -46,6 +46,7 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     if (!inward && passes) return falls(i, now(i, 0.0));
     if (!inward) raise_peak(i, height(here(i), e), now(i, 0.0));
     double arrival = here(i).p * std::sqrt(2.0 * std::max(e, 0.0));
+    fastest[i] = std::max(fastest[i], arrival * lane.step);
     for (int flight = 0; flight < 2; ++flight) {  // each later visit to a side has less energy than the one before
         lane.side = -lane.side;
         arrival *= coefficient(i, arrival * lane.step);

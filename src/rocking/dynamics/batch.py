@@ -144,7 +144,7 @@ class Batch:
         given: object = progress
         if given is not None and not callable(given):
             raise InvalidValueError(f"progress must be a function of the histories done, or None, got {given!r:.60}")
-        quick = fast_engine.chosen(self.engine) == "fast"
+        quick = fast_engine.chosen(self.engine, self.law) == "fast"
         self._check_order(quick=quick)
         results = fast_engine.empty_results(count)
         total: dict[str, int] = {}

@@ -55,13 +55,15 @@ def available() -> bool:
     return _module() is not None
 
 
-def chosen(asked: str) -> str:
+def chosen(asked: str, law: ImpactLaw | None = None) -> str:
     """Return which engine will run, and say so once if it is not the one that users expect.
 
     Parameters
     ----------
     asked : {"auto", "fast", "reference"}
         What was asked for.
+    law : ImpactLaw, optional
+        The law of impact; one that only its own `factor` knows takes the reference engine.
 
     Returns
     -------
@@ -71,13 +73,17 @@ def chosen(asked: str) -> str:
     Raises
     ------
     InvalidValueError
-        If there is no such engine.
+        If there is no such engine, or the fast one does not know the law.
     MissingExtraError
         If the fast one was asked for and not built.
     """
     given: object = asked
     if not isinstance(given, str) or asked not in ENGINES:
         raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {asked!r:.60}")
+    if asked != "reference" and law is not None and law.kind < 0:
+        if asked == "fast":
+            raise InvalidValueError(f"the fast engine knows tables, not {type(law).__name__}; engine must be reference")
+        return "reference"
     if asked == "fast":
         module()
     if asked == "auto" and not available():

@@ -16,30 +16,35 @@ _MOST_POINTS = 100_000
 class ImpactLaw:
     """A factor on the coefficient of restitution of the side onto which the body lands; the base of all laws.
 
+    A law of your own overrides `factor`, and `largest` if the factor can exceed one; it runs on the reference engine.
+
     Attributes
     ----------
     kind : int
-        0 constant, 1 a table over the speed, 2 a random number.
+        0 constant, 1 a table over the speed, 2 a random number; -1 a law that only `factor` knows.
     at, factors : ndarray
-        The table.
+        The table, of laws that have one.
     seed : int
         Seed of the random numbers.
     """
 
-    kind: ClassVar[int] = 0
+    kind: ClassVar[int] = -1
     at: FloatArray
     factors: FloatArray
     seed: int
 
     def __init__(self) -> None:
-        raise InvalidValueError(
-            "ImpactLaw is the base of the laws: take ConstantRestitution, SpeedRestitution or RandomRestitution"
-        )
+        if type(self) is ImpactLaw:
+            raise InvalidValueError(
+                "ImpactLaw is the base of the laws: take ConstantRestitution, SpeedRestitution or RandomRestitution, "
+                "or override factor() in a class of your own"
+            )
 
     @property
     def largest(self) -> float:
         """Largest factor it can give [-]."""
-        return float(self.factors.max())
+        factors = getattr(self, "factors", None)
+        return 1.0 if factors is None else float(factors.max())
 
     def factor(self, speed: float, key: int, impact: int) -> float:
         """Return the factor for an impact.
@@ -65,6 +70,7 @@ class ImpactLaw:
 class ConstantRestitution(ImpactLaw):
     """The coefficient of the side, always."""
 
+    kind: ClassVar[int] = 0
     at: FloatArray = field(default_factory=lambda: np.zeros(1))
     factors: FloatArray = field(default_factory=lambda: np.ones(1))
     seed: int = 0

@@ -27,12 +27,12 @@ _UNITS = {
     "status": ("1", ", ".join(f"{s.code} {s.value}" for s in Status)),
     "side": ("1", "side to which it overturned: 1 right, -1 left"),
     "peak_rotation": ("rad", "rotation of largest size; a quarter turn if it overturned"),
-    "peak_time": ("s", "time of the peak rotation"),
-    "peak_velocity": ("rad/s", "largest angular velocity"),
-    "overturning_time": ("s", "when the centre passed over the foot for good"),
+    "peak_time": ("s", "time of the peak rotation; the end of the motion if it comes later"),
+    "peak_velocity": ("rad/s", "largest angular velocity at samples and impacts, the first after the motion included"),
+    "overturning_time": ("s", "when the centre passed over the foot for good; the end of the motion if it is later"),
     "first_uplift": ("s", "first uplift"),
     "error": ("rad", "sum of the local error estimates"),
-    "impacts": ("1", "number of impacts"),
+    "impacts": ("1", "number of impacts during the motion"),
     "uplifts": ("1", "number of uplifts from rest"),
 }
 
@@ -75,7 +75,9 @@ def simulate_many(
     Returns
     -------
     xarray.Dataset
-        Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units.
+        Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units. Every history
+        ends with its motion: energy then decides the outcome and the peak of the swings to come, whose impacts are
+        not counted. Its attributes say which engine ran.
 
     Raises
     ------
@@ -94,6 +96,7 @@ def simulate_many(
     {'body': 3, 'motion': 1, 'scale': 2, 'restitution': 2}
     """
     from rocking.dynamics.batch import Batch
+    from rocking.dynamics.engine import instruction_set
     from rocking.dynamics.export import extra
 
     xarray = extra("xarray", "simulate_many")
@@ -116,10 +119,14 @@ def simulate_many(
     }
     from rocking import __version__
 
+    first = [row[0].right for row in rockers]
     made: xr.Dataset = xarray.Dataset(
         data,
         coords={
+            "slenderness_angle": ("body", [side.slenderness_angle for side in first], {"units": "rad"}),
+            "frequency_parameter": ("body", [side.frequency_parameter for side in first], {"units": "rad/s"}),
             "motion": [m.name for m in motion_list],
+            "motion_provenance": ("motion", ["; ".join(getattr(m, "provenance", ())) or repr(m) for m in motion_list]),
             "scale": ("scale", scales, {"units": "1"}),
             "restitution": [
                 rocker.label if law.kind else _label(choice) for rocker, choice in zip(rockers[0], choices, strict=True)
@@ -127,6 +134,8 @@ def simulate_many(
         },
         attrs={
             "software": f"rocking {__version__}",
+            "engine": f"fast ({instruction_set()})" if work else "reference",
+            "seed": getattr(law, "seed", 0),
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in vars(settings).items()},
             **{f"work_{k}": v for k, v in work.items()},
         },

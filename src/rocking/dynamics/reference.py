@@ -236,6 +236,7 @@ class Reference:
                 return _Ended(Outcome.OVERTURNED)
             self._raise_peak(float(equations.turning_rotation(e, self._alpha, linear=linear)), self._now)
         speed, impacts = self._p * math.sqrt(2.0 * max(e, 0.0)), self.impacts
+        self.fastest = max(self.fastest, speed)
         for _ in range(2):
             self.side = -self.side
             speed *= self._coefficient(speed)
@@ -263,7 +264,13 @@ class Reference:
         return (self.stretch + self.tau) * self.push.step
 
     def _coefficient(self, speed: float) -> float:
-        return self.rocker.side(self.side).coefficient * self.rocker.law.factor(speed, self.key, self.impacts)
+        law = self.rocker.law
+        factor = law.factor(speed, self.key, self.impacts)
+        if not 0.0 <= factor <= law.largest:
+            raise InvalidValueError(
+                f"{type(law).__name__}.factor must be in [0, {law.largest:g}], its largest, got {factor!r}"
+            )
+        return self.rocker.side(self.side).coefficient * factor
 
     def _note(self, kind: EventKind, time: float, before: float = 0.0, after: float = 0.0, r: float = 0.0) -> None:
         self.events.append(Event(time, kind, self.side, before, after, r))

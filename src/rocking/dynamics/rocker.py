@@ -101,9 +101,11 @@ class Rocker:
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients, label = coefficients_of(base, body)
-        if law.kind:
+        if law.kind > 0:
             how = ("", "of the speed", "at random")[law.kind]
             label = f"{how}: {law.factors.min():.4g} to {law.largest:.4g} times {label}"
+        elif law.kind < 0:
+            label = f"{type(law).__name__} times {label}"
         sides = {foot: body.side(foot, gravity) for foot in FEET}
         for foot, other in (("left", "right"), ("right", "left")):
             most = math.sqrt(sides[other].moment_of_inertia / sides[foot].moment_of_inertia)  # type: ignore[index]

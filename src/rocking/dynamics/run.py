@@ -56,7 +56,7 @@ def run(
     InvalidValueError
         If the order is not 8, unless the reference engine was asked for: there are no others for one history.
     """
-    taken = fast_engine.chosen(engine)
+    taken = fast_engine.chosen(engine, rocker.law)
     if engine != "reference" and settings.order != _ORDER:
         raise InvalidValueError(
             f"order must be {_ORDER} for one history, got {settings.order}: orders 4 and 6 exist only in batches "

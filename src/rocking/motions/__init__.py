@@ -23,6 +23,7 @@ from rocking.motions.rotation import rotated, rotd_pga
 from rocking.motions.scaling import scaled_to_pga, scaled_to_pgv, scaled_to_sa
 from rocking.motions.segments import Segments
 from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
+from rocking.motions.vertical import with_vertical
 
 __all__ = [
     "GroundMotion",
@@ -59,4 +60,5 @@ __all__ = [
     "tapered",
     "trimmed",
     "trimmed_to_significant",
+    "with_vertical",
 ]

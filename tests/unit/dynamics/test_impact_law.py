@@ -189,3 +189,35 @@ def test_bad_distributions() -> None:
     for values, message in (([0.5], "values must be a row"), ([0.5, math.nan], "values"), ([0.5, 1.2], r"\[0, 1\]")):
         with pytest.raises(InvalidValueError, match=message):
             rk.RandomRestitution.of_sample(values, seed=1)
+
+
+class Worn(rk.dynamics.ImpactLaw):
+    """A law of one's own: every impact takes more than the one before."""
+
+    def factor(self, speed: float, key: int, impact: int) -> float:
+        return 0.99**impact
+
+
+def test_a_law_of_ones_own() -> None:
+    """It runs on the reference engine, by itself or asked for, and the fast engine refuses it."""
+    block = rk.Block(width=0.5, height=2.0)
+    for name in ("auto", "reference"):
+        response = rk.free_rocking(block, 0.1, Worn(), engine=name)
+        assert response.engine.startswith("reference")
+        expected = 0.99 ** np.arange(response.impacts.size)
+        np.testing.assert_allclose(response.impacts["coefficient"], expected, rtol=1e-15)
+    with pytest.raises(InvalidValueError, match="fast engine knows tables, not Worn"):
+        rk.free_rocking(block, 0.1, Worn(), engine="fast")
+
+
+class Wild(rk.dynamics.ImpactLaw):
+    """A law that creates energy."""
+
+    def factor(self, speed: float, key: int, impact: int) -> float:
+        return 2.0
+
+
+def test_a_law_beyond_its_largest_factor() -> None:
+    """What a law returns is checked at every impact."""
+    with pytest.raises(InvalidValueError, match=r"Wild.factor must be in \[0, 1\]"):
+        rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, Wild())

@@ -149,3 +149,28 @@ def test_models_as_objects() -> None:
     found = rk.simulate_many(BODIES[0], MOTIONS[0], [made, "housner"], engine="auto")
     assert found["restitution"].to_numpy().tolist() == [made.label, "housner"]
     assert found["peak_rotation"].to_numpy()[0, 0, 0, 0] == found["peak_rotation"].to_numpy()[0, 0, 0, 1]
+
+
+@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+def test_a_dataset_says_what_it_is() -> None:
+    """Engine, seed, bodies and motions can be read off a dataset."""
+    law = rk.RandomRestitution.normal(0.9, 0.01, seed=7)
+    result = rk.simulate_many([rk.Block(width=0.5, height=2.0)], rk.pulses.sine(3.0, 0.6), law)
+    assert result.attrs["engine"].startswith("fast (")
+    assert result.attrs["seed"] == 7
+    assert float(result.slenderness_angle[0]) == rk.Block(width=0.5, height=2.0).slenderness_angle
+    assert result.slenderness_angle.attrs["units"] == "rad"
+    assert "sine" in str(result.motion_provenance.values[0]).lower()
+
+
+@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+def test_company_does_not_matter() -> None:
+    """A record beside one that has a vertical part, on which the whole batch runs with one, keeps its bits."""
+    random = np.random.default_rng(5)
+    plain = rk.GroundMotion(random.normal(size=800) * 2.0, 0.02)
+    upright = rk.GroundMotion(random.normal(size=800), 0.02, vertical=random.normal(size=800))
+    body = rk.Block(width=0.5, height=2.0)
+    alone = rk.simulate_many(body, plain, "ked", scale=[0.5, 1.0, 1.5])
+    beside = rk.simulate_many(body, [plain, upright], "ked", scale=[0.5, 1.0, 1.5]).isel(motion=[0])
+    for name in alone.data_vars:
+        np.testing.assert_array_equal(alone[name].values, beside[name].values)

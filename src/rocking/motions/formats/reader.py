@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping
+from datetime import datetime
 from os import PathLike
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.registry import LAST_RESORT, format_named, formats
 from rocking.motions.formats.source import Source
 from rocking.motions.motion import GroundMotion
+from rocking.motions.vertical import with_vertical
 
 
 def read_record(
@@ -63,8 +65,13 @@ def read_motion(
     time_step: float | None = None,
     component: str | None = None,
     vertical: str | None = None,
+    *,
+    vertical_path: str | PathLike[str] | None = None,
 ) -> GroundMotion:
     """Return one component of a record file as a ground motion, with a second one as its vertical part if wanted.
+
+    Where components are in files of their own (PEER, ESM, K-NET), `vertical_path` is the file of the vertical one;
+    `format`, `units` and `time_step` then hold for both files.
 
     Parameters
     ----------
@@ -79,50 +86,39 @@ def read_motion(
     component : str, optional
         Name of the horizontal component, in any case; needed where the file has several.
     vertical : str, optional
-        Name of the vertical component, in any case.
+        Name of the vertical component, in any case; with `vertical_path` only needed where that file has several.
+    vertical_path : path-like, optional
+        Another file, which has the vertical component: of the same step and start; the longer one is cut.
 
     Returns
     -------
     GroundMotion
-        In m/s2; its metadata hold the raw header, its provenance the SHA-256 of the file.
+        In m/s2; its metadata hold the raw header, its provenance the SHA-256 of each file.
 
     Raises
     ------
     InvalidValueError
-        If there is no format, unit or component of that name, or a component must be named.
+        If there is no format, unit or component of that name, a component must be named, or the two files hold
+        the same component or have different steps.
     RecordError
-        If the file is missing, of no known format or of more than one, damaged, or at odds with its own header.
+        If a file is missing, of no known format or of more than one, damaged, or at odds with its own header, or
+        the two files state different starts.
     """
     source = Source.of_path(Path(path))
     record = _read(source, format, units, time_step)
-    level = _chosen(record, "component", component, None if vertical is None else _chosen(record, "vertical", vertical))
-    metadata = {
-        **record.metadata,
-        **level.metadata,
-        "format": record.format,
-        "unit": level.unit,
-        "component": level.name,
-        "header": record.header,
-    }
-    digest = hashlib.sha256(source.content).hexdigest()
-    told = (
-        f"read from {source.name}, SHA-256 {digest}, format {record.format}, component {level.name}, unit {level.unit}"
-    )
-    provenance = [told]
-    acceleration, upward = level.acceleration * ACCELERATION_UNITS[level.unit], None
-    if vertical is not None:
-        upright = _chosen(record, "vertical", vertical)
-        if upright.time_step != level.time_step:
-            raise source.error(None, f"steps of {level.time_step:g} s and {upright.time_step:g} s; resample one first")
-        upward = upright.acceleration * ACCELERATION_UNITS[upright.unit]
-        metadata["vertical component"] = upright.name
-        provenance.append(f"vertical part: component {upright.name}, unit {upright.unit}")
-        if upward.size != acceleration.size:
-            samples = min(upward.size, acceleration.size)
-            provenance.append(f"components of {acceleration.size} and {upward.size} samples, both cut to {samples}")
-            acceleration, upward = acceleration[:samples], upward[:samples]
-    name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(path).stem
-    return GroundMotion(acceleration, level.time_step, upward, name, metadata, tuple(provenance))
+    if vertical_path is not None:
+        motion = _motion(source, record, _chosen(record, "component", component))
+        beside = Source.of_path(Path(vertical_path))
+        other = _read(beside, format, units, time_step)
+        upright = _chosen(other, "vertical", vertical)
+        return _joined(motion, _motion(beside, other, upright), beside, same_file=beside.content == source.content)
+    if vertical is None:
+        return _motion(source, record, _chosen(record, "component", component))
+    upright = _chosen(record, "vertical", vertical)
+    level = _chosen(record, "component", component, upright)
+    if upright.time_step != level.time_step:
+        raise source.error(None, f"steps of {level.time_step:g} s and {upright.time_step:g} s; resample one first")
+    return _with_component(_motion(source, record, level), upright)
 
 
 def write_record(record: Record, path: str | PathLike[str], format: str) -> None:
@@ -190,6 +186,51 @@ def _read(source: Source, format: str | None, units: str | None, time_step: floa
         time_step = checks.positive("time_step", time_step, "s")
     chosen = _recognised(source) if format is None else format_named(format)
     return chosen.read(source, units, time_step)
+
+
+def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
+    metadata = {
+        **record.metadata,
+        **part.metadata,
+        "format": record.format,
+        "unit": part.unit,
+        "component": part.name,
+        "header": record.header,
+    }
+    digest = hashlib.sha256(source.content).hexdigest()
+    told = f"read from {source.name}, SHA-256 {digest}, format {record.format}, component {part.name}, unit {part.unit}"
+    name = " ".join(metadata[key] for key in ("event", "station") if metadata.get(key)) or Path(source.name).stem
+    acceleration = part.acceleration * ACCELERATION_UNITS[part.unit]
+    return GroundMotion(acceleration, part.time_step, None, name, metadata, (told,))
+
+
+def _with_component(motion: GroundMotion, upright: Component) -> GroundMotion:
+    told = f"component {upright.name}, unit {upright.unit}"
+    acceleration = upright.acceleration * ACCELERATION_UNITS[upright.unit]
+    metadata = {"component": upright.name}
+    return with_vertical(motion, GroundMotion(acceleration, motion.time_step, None, "", metadata, (told,)))
+
+
+def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same_file: bool) -> GroundMotion:
+    name = upright.metadata["component"]
+    if same_file and name == motion.metadata["component"]:
+        raise InvalidValueError(f"{beside.name} holds the horizontal component {name} and cannot be the vertical one")
+    starts = [_start(one) for one in (motion, upright)]
+    if starts[0] is not None and starts[1] is not None:
+        late = (starts[1] - starts[0]).total_seconds()
+        if abs(late) > 0.5 * motion.time_step:
+            raise beside.error(None, f"it starts {late:g} s after the horizontal component; trim both to one start")
+    return with_vertical(motion, upright)
+
+
+def _start(motion: GroundMotion) -> datetime | None:
+    """Return when the record starts, where the file says so: miniSEED and SAC, K-NET."""
+    said = motion.metadata.get("starttime") or motion.metadata.get("Record Time") or ""
+    try:
+        # K-NET is in Japanese time and says no zone: it is compared with its like alone
+        return datetime.fromisoformat(said.replace("/", "-"))
+    except ValueError:
+        return None
 
 
 def _recognised(source: Source) -> RecordFormat:
