@@ -35,9 +35,6 @@ ACCELERATION_UNITS: Final[dict[str, float]] = {
 }
 """One unit of acceleration in m/s2; `g/10` is what BHRC files hold, `mg` is a thousandth of g."""
 
-VELOCITY_UNITS: Final[dict[str, float]] = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001}
-"""One unit of velocity in m/s."""
-
 
 def opposite(foot: Foot) -> Foot:
     """Return the other foot.

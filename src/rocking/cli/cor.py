@@ -11,15 +11,15 @@ _OUTPUT = "Output"
 
 def cor(
     body: Annotated[Path | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit.")] = None,
-    width: Annotated[float | None, typer.Option(help="Full width of a block.", rich_help_panel=_BODY)] = None,
-    height: Annotated[float | None, typer.Option(help="Full height of a block.", rich_help_panel=_BODY)] = None,
-    depth: Annotated[float | None, typer.Option(help="Depth of a block.", rich_help_panel=_BODY)] = None,
-    density: Annotated[float | None, typer.Option(help="Density [kg/m3].", rich_help_panel=_BODY)] = None,
+    width: Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)] = None,
+    height: Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)] = None,
+    depth: Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --unit].", rich_help_panel=_BODY)] = None,
+    density: Annotated[float | None, typer.Option(help=r"Density \[kg/m3].", rich_help_panel=_BODY)] = None,
     angle: Annotated[
-        float | None, typer.Option(help="Slenderness angle alpha = atan(b/h) [rad].", rich_help_panel=_BODY)
+        float | None, typer.Option(help=r"Slenderness angle alpha = atan(b/h) \[rad].", rich_help_panel=_BODY)
     ] = None,
     semi_diagonal: Annotated[
-        float | None, typer.Option(help="Semi-diagonal R, with --angle.", rich_help_panel=_BODY)
+        float | None, typer.Option(help=r"Semi-diagonal R, with --angle \[m, or --unit].", rich_help_panel=_BODY)
     ] = None,
     unit: Annotated[
         str | None, typer.Option(help="Unit of all lengths: m (default), cm, mm, ft, in.", rich_help_panel=_BODY)
@@ -30,7 +30,7 @@ def cor(
         typer.Option(help="Model, repeatable: ked, 0.98*ked, shifted-impulse:k=0.6, my_file.py:MyModel."),
     ] = None,
     eta: Annotated[float, typer.Option(help="Interface factor in (0, 1] on every model.")] = 1.0,
-    gravity: Annotated[float | None, typer.Option(help="Acceleration of gravity [m/s2].")] = None,
+    gravity: Annotated[float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].")] = None,
     identities: Annotated[
         bool, typer.Option("--identities", help="Also try the identities of mechanics on every model.")
     ] = False,

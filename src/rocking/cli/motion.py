@@ -18,14 +18,17 @@ def motion(
         str | None, typer.Option(help="Unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.", rich_help_panel=_FILE)
     ] = None,
     time_step: Annotated[
-        float | None, typer.Option(help="Step between samples in seconds.", rich_help_panel=_FILE)
+        float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)
     ] = None,
     component: Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)] = None,
     vertical: Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)] = None,
+    vertical_file: Annotated[
+        str | None, typer.Option(help="File of the vertical component, where it has its own.", rich_help_panel=_FILE)
+    ] = None,
     scale: Annotated[float | None, typer.Option(help="Factor on the acceleration.")] = None,
     damping: Annotated[float, typer.Option(help="Damping ratio of the spectrum.")] = 0.05,
     periods: Annotated[
-        str, typer.Option(help="Periods of the spectrum in seconds, with commas between.")
+        str, typer.Option(help=r"Periods of the spectrum, with commas between \[s].")
     ] = "0.1,0.2,0.5,1,2,3",
     picture: Annotated[
         Path | None, typer.Option(help="Draw it and its spectrum (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
@@ -47,6 +50,7 @@ def motion(
         time_step=time_step,
         component=component,
         vertical=vertical,
+        vertical_file=vertical_file,
         scale=scale,
     )
     answer = motion_output.Answer.of(subject, motion_output.periods_from(periods), damping)

@@ -21,6 +21,7 @@ def motion_from(
     time_step: float | None = None,
     component: str | None = None,
     vertical: str | None = None,
+    vertical_file: str | None = None,
     scale: float | None = None,
 ) -> GroundMotion | Pulse:
     """Return the motion that a command was given; a name that exists as a file is a file, whatever else it might be.
@@ -39,6 +40,8 @@ def motion_from(
         Name of the horizontal component; needed where the file has several.
     vertical : str, optional
         Name of the vertical component.
+    vertical_file : str, optional
+        Path of the record file that has the vertical component, if it is another one.
     scale : float, optional
         Factor on the accelerations of both components, not zero [-].
 
@@ -64,10 +67,17 @@ def motion_from(
     factor = None if scale is None else checks.number("scale", scale)
     if factor == 0.0:
         raise InvalidValueError("scale must not be 0: nothing would move")
-    asked = {"format": format, "units": units, "time_step": time_step, "component": component, "vertical": vertical}
+    asked = {
+        "format": format,
+        "units": units,
+        "time_step": time_step,
+        "component": component,
+        "vertical": vertical,
+        "vertical_file": vertical_file,
+    }
     motion: GroundMotion | Pulse
     if _is_file(word):
-        motion = _from_file(word, format, units, time_step, component, vertical)
+        motion = _from_file(word, format, units, time_step, component, vertical, vertical_file)
     else:
         motion = _pulse(word, [_option(name) for name, value in asked.items() if value is not None])
     return motion if factor is None else motion.scaled(factor)
@@ -101,16 +111,18 @@ def _from_file(
     time_step: float | None,
     component: str | None,
     vertical: str | None,
+    vertical_file: str | None,
 ) -> GroundMotion:
     from rocking.motions.formats import read_motion, read_record
 
     try:
-        return read_motion(word, format, units, time_step, component, vertical)
+        return read_motion(word, format, units, time_step, component, vertical, vertical_path=vertical_file)
     except InvalidValueError as error:
         cause = _in_options(error)
         if component is None and "component=" in str(error):
             names = [part.name for part in read_record(word, format, units, time_step).components]
-            cause += "; " + _hint([name for name in names if name.casefold() != (vertical or "").casefold()])
+            taken = "" if vertical is None or vertical_file is not None else vertical.casefold()
+            cause += "; " + _hint([name for name in names if name.casefold() != taken])
         raise InvalidValueError(cause) from error
     except RecordError as error:
         raise RecordError(_in_options(error)) from error

@@ -12,6 +12,8 @@ from rocking.dynamics.intervals import Intervals
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
 
+_ROUNDING = 1e-9
+
 
 @dataclass(frozen=True)
 class Contact:
@@ -20,13 +22,14 @@ class Contact:
     Parameters
     ----------
     time : ndarray
-        Times of the samples [s].
+        Times of the samples, and of the fall if it comes after the last of them [s].
     horizontal, vertical : ndarray
         Force of the ground on the body, to the right and upwards [N].
     least_vertical : float
-        Smallest vertical force, until the body falls; below zero the body would leave the ground [N].
+        Smallest vertical force until the centre passes over the foot for good; below zero the body would leave the
+        ground [N].
     friction_of_motion : float
-        Largest |horizontal / vertical| until the body falls; infinite where the vertical force vanishes [-].
+        Largest |horizontal / vertical| until then; infinite where the vertical force vanishes [-].
     friction_of_impacts : float
         Largest ratio of the impulses at an impact [-].
     """
@@ -97,7 +100,7 @@ def contact_of(
     intervals : Intervals
         The response between its samples and events.
     time : ndarray
-        Times of the samples [s].
+        Times of the samples, and of a fall after the last of them [s].
     body : Body
         The body.
     settings : Settings
@@ -119,8 +122,11 @@ def contact_of(
     f_z = np.where(resting, gravity + intervals.lift, f_z)
     with np.errstate(divide="ignore", invalid="ignore"):
         demand = np.where(f_z > 0.0, np.abs(f_x) / f_z, np.where(f_x == 0.0, 0.0, np.inf))
-    standing = ~(intervals.end > trajectory.overturning_time)  # a body that falls is past all questions of friction
-    place = np.clip(np.searchsorted(intervals.end, time[1:] * (1.0 + 1e-14), side="right") - 1, 0, None)
+    # a body that falls is past all questions of friction; the start counts even for one that is let go beyond the top
+    late = intervals.start >= trajectory.overturning_time - _ROUNDING * intervals.length
+    standing = np.stack([~late, ~late], axis=1)
+    standing[0, 0] = True
+    place = intervals.places(time[1:])
     mass = body.mass
     return Contact(
         time=time,

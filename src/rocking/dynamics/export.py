@@ -16,13 +16,14 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from rocking.dynamics.response import Response
+    from rocking.dynamics.response import Motion, Response
 
 _COLUMNS = (
     ("time", "s", "time"),
     ("rotation", "rad", "rotation theta, positive clockwise"),
     ("angular_velocity", "rad/s", "angular velocity"),
     ("ground_acceleration", "m/s2", "horizontal acceleration of the ground"),
+    ("vertical_ground_acceleration", "m/s2", "vertical acceleration of the ground, upwards"),
     ("kinetic_energy", "J", "kinetic energy"),
     ("potential_energy", "J", "potential energy above rest"),
     ("work_of_ground", "J", "work done by the ground since the start"),
@@ -30,6 +31,7 @@ _COLUMNS = (
     ("horizontal_force", "N", "force of the ground on the body, to the right"),
     ("vertical_force", "N", "force of the ground on the body, upwards"),
 )
+_UNITS = {name: unit for name, unit, _ in _COLUMNS}
 
 
 def extra(module: str, what: str) -> ModuleType:
@@ -69,14 +71,17 @@ def columns(response: "Response") -> dict[str, FloatArray]:
     Returns
     -------
     dict of str to ndarray
-        All of one length.
+        All of one length; `vertical_ground_acceleration` only if the motion has a vertical part.
     """
     energy, contact = response.energy, response.contact
     values = (
         response.time, response.rotation, response.angular_velocity, response.ground_acceleration,
-        energy.kinetic, energy.potential, energy.work, energy.lost, contact.horizontal, contact.vertical,
+        response.vertical_ground_acceleration, energy.kinetic, energy.potential, energy.work, energy.lost,
+        contact.horizontal, contact.vertical,
     )  # fmt: skip
-    return {name: value for (name, _, _), value in zip(_COLUMNS, values, strict=True)}
+    count = response.time.size  # energy and forces may have one row more, for a fall after the last sample
+    pairs = zip(_COLUMNS, values, strict=True)
+    return {name: value[:count] for (name, _, _), value in pairs if value is not None}
 
 
 def provenance(response: "Response") -> dict[str, Any]:
@@ -111,7 +116,7 @@ def provenance(response: "Response") -> dict[str, Any]:
         "restitution": rocker.label,
         **sides,
         "motion": "none: free rocking" if motion is None else motion.name,
-        "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
+        "motion_provenance": _told(motion),
         "scale": response.scale,
         "random_key": response.key,
         **{f"setting_{k}": v for k, v in vars(response.settings).items()},
@@ -160,7 +165,7 @@ def to_dataframe(response: "Response") -> "pd.DataFrame":
     """
     pandas = extra("pandas", "a table")
     values = columns(response)
-    frame: pd.DataFrame = pandas.DataFrame({f"{name} [{unit}]": values[name] for name, unit, _ in _COLUMNS})
+    frame: pd.DataFrame = pandas.DataFrame({f"{name} [{_UNITS[name]}]": value for name, value in values.items()})
     return frame
 
 
@@ -185,8 +190,8 @@ def to_csv(response: "Response", path: "str | Path") -> "Path":
     values = columns(response)
     with target.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow([f"{name} [{unit}]" for name, unit, _ in _COLUMNS])
-        writer.writerows(zip(*(map(repr, values[name].tolist()) for name, _, _ in _COLUMNS), strict=True))
+        writer.writerow([f"{name} [{_UNITS[name]}]" for name in values])
+        writer.writerows(zip(*(map(repr, value.tolist()) for value in values.values()), strict=True))
     return target
 
 
@@ -215,10 +220,11 @@ def to_mat(response: "Response", path: "str | Path") -> "Path":
         for name in ("time", "velocity_before", "velocity_after", "coefficient")
     }
     impacts["onto"] = np.where(response.impacts["onto"] == "right", 1.0, -1.0)
+    samples = columns(response)
     structure = {
-        **columns(response),
+        **samples,
         "impacts": impacts,
-        "units": {name: unit for name, unit, _ in _COLUMNS},
+        "units": {name: _UNITS[name] for name in samples},
         "provenance": json.dumps(provenance(response)),
     }
     savemat(target, {"rocking": structure}, oned_as="column", appendmat=False)
@@ -245,6 +251,12 @@ def to_netcdf(response: "Response", path: "str | Path") -> "Path":
     target = _target(path)
     to_xarray(response).to_netcdf(target, engine="h5netcdf")
     return target
+
+
+def _told(motion: "Motion | None") -> str:
+    if motion is None:
+        return "ground at rest"
+    return "; ".join(getattr(motion, "provenance", ())) or repr(motion)
 
 
 def _target(path: "str | Path") -> "Path":

@@ -1,4 +1,7 @@
-"""A response between its samples and events: states at both ends of every interval, and smooth curves between them."""
+"""A response between its samples and events: states at both ends of every interval, and smooth curves between them.
+
+Where steps are long, or the body falls within one, states inside the steps are added.
+"""
 
 from dataclasses import dataclass
 
@@ -6,9 +9,11 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics import equations
+from rocking.dynamics.inside import Inside
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
+from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 
 # Gauss-Legendre points and weights on [0, 1], exact to degree 9
@@ -18,7 +23,7 @@ _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
 
 @dataclass(frozen=True)
 class Intervals:
-    """Intervals between consecutive samples and events, in order of time.
+    """Intervals between consecutive samples, events and states added inside long steps and falls, in order of time.
 
     Parameters
     ----------
@@ -72,9 +77,23 @@ class Intervals:
         -------
         Intervals
             All of positive length.
+
+        Raises
+        ------
+        InvalidValueError
+            If the history was stopped before anything happened.
         """
         time, before, after = _nodes(trajectory, segments.step)
+        added = Inside(segments, rocker, settings, scale).added(trajectory, time, before, after)
+        if added:
+            rows = np.array(added)
+            time = np.concatenate([time, rows[:, 0]])
+            order = np.argsort(time, kind="stable")
+            time = time[order]
+            before, after = (np.concatenate([part, rows[:, 1:]])[order] for part in (before, after))
         whole = np.flatnonzero(np.diff(time) > 0.0)
+        if not whole.size:
+            raise InvalidValueError(f"there is no response at any time above 0 s: {trajectory.status.value}")
         start, end = time[whole], time[whole + 1]
         states = np.stack([after[whole], before[whole + 1]], axis=1)
         rotation, velocity = states[..., 0], states[..., 1]
@@ -100,6 +119,21 @@ class Intervals:
     def length(self) -> FloatArray:
         """Length of each interval [s]."""
         return self.end - self.start
+
+    def places(self, time: FloatArray) -> IntArray:
+        """Return the last interval that is over at each of some times.
+
+        Parameters
+        ----------
+        time : ndarray, shape (m,)
+            Times [s].
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            Numbers of intervals; the first one where none is over.
+        """
+        return np.maximum(np.searchsorted(self.end, time * (1.0 + 1e-14), side="right") - 1, 0)
 
     def inside(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return rotation and velocity within every interval: the quintic through both ends.

@@ -17,7 +17,7 @@ class ResponseEnergy:
     Parameters
     ----------
     time : ndarray
-        Times of the samples [s].
+        Times of the samples, and of the fall if it comes after the last of them [s].
     kinetic, potential : ndarray
         Of the body, above rest [J].
     work : ndarray
@@ -53,7 +53,7 @@ def energy_of(intervals: Intervals, time: FloatArray, mass: float, settings: Set
     intervals : Intervals
         The response between its samples and events.
     time : ndarray
-        Times of the samples, the first one zero [s].
+        Times of the samples, the first one zero, and of a fall after the last of them [s].
     mass : float
         Mass of the body [kg].
     settings : Settings
@@ -62,7 +62,7 @@ def energy_of(intervals: Intervals, time: FloatArray, mass: float, settings: Set
     Returns
     -------
     ResponseEnergy
-        At the samples.
+        At these times.
     """
     unit = (mass * settings.gravity * intervals.semi_diagonal)[:, None]
     alpha, p = intervals.alpha[:, None], intervals.p[:, None]
@@ -71,7 +71,7 @@ def energy_of(intervals: Intervals, time: FloatArray, mass: float, settings: Set
     # what one interval ends with and the next one starts without was lost in between
     lost = np.concatenate([[0.0], np.cumsum(stored[:-1, 1] - stored[1:, 0])])
     work = np.cumsum(mass * intervals.work(settings))
-    place = np.clip(np.searchsorted(intervals.end, time[1:] * (1.0 + 1e-14), side="right") - 1, 0, None)
+    place = intervals.places(time[1:])
 
     def at_samples(first: float, values: FloatArray) -> FloatArray:
         return np.concatenate([[first], values[place]])

@@ -137,7 +137,11 @@ class Response:
 
     @property
     def summary(self) -> str:
-        """The outcome in one sentence."""
+        """The outcome in one sentence; it also says where the motion was cut, if that may have decided."""
+        return self._ending + self._cut
+
+    @property
+    def _ending(self) -> str:
         run = self.trajectory
         if run.outcome is Outcome.OVERTURNED:
             side = "right" if run.side > 0 else "left"
@@ -152,6 +156,20 @@ class Response:
             )
         return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
 
+    @property
+    def _cut(self) -> str:
+        end = self.segments.count * self.segments.step
+        over = self._finite < self.trajectory.rotation.size  # it lay before, or there is no result
+        if over or self.motion is None or end >= self.motion.duration * (1.0 - _ROUNDING):
+            return ""
+        return f"; the motion was cut at {end:.4g} s, where the ground is taken to stop"
+
+    @cached_property
+    def _covered(self) -> FloatArray:
+        """Times of the samples, and of the fall if it comes after the last of them [s]."""
+        fall, last = self.overturning_time, float(self.time[-1])
+        return np.append(self.time, fall) if fall > last + _ROUNDING * self.segments.step else self.time
+
     @cached_property
     def intervals(self) -> "Intervals":
         """The response between its samples and events."""
@@ -161,22 +179,30 @@ class Response:
 
     @cached_property
     def energy(self) -> "ResponseEnergy":
-        """Kinetic and potential energy, work of the ground and losses at the samples [J]."""
+        """Kinetic and potential energy, work of the ground and losses at the samples, and at a later fall [J]."""
         from rocking.dynamics.ledger import energy_of
 
-        return energy_of(self.intervals, self.time, self.body.mass, self.settings)
+        return energy_of(self.intervals, self._covered, self.body.mass, self.settings)
 
     @cached_property
     def contact(self) -> "Contact":
         """Forces of the ground, friction demand and loss of contact."""
         from rocking.dynamics.contact import contact_of
 
-        return contact_of(self.trajectory, self.intervals, self.time, self.body, self.settings)
+        return contact_of(self.trajectory, self.intervals, self._covered, self.body, self.settings)
 
     @cached_property
     def ground_acceleration(self) -> FloatArray:
         """Horizontal acceleration of the ground at the samples; the motion's last value where it ends [m/s2]."""
-        h = self.scale * self.segments.horizontal
+        return self._at_samples(self.segments.horizontal)
+
+    @cached_property
+    def vertical_ground_acceleration(self) -> FloatArray | None:
+        """Vertical acceleration of the ground at the samples; None if the motion has no vertical part [m/s2]."""
+        return None if self.segments.vertical is None else self._at_samples(self.segments.vertical)
+
+    def _at_samples(self, polynomials: FloatArray) -> FloatArray:
+        h = self.scale * polynomials
         values = np.append(h[:, 0], 0.0)
         moving = np.flatnonzero(h.any(axis=1))
         if moving.size:
@@ -210,9 +236,10 @@ class Response:
         Raises
         ------
         InvalidValueError
-            If a time is not finite, or before the start or after the last sample by more than rounding.
+            If a time is not finite, or before the start or after the end by more than rounding: the last sample, or
+            where the body lies.
         """
-        intervals, end = self.intervals, float(self.time[-1])
+        intervals, end = self.intervals, float(self.intervals.end[-1])
         given = checks.real_array("time", time, "s")
         bad = given[~((given >= -_ROUNDING * end) & (given <= (1.0 + _ROUNDING) * end))]
         if bad.size:

@@ -7,7 +7,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
-from rocking.motions.motion import GroundMotion
+from rocking.motions.motion import GroundMotion, checked_motion
 
 
 def arias_intensity(motion: GroundMotion, gravity: float = g) -> float:
@@ -30,6 +30,7 @@ def arias_intensity(motion: GroundMotion, gravity: float = g) -> float:
     >>> round(arias_intensity(GroundMotion([1.0, 1.0], 2.0), gravity=math.pi), 12)
     1.0
     """
+    motion = checked_motion(motion)
     gravity = checks.positive("gravity", gravity, "m/s2")
     return 0.5 * math.pi / gravity * float(_energies(motion).sum())
 
@@ -54,6 +55,7 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
     InvalidValueError
         If a percentage is outside 0 to 100, these are not in order, or the motion is zero throughout.
     """
+    motion = checked_motion(motion)
     start = checks.within("start", start, 0.0, 100.0, unit="%")
     end = checks.within("end", end, start, 100.0, unit="%", open_low=True, hint="end must be above start")
     total = np.concatenate([[0.0], np.cumsum(_energies(motion))])

@@ -9,7 +9,7 @@ from rocking import checks
 from rocking.conventions import g
 from rocking.motions.energy import arias_intensity, significant_duration, significant_times
 from rocking.motions.kinematics import largest_displacement, largest_velocity
-from rocking.motions.motion import GroundMotion
+from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.spectrum import response_spectrum
 
 __all__ = [
@@ -64,6 +64,7 @@ def peak_ground_acceleration(motion: GroundMotion) -> float:
     float
         PGA [m/s2].
     """
+    motion = checked_motion(motion)
     return motion.peak
 
 
@@ -117,6 +118,7 @@ def cumulative_absolute_velocity(motion: GroundMotion) -> float:
     >>> cumulative_absolute_velocity(GroundMotion([1.0, -1.0], 1.0))
     0.5
     """
+    motion = checked_motion(motion)
     a, b = motion.acceleration[:-1], motion.acceleration[1:]
     size = np.abs(a) + np.abs(b)
     turns = (a < 0.0) != (b < 0.0)
@@ -141,6 +143,7 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
     float
         The intensity, by the trapezoidal rule with 0.01 s [m].
     """
+    motion = checked_motion(motion)
     pseudo = response_spectrum(motion, HOUSNER_PERIODS, damping).pseudo_velocity
     return float(np.trapezoid(pseudo, HOUSNER_PERIODS))
 
@@ -164,6 +167,7 @@ def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 
     float
         PSA [m/s2].
     """
+    motion = checked_motion(motion)
     return float(response_spectrum(motion, checks.positive("period", period, "s"), damping).pseudo_acceleration[0])
 
 
@@ -208,6 +212,7 @@ def normalised_velocity(
     float
         The ratio [-].
     """
+    motion = checked_motion(motion)
     p = checks.positive("frequency_parameter", frequency_parameter, "rad/s")
     return p * peak_ground_velocity(motion) / _threshold(slenderness_angle, gravity)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.motions.motion import GroundMotion
+from rocking.motions.motion import GroundMotion, checked_motion
 
 
 def ground_velocity(motion: GroundMotion) -> FloatArray:
@@ -24,6 +24,7 @@ def ground_velocity(motion: GroundMotion) -> FloatArray:
     >>> ground_velocity(GroundMotion([0.0, 2.0, 2.0], time_step=0.5)).tolist()
     [0.0, 0.5, 1.5]
     """
+    motion = checked_motion(motion)
     a = motion.acceleration
     return _summed(0.5 * motion.time_step * (a[:-1] + a[1:]))
 
@@ -46,6 +47,7 @@ def ground_displacement(motion: GroundMotion) -> FloatArray:
     >>> ground_displacement(GroundMotion([1.0, 1.0, 1.0], time_step=2.0)).tolist()
     [0.0, 2.0, 8.0]
     """
+    motion = checked_motion(motion)
     a, h = motion.acceleration, motion.time_step
     v = ground_velocity(motion)
     return _summed(h * v[:-1] + h * h / 6.0 * (2.0 * a[:-1] + a[1:]))
@@ -69,6 +71,7 @@ def largest_velocity(motion: GroundMotion) -> float:
     >>> largest_velocity(GroundMotion([1.0, -1.0], time_step=1.0))
     0.25
     """
+    motion = checked_motion(motion)
     a, v = motion.acceleration, ground_velocity(motion)
     turns = np.flatnonzero((a[:-1] < 0.0) != (a[1:] < 0.0))
     before, after = a[turns], a[turns + 1]
@@ -95,6 +98,7 @@ def largest_displacement(motion: GroundMotion) -> float:
     >>> round(largest_displacement(GroundMotion([1.0, -2.0], time_step=1.0)), 9)
     0.074074074
     """
+    motion = checked_motion(motion)
     a, h = motion.acceleration, motion.time_step
     v, u = ground_velocity(motion), ground_displacement(motion)
     start, rise = a[:-1], np.diff(a)

@@ -172,6 +172,38 @@ class GroundMotion:
         return self.changed(what, acceleration=self.acceleration * factor, vertical=vertical)
 
 
+def checked_motion(given: Any, name: str = "motion") -> GroundMotion:
+    """Return a motion if it is a record; all functions of records ask this first.
+
+    Parameters
+    ----------
+    given : GroundMotion
+        The motion.
+    name : str
+        What the parameter is called.
+
+    Returns
+    -------
+    GroundMotion
+        The same motion.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is anything else, such as a pulse.
+
+    Examples
+    --------
+    >>> checked_motion(GroundMotion([0.0, 1.0], 0.1)).peak
+    1.0
+    """
+    if not isinstance(given, GroundMotion):
+        raise InvalidValueError(
+            f"{name} must be a GroundMotion, got {given!r:.60}; a pulse becomes one by .sampled(time_step)"
+        )
+    return given
+
+
 def _samples(name: str, values: Any) -> FloatArray:
     given = np.array(checks.real_array(name, values, "m/s2"), dtype=np.float64)
     if given.ndim != 1 or given.size < 2:

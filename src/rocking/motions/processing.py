@@ -9,7 +9,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.kinematics import ground_velocity
-from rocking.motions.motion import GroundMotion
+from rocking.motions.motion import GroundMotion, checked_motion
 
 
 def demeaned(motion: GroundMotion) -> GroundMotion:
@@ -30,6 +30,7 @@ def demeaned(motion: GroundMotion) -> GroundMotion:
     >>> demeaned(GroundMotion([1.0, 3.0], 0.1)).acceleration.tolist()
     [-1.0, 1.0]
     """
+    motion = checked_motion(motion)
     return _each(motion, lambda part: part.acceleration - part.acceleration.mean(), "mean acceleration removed")
 
 
@@ -63,6 +64,7 @@ def detrended(
     >>> detrended(GroundMotion([2.0, 2.0, 2.0], 0.1)).peak < 1e-12
     True
     """
+    motion = checked_motion(motion)
     if isinstance(order, bool) or order not in {1, 2, 3}:
         raise InvalidValueError(f"order must be 1, 2 or 3, got {order!r}")
     if fit not in {"velocity", "acceleration"}:
@@ -93,6 +95,7 @@ def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
     >>> tapered(GroundMotion([1.0] * 5, 1.0), 0.5).acceleration.round(12).tolist()
     [0.0, 0.5, 1.0, 0.5, 0.0]
     """
+    motion = checked_motion(motion)
     fraction = checks.within("fraction", fraction, 0.0, 0.5, open_low=True, hint="share of the duration at each end")
     place = np.linspace(0.0, 1.0, len(motion))
     edge = np.minimum(np.minimum(place, 1.0 - place) / fraction, 1.0)
@@ -126,6 +129,7 @@ def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) ->
     InvalidValueError
         If the corners are not in order or the order is outside its range.
     """
+    motion = checked_motion(motion)
     from scipy.signal import butter, sosfiltfilt
 
     nyquist = 0.5 / motion.time_step

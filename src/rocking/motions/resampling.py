@@ -9,7 +9,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.energy import significant_times
-from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP, GroundMotion
+from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP, GroundMotion, checked_motion
 
 ROUNDING = 1e-6
 """A ratio of times this close to a whole number is one."""
@@ -47,6 +47,7 @@ def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
     >>> resampled(GroundMotion([0.0, 1.0], 0.1), 0.05).acceleration.tolist()
     [0.0, 0.5, 1.0]
     """
+    motion = checked_motion(motion)
     new = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
     ratio = new / motion.time_step
     if abs(ratio - 1.0) <= ROUNDING:
@@ -100,6 +101,7 @@ def trimmed(motion: GroundMotion, start: float, end: float) -> GroundMotion:
     >>> trimmed(GroundMotion([0.0, 1.0, 2.0, 3.0], 1.0), 1.0, 2.5).acceleration.tolist()
     [1.0, 2.0, 3.0]
     """
+    motion = checked_motion(motion)
     length = motion.duration
     start = checks.within("start", start, 0.0, length * (1.0 + 1e-9), unit="s")
     end = checks.within(
@@ -131,6 +133,7 @@ def trimmed_to_significant(
     GroundMotion
         The part.
     """
+    motion = checked_motion(motion)
     padding = checks.within("padding", padding, 0.0, math.inf, unit="s")
     first, last = significant_times(motion, start, end)
     return trimmed(motion, max(first - padding, 0.0), min(last + padding, motion.duration))
@@ -163,6 +166,7 @@ def padded(motion: GroundMotion, before: float, after: float | None = None) -> G
     >>> padded(GroundMotion([1.0, 2.0], 0.5), 0.5).acceleration.tolist()
     [0.0, 1.0, 2.0, 0.0]
     """
+    motion = checked_motion(motion)
     times = [checks.within("before", before, 0.0, math.inf, unit="s")]
     times.append(times[0] if after is None else checks.within("after", after, 0.0, math.inf, unit="s"))
     if sum(times) / motion.time_step > MOST_SAMPLES:

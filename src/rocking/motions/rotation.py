@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.errors import InvalidValueError
-from rocking.motions.motion import GroundMotion
+from rocking.motions.motion import GroundMotion, checked_motion
 
 ANGLES = np.radians(np.arange(180.0))
 """Directions for RotD: every degree over half a turn."""
@@ -78,6 +78,8 @@ def rotd_pga(first: GroundMotion, second: GroundMotion, percentile: float) -> fl
 
 
 def _matching(first: GroundMotion, second: GroundMotion) -> None:
+    checked_motion(first, "first")
+    checked_motion(second, "second")
     if len(first) != len(second) or not math.isclose(first.time_step, second.time_step, rel_tol=1e-9):
         raise InvalidValueError(
             "second must have the step and the length of first, "

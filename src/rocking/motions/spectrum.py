@@ -11,7 +11,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.kinematics import quadratic_roots
-from rocking.motions.motion import GroundMotion
+from rocking.motions.motion import GroundMotion, checked_motion
 
 POINTS_PER_PERIOD = 36
 """Steps are divided until there are so many points a period; between these, peaks are those of cubics."""
@@ -95,6 +95,7 @@ def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float =
     >>> spectrum.pseudo_acceleration.round(2).tolist()
     [2.0, 2.0]
     """
+    motion = checked_motion(motion)
     damping = checks.within("damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
     given = np.atleast_1d(checks.positive_array("periods", periods, "s"))
     if given.ndim != 1 or not given.size:

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping
-from datetime import datetime
+from datetime import UTC, datetime
 from os import PathLike
 from pathlib import Path
 
@@ -16,6 +16,8 @@ from rocking.motions.formats.source import Source
 from rocking.motions.motion import GroundMotion
 from rocking.motions.vertical import with_vertical
 
+_STARTS = ("starttime", "Record Time", "first time")
+"""What miniSEED and SAC, K-NET, and columns say about the time of the first sample."""
 
 def read_record(
     path: str | PathLike[str], format: str | None = None, units: str | None = None, time_step: float | None = None
@@ -215,22 +217,23 @@ def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same
     name = upright.metadata["component"]
     if same_file and name == motion.metadata["component"]:
         raise InvalidValueError(f"{beside.name} holds the horizontal component {name} and cannot be the vertical one")
-    starts = [_start(one) for one in (motion, upright)]
-    if starts[0] is not None and starts[1] is not None:
-        late = (starts[1] - starts[0]).total_seconds()
-        if abs(late) > 0.5 * motion.time_step:
-            raise beside.error(None, f"it starts {late:g} s after the horizontal component; trim both to one start")
+    for key in _STARTS:
+        if key in motion.metadata and key in upright.metadata:
+            late = _seconds(upright.metadata[key]) - _seconds(motion.metadata[key])
+            if abs(late) > 0.5 * motion.time_step:
+                raise beside.error(None, f"it starts {late:g} s after the horizontal component; trim both to one start")
     return with_vertical(motion, upright)
 
 
-def _start(motion: GroundMotion) -> datetime | None:
-    """Return when the record starts, where the file says so: miniSEED and SAC, K-NET."""
-    said = motion.metadata.get("starttime") or motion.metadata.get("Record Time") or ""
+def _seconds(said: str) -> float:
+    """Return a stated time in seconds since some instant; NaN, which is later than nothing, if it is not understood."""
+    number, space, unit = said.partition(" ")
     try:
-        # K-NET is in Japanese time and says no zone: it is compared with its like alone
-        return datetime.fromisoformat(said.replace("/", "-"))
+        if space and unit == "s":
+            return float(number)
+        return datetime.fromisoformat(said.replace("/", "-")).replace(tzinfo=UTC).timestamp()
     except ValueError:
-        return None
+        return float("nan")
 
 
 def _recognised(source: Source) -> RecordFormat:
