@@ -1,6 +1,7 @@
-"""The command line: `rocking cor`, `rocking paper`, `rocking models`."""
+"""The command line: `rocking cor`, `simulate`, `motion`, `formats`, `paper`, `models`."""
 
 import sys
+import warnings
 from collections.abc import Sequence
 
 
@@ -20,12 +21,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     from typer.exceptions import TyperException
 
     from rocking.cli.application import application
-    from rocking.errors import RockingError
+    from rocking.errors import RockingError, SlowEngineWarning
 
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        # without arguments the help is the answer
-        code = application()(args=words or ["--help"], prog_name="rocking", standalone_mode=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("once", SlowEngineWarning)
+            warnings.showwarning = _say
+            # without arguments the help is the answer
+            code = application()(args=words or ["--help"], prog_name="rocking", standalone_mode=False)
     except RockingError as error:
         print(f"rocking: {error}", file=sys.stderr)
         sys.exit(2)
@@ -40,3 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         print("rocking: interrupted", file=sys.stderr)
         sys.exit(130)
     sys.exit(code or 0)
+
+
+def _say(message: Warning | str, *_: object) -> None:
+    print(f"rocking: note: {message}", file=sys.stderr)

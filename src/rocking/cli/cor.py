@@ -11,9 +11,15 @@ _OUTPUT = "Output"
 
 def cor(
     body: Annotated[Path | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit.")] = None,
-    width: Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)] = None,
-    height: Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)] = None,
-    depth: Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --unit].", rich_help_panel=_BODY)] = None,
+    width: Annotated[
+        float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)
+    ] = None,
+    height: Annotated[
+        float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)
+    ] = None,
+    depth: Annotated[
+        float | None, typer.Option(help=r"Depth of a block \[m, or --unit].", rich_help_panel=_BODY)
+    ] = None,
     density: Annotated[float | None, typer.Option(help=r"Density \[kg/m3].", rich_help_panel=_BODY)] = None,
     angle: Annotated[
         float | None, typer.Option(help=r"Slenderness angle alpha = atan(b/h) \[rad].", rich_help_panel=_BODY)

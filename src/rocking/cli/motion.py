@@ -17,9 +17,7 @@ def motion(
     units: Annotated[
         str | None, typer.Option(help="Unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.", rich_help_panel=_FILE)
     ] = None,
-    time_step: Annotated[
-        float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)
-    ] = None,
+    time_step: Annotated[float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)] = None,
     component: Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)] = None,
     vertical: Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)] = None,
     vertical_file: Annotated[

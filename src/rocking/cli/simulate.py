@@ -27,9 +27,15 @@ def simulate(
     ] = "ked",
     scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
     friction: Annotated[float, typer.Option(help="Coefficient of friction between body and ground.")] = 0.5,
-    width: Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)] = None,
-    height: Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)] = None,
-    depth: Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --unit].", rich_help_panel=_BODY)] = None,
+    width: Annotated[
+        float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)
+    ] = None,
+    height: Annotated[
+        float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)
+    ] = None,
+    depth: Annotated[
+        float | None, typer.Option(help=r"Depth of a block \[m, or --unit].", rich_help_panel=_BODY)
+    ] = None,
     density: Annotated[float | None, typer.Option(help=r"Density \[kg/m3].", rich_help_panel=_BODY)] = None,
     angle: Annotated[
         float | None, typer.Option(help=r"Slenderness angle alpha = atan(b/h) \[rad].", rich_help_panel=_BODY)
@@ -46,9 +52,7 @@ def simulate(
     units: Annotated[
         str | None, typer.Option(help="Unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.", rich_help_panel=_FILE)
     ] = None,
-    time_step: Annotated[
-        float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)
-    ] = None,
+    time_step: Annotated[float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)] = None,
     component: Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)] = None,
     vertical: Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)] = None,
     vertical_file: Annotated[
@@ -56,7 +60,9 @@ def simulate(
     ] = None,
     linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
     engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
-    gravity: Annotated[float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)] = None,
+    gravity: Annotated[
+        float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)
+    ] = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw the response (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
     ] = None,

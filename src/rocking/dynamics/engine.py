@@ -80,7 +80,7 @@ def chosen(asked: str, law: ImpactLaw | None = None) -> str:
     given: object = asked
     if not isinstance(given, str) or asked not in ENGINES:
         raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {asked!r:.60}")
-    if asked != "reference" and law is not None and law.kind < 0:
+    if asked != "reference" and law is not None and not law.tabulated:
         if asked == "fast":
             raise InvalidValueError(f"the fast engine knows tables, not {type(law).__name__}; engine must be reference")
         return "reference"

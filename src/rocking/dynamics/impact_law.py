@@ -41,6 +41,11 @@ class ImpactLaw:
             )
 
     @property
+    def tabulated(self) -> bool:
+        """Whether the fast engine knows it; a class of your own is known by its `factor` alone."""
+        return type(self).__module__ == __name__
+
+    @property
     def largest(self) -> float:
         """Largest factor it can give [-]."""
         factors = getattr(self, "factors", None)

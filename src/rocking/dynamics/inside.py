@@ -13,12 +13,12 @@ from rocking.dynamics.taylor import series, shifted, slope, value
 from rocking.dynamics.trajectory import Trajectory
 from rocking.motions.segments import Segments
 
-LONG = 0.2
-"""An interval is long if p times its length is above this [-]; below, the curve between its ends holds to 1e-9."""
+LONG = 0.1
+"""An interval is long if p times its length is above this [-]; below, the curve between its ends holds to 1e-11."""
 
 _ORDER = 16
 # what the first power beyond a quintic may add within a part, over the angle
-_TOLERANCE = 1e-9
+_TOLERANCE = 1e-11
 _MOST_PARTS = 100_000
 _ROUNDING = 1e-12
 
@@ -89,6 +89,7 @@ class Inside:
         """
         fall, step = trajectory.overturning_time, self.segments.step
         length, turned = np.diff(time), after[:-1, 0] + before[1:, 0]
+        turned = np.where(turned != 0.0, turned, after[:-1, 1] - before[1:, 1])  # from impact to impact
         quickest = max(self.rocker.right.frequency_parameter, self.rocker.left.frequency_parameter)
         falls = (time[:-1] < fall - _ROUNDING * step) & (time[1:] > fall + _ROUNDING * step)
         found: list[tuple[float, float, float]] = []

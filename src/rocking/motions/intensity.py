@@ -143,7 +143,6 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
     float
         The intensity, by the trapezoidal rule with 0.01 s [m].
     """
-    motion = checked_motion(motion)
     pseudo = response_spectrum(motion, HOUSNER_PERIODS, damping).pseudo_velocity
     return float(np.trapezoid(pseudo, HOUSNER_PERIODS))
 
@@ -167,7 +166,6 @@ def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 
     float
         PSA [m/s2].
     """
-    motion = checked_motion(motion)
     return float(response_spectrum(motion, checks.positive("period", period, "s"), damping).pseudo_acceleration[0])
 
 
@@ -212,7 +210,6 @@ def normalised_velocity(
     float
         The ratio [-].
     """
-    motion = checked_motion(motion)
     p = checks.positive("frequency_parameter", frequency_parameter, "rad/s")
     return p * peak_ground_velocity(motion) / _threshold(slenderness_angle, gravity)
 

@@ -14,6 +14,7 @@ from rocking.cli import main
 from rocking.cli.simulate_json import as_json
 from rocking.cli.simulate_output import Answer
 from rocking.cli.simulate_page import show
+from rocking.dynamics import engine as fast_engine
 from rocking.evidence.coefficient_table import default_models
 
 G = 9.80665
@@ -265,3 +266,14 @@ def test_netcdf(capsys, tmp_path):
     assert run(capsys, *SIZE, PULSE, "--netcdf", path)[0] == 0
     with xarray.open_dataset(path, engine="h5netcdf") as found:
         np.testing.assert_array_equal(found["rotation"], rk.simulate(BLOCK, rk.pulses.sine(3.2, 0.8)).rotation)
+
+
+def test_a_missing_engine_is_said_once(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """One plain sentence on standard error, no Python warning, however many histories run."""
+    monkeypatch.setattr(fast_engine, "_module", lambda: None)
+    with pytest.raises(SystemExit) as left:
+        main(["simulate", "--width", "0.5", "--height", "2", "--motion", "sine:amplitude=3,period=0.8"])
+    said = capsys.readouterr().err.strip().splitlines()
+    assert left.value.code == 0
+    assert len(said) == 1
+    assert said[0].startswith("rocking: note: the fast engine was not built")

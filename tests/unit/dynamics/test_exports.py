@@ -21,18 +21,31 @@ RECORD = rk.GroundMotion(
     4.0 * np.sin(0.5 * np.arange(91)), 0.05, name=FORMULA,
     metadata={"station": "=1+1"}, provenance=("Tōhoku, read by hand", "cut"),
 )  # fmt: skip
+SHAKEN_UP = rk.GroundMotion(RECORD.acceleration, 0.05, vertical=2.0 * np.cos(0.3 * np.arange(91)))
 RESPONSES = {
     "rocked": rk.simulate(BLOCK, RECORD, "housner", duration=4.5, key=7),
     "free": rk.free_rocking(BLOCK, -0.1, {"left": 0.8, "right": 0.9}),
     "no uplift": rk.simulate(BLOCK, rk.pulses.sine(1.0, 0.5), "ked", duration=1.0),
     "overturned": rk.simulate(BLOCK, rk.pulses.sine(9.0, 1.0), "ked", scale=-1.0),
+    "beyond the top": rk.free_rocking(BLOCK, 0.3, "ked"),
+    "within the first step": rk.simulate(BLOCK, rk.GroundMotion(np.array([-200.0] * 3 + [0.0]), 1.0), "ked"),
+    "vertical": rk.simulate(BLOCK, SHAKEN_UP, "ked", scale=-0.5),
     "stopped": rk.free_rocking(BLOCK, 0.1, 0.95, most_impacts=4, duration=3.0, linear=True),
 }
 UNITS = {
     "time": "s", "rotation": "rad", "angular_velocity": "rad/s", "ground_acceleration": "m/s2", "kinetic_energy": "J",
     "potential_energy": "J", "work_of_ground": "J", "energy_lost": "J", "horizontal_force": "N", "vertical_force": "N",
 }  # fmt: skip
+UP = "vertical_ground_acceleration"
 every = pytest.mark.parametrize("kind", RESPONSES)
+
+
+def units(kind: str) -> dict[str, str]:
+    """Units by column; the vertical acceleration comes after the horizontal one, where there is one."""
+    if kind != "vertical":
+        return UNITS
+    names = list(UNITS)
+    return {name: UNITS.get(name, "m/s2") for name in [*names[:4], UP, *names[4:]]}
 
 
 @every
@@ -40,14 +53,15 @@ def test_columns(kind: str) -> None:
     """The columns are the response's own arrays under their names, all of one length and finite."""
     response = RESPONSES[kind]
     found = columns(response)
+    up = [] if response.vertical_ground_acceleration is None else [response.vertical_ground_acceleration]
     expected = (
-        response.time, response.rotation, response.angular_velocity, response.ground_acceleration,
+        response.time, response.rotation, response.angular_velocity, response.ground_acceleration, *up,
         response.energy.kinetic, response.energy.potential, response.energy.work, response.energy.lost,
         response.contact.horizontal, response.contact.vertical,
     )  # fmt: skip
-    assert list(found) == list(UNITS)
+    assert list(found) == list(units(kind))
     for values, wanted in zip(found.values(), expected, strict=True):
-        np.testing.assert_array_equal(values, wanted)
+        np.testing.assert_array_equal(values, wanted[: response.time.size])
         assert values.shape == response.time.shape
         assert np.isfinite(values).all()
 
@@ -59,7 +73,7 @@ def test_csv(kind: str, tmp_path: Path) -> None:
     assert path == tmp_path / "out.csv"
     with path.open(newline="", encoding="utf-8") as file:
         heading, *rows = csv.reader(file)
-    assert heading == [f"{name} [{unit}]" for name, unit in UNITS.items()]
+    assert heading == [f"{name} [{unit}]" for name, unit in units(kind).items()]
     table = np.array(rows, dtype=float)
     for k, values in enumerate(columns(RESPONSES[kind]).values()):
         assert table[:, k].tobytes() == values.tobytes()
@@ -81,13 +95,15 @@ def test_dataframe(kind: str) -> None:
     """The table has the columns of the CSV file, float64, bit for bit."""
     pytest.importorskip("pandas")
     frame = RESPONSES[kind].to_dataframe()
-    assert list(frame.columns) == [f"{name} [{unit}]" for name, unit in UNITS.items()]
+    assert list(frame.columns) == [f"{name} [{unit}]" for name, unit in units(kind).items()]
     for heading, values in zip(frame.columns, columns(RESPONSES[kind]).values(), strict=True):
         assert frame[heading].to_numpy().tobytes() == values.tobytes()
 
 
-def same_dataset(found: Any, response: rk.Response) -> None:
-    for (name, unit), values in zip(UNITS.items(), columns(response).values(), strict=True):
+def same_dataset(found: Any, kind: str) -> None:
+    response = RESPONSES[kind]
+    assert (UP in found) is (UP in units(kind))
+    for (name, unit), values in zip(units(kind).items(), columns(response).values(), strict=True):
         assert found[name].dims == ("time",)
         assert found[name].attrs["units"] == unit
         assert found[name].attrs["long_name"]
@@ -106,7 +122,7 @@ def same_dataset(found: Any, response: rk.Response) -> None:
 def test_xarray(kind: str) -> None:
     """The dataset holds samples over time and impacts over impact, with units, long names and provenance."""
     pytest.importorskip("xarray")
-    same_dataset(RESPONSES[kind].to_xarray(), RESPONSES[kind])
+    same_dataset(RESPONSES[kind].to_xarray(), kind)
 
 
 @every
@@ -117,7 +133,7 @@ def test_netcdf(kind: str, tmp_path: Path) -> None:
     pytest.importorskip("h5py")
     path = RESPONSES[kind].to_netcdf(tmp_path / "out.nc")
     with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as found:
-        same_dataset(found.load(), RESPONSES[kind])
+        same_dataset(found.load(), kind)
 
 
 @every
@@ -129,12 +145,22 @@ def test_mat(kind: str, tmp_path: Path) -> None:
     found = loadmat(path, simplify_cells=True)["rocking"]
     for name, values in columns(response).items():
         assert np.atleast_1d(found[name]).tobytes() == values.tobytes()
-        assert found["units"][name] == UNITS[name]
+        assert found["units"][name] == units(kind)[name]
     for name in ("time", "velocity_before", "velocity_after", "coefficient"):
         np.testing.assert_array_equal(np.atleast_1d(found["impacts"][name]), response.impacts[name])
     signs = np.where(response.impacts["onto"] == "right", 1.0, -1.0)
     np.testing.assert_array_equal(np.atleast_1d(found["impacts"]["onto"]), signs)
     assert json.loads(found["provenance"]) == provenance(response)
+
+
+def test_vertical_acceleration_is_the_scaled_record() -> None:
+    """The vertical column is the vertical part of the record times the scale, and zero once that is over."""
+    found = columns(RESPONSES["vertical"])[UP]
+    assert SHAKEN_UP.vertical is not None
+    np.testing.assert_allclose(found[:91], -0.5 * SHAKEN_UP.vertical, atol=1e-14)
+    assert found.size > 91
+    assert not found[91:].any()
+    assert UP not in columns(RESPONSES["rocked"])
 
 
 def test_provenance() -> None:
@@ -151,6 +177,7 @@ def test_provenance() -> None:
     assert found["summary"] == RESPONSES["rocked"].summary
     free = provenance(RESPONSES["free"])
     assert (free["motion"], free["restitution"]) == ("none: free rocking", "left 0.8, right 0.9")
+    assert free["motion_provenance"] == "ground at rest"
     pulse = provenance(RESPONSES["overturned"])
     assert "Sinusoids" in pulse["motion_provenance"]
     assert pulse["scale"] == -1.0

@@ -221,3 +221,17 @@ def test_a_law_beyond_its_largest_factor() -> None:
     """What a law returns is checked at every impact."""
     with pytest.raises(InvalidValueError, match=r"Wild.factor must be in \[0, 1\]"):
         rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, Wild())
+
+
+class Capped(rk.SpeedRestitution):
+    """A table with a cap that the table does not know."""
+
+    def factor(self, speed: float, key: int, impact: int) -> float:
+        return min(0.5, super().factor(speed, key, impact))
+
+
+def test_a_law_derived_from_a_table() -> None:
+    """What a subclass overrides is not ignored: it runs on the reference engine."""
+    response = rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, Capped([0.0, 1.0], [0.9, 0.8]))
+    assert response.engine.startswith("reference")
+    assert set(response.impacts["coefficient"]) == {0.5}

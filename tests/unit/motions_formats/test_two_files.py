@@ -28,7 +28,9 @@ def written(
     return path
 
 
-@pytest.mark.parametrize(("format", "name", "up"), [("peer", "90", "UP"), ("esm", "HNE", "HNZ"), ("knet", "E-W", "U-D")])
+@pytest.mark.parametrize(
+    ("format", "name", "up"), [("peer", "90", "UP"), ("esm", "HNE", "HNZ"), ("knet", "E-W", "U-D")]
+)
 def test_two_files_are_one_motion(format: str, name: str, up: str, tmp_path: Path) -> None:
     """Samples of either file to the digits of its format, both digests, both names; and never the wrong way round."""
     along, upright = written(tmp_path, format, name, ALONG), written(tmp_path, format, up, UP)

@@ -19,6 +19,7 @@ from rocking.motions.vertical import with_vertical
 _STARTS = ("starttime", "Record Time", "first time")
 """What miniSEED and SAC, K-NET, and columns say about the time of the first sample."""
 
+
 def read_record(
     path: str | PathLike[str], format: str | None = None, units: str | None = None, time_step: float | None = None
 ) -> Record:
@@ -226,7 +227,7 @@ def _joined(motion: GroundMotion, upright: GroundMotion, beside: Source, *, same
 
 
 def _seconds(said: str) -> float:
-    """Return a stated time in seconds since some instant; NaN, which is later than nothing, if it is not understood."""
+    """Return a stated time in seconds since some instant; NaN, which no comparison finds late, if it is unclear."""
     number, space, unit = said.partition(" ")
     try:
         if space and unit == "s":

@@ -1,0 +1,100 @@
+"""`--vertical-file` of `rocking simulate` and `rocking motion`: the vertical component in a file of its own."""
+
+import json
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.cli import main
+from rocking.motions.formats import Component, Record, write_record
+
+SIZE = ("--width", "0.5", "--height", "2")
+TIME = np.arange(100) * 0.02
+ALONG, UP = 3.2 * np.sin(2.5 * np.pi * TIME), 2.0 * np.cos(4.0 * np.pi * TIME)
+
+
+def run(capsys, *words):
+    """Exit code, standard output and standard error of `rocking WORDS`."""
+    with pytest.raises(SystemExit) as stop:
+        main([str(word) for word in words])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+def answered(capsys, *words):
+    """The JSON of `rocking WORDS`."""
+    code, out, err = run(capsys, *words, "--json")
+    assert (code, err) == (0, "")
+    return json.loads(out)
+
+
+@pytest.fixture
+def files(tmp_path):
+    """A PEER file of the horizontal component and one of the vertical."""
+    paths = []
+    for name, values in (("90", ALONG), ("UP", UP)):
+        paths.append(tmp_path / f"{name}.at2")
+        metadata = {"event": "Somewhere", "station": "Cellar"}
+        write_record(Record("peer", (Component(name, values, "m/s2", 0.02),), metadata=metadata), paths[-1], "peer")
+    return paths
+
+
+def test_both_files_reach_the_engine(capsys, files):
+    """The response is that of Python with both files, to the last digit, and not the one without the second."""
+    along, up = files
+    motion = rk.read_motion(along, vertical_path=up)
+    expected = rk.simulate(rk.Block(width=0.5, height=2.0), motion)
+    assert answered(capsys, "simulate", *SIZE, along, "--vertical-file", up)["peak_rotation_rad"] == (
+        expected.peak_rotation
+    )
+    assert answered(capsys, "simulate", *SIZE, along)["peak_rotation_rad"] != expected.peak_rotation
+
+
+def test_motion_tells_both(capsys, files, tmp_path):
+    """`rocking motion` tells the peak and the name of the vertical part, both files, and writes its samples."""
+    along, up = files
+    answer = answered(capsys, "motion", along, "--vertical-file", up, "--csv", tmp_path / "out.csv")
+    assert answer["intensity"]["pga_m_s2"] == pytest.approx(np.abs(ALONG).max(), rel=1e-6)
+    assert answer["peak_vertical_acceleration_m_s2"] == pytest.approx(2.0, rel=1e-6)
+    assert answer["vertical_component"] == "UP"
+    assert [name in line for name, line in zip(("90.at2", "UP.at2"), answer["provenance"], strict=True)] == [True] * 2
+    assert "vertical_acceleration_m_s2" in (tmp_path / "out.csv").read_text(encoding="utf-8")
+    assert "upwards" in run(capsys, "motion", along, "--vertical-file", up)[1]
+    assert answered(capsys, "motion", along)["peak_vertical_acceleration_m_s2"] is None
+
+
+def test_a_file_of_several_components(capsys, files, tmp_path):
+    """--vertical names the component of the second file, --component that of the first, which are chosen apart."""
+    table = tmp_path / "table.txt"
+    table.write_text("\n".join(f"{t:.2f} {a:.7f} {b:.7f}" for t, a, b in zip(TIME, ALONG, UP, strict=True)))
+    words = ("motion", table, "--units", "m/s2")
+    beside = (*words, "--vertical-file", table, "--vertical", "column 3")
+    both = answered(capsys, *beside, "--component", "column 2")
+    assert both["peak_vertical_acceleration_m_s2"] == pytest.approx(2.0, rel=1e-6)
+    code, out, err = run(capsys, *beside)
+    assert (code, out) == (2, "")
+    assert "say --component one of these; that is, --component 'column 2' or --component 'column 3'" in err
+    assert "say --vertical one of these" in run(capsys, *words[:2], *beside[2:6], "--component", "column 2")[2]
+
+
+def test_refusals(capsys, files, tmp_path):
+    """A pulse or free rocking takes no such file; a missing, equal or ill-timed one is refused in one sentence."""
+    along, up = files
+    slow = tmp_path / "slow.at2"
+    write_record(Record("peer", (Component("UP", UP, "m/s2", 0.04),)), slow, "peer")
+    pulse = "sine:amplitude=3.2,period=0.8"
+    for words, sentence in (
+        (("motion", pulse, "--vertical-file", up), "a pulse takes no --vertical-file"),
+        (("simulate", *SIZE, pulse, "--vertical-file", up), "a pulse takes no --vertical-file"),
+        (("simulate", *SIZE, "--free", "0.5", "--vertical-file", up), "so it takes no --vertical-file"),
+        (("motion", along, "--vertical-file", "none.at2"), "none.at2: no such file"),
+        (("motion", along, "--vertical-file", pulse), "no such file"),
+        (("motion", along, "--vertical-file", along), "cannot be the vertical one"),
+        (("motion", along, "--vertical-file", slow), "0.02 s, got 0.04 s; resample one first"),
+    ):
+        code, out, err = run(capsys, *words)
+        assert (code, out) == (2, "")
+        assert sentence in err
+        assert err.startswith("rocking: ")
+        assert err.count("\n") == 1
