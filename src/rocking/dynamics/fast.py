@@ -61,7 +61,8 @@ def run_fast(
     )
     outcome = _OUTCOMES[out["outcome"][0]]
     if outcome in {Outcome.OVERTURNED, Outcome.FAILED}:
-        after = _last_written(rotations, velocities)
+        latest = max((event[0] for event in noted), default=0.0)
+        after = max(_last_written(rotations, velocities), int(latest / segments.step) + 1)
         rotations[after:] = velocities[after:] = np.nan
     return Trajectory(
         rotation=rotations,

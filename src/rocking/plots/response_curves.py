@@ -108,7 +108,7 @@ def shown_until(response: Response) -> float:
     float
         Time, at most the end of the response [s].
     """
-    end = float(response.time[-1])
+    end = float(response.time[-1]) or float(response.intervals.end[-1])  # it may lie before the second sample
     if response.outcome is Outcome.OVERTURNED or not response.trajectory.events:
         return end if response.outcome is not Outcome.NO_UPLIFT else min(end, _quiet_end(response))
     last = max(event.time for event in response.trajectory.events)

@@ -220,3 +220,12 @@ def test_curves_between_samples():
     time = np.linspace(0.0, 0.55, 7)
     np.testing.assert_allclose(velocity_at(rocking, time), -0.4 * ALPHA * P * np.sinh(P * time), atol=1e-7)
     assert shown_until(rocking) <= rocking.time[-1]
+
+
+def test_a_body_that_lies_within_the_first_step() -> None:
+    """It is drawn up to the fall, without a warning."""
+    response = simulate(Block(width=0.5, height=2.0), GroundMotion([-200.0, -200.0, -200.0, 0.0], 1.0))
+    assert response.time.size == 1
+    left, right = response_picture(response).axes[0].get_xlim()
+    assert (left, right) == (0.0, response.intervals.end[-1])
+    assert right > response.overturning_time
