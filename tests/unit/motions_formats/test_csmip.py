@@ -205,3 +205,13 @@ def test_round_trips(kind: RecordFormat, factor: float, digit: float, made_up) -
         np.testing.assert_allclose(new.acceleration, factor * old.acceleration, atol=digit, rtol=0.0)
     with pytest.raises(RecordError, match="does not fit"):
         kind.write(made_up("90", scale=1e6))
+
+
+def test_v2_damaged_line_of_the_peak(made_up) -> None:
+    """A line that states a peak but cannot be read is refused, not passed over."""
+    text = V2.write(made_up("90")).decode()
+    whole = next(line for line in text.splitlines() if line.startswith("PEAK ACCELERATION"))
+    V2.read(Source("whole", text.encode()))
+    for damaged in (whole.replace("= ", "=7 "), whole.replace("AT", "A T"), whole.replace("CM/", "CM")):
+        with pytest.raises(RecordError, match=r"line 18.*PEAK ACCELERATION = ... CM/SEC/SEC AT"):
+            V2.read(Source("damaged", text.replace(whole, damaged).encode()))

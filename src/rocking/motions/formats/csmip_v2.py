@@ -20,6 +20,7 @@ _BLOCK = re.compile(
     r"\s*(\d+)\s+POINTS OF (ACCEL|VELOC|DISPL) DATA EQUALLY SPACED AT\s+(\S+?)\s*SEC[.,]?\s*(.*)", re.IGNORECASE
 )
 _PEAK = re.compile(r"\s*PEAK\s+ACCELERATION\s*=\s*(\S+)\s+CM/SEC/SEC\s+AT\s+(\S+)\s+SEC\b.*", re.IGNORECASE)
+_SAYS_PEAK = re.compile(r"\s*PEAK\s+ACCELERATION\s*=", re.IGNORECASE)
 _POINTS = re.compile(r"\s*(\d+)\s+POINTS OF INSTRUMENT", re.IGNORECASE)
 _TEXT_LINES, _HEADER_LINES = 25, 45
 _STEP, _PEAKS = 60, {"ACCEL": (64, 65), "VELOC": (66, 67), "DISPL": (68, 69)}
@@ -168,6 +169,8 @@ def _check_block(
 def _check_texts(source: Source, first: int, texts: list[str], values: FloatArray, step: float) -> None:
     for line, text in enumerate(texts, first):
         peak, points = _PEAK.fullmatch(text), _POINTS.match(text)
+        if _SAYS_PEAK.match(text) and not peak:
+            raise source.error(line, f"PEAK ACCELERATION = ... CM/SEC/SEC AT ... SEC expected, got {text[:60]!r}")
         if peak:
             check_peak(source, number(source, line, peak[1], "peak"), values, _ROUNDING)
             check_peak_time(source, number(source, line, peak[2], "time"), values, step, _ROUNDING)
