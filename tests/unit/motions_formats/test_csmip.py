@@ -212,6 +212,6 @@ def test_v2_damaged_line_of_the_peak(made_up) -> None:
     text = V2.write(made_up("90")).decode()
     whole = next(line for line in text.splitlines() if line.startswith("PEAK ACCELERATION"))
     V2.read(Source("whole", text.encode()))
-    for damaged in (whole.replace("= ", "=7 "), whole.replace("AT", "A T"), whole.replace("CM/", "CM")):
+    for damaged in (whole.replace("= ", "=7 "), whole.replace(" AT ", " A "), whole.replace("CM/", "CM")):
         with pytest.raises(RecordError, match=r"line 18.*PEAK ACCELERATION = ... CM/SEC/SEC AT"):
             V2.read(Source("damaged", text.replace(whole, damaged).encode()))
