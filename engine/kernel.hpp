@@ -21,7 +21,7 @@ namespace ROCKING_ISA {
 
 constexpr double kWhole = 1.0 - 1e-13;  // a step that ends this close to the end of its stretch ends with it
 constexpr double kMostError = 0.01;     // sum of error estimates above which nothing is claimed [rad]
-constexpr double kMostSteps = 2e8;      // steps of a history
+constexpr double kMostSteps = 2e7;      // steps of a history
 constexpr double kLongest = 40.0;       // stretches that flights to rest may take
 constexpr double kHeights = 0.1;        // what the heights of these flights may add to the logarithm of their gain
 constexpr double kNothing = 1e-9;       // speeds over p alpha that are as good as none
