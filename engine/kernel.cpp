@@ -5,9 +5,9 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Four registers' worth of lanes side by side hide the latency of the multiply-adds, and three groups of them fill the
+// Four registers' worth of lanes side by side hide the latency of the multiply-adds, and two groups of them fill the
 // registers of those that land; a single history takes one.
-constexpr int kMany = 4, kGroups = 3;
+constexpr int kMany = 4, kGroups = 2;
 
 Run kernel_for(bool single, const Choice& c) {
     if (c.order == 8) {
