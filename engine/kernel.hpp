@@ -121,7 +121,6 @@ class Kernel {
     bool beyond_return(int i) const;
     const Bounds& bounds_at(int i) const;
     void holding(int i, int side, std::int64_t at, double* d) const;
-    double held_at(int i, int side, std::int64_t at) const;
     double release(int i, int side, std::int64_t at, double from) const;
 
     struct Window {

@@ -37,7 +37,6 @@ struct Pack {
     Pack(__m512d v) : r(v) {}
     Pack(double v) : r(_mm512_set1_pd(v)) {}
     static Pack load(const double* p) { return _mm512_load_pd(p); }
-    static Pack unaligned(const double* p) { return _mm512_loadu_pd(p); }
     void store(double* p) const { _mm512_store_pd(p, r); }
     static Pack gather(const double* base, Pack index) {
         return _mm512_i32gather_pd(_mm512_cvtpd_epi32(index.r), base, 8);
@@ -51,8 +50,6 @@ inline Pack fma(Pack a, Pack b, Pack c) { return _mm512_fmadd_pd(a.r, b.r, c.r);
 inline Pack fnma(Pack a, Pack b, Pack c) { return _mm512_fnmadd_pd(a.r, b.r, c.r); }
 inline Pack abs(Pack a) { return _mm512_abs_pd(a.r); }
 inline Pack sqrt(Pack a) { return _mm512_sqrt_pd(a.r); }
-inline double least(Pack a) { return _mm512_reduce_min_pd(a.r); }
-inline double greatest(Pack a) { return _mm512_reduce_max_pd(a.r); }
 inline Pack min(Pack a, Pack b) { return _mm512_min_pd(a.r, b.r); }
 inline Pack max(Pack a, Pack b) { return _mm512_max_pd(a.r, b.r); }
 inline Mask operator<(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.r, b.r, _CMP_LT_OQ)}; }
@@ -79,7 +76,6 @@ struct Pack {
     Pack(__m256d v) : r(v) {}
     Pack(double v) : r(_mm256_set1_pd(v)) {}
     static Pack load(const double* p) { return _mm256_load_pd(p); }
-    static Pack unaligned(const double* p) { return _mm256_loadu_pd(p); }
     void store(double* p) const { _mm256_store_pd(p, r); }
     static Pack gather(const double* base, Pack index) {
         return _mm256_i32gather_pd(base, _mm256_cvtpd_epi32(index.r), 8);
@@ -93,14 +89,6 @@ inline Pack fma(Pack a, Pack b, Pack c) { return _mm256_fmadd_pd(a.r, b.r, c.r);
 inline Pack fnma(Pack a, Pack b, Pack c) { return _mm256_fnmadd_pd(a.r, b.r, c.r); }
 inline Pack abs(Pack a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.r); }
 inline Pack sqrt(Pack a) { return _mm256_sqrt_pd(a.r); }
-inline double least(Pack a) {
-    const __m128d b = _mm_min_pd(_mm256_castpd256_pd128(a.r), _mm256_extractf128_pd(a.r, 1));
-    return _mm_cvtsd_f64(_mm_min_sd(b, _mm_unpackhi_pd(b, b)));
-}
-inline double greatest(Pack a) {
-    const __m128d b = _mm_max_pd(_mm256_castpd256_pd128(a.r), _mm256_extractf128_pd(a.r, 1));
-    return _mm_cvtsd_f64(_mm_max_sd(b, _mm_unpackhi_pd(b, b)));
-}
 inline Pack min(Pack a, Pack b) { return _mm256_min_pd(a.r, b.r); }
 inline Pack max(Pack a, Pack b) { return _mm256_max_pd(a.r, b.r); }
 inline Mask operator<(Pack a, Pack b) { return {_mm256_cmp_pd(a.r, b.r, _CMP_LT_OQ)}; }
@@ -127,7 +115,6 @@ struct Pack {
     Pack() = default;
     Pack(double v) { ROCKING_EACH r[i] = v; }
     static Pack load(const double* p) { Pack a; ROCKING_EACH a.r[i] = p[i]; return a; }
-    static Pack unaligned(const double* p) { return load(p); }
     void store(double* p) const { ROCKING_EACH p[i] = r[i]; }
     static Pack gather(const double* base, Pack index) {
         Pack a; ROCKING_EACH a.r[i] = base[static_cast<std::int64_t>(index.r[i])]; return a;
@@ -146,8 +133,6 @@ inline Pack fma(Pack a, Pack b, Pack c) { ROCKING_EACH a.r[i] = ROCKING_SCALAR_F
 inline Pack fnma(Pack a, Pack b, Pack c) { ROCKING_EACH a.r[i] = ROCKING_SCALAR_FMA(-a.r[i], b.r[i], c.r[i]); return a; }
 inline Pack abs(Pack a) { ROCKING_EACH a.r[i] = std::fabs(a.r[i]); return a; }
 inline Pack sqrt(Pack a) { ROCKING_EACH a.r[i] = std::sqrt(a.r[i]); return a; }
-inline double least(Pack a) { ROCKING_EACH a.r[0] = a.r[i] < a.r[0] ? a.r[i] : a.r[0]; return a.r[0]; }
-inline double greatest(Pack a) { ROCKING_EACH a.r[0] = a.r[i] > a.r[0] ? a.r[i] : a.r[0]; return a.r[0]; }
 inline Pack min(Pack a, Pack b) { ROCKING_EACH a.r[i] = a.r[i] < b.r[i] ? a.r[i] : b.r[i]; return a; }
 inline Pack max(Pack a, Pack b) { ROCKING_EACH a.r[i] = a.r[i] > b.r[i] ? a.r[i] : b.r[i]; return a; }
 inline Mask operator<(Pack a, Pack b) { Mask m; ROCKING_EACH m.m[i] = a.r[i] < b.r[i]; return m; }

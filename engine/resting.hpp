@@ -26,15 +26,6 @@ void Kernel<G, U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double*
     }
 }
 
-// The same at a sample.
-ROCKING_KERNEL
-double Kernel<G, U, N, D, Z, L>::held_at(int i, int side, std::int64_t at) const {
-    const Lane& lane = lanes[i];
-    const Side& s = lane.sides[side > 0 ? 0 : 1];
-    const double weight = Z ? 1.0 + lane.az * motions.data[at + 1] : 1.0;
-    return weight * s.sine + side * lane.ax * motions.data[at] * s.cosine;
-}
-
 // First instant of the stretch, from `from` on, at which a side is no longer held down; 2 if it is throughout.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, double from) const {

@@ -28,21 +28,6 @@ class Push:
     horizontal: FloatArray
     vertical: FloatArray
 
-    def at_end(self, series: FloatArray) -> FloatArray:
-        """Return the values at the ends of the stretches.
-
-        Parameters
-        ----------
-        series : ndarray
-            Either component.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            The values [-].
-        """
-        return np.asarray(series.sum(axis=1))
-
 
 @dataclass(frozen=True)
 class Window:
