@@ -5,31 +5,20 @@ from typing import Annotated
 
 import typer
 
-_BODY = "Size"
+from rocking.cli import shared_options as shared
+
 _OUTPUT = "Output"
 
 
 def cor(
     body: Annotated[Path | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit.")] = None,
-    width: Annotated[
-        float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)
-    ] = None,
-    height: Annotated[
-        float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)
-    ] = None,
-    depth: Annotated[
-        float | None, typer.Option(help=r"Depth of a block \[m, or --unit].", rich_help_panel=_BODY)
-    ] = None,
-    density: Annotated[float | None, typer.Option(help=r"Density \[kg/m3].", rich_help_panel=_BODY)] = None,
-    angle: Annotated[
-        float | None, typer.Option(help=r"Slenderness angle alpha = atan(b/h) \[rad].", rich_help_panel=_BODY)
-    ] = None,
-    semi_diagonal: Annotated[
-        float | None, typer.Option(help=r"Semi-diagonal R, with --angle \[m, or --unit].", rich_help_panel=_BODY)
-    ] = None,
-    unit: Annotated[
-        str | None, typer.Option(help="Unit of all lengths: m (default), cm, mm, ft, in.", rich_help_panel=_BODY)
-    ] = None,
+    width: shared.Width = None,
+    height: shared.Height = None,
+    depth: shared.Depth = None,
+    density: shared.Density = None,
+    angle: shared.Angle = None,
+    semi_diagonal: shared.SemiDiagonal = None,
+    unit: shared.Unit = None,
     onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
     model: Annotated[
         list[str] | None,

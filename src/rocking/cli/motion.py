@@ -5,24 +5,19 @@ from typing import Annotated
 
 import typer
 
-_FILE = "What the file leaves open"
+from rocking.cli import shared_options as shared
+
 _OUTPUT = "Output"
 
 
 def motion(
     record: Annotated[str, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")],
-    format: Annotated[
-        str | None, typer.Option(help="Format, if not found by content: see rocking formats.", rich_help_panel=_FILE)
-    ] = None,
-    units: Annotated[
-        str | None, typer.Option(help="Unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.", rich_help_panel=_FILE)
-    ] = None,
-    time_step: Annotated[float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)] = None,
-    component: Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)] = None,
-    vertical: Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)] = None,
-    vertical_file: Annotated[
-        str | None, typer.Option(help="File of the vertical component, where it has its own.", rich_help_panel=_FILE)
-    ] = None,
+    format: shared.Format = None,
+    units: shared.Units = None,
+    time_step: shared.TimeStep = None,
+    component: shared.Component = None,
+    vertical: shared.Vertical = None,
+    vertical_file: shared.VerticalFile = None,
     scale: Annotated[float | None, typer.Option(help="Factor on the acceleration.")] = None,
     damping: Annotated[float, typer.Option(help="Damping ratio of the spectrum.")] = 0.05,
     periods: Annotated[

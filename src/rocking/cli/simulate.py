@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-_BODY = "Size, in place of a body file"
-_FILE = "What a record file leaves open"
+from rocking.cli import shared_options as shared
+
 _HOW = "How it is computed"
 _OUTPUT = "Output"
 
@@ -27,37 +27,19 @@ def simulate(
     ] = "ked",
     scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
     friction: Annotated[float, typer.Option(help="Coefficient of friction between body and ground.")] = 0.5,
-    width: Annotated[
-        float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)
-    ] = None,
-    height: Annotated[
-        float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)
-    ] = None,
-    depth: Annotated[
-        float | None, typer.Option(help=r"Depth of a block \[m, or --unit].", rich_help_panel=_BODY)
-    ] = None,
-    density: Annotated[float | None, typer.Option(help=r"Density \[kg/m3].", rich_help_panel=_BODY)] = None,
-    angle: Annotated[
-        float | None, typer.Option(help=r"Slenderness angle alpha = atan(b/h) \[rad].", rich_help_panel=_BODY)
-    ] = None,
-    semi_diagonal: Annotated[
-        float | None, typer.Option(help=r"Semi-diagonal R, with --angle \[m, or --unit].", rich_help_panel=_BODY)
-    ] = None,
-    unit: Annotated[
-        str | None, typer.Option(help="Unit of all lengths: m (default), cm, mm, ft, in.", rich_help_panel=_BODY)
-    ] = None,
-    format: Annotated[
-        str | None, typer.Option(help="Format, if not found by content: see rocking formats.", rich_help_panel=_FILE)
-    ] = None,
-    units: Annotated[
-        str | None, typer.Option(help="Unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.", rich_help_panel=_FILE)
-    ] = None,
-    time_step: Annotated[float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)] = None,
-    component: Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)] = None,
-    vertical: Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)] = None,
-    vertical_file: Annotated[
-        str | None, typer.Option(help="File of the vertical component, where it has its own.", rich_help_panel=_FILE)
-    ] = None,
+    width: shared.Width = None,
+    height: shared.Height = None,
+    depth: shared.Depth = None,
+    density: shared.Density = None,
+    angle: shared.Angle = None,
+    semi_diagonal: shared.SemiDiagonal = None,
+    unit: shared.Unit = None,
+    format: shared.Format = None,
+    units: shared.Units = None,
+    time_step: shared.TimeStep = None,
+    component: shared.Component = None,
+    vertical: shared.Vertical = None,
+    vertical_file: shared.VerticalFile = None,
     linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
     engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
     gravity: Annotated[

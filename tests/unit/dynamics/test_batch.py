@@ -232,3 +232,15 @@ def test_libraries() -> None:
             Library(motions)
     with_vertical = Segments.between_samples(0.05, np.zeros(60), np.zeros(60))
     assert same(run("fast", motions=(MOTION, with_vertical)), run("fast")), "zeros stand for no vertical part"
+
+
+@every_engine
+def test_speed_of_the_first_impact_after_the_motion(name: str) -> None:
+    """A body that still falls when the motion ends lands with p sqrt(2 (cos(alpha - theta) - cos alpha))."""
+    alpha, p, start = 0.25, 2.0, 0.1
+    values = {f"{key}_{side}": x for key, x in (("alpha", alpha), ("p", p), ("r", 0.9)) for side in ("right", "left")}
+    batch = Batch([Segments.still(0.01, 2)], threads=1, engine=name)
+    found, _ = batch.run(1, lambda first, last: Rows.of(last - first, rotation=start, **values))
+    landing = p * math.sqrt(2.0 * (math.cos(alpha - start) - math.cos(alpha)))
+    assert found["peak_velocity"][0] == pytest.approx(landing, rel=1e-12)
+    assert found["impacts"][0] == 0

@@ -1,0 +1,32 @@
+"""Options that several commands share: the size of a body, and what a record file leaves open."""
+
+from typing import Annotated
+
+import typer
+
+_BODY = "Size, in place of a body file"
+_FILE = "What a record file leaves open"
+
+Width = Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)]
+Height = Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)]
+Depth = Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --unit].", rich_help_panel=_BODY)]
+Density = Annotated[float | None, typer.Option(help=r"Density \[kg/m3].", rich_help_panel=_BODY)]
+Angle = Annotated[
+    float | None, typer.Option(help=r"Slenderness angle alpha = atan(b/h) \[rad].", rich_help_panel=_BODY)
+]
+SemiDiagonal = Annotated[
+    float | None, typer.Option(help=r"Semi-diagonal R, with --angle \[m, or --unit].", rich_help_panel=_BODY)
+]
+Unit = Annotated[
+    str | None, typer.Option(help="Unit of all lengths: m (default), cm, mm, ft, in.", rich_help_panel=_BODY)
+]
+Format = Annotated[
+    str | None, typer.Option(help="Format, if not found by content: see rocking formats.", rich_help_panel=_FILE)
+]
+Units = Annotated[str | None, typer.Option(help="Unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.", rich_help_panel=_FILE)]
+TimeStep = Annotated[float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)]
+Component = Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)]
+Vertical = Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)]
+VerticalFile = Annotated[
+    str | None, typer.Option(help="File of the vertical component, where it has its own.", rich_help_panel=_FILE)
+]
