@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -111,12 +112,14 @@ class Batch:
 
     def __post_init__(self) -> None:
         """Check the threads."""
-        threads: object = self.threads
-        if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
-            raise InvalidValueError(f"threads must be a whole number >= 1, got {self.threads!r}")
+        _check_threads(self.threads)
 
     def run(
-        self, count: int, rows: Callable[[int, int], Rows], progress: Callable[[int], None] | None = None
+        self,
+        count: int,
+        rows: Callable[[int, int], Rows],
+        progress: Callable[[int], None] | None = None,
+        threads: int | None = None,
     ) -> tuple[fast_engine.Arrays, dict[str, int]]:
         """Return the results of many histories.
 
@@ -128,6 +131,8 @@ class Batch:
             Returns the rows from a first up to but not including a last one; called for one piece after another.
         progress : callable, optional
             Called with the number of histories done since the last call.
+        threads : int, optional
+            Threads of the fast engine in this run; those of the batch, if not given.
 
         Returns
         -------
@@ -144,11 +149,12 @@ class Batch:
         given: object = progress
         if given is not None and not callable(given):
             raise InvalidValueError(f"progress must be a function of the histories done, or None, got {given!r:.60}")
+        _check_threads(threads)
         quick = fast_engine.chosen(self.engine, self.law) == "fast"
         self._check_order(quick=quick)
         results = fast_engine.empty_results(count)
         total: dict[str, int] = {}
-        library = fast_engine.Library(list(self.motions)) if quick else None
+        library = self._library if quick else None
         for first in range(0, count, PIECE):
             last = min(first + PIECE, count)
             out = {name: values[first:last] for name, values in results.items()}
@@ -158,13 +164,17 @@ class Batch:
             else:
                 done = fast_engine.module().run_batch(
                     library.handle, {**piece.values, "motion": piece.motion, "key": piece.key}, out,
-                    order=self.settings.order, threads=self.threads or _processors(), chunk=_CHUNK,
+                    order=self.settings.order, threads=threads or self.threads or _processors(), chunk=_CHUNK,
                     **fast_engine.common(self.settings, self.law),
                 )  # fmt: skip
                 total = {name: total.get(name, 0) + value for name, value in done.items()}
             if progress is not None:
                 progress(last - first)
         return results, total
+
+    @cached_property
+    def _library(self) -> fast_engine.Library:
+        return fast_engine.Library(list(self.motions))
 
     def _check_order(self, *, quick: bool) -> None:
         order, linear = self.settings.order, self.settings.linear
@@ -222,6 +232,11 @@ def valid_row(row: dict[str, float]) -> bool:
     coefficients = all(0.0 <= row[f"r_{s}"] <= 100.0 for s in ("right", "left"))
     motion = abs(row["scale"]) <= 1e9 and abs(row["rotation"]) < half_pi and abs(row["velocity"]) < 1e9
     return bool(angles and frequencies and coefficients and motion)
+
+
+def _check_threads(threads: object) -> None:
+    if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
+        raise InvalidValueError(f"threads must be a whole number >= 1, got {threads!r}")
 
 
 def _repeated(values: Any, count: int, dtype: Any) -> np.ndarray:

@@ -1,0 +1,338 @@
+"""Histories of a study: what is computed, in an order that never changes, in pieces that any worker can do alone."""
+
+import hashlib
+import json
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.batch import ROWS, Batch, Rows
+from rocking.dynamics.engine import RESULTS, Arrays
+from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.studies.motion_set import MotionSet
+
+
+@dataclass(frozen=True, eq=False)
+class Histories(ABC):
+    """Independent histories, numbered 0 to count - 1.
+
+    A piece of them can be computed anywhere, in any order: a history's result depends on its number alone. All fields
+    can be pickled.
+
+    Parameters
+    ----------
+    motions : MotionSet
+        The motions.
+    law : ImpactLaw
+        How the coefficient changes from impact to impact.
+    settings : Settings
+        How to integrate.
+    engine : {"auto", "fast", "reference"}
+        Which engine.
+    """
+
+    motions: MotionSet
+    law: ImpactLaw = field(default_factory=ConstantRestitution, kw_only=True)
+    settings: Settings = field(default_factory=Settings, kw_only=True)
+    engine: str = field(default="auto", kw_only=True)
+
+    @property
+    @abstractmethod
+    def count(self) -> int:
+        """Number of histories."""
+
+    @abstractmethod
+    def rows(self, first: int, last: int) -> Rows:
+        """Return what makes the histories from a first up to but not including a last one.
+
+        Parameters
+        ----------
+        first, last : int
+            Numbers of histories.
+
+        Returns
+        -------
+        Rows
+            The rows; the key of a history is its number.
+        """
+
+    @abstractmethod
+    def content(self) -> dict[str, Any]:
+        """Return what beside motions, law and settings makes these histories these, as plain values.
+
+        Returns
+        -------
+        dict
+            Numbers, words, lists and dictionaries only; arrays as their SHA-256.
+        """
+
+    def description(self) -> dict[str, Any]:
+        """Return what makes these histories these.
+
+        Returns
+        -------
+        dict
+            Plain values. Two studies that describe themselves alike have the same results.
+        """
+        return {
+            "histories": type(self).__name__,
+            "count": self.count,
+            "content": self.content(),
+            "motions": self.motions.description(),
+            "law": described_law(self.law),
+            "settings": dict(vars(self.settings)),
+            "engine": self.engine,
+        }
+
+    def key(self) -> str:
+        """Return the name of these histories.
+
+        Returns
+        -------
+        str
+            SHA-256 of `description`, 64 hexadecimal digits.
+        """
+        text = json.dumps(self.description(), sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
+        """Return the results of some histories.
+
+        Parameters
+        ----------
+        first, last : int
+            Numbers: from the first up to but not including the last.
+        threads : int, optional
+            Threads of the fast engine; the results do not depend on them.
+
+        Returns
+        -------
+        dict of str to ndarray
+            The keys of `rocking.dynamics.engine.RESULTS`, one entry a history.
+
+        Raises
+        ------
+        InvalidValueError
+            If the numbers are not of histories.
+        """
+        if not 0 <= first <= last <= self.count:
+            raise InvalidValueError(f"histories must be within [0, {self.count}], got {first} to {last}")
+        if self.motions.in_memory:
+            return self._batch.run(last - first, lambda a, b: self.rows(first + a, first + b), threads=threads)[0]
+        return self._run_made(first, last, threads)
+
+    @cached_property
+    def _batch(self) -> Batch:
+        motions = [self.motions[k].segments() for k in range(len(self.motions))]
+        return Batch(motions, self.law, self.settings, None, self.engine)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the motions as the engine lays them out behind: they are made again where they are needed."""
+        return {name: value for name, value in self.__dict__.items() if name != "_batch"}
+
+    def _run_made(self, first: int, last: int, threads: int | None) -> Arrays:
+        """Run with motions that are made for a piece and forgotten after it."""
+        results = {name: np.empty(last - first, dtype) for name, dtype in RESULTS.items()}
+        for start in range(first, last, _MADE):
+            stop = min(start + _MADE, last)
+            rows = self.rows(start, stop)
+            wanted, places = np.unique(rows.motion, return_inverse=True)
+            made = [self.motions[int(k)].segments() for k in wanted]
+            local = Rows(rows.values, places.astype(np.int64), rows.key)
+            batch = Batch(made, self.law, self.settings, threads, self.engine)
+            found, _ = batch.run(stop - start, lambda a, b, local=local: part(local, a, b))  # type: ignore[misc]
+            for name, values in found.items():
+                results[name][start - first : stop - first] = values
+        return results
+
+
+_MADE = 4096
+
+
+def part(rows: Rows, first: int, last: int) -> Rows:
+    """Return some of the rows.
+
+    Parameters
+    ----------
+    rows : Rows
+        All of them.
+    first, last : int
+        Places: from the first up to but not including the last.
+
+    Returns
+    -------
+    Rows
+        Those between.
+    """
+    values = {name: rows.values[name][first:last] for name in ROWS}
+    return Rows(values, rows.motion[first:last], rows.key[first:last])
+
+
+@dataclass(frozen=True, eq=False)
+class Table(Histories):
+    """Histories given one by one.
+
+    Parameters
+    ----------
+    motions : MotionSet
+        The motions.
+    motion : ndarray of int
+        Number of each history's motion.
+    values : dict of str to ndarray
+        The keys of `rocking.dynamics.batch.ROWS` [rad, rad/s, -, rad, rad/s], one entry a history.
+
+    Raises
+    ------
+    InvalidValueError
+        If the arrays do not fit one another.
+    """
+
+    motion: np.ndarray
+    values: dict[str, FloatArray]
+
+    def __post_init__(self) -> None:
+        """Repeat what is given once, and check it."""
+        count = max((np.size(v) for v in [self.motion, *self.values.values()]), default=0)
+        whole = Rows.of(count, self.motion, **self.values)
+        object.__setattr__(self, "motion", whole.motion)
+        object.__setattr__(self, "values", whole.values)
+
+    @property
+    def count(self) -> int:
+        """Number of histories."""
+        return int(self.motion.size)
+
+    def rows(self, first: int, last: int) -> Rows:
+        """Return some of the rows.
+
+        Parameters
+        ----------
+        first, last : int
+            Numbers: from the first up to but not including the last.
+
+        Returns
+        -------
+        Rows
+            The rows.
+        """
+        return part(Rows(self.values, self.motion, np.arange(self.count, dtype=np.int64)), first, last)
+
+    def content(self) -> dict[str, Any]:
+        """Return the hashes of the arrays.
+
+        Returns
+        -------
+        dict
+            By name.
+        """
+        return {"motion": hash_of(self.motion)} | {name: hash_of(values) for name, values in self.values.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Product(Histories):
+    """Every motion with every body, scale and choice of restitution; the motion changes slowest, the choice fastest.
+
+    Parameters
+    ----------
+    motions : MotionSet
+        The motions.
+    sides : dict of str to ndarray, shape (bodies, choices)
+        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-].
+    scales : ndarray, shape (scales,) or (motions, scales)
+        Factors on the motions, the same for all or for each its own [-].
+    """
+
+    sides: dict[str, FloatArray]
+    scales: FloatArray
+
+    def __post_init__(self) -> None:
+        """Check the shapes."""
+        wanted = {name for name in ROWS if name[-5:] in {"right", "_left"}}
+        shapes = {np.shape(values) for values in self.sides.values()}
+        if set(self.sides) != wanted or len(shapes) != 1 or len(next(iter(shapes))) != 2:
+            raise InvalidValueError(f"sides must be {', '.join(sorted(wanted))}, each of shape (bodies, choices)")
+        scales = np.asarray(self.scales, dtype=np.float64)
+        if scales.ndim not in {1, 2} or (scales.ndim == 2 and len(scales) != len(self.motions)) or not scales.size:
+            raise InvalidValueError(f"scales must be of shape (scales,) or (motions, scales), got {scales.shape}")
+        object.__setattr__(self, "scales", scales)
+
+    @property
+    def shape(self) -> tuple[int, int, int, int]:
+        """Numbers of motions, bodies, scales and choices of restitution."""
+        bodies, choices = self.sides["p_right"].shape
+        return len(self.motions), bodies, self.scales.shape[-1], choices
+
+    @property
+    def count(self) -> int:
+        """Number of histories."""
+        return int(np.prod(self.shape, dtype=np.int64))
+
+    def rows(self, first: int, last: int) -> Rows:
+        """Return some of the rows.
+
+        Parameters
+        ----------
+        first, last : int
+            Numbers: from the first up to but not including the last.
+
+        Returns
+        -------
+        Rows
+            The rows.
+        """
+        numbers = np.arange(first, last, dtype=np.int64)
+        motion, body, scale, choice = np.unravel_index(numbers, self.shape)
+        factor = self.scales[scale] if self.scales.ndim == 1 else self.scales[motion, scale]
+        values = {name: array[body, choice] for name, array in self.sides.items()}
+        return Rows.of(last - first, motion, numbers, scale=factor, **values)
+
+    def content(self) -> dict[str, Any]:
+        """Return the shape and the hashes of the arrays.
+
+        Returns
+        -------
+        dict
+            By name.
+        """
+        hashes = {name: hash_of(np.ascontiguousarray(values)) for name, values in self.sides.items()}
+        return {"shape": list(self.shape), "scales": hash_of(self.scales), **hashes}
+
+
+def described_law(law: ImpactLaw) -> dict[str, Any]:
+    """Return what makes a law of impact this law.
+
+    Parameters
+    ----------
+    law : ImpactLaw
+        The law.
+
+    Returns
+    -------
+    dict
+        Its kind, its seed and the hashes of its tables.
+    """
+    tables = {name: hash_of(np.asarray(getattr(law, name))) for name in ("at", "factors") if hasattr(law, name)}
+    return {"law": type(law).__name__, "seed": int(getattr(law, "seed", 0)), **tables}
+
+
+def hash_of(values: np.ndarray) -> str:
+    """Return the SHA-256 of an array of numbers.
+
+    Parameters
+    ----------
+    values : ndarray
+        The array.
+
+    Returns
+    -------
+    str
+        64 hexadecimal digits, the same on every machine.
+    """
+    little = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
+    return hashlib.sha256(str((little.dtype.str, little.shape)).encode() + little.tobytes()).hexdigest()
