@@ -119,6 +119,7 @@ class Kernel {
     bool over(int i);
     void overturned(int i);
     bool beyond_return(int i) const;
+    double next_look(int i) const;
     const Bounds& bounds_at(int i) const;
     void holding(int i, int side, std::int64_t at, double* d) const;
     double release(int i, int side, std::int64_t at, double from) const;
@@ -131,6 +132,7 @@ class Kernel {
 
     double largest(const Side& s) const { return law.kind == LawKind::constant ? s.r : s.r * law.largest; }
     void rest(int i);
+    std::int64_t first_loud(std::int64_t at, std::int64_t end, double scale, double calm) const;
     bool may_lift(int i, const Bounds& b) const;
     int preferred(int i, std::int64_t at, double from) const;
     void lift(int i, std::int64_t at, int side, double when);

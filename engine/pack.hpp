@@ -37,6 +37,7 @@ struct Pack {
     Pack(__m512d v) : r(v) {}
     Pack(double v) : r(_mm512_set1_pd(v)) {}
     static Pack load(const double* p) { return _mm512_load_pd(p); }
+    static Pack load_any(const double* p) { return _mm512_loadu_pd(p); }
     void store(double* p) const { _mm512_store_pd(p, r); }
     static Pack gather(const double* base, Pack index) {
         return _mm512_i32gather_pd(_mm512_cvtpd_epi32(index.r), base, 8);
@@ -76,6 +77,7 @@ struct Pack {
     Pack(__m256d v) : r(v) {}
     Pack(double v) : r(_mm256_set1_pd(v)) {}
     static Pack load(const double* p) { return _mm256_load_pd(p); }
+    static Pack load_any(const double* p) { return _mm256_loadu_pd(p); }
     void store(double* p) const { _mm256_store_pd(p, r); }
     static Pack gather(const double* base, Pack index) {
         return _mm256_i32gather_pd(base, _mm256_cvtpd_epi32(index.r), 8);
@@ -115,6 +117,7 @@ struct Pack {
     Pack() = default;
     Pack(double v) { ROCKING_EACH r[i] = v; }
     static Pack load(const double* p) { Pack a; ROCKING_EACH a.r[i] = p[i]; return a; }
+    static Pack load_any(const double* p) { return load(p); }
     void store(double* p) const { ROCKING_EACH p[i] = r[i]; }
     static Pack gather(const double* base, Pack index) {
         Pack a; ROCKING_EACH a.r[i] = base[static_cast<std::int64_t>(index.r[i])]; return a;

@@ -142,6 +142,17 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     return all <= left + static_cast<double>(stretches - 1);
 }
 
+// First sample from `at` up to but not including `end` that is not calm; `end` if there is none.
+ROCKING_KERNEL
+std::int64_t Kernel<G, U, N, D, Z, L>::first_loud(std::int64_t at, std::int64_t end, double scale, double calm) const {
+    for (; at + P <= end; at += P) {
+        const Mask quiet = abs(Pack::load_any(motions.data + at) * Pack(scale)) < Pack(calm);
+        if (const unsigned bits = (!quiet).bits() & ((1u << P) - 1)) return at + lowest(bits);
+    }
+    while (at < end && std::fabs(scale * motions.data[at]) < calm) ++at;
+    return at;
+}
+
 // At rest: find where the ground next lifts the body, skipping blocks in which it cannot.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::rest(int i) {
@@ -161,10 +172,14 @@ void Kernel<G, U, N, D, Z, L>::rest(int i) {
             from = 0.0;
             continue;
         }
-        if (D == 1 && !Z && std::fabs(lane.ax * motions.data[at]) < calm && std::fabs(lane.ax * motions.data[at + 1]) < calm) {
-            ++at;
-            from = 0.0;
-            continue;
+        if (D == 1 && !Z) {  // samples that cannot lift it, many at once
+            const std::int64_t block_end = static_cast<std::int64_t>(lane.first) + (k / kBlock + 1) * kBlock;
+            const std::int64_t heard = first_loud(at, std::min(stop, block_end) + 1, std::fabs(lane.ax), calm);
+            if (heard > at + 1) {
+                at = heard - 1;
+                from = 0.0;
+                continue;
+            }
         }
         const double right = release(i, 1, at, from), left = release(i, -1, at, from);
         int side = right < left ? 1 : left < right ? -1 : 0;

@@ -132,12 +132,29 @@ struct Isolation {
     }
 };
 
+// Zero of the parabola c0 + c1 x + c2 x^2 that falls, if it lies within (0, 1); otherwise one half.
+inline double parabola_zero(double c0, double c1, double c2) {
+    const double root = std::sqrt(std::max(c1 * c1 - 4.0 * c0 * c2, 0.0));
+    const double x = c1 > 0.0 ? (root + c1) / (-2.0 * c2) : 2.0 * c0 / (root - c1);
+    return x > 0.0 && x < 1.0 ? x : 0.5;
+}
+
 // Every place in (0, 1) at which a polynomial changes from plus to minus, in order.
 template <int degree, class Report>
 inline void each_fall(const double* c, Report report) {
-    double curve = 0.0, d[degree];
-    for (int k = 2; k <= degree; ++k) curve = fma(0.5 * k * (k - 1), std::fabs(c[k]), curve);
+    double bend = 0.0, curve = 0.0, d[degree];
+    if constexpr (degree > 2) {
+        if (c[0] == 0.0) return each_fall<degree - 1>(c + 1, report);  // divided by its known zero
+        for (int k = 3; k <= degree; ++k) bend = fma(k * (k - 1.0), std::fabs(c[k]), bend);
+    }
     slopes_of<degree>(c, d);
+    curve = fma(0.5, bend, std::fabs(c[2]));
+    if (2.0 * std::fabs(c[2]) > bend) {  // curved one way: two zeros at most
+        const double end = value_of<degree>(c, 1.0);
+        if (c[0] > 0.0 && end < 0.0)
+            return report(polished<degree>(c, d, 0.0, 1.0, parabola_zero(c[0], c[1], c[2]), curve));
+        if ((c[0] < 0.0 && (end > 0.0 || (end < 0.0 && c[2] > 0.0))) || (c[0] > 0.0 && end > 0.0 && c[2] < 0.0)) return;
+    }
     Isolation<degree>::each(c, d, curve, report);
 }
 
@@ -159,9 +176,7 @@ inline double first_zero(const double* c) {
         const double end = value_of<degree>(c, 1.0);
         if (end > 0.0) return 2.0;
         if (end == 0.0) return 1.0;
-        const double root = c[1] * c[1] - 4.0 * c[0] * (degree > 1 ? c[2] : 0.0);
-        const double guess = root > 0.0 ? 2.0 * c[0] / (std::sqrt(root) - c[1]) : 0.5;
-        return polished<degree>(c, d, 0.0, 1.0, guess < 1.0 ? guess : 0.5, curve);
+        return polished<degree>(c, d, 0.0, 1.0, parabola_zero(c[0], c[1], degree > 1 ? c[2] : 0.0), curve);
     }
     return Isolation<degree>::first(c, d, curve);
 }

@@ -27,6 +27,18 @@ bool Kernel<G, U, N, D, Z, L>::beyond_return(int i) const {
     return weight * s > back * c && weight > 0.0;
 }
 
+// How far out a body that is not yet beyond return is looked at again: where it would be, as the ground shakes from now
+// on, or on the ground; a thousandth further out at least.
+ROCKING_KERNEL
+double Kernel<G, U, N, D, Z, L>::next_look(int i) const {
+    const Lane& lane = lanes[i];
+    const Bounds& b = bounds_at(i);
+    const double back = std::max({0.0, ca[i] * b.later_low, ca[i] * b.later_high});
+    const double weight = 1.0 + (Z ? std::min({0.0, lane.az * b.later_vertical_low, lane.az * b.later_vertical_high}) : 0.0);
+    const double out = L ? (weight > 0.0 ? back / weight : kHalfPi) : std::atan2(back, weight);
+    return std::min(std::max(-out, alpha[i] - kHalfPi), u[i] - 0.001);
+}
+
 ROCKING_KERNEL
 const Bounds& Kernel<G, U, N, D, Z, L>::bounds_at(int i) const {
     const Lane& lane = lanes[i];

@@ -205,7 +205,7 @@ void Kernel<G, U, N, D, Z, L>::advance(int i, const double* V) {
     if (u1 < 0.0) {
         const bool lies = alpha[i] - u1 >= kHalfPi && (!L || beyond_return(i));
         if (lies || (!set.to_the_ground && beyond_return(i))) return overturned(i);
-        gate[i] = set.to_the_ground ? 0.0 : u1 - 0.02;  // look again a degree further out
+        gate[i] = set.to_the_ground ? 0.0 : next_look(i);
     }
     if (ended) conclude(i);
 }
