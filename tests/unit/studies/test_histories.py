@@ -1,0 +1,193 @@
+import pickle
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.dynamics import RandomRestitution, Settings
+from rocking.dynamics.engine import RESULTS
+from rocking.errors import InvalidValueError
+from rocking.motions.pulse import Pulse
+from rocking.studies import Histories, MotionList, MotionSet, Product, Table
+from rocking.studies.motion_set import digest
+
+
+class Sines(MotionSet):
+    """Pulses made from their number when they are asked for."""
+
+    def __len__(self):
+        return 5
+
+    def __getitem__(self, index):
+        return rk.pulses.sine(amplitude=2.0 + 0.5 * index, period=0.4 + 0.1 * index)
+
+    def description(self):
+        return {"kind": "sines"}
+
+
+def product(motions=None, law=None, **changed):
+    angle = np.array([[0.2, 0.2], [0.25, 0.25], [0.3, 0.3]])
+    sides = {"alpha_right": angle, "alpha_left": angle, "p_right": 8.0 * angle, "p_left": 8.0 * angle}
+    sides |= {"r_right": np.array([[0.8, 0.9]] * 3), "r_left": np.array([[0.8, 0.9]] * 3)} | changed
+    motions = MotionList([Sines()[k] for k in range(5)]) if motions is None else motions
+    return Product(motions, sides, np.array([0.5, 1.0, 2.0, 4.0]), **({} if law is None else {"law": law}))
+
+
+def joined(histories: Histories, size: int):
+    pieces = [
+        histories.run(first, min(first + size, histories.count), threads=1) for first in range(0, histories.count, size)
+    ]
+    return {name: np.concatenate([piece[name] for piece in pieces]) for name in RESULTS}
+
+
+def same(one, other):
+    return all(np.array_equal(one[name], other[name], equal_nan=True) for name in RESULTS)
+
+
+def test_product_order():
+    """The motion changes slowest, then the body, the scale and the choice of restitution."""
+    made = product()
+    rows = made.rows(0, made.count)
+    assert made.shape == (5, 3, 4, 2)
+    assert made.count == 120
+    motion, body, scale, choice = np.unravel_index(np.arange(120), made.shape)
+    assert np.array_equal(rows.motion, motion)
+    assert np.array_equal(rows.values["alpha_right"], np.array([0.2, 0.25, 0.3])[body])
+    assert np.array_equal(rows.values["scale"], np.array([0.5, 1.0, 2.0, 4.0])[scale])
+    assert np.array_equal(rows.values["r_left"], np.array([0.8, 0.9])[choice])
+    assert np.array_equal(rows.key, np.arange(120))
+
+
+@pytest.mark.parametrize("size", [1, 7, 50])
+@pytest.mark.parametrize("law", [None, RandomRestitution.normal(0.9, 0.05, seed=3)])
+def test_pieces_are_the_whole(size, law):
+    """Pieces of any size, each history by its number alone, give the bits of the whole, random laws included."""
+    made = product(law=law)
+    assert same(made.run(0, made.count), joined(made, size))
+
+
+def test_key_by_place_would_be_caught():
+    """Random coefficients that follow the place in the piece instead of the number differ between sizes."""
+
+    class Wrong(Product):
+        def rows(self, first, last):
+            rows = super().rows(first, last)
+            return type(rows)(rows.values, rows.motion, rows.key - first)
+
+    right = product(law=RandomRestitution.normal(0.9, 0.05, seed=3))
+    wrong = Wrong(right.motions, right.sides, right.scales, law=right.law)
+    assert not same(wrong.run(0, wrong.count), joined(wrong, 7))
+
+
+def test_motions_made_when_needed():
+    """Motions that are made for a piece give the bits of motions that are at hand."""
+    held, made = product(), product(Sines())
+    assert not made.motions.in_memory
+    assert same(held.run(0, held.count), made.run(0, made.count))
+    assert same(held.run(0, held.count), joined(made, 33))
+
+
+def test_table_equals_product():
+    """Histories given one by one are those of the product."""
+    made = product()
+    rows = made.rows(0, made.count)
+    table = Table(made.motions, rows.motion, rows.values)
+    assert same(made.run(0, made.count), table.run(0, table.count))
+    assert table.run(17, 19)["peak_rotation"].tolist() == made.run(17, 19)["peak_rotation"].tolist()
+
+
+def test_pickled():
+    """A copy sent to another process is the same study, without the motions as laid out for the engine."""
+    made = product()
+    before = made.run(0, 10)
+    copy = pickle.loads(pickle.dumps(made))
+    assert "_batch" in made.__dict__
+    assert "_batch" not in copy.__dict__
+    assert copy.key() == made.key()
+    assert np.array_equal(copy.run(0, 10)["peak_rotation"], before["peak_rotation"])
+
+
+def test_key_names_the_content():
+    """Whatever changes a result changes the name: bodies, scales, motions, law, seed, settings, engine."""
+    base = product()
+    law = RandomRestitution.normal(0.9, 0.05, seed=3)
+    others = [
+        product(r_right=np.array([[0.8, 0.9]] * 2 + [[0.8, 0.91]])),
+        Product(base.motions, base.sides, base.scales[:-1]),
+        product(MotionList([Sines()[k] for k in (0, 1, 2, 3, 3)])),
+        product(law=law),
+        product(law=RandomRestitution.normal(0.9, 0.05, seed=4)),
+        Product(base.motions, base.sides, base.scales, settings=Settings(linear=True)),
+        Product(base.motions, base.sides, base.scales, settings=Settings(gravity=9.81)),
+        Product(base.motions, base.sides, base.scales, engine="reference"),
+    ]
+    keys = [base.key(), *[other.key() for other in others]]
+    assert len(set(keys)) == len(keys)
+    assert product().key() == base.key()
+
+
+def test_digest_sees_the_last_bit():
+    """Motions that differ in the last bit of one sample, or in the step, have other hashes."""
+    samples = np.array([0.0, 1.0, -2.0, 0.5])
+    nudged = samples.copy()
+    nudged[2] = np.nextafter(nudged[2], 0.0)
+    motions = [rk.GroundMotion(samples, 0.01), rk.GroundMotion(nudged, 0.01), rk.GroundMotion(samples, 0.02)]
+    motions.append(rk.GroundMotion(samples, 0.01, vertical=np.zeros(4)))
+    assert len({digest(motion) for motion in motions}) == 4
+    assert digest(motions[0]) == digest(rk.GroundMotion(samples, 0.01))
+
+
+def test_scales_of_each_motion():
+    """Scales may be given for each motion."""
+    base = product()
+    scales = np.arange(1.0, 11.0).reshape(5, 2)
+    made = Product(base.motions, base.sides, scales)
+    rows = made.rows(0, made.count)
+    assert made.shape == (5, 3, 2, 2)
+    assert np.array_equal(np.unique(rows.values["scale"][rows.motion == 3]), [7.0, 8.0])
+
+
+@pytest.mark.parametrize(("first", "last"), [(-1, 3), (4, 3), (0, 121)])
+def test_pieces_outside_are_refused(first, last):
+    """Numbers that are not of histories are refused."""
+    with pytest.raises(InvalidValueError, match=r"within \[0, 120\]"):
+        product().run(first, last)
+
+
+def test_bad_sets_are_refused():
+    """No motions, a mixture of records and pulses, or something else are refused by name."""
+    record = rk.GroundMotion([0.0, 1.0, 0.0], 0.01)
+    with pytest.raises(InvalidValueError, match="got none"):
+        MotionList([])
+    with pytest.raises(InvalidValueError, match="all records or all pulses"):
+        MotionList([record, rk.pulses.sine(1.0, 1.0)])
+    with pytest.raises(InvalidValueError, match="at index 1"):
+        MotionList([record, 3.0])  # type: ignore[list-item]
+    assert isinstance(MotionList(rk.pulses.sine(1.0, 1.0))[0], Pulse)
+
+
+def test_bad_products_are_refused():
+    """Sides that are missing or misshapen, and scales that fit no motion, are refused."""
+    base = product()
+    with pytest.raises(InvalidValueError, match="sides must be"):
+        Product(base.motions, {**base.sides, "p_left": np.ones((1, 2))}, base.scales)
+    with pytest.raises(InvalidValueError, match="sides must be"):
+        Product(base.motions, {"p_left": np.ones((1, 2))}, base.scales)
+    with pytest.raises(InvalidValueError, match="scales must be"):
+        Product(base.motions, base.sides, np.ones((4, 2)))
+    with pytest.raises(InvalidValueError, match="missing or unknown"):
+        Table(base.motions, np.zeros(3), {"p": np.ones(3)})
+
+
+def test_a_bad_row_is_reported_alone():
+    """A row outside its range fails with a status, and leaves the others bitwise equal."""
+    made = product()
+    rows = made.rows(0, made.count)
+    values = {name: array.copy() for name, array in rows.values.items()}
+    values["p_right"][11] = np.nan
+    bad = Table(made.motions, rows.motion, values).run(0, made.count)
+    good = made.run(0, made.count)
+    others = np.arange(made.count) != 11
+    assert bad["outcome"][11] == rk.Outcome.FAILED.code
+    assert np.isnan(bad["peak_rotation"][11])
+    assert all(np.array_equal(bad[name][others], good[name][others], equal_nan=True) for name in RESULTS)
