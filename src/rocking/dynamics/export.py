@@ -32,6 +32,7 @@ _COLUMNS = (
     ("vertical_force", "N", "force of the ground on the body, upwards"),
 )
 _UNITS = {name: unit for name, unit, _ in _COLUMNS}
+_EXTRAS = {"openpyxl": "excel", "pyarrow": "parquet", "distributed": "cluster", "dask": "cluster"}
 
 
 def extra(module: str, what: str) -> ModuleType:
@@ -57,7 +58,8 @@ def extra(module: str, what: str) -> ModuleType:
     try:
         return import_module(module)
     except ImportError as error:
-        raise MissingExtraError(f"{what} needs {module}: pip install rocking[data]") from error
+        name = _EXTRAS.get(module.partition(".")[0], "data")
+        raise MissingExtraError(f"{what} needs {module}: pip install rocking[{name}]") from error
 
 
 def columns(response: "Response") -> dict[str, FloatArray]:
