@@ -9,23 +9,25 @@ namespace ROCKING_ISA {
 ROCKING_KERNEL
 template <int M>
 void Kernel<G, U, N, D, Z, L>::land(const int* who, int count) {
-    alignas(64) double lane[M * P], zero[M * P], speed[M * P];
-    for (int s = 0; s < M * P; ++s) lane[s] = who[s < count ? s : 0];
-    Pack at[M], raw[N + 2][M];
-    ROCKING_UNROLL
-    for (int m = 0; m < M; ++m) {
-        at[m] = Pack::load(lane + m * P);
-        raw[0][m] = Pack::gather(alpha, at[m]) - Pack::gather(u, at[m]);
+    alignas(64) double rows[N + 3][M * P], zero[M * P], speed[M * P];
+    for (int s = 0; s < M * P; ++s) {  // plain copies: quicker than gathers
+        const int i = who[s < count ? s : 0];
+        rows[0][s] = alpha[i] - u[i];
         ROCKING_UNROLL
-        for (int k = 0; k <= N; ++k) raw[k + 1][m] = Pack::gather(terms[k], at[m]);
+        for (int k = 0; k <= N; ++k) rows[k + 1][s] = terms[k][i];
+        rows[N + 2][s] = len[i];
     }
+    Pack raw[N + 2][M];
+    ROCKING_UNROLL
+    for (int k = 0; k <= N + 1; ++k)
+        for (int m = 0; m < M; ++m) raw[k][m] = Pack::load(rows[k] + m * P);
     Landings<N, M> landings;
     const unsigned long found = landings.solve(raw);
     if (found) {
         ROCKING_UNROLL
         for (int m = 0; m < M; ++m) {
             landings.zero[m].store(zero + m * P);
-            max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::gather(len, at[m])).store(speed + m * P);
+            max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::load(rows[N + 2] + m * P)).store(speed + m * P);
         }
     }
     for (int s = 0; s < count; ++s) {
