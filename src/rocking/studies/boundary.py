@@ -1,0 +1,247 @@
+"""The boundary of overturning in the plane of two parameters, as polylines whose vertices are bisected."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import Body
+from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.dynamics.response import Motion
+from rocking.errors import InvalidValueError
+from rocking.studies.axis import Axis
+from rocking.studies.contours import chains, crossed_edges, edge_numbers, segments
+from rocking.studies.lattice import Lattice, verdicts
+from rocking.studies.plane import Plane
+from rocking.studies.question import FAILED
+
+Inside = Callable[[IntArray], BoolArray]
+
+# beyond this many halvings neighbouring doubles have met
+_MOST_ROUNDS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class Polyline:
+    """A stretch of the boundary of a region.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2)
+        Vertices x, y, in the units of the axes, each on an edge of the grid; the first is repeated at the end if the
+        polyline is closed.
+    modes : ndarray of int, shape (n, 2)
+        At each vertex the modes outside and inside the region: -2 not lifted, -1 survived, n >= 0 overturned after n
+        impacts.
+    region : str
+        What lies inside: ``overturned``, or ``overturned after n impacts``.
+    axes : tuple of (str, str)
+        Names of the axes.
+    """
+
+    points: FloatArray
+    modes: IntArray
+    region: str
+    axes: tuple[str, str]
+
+    @property
+    def closed(self) -> bool:
+        """Whether it ends where it starts."""
+        return len(self.points) > 2 and bool((self.points[0] == self.points[-1]).all())
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Crossed edges of a lattice, to be bisected all at once.
+
+    Parameters
+    ----------
+    number : ndarray of int
+        Their numbers, increasing.
+    point : ndarray, shape (edges, 2)
+        Vertices x, y.
+    modes : ndarray of int, shape (edges, 2)
+        Modes outside and inside.
+    """
+
+    number: IntArray
+    point: FloatArray
+    modes: IntArray
+
+
+def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
+    body: Body,
+    motion: Motion,
+    x: Axis | tuple[str, Any],
+    y: Axis | tuple[str, Any],
+    restitution: Any = "ked",
+    *,
+    by: str = "verdict",
+    levels: int = 0,
+    tolerance: float = 1e-10,
+    gravity: float = conventions.g,
+    progress: Callable[[int], None] | None = None,
+    **options: Any,
+) -> list[Polyline]:
+    """Return where overturning begins and ends in the plane of two parameters.
+
+    The grid of the axes, refined where asked, is marched cell by cell; the boundary crosses every edge whose ends
+    differ, once, at a point found by bisection along the edge, and is followed from cell to cell. An edge that it
+    crosses twice is not seen: what is narrower than a cell may be missed. In a cell with opposite corners
+    overturned (a saddle) the centre is computed: if it overturns too the overturned corners are joined, else they are
+    parted.
+
+    Parameters
+    ----------
+    body : Body
+        The body, as it is where the axes do not change it.
+    motion : GroundMotion or Pulse
+        The motion, as it is where the axes do not change it.
+    x, y : Axis or (str, array_like)
+        Axes, as for `overturning_map`, of at least two values.
+    restitution : as for `simulate`
+        Not one drawn at random.
+    by : {"verdict", "mode"}
+        Whether to outline all that overturns, or what overturns after each number of impacts for itself; the line
+        between two modes then comes twice.
+    levels : int
+        Levels of refinement before marching; each halves the spacing [-].
+    tolerance : float
+        Width of the last bracket along an edge, over the coordinate [-].
+    gravity : float
+        Acceleration of gravity [m/s2].
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+    **options
+        ``threads``, ``engine`` and fields of `Settings`.
+
+    Returns
+    -------
+    list of Polyline
+        Empty if nothing changes. Cells with a corner that failed are left out.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or the axes do not fit the body, the motion or each other.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.half_sine(amplitude=3.0, period=0.6)
+    >>> lines = boundary(block, pulse, ("frequency_ratio", [2.0, 3.0]), ("amplitude_ratio", [1.5, 3.0]), 0.9)
+    >>> len(lines), lines[0].modes[0].tolist()
+    (1, [-1, 0])
+    """
+    if by not in {"verdict", "mode"}:
+        raise InvalidValueError(f'by must be "verdict" or "mode", got {by!r:.60}')
+    tolerance = checks.within("tolerance", tolerance, 1e-15, 0.1)
+    plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
+    for axis in (plane.x, plane.y):
+        if axis.values.size < 2:
+            raise InvalidValueError(f"{axis.name} must have at least 2 values to have a boundary between, got 1")
+    lattice = Lattice(plane, levels, progress)
+    if by == "verdict":
+        return _outlined(lattice, verdicts, "overturned", tolerance)
+    lattice.finest(lambda modes: modes)
+    made: list[Polyline] = []
+    for n in np.unique(lattice.modes[lattice.modes >= 0]).tolist():
+        made += _outlined(lattice, _exactly(n), f"overturned after {n} impacts", tolerance)
+    return made
+
+
+def _exactly(mode: int) -> Inside:
+    return lambda modes: np.asarray(modes == mode)
+
+
+def _outlined(lattice: Lattice, inside: Inside, region: str, tolerance: float) -> list[Polyline]:
+    """Return the outline of a region."""
+    i, j = _followed(lattice, inside)
+    if not i.size:
+        return []
+    corners = inside(lattice.corners(i, j, 1))
+    numbers = edge_numbers(i, j, lattice.columns)
+    joined = segments(corners, numbers, _centres(lattice, inside, corners, i, j))
+    edges = bisected(lattice, inside, np.unique(joined), tolerance)
+    made = []
+    for chain in chains(joined):
+        places = np.searchsorted(edges.number, chain)
+        names = (lattice.plane.x.name, lattice.plane.y.name)
+        made.append(Polyline(edges.point[places], edges.modes[places], region, names))
+    return made
+
+
+def _followed(lattice: Lattice, inside: Inside) -> tuple[IntArray, IntArray]:
+    """Return all finest cells that the boundary passes, also those that refinement alone would not have reached."""
+    i, j = lattice.finest(inside)
+    known = np.empty(0, np.int64)
+    new = np.unique(j * lattice.columns + i)
+    while new.size:
+        i, j = new % lattice.columns, new // lattice.columns
+        corners = lattice.corners(i, j, 1)
+        good = (corners != FAILED).all(axis=1)
+        i, j, crossed = i[good], j[good], crossed_edges(inside(corners[good]))
+        known = np.union1d(known, j * lattice.columns + i)
+        steps = ((0, -1), (1, 0), (0, 1), (-1, 0))  # below, right, above, left
+        beside = [_cells(lattice, i[crossed[:, k]] + a, j[crossed[:, k]] + b) for k, (a, b) in enumerate(steps)]
+        new = np.setdiff1d(np.concatenate(beside), np.union1d(known, new))
+    return known % lattice.columns, known // lattice.columns
+
+
+def _cells(lattice: Lattice, i: IntArray, j: IntArray) -> IntArray:
+    within = (i >= 0) & (j >= 0) & (i < lattice.columns - 1) & (j < lattice.rows - 1)
+    return np.asarray(j[within] * lattice.columns + i[within])
+
+
+def _centres(lattice: Lattice, inside: Inside, corners: BoolArray, i: IntArray, j: IntArray) -> BoolArray:
+    """Return whether the centres of saddles are inside; False elsewhere."""
+    centre = np.zeros(i.size, dtype=np.bool_)
+    saddle = crossed_edges(corners).all(axis=1)
+    if saddle.any():
+        low = lattice.coordinates(i[saddle], j[saddle])
+        high = lattice.coordinates(i[saddle] + 1, j[saddle] + 1)
+        middle = [0.5 * (a + b) for a, b in zip(low, high, strict=True)]
+        centre[saddle] = inside(lattice.plane.answers(middle[0], middle[1], progress=lattice.progress)[0]["mode"])
+    return centre
+
+
+def bisected(lattice: Lattice, inside: Inside, numbers: IntArray, tolerance: float) -> Edges:
+    """Return where the boundary of a region crosses edges of a lattice: one batch for each halving.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        The lattice; both ends of the edges are known.
+    inside : callable
+        Whether modes belong to the region.
+    numbers : ndarray of int
+        Numbers of the edges, as of `edge_numbers`.
+    tolerance : float
+        Width of the last bracket over the coordinate [-].
+
+    Returns
+    -------
+    Edges
+        Middles of the last brackets, and the modes at their ends.
+    """
+    upright = numbers % 2 == 1
+    i, j = (numbers // 2) % lattice.columns, (numbers // 2) // lattice.columns
+    ends = [(i, j), (i + ~upright, j + upright)]
+    points = np.stack([np.stack(lattice.coordinates(*end), axis=1) for end in ends], axis=1)
+    modes = np.stack([lattice.modes_at(*end) for end in ends], axis=1)
+    swap = inside(modes[:, 0])  # outside first, inside second
+    points[swap], modes[swap] = points[swap][:, ::-1], modes[swap][:, ::-1]
+    along = np.where(upright, 1, 0)
+    rows = np.arange(numbers.size)
+    for _ in range(_MOST_ROUNDS):
+        low, high = points[rows, 0, along[rows]], points[rows, 1, along[rows]]
+        rows = rows[np.abs(high - low) > tolerance * np.maximum(np.abs(low), np.abs(high))]
+        if not rows.size:
+            break
+        middle = points[rows].mean(axis=1)
+        found = lattice.plane.answers(middle[:, 0], middle[:, 1], progress=lattice.progress)[0]["mode"]
+        side = inside(found).astype(np.int64)
+        points[rows, side], modes[rows, side] = middle, found
+    return Edges(numbers, points.mean(axis=1), modes)

@@ -1,0 +1,113 @@
+"""Variations of one question, as arrays: which bodies, what scale, how stretched in time; the axes of a map fill it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.rocker import Rocker
+from rocking.errors import InvalidValueError
+from rocking.studies.geometry import changed_body
+from rocking.studies.question import Question, sides_of
+
+
+@dataclass(frozen=True)
+class Case:
+    """Variations of a question, one entry each; every axis returns it with something changed.
+
+    Parameters
+    ----------
+    question : Question
+        What is varied.
+    count : int
+        How many variations.
+    scale : ndarray
+        Factor on the motion [-].
+    stretch : ndarray
+        Factor on its time [-].
+    geometry : mapping of str to ndarray
+        Dimensions that vary, by the names of `changed_body` [m, rad].
+    sides : mapping of str to ndarray
+        alpha, p and r, right and left, once the bodies are known [rad, rad/s, -].
+    amplitude_is_set : bool
+        Whether an axis has set the amplitude, so that the velocity must set the time.
+    """
+
+    question: Question
+    count: int
+    scale: FloatArray
+    stretch: FloatArray
+    geometry: Mapping[str, FloatArray] = field(default_factory=dict)
+    sides: Mapping[str, FloatArray] = field(default_factory=dict)
+    amplitude_is_set: bool = False
+
+    @classmethod
+    def of(cls, question: Question, count: int) -> "Case":
+        """Return variations that do not vary yet.
+
+        Parameters
+        ----------
+        question : Question
+            What is varied.
+        count : int
+            How many.
+
+        Returns
+        -------
+        Case
+            All the same.
+        """
+        return cls(question, count, np.ones(count), np.ones(count))
+
+    def settled(self) -> "Case":
+        """Return the case with its bodies made, and the restitution evaluated for each different one.
+
+        Returns
+        -------
+        Case
+            With its sides; NaN, which the engine refuses row by row, where there is no such body.
+        """
+        names = sorted(self.geometry)
+        if not names:
+            rows, places = np.empty((1, 0)), np.zeros(self.count, dtype=np.int64)
+        else:
+            rows, places = np.unique(np.stack([self.geometry[n] for n in names], axis=-1), axis=0, return_inverse=True)
+        table = sides_of(self._rockers([dict(zip(names, row.tolist(), strict=True)) for row in rows]))
+        return replace(self, sides={name: values[places.ravel()] for name, values in table.items()})
+
+    def _rockers(self, parameters: list[dict[str, float]]) -> list[Rocker | None]:
+        made: list[Rocker | None] = []
+        refused: InvalidValueError | None = None
+        for given in parameters:
+            try:
+                made.append(self.question.rocker_of(changed_body(self.question.body, given)))
+            except InvalidValueError as error:
+                made.append(None)
+                refused = error
+        if refused is not None and not any(made):
+            raise refused
+        return made
+
+    @property
+    def slenderness_angle(self) -> FloatArray:
+        """Slenderness angle of the side that lifts first [rad]."""
+        return np.fmin(self.sides["alpha_right"], self.sides["alpha_left"])
+
+    @property
+    def frequency_parameter(self) -> FloatArray:
+        """Frequency parameter p of the side that lifts first [rad/s]."""
+        left = self.sides["alpha_left"] < self.sides["alpha_right"]
+        return np.where(left, self.sides["p_left"], self.sides["p_right"])
+
+    @property
+    def uplift_acceleration(self) -> FloatArray:
+        """Ground acceleration that lifts the body: g tan alpha, or g alpha in the linear equations [m/s2]."""
+        settings = self.question.settings
+        alpha = self.slenderness_angle
+        return settings.gravity * (alpha if settings.linear else np.tan(alpha))
+
+    @property
+    def values(self) -> dict[str, FloatArray]:
+        """What the engine is told of each variation."""
+        return {**self.sides, "scale": self.scale}

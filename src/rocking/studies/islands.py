@@ -1,0 +1,179 @@
+"""Safe islands: where a body survives although a weaker motion, or all that surrounds it on the map, overturns it."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.errors import InvalidValueError
+from rocking.studies.question import FAILED, UNLIFTED
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Island:
+    """A connected region of survival that has no part where the body is not even lifted.
+
+    Parameters
+    ----------
+    label : int
+        Its number in `Islands.labels`, from 1.
+    cells : int
+        Points of the map in it.
+    area : float
+        Its area in the units of the axes; a point stands for half the way to its neighbours.
+    x, y : tuple of (float, float)
+        Least and greatest coordinates.
+    enclosed : bool
+        Whether overturning surrounds it; otherwise it reaches the edge of the map, or a point that failed.
+    """
+
+    label: int
+    cells: int
+    area: float
+    x: tuple[float, float]
+    y: tuple[float, float]
+    enclosed: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Islands:
+    """All safe islands of a map.
+
+    Parameters
+    ----------
+    labels : ndarray of int, shape (y, x)
+        Number of the island at each point of the map; 0 for none.
+    islands : tuple of Island
+        The largest first.
+    axes : tuple of (str, str)
+        Names of the axes, x and y.
+    """
+
+    labels: IntArray
+    islands: tuple[Island, ...]
+    axes: tuple[str, str]
+
+    def __len__(self) -> int:
+        """Return the number of islands."""
+        return len(self.islands)
+
+    def __getitem__(self, index: int) -> Island:
+        """Return one of them."""
+        return self.islands[index]
+
+
+def safe_islands(overturning: "xr.Dataset", *, enclosed: bool = True) -> Islands:
+    """Return the regions of survival that are apart from the one in which the body is never lifted.
+
+    Points of survival are neighbours also diagonally, so that an oblique strip is not cut into pieces by the grid.
+
+    Parameters
+    ----------
+    overturning : xarray.Dataset
+        As of `overturning_map`.
+    enclosed : bool
+        Whether to return only those that overturning surrounds within the map.
+
+    Returns
+    -------
+    Islands
+        The largest first.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no map.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import rocking as rk
+    >>> from rocking.studies.overturning_map import overturning_map
+    >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
+    >>> x, y = ("frequency_ratio", np.linspace(2.5, 4.0, 7)), ("amplitude_ratio", np.linspace(0.5, 10.0, 39))
+    >>> found = overturning_map(block, pulse, x, y, 0.85)
+    >>> len(safe_islands(found, enclosed=False)), len(safe_islands(found))
+    (1, 0)
+    """
+    from scipy import ndimage
+
+    modes, x, y, axes = _read(overturning)
+    survived = (modes < 0) & (modes != FAILED)
+    labels, count = ndimage.label(survived, np.ones((3, 3)))
+    main = np.unique(labels[modes == UNLIFTED])
+    near = _near_edge(modes)
+    areas = np.outer(_shares(y), _shares(x))
+    found = []
+    for label in range(1, count + 1):
+        mask = labels == label
+        free = not bool((mask & near).any())
+        if label not in main and (free or not enclosed):
+            rows, columns = np.nonzero(mask)
+            spans = (float(x[columns.min()]), float(x[columns.max()])), (float(y[rows.min()]), float(y[rows.max()]))
+            found.append(Island(label, int(mask.sum()), float(areas[mask].sum()), *spans, free))
+    found.sort(key=lambda island: (-island.area, island.label))
+    return _numbered(labels, found, axes)
+
+
+def safe_beyond_overturning(overturning: "xr.Dataset", along: str | None = None) -> "xr.DataArray":
+    """Return where a body survives although it overturns at a smaller value of one axis.
+
+    Parameters
+    ----------
+    overturning : xarray.Dataset
+        As of `overturning_map`.
+    along : str, optional
+        Name of the axis; y if not given.
+
+    Returns
+    -------
+    xarray.DataArray
+        True there: where stronger is not worse.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no map, or has no such axis.
+    """
+    modes, _, _, axes = _read(overturning)
+    along = axes[1] if along is None else along
+    if along not in axes:
+        raise InvalidValueError(f"along must be one of {', '.join(axes)}, got {along!r:.60}")
+    fallen = np.maximum.accumulate(modes >= 0, axis=1 if along == axes[0] else 0)
+    beyond: xr.DataArray = overturning["mode"].copy(data=fallen & (modes < 0) & (modes != FAILED))
+    return beyond.rename("safe_beyond_overturning").assign_attrs(
+        units="1", long_name=f"survives beyond overturning along {along}"
+    )
+
+
+def _read(given: Any) -> tuple[IntArray, FloatArray, FloatArray, tuple[str, str]]:
+    mode = given["mode"] if hasattr(given, "data_vars") and "mode" in given else None
+    if mode is None or mode.ndim != 2:
+        raise InvalidValueError(f"a map is a dataset with a mode over two axes, got {type(given).__name__}")
+    y, x = (str(name) for name in mode.dims)
+    return np.asarray(mode.values), np.asarray(given[x].values), np.asarray(given[y].values), (x, y)
+
+
+def _near_edge(modes: IntArray) -> BoolArray:
+    """Return which points are on the edge of the map or beside a failed one."""
+    from scipy import ndimage
+
+    return np.asarray(ndimage.binary_dilation(modes == FAILED, np.ones((3, 3), dtype=np.bool_), border_value=1))
+
+
+def _shares(values: FloatArray) -> FloatArray:
+    """Return the length that each value stands for."""
+    middles = 0.5 * (values[1:] + values[:-1])
+    return np.diff(np.concatenate([values[:1], middles, values[-1:]]))
+
+
+def _numbered(labels: Any, found: list[Island], axes: tuple[str, str]) -> Islands:
+    from dataclasses import replace
+
+    numbers = np.zeros(int(labels.max(initial=0)) + 1, dtype=np.int64)
+    numbers[[island.label for island in found]] = np.arange(1, len(found) + 1)
+    return Islands(numbers[labels], tuple(replace(i, label=k) for k, i in enumerate(found, 1)), axes)

@@ -1,0 +1,122 @@
+"""Overturning maps: how a body ends over any two parameters of it and its motion."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from rocking import conventions
+from rocking.bodies import Body
+from rocking.dynamics.export import extra
+from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.response import Motion
+from rocking.studies.axis import Axis
+from rocking.studies.plane import Plane
+from rocking.studies.refined import refined
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+VARIABLES = {
+    "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
+    "mode": ("1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts"),
+    "peak_rotation": ("rad", "rotation of largest size; a quarter turn if it overturned"),
+    "peak_ratio": ("1", "peak rotation over the slenderness angle of its side; beyond 1 is not overturning"),
+    "impacts": ("1", "number of impacts during the motion, and after it those that end in overturning"),
+    "side": ("1", "side to which it overturned: 1 right, -1 left"),
+    "overturning_time": ("s", "when the centre passed over the foot for good; the end of the motion if it is later"),
+    "status": ("1", ", ".join(f"{s.code} {s.value}" for s in Status)),
+    "error": ("rad", "sum of the local error estimates"),
+}
+"""Unit and meaning of every variable of a map."""
+
+
+def overturning_map(  # noqa: PLR0913 - every one of them is a question that users ask
+    body: Body,
+    motion: Motion,
+    x: Axis | tuple[str, Any],
+    y: Axis | tuple[str, Any],
+    restitution: Any = "ked",
+    *,
+    gravity: float = conventions.g,
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+    refine: int | None = None,
+    **settings: Any,
+) -> "xr.Dataset":
+    """Return how a body ends over two parameters.
+
+    Restitution models are evaluated anew for every body that the axes make. A pulse or record is stretched in time
+    exactly, without resampling it.
+
+    Parameters
+    ----------
+    body : Body
+        The body, as it is where the axes do not change it.
+    motion : GroundMotion or Pulse
+        The motion, as it is where the axes do not change it.
+    x, y : Axis or (str, array_like)
+        Axes, or their names and values: frequency_ratio, amplitude_ratio, scale, pga [m/s2], pgv [m/s], period [s],
+        duration [s], semi_diagonal [m], slenderness_ratio, slenderness_angle [rad], width [m], height [m],
+        restitution.
+    restitution : as for `simulate`
+        Not used where it is an axis.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    threads : int, optional
+        Threads of the fast engine; the results do not depend on them.
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+    refine : int, optional
+        Levels of refinement along the boundaries between modes, each of half the spacing of the one before; see
+        `refined_map`.
+    **settings
+        Fields of `Settings`, and ``engine``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the two axes (y first): outcome, mode, peak_rotation, peak_ratio, impacts, side, overturning_time,
+        status, error, with units. With `refine` also ``refined_mode`` and ``refined_peak_ratio`` over ``point``, all
+        points that were computed, with ``refined_x`` and ``refined_y``. A cell that could not be computed has mode -3
+        and a status that says why; it touches no other.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or the axes do not fit the body, the motion or each other.
+    MissingExtraError
+        If xarray is not installed.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import rocking as rk
+    >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
+    >>> ratios = np.linspace(1.0, 6.0, 11)
+    >>> found = overturning_map(block, pulse, ("frequency_ratio", ratios), ("amplitude_ratio", ratios), 0.9)
+    >>> found["mode"].sel(frequency_ratio=1.0, amplitude_ratio=[1.0, 3.0]).values.tolist()
+    [-2, 0]
+    """
+    xarray = extra("xarray", "overturning_map")
+    plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, threads=threads, **settings)
+    results, work = plane.answers(*plane.mesh(), progress=progress)
+    shape = (plane.y.values.size, plane.x.values.size)
+    dims = (plane.y.name, plane.x.name)
+    made: xr.Dataset = xarray.Dataset(
+        {name: (dims, results[name].reshape(shape), _about(name)) for name in VARIABLES},
+        coords={axis.name: (axis.name, axis.values, axis.attributes) for axis in (plane.y, plane.x)},
+        attrs=plane.question.attributes(work),
+    )
+    if refine is None:
+        return made
+    points = refined(plane, results["mode"].reshape(shape), refine, progress, results["peak_ratio"])
+    return made.assign(
+        refined_x=("point", points.x, plane.x.attributes),
+        refined_y=("point", points.y, plane.y.attributes),
+        refined_mode=("point", points.modes, _about("mode")),
+        refined_peak_ratio=("point", points.peak_ratio, _about("peak_ratio")),
+    )
+
+
+def _about(name: str) -> dict[str, str]:
+    unit, words = VARIABLES[name]
+    return {"units": unit, "long_name": words}

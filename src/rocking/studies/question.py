@@ -1,0 +1,248 @@
+"""What a study asks beside its axes: one body, one motion, its restitution and the settings, ready to be run."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking.bodies import Body
+from rocking.conventions import FloatArray
+from rocking.dynamics.batch import Batch, Rows
+from rocking.dynamics.engine import Arrays, instruction_set
+from rocking.dynamics.impact_law import ImpactLaw
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.response import Motion
+from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
+from rocking.studies.histories import part
+
+UNLIFTED, SURVIVED, FAILED = -2, -1, -3
+"""Modes beside the number of impacts before overturning: never lifted; rocked and stayed standing; no result."""
+
+_SIDES = (("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"))
+
+
+@dataclass(frozen=True)
+class Question:
+    """One body under one motion, to be varied.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    motion : GroundMotion or Pulse
+        The motion.
+    restitution : str, RestitutionModel, float, mapping or ImpactLaw
+        As for `simulate`.
+    settings : Settings
+        How to integrate.
+    threads : int, optional
+        Threads of the fast engine; the results do not depend on them.
+    engine : {"auto", "fast", "reference"}
+        Which engine.
+
+    Raises
+    ------
+    InvalidValueError
+        If the motion is none, or the body or restitution is refused.
+    """
+
+    body: Body
+    motion: Motion
+    restitution: Any = "ked"
+    settings: Settings = field(default_factory=Settings)
+    threads: int | None = None
+    engine: str = "auto"
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be asked."""
+        if not isinstance(self.motion, (GroundMotion, Pulse)):
+            raise InvalidValueError(f"motion must be a GroundMotion or a pulse, got {self.motion!r:.60}")
+        _ = self.rocker
+
+    @cached_property
+    def rocker(self) -> Rocker:
+        """The body as it is, before any axis changes it."""
+        return self.rocker_of(self.body)
+
+    @property
+    def law(self) -> ImpactLaw:
+        """How the coefficient changes from impact to impact."""
+        return self.rocker.law
+
+    @cached_property
+    def batch(self) -> Batch:
+        """The motion as the engine lays it out."""
+        return Batch([self.motion.segments()], self.law, self.settings, self.threads, self.engine)
+
+    def rocker_of(self, body: Body) -> Rocker:
+        """Return another body with the same restitution, evaluated for it.
+
+        Parameters
+        ----------
+        body : Body
+            The other body.
+
+        Returns
+        -------
+        Rocker
+            As the equations see it.
+        """
+        return Rocker.of_body(body, self.restitution, self.settings.gravity)
+
+    def run(
+        self,
+        values: dict[str, FloatArray],
+        stretch: FloatArray,
+        key: Any = None,
+        progress: Callable[[int], None] | None = None,
+    ) -> tuple[Arrays, dict[str, int]]:
+        """Return the results of many variations, their modes and relative peaks with them.
+
+        A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of
+        p s, all times multiplied by s: so one motion serves all stretches, and nothing is approximated.
+
+        Parameters
+        ----------
+        values : dict of str to ndarray
+            Sides and scale, by the names of `rocking.dynamics.batch.ROWS` [rad, rad/s, -], one entry a history.
+        stretch : ndarray
+            Factors on the time of the motion [-].
+        key : array_like of int, optional
+            Numbers of the histories for random coefficients; 0, 1, ... if not given.
+        progress : callable, optional
+            Called with the number of histories done since the last call.
+
+        Returns
+        -------
+        results : dict of str to ndarray
+            The keys of `rocking.dynamics.engine.RESULTS`, mode [-] and peak_ratio [-].
+        work : dict of str to int
+            Counts of the engine.
+        """
+        count = stretch.size
+        if np.any(stretch != 1.0):
+            self.check_stretching("an axis")
+        quick = {n: v * stretch if n in {"p_right", "p_left"} else v for n, v in values.items()}
+        rows = Rows.of(count, 0, key, **quick)
+        found, work = self.batch.run(count, lambda a, b: part(rows, a, b), progress)
+        for name in ("peak_time", "overturning_time", "first_uplift"):
+            found[name] = found[name] * stretch
+        found["peak_velocity"] = found["peak_velocity"] / stretch
+        found["mode"] = modes_of(found)
+        found["peak_ratio"] = peak_ratio(found["peak_rotation"], values["alpha_right"], values["alpha_left"])
+        return found, work
+
+    def check_stretching(self, name: str) -> None:
+        """Refuse to stretch time where the restitution would notice.
+
+        Parameters
+        ----------
+        name : str
+            What would stretch it.
+
+        Raises
+        ------
+        InvalidValueError
+            If the restitution depends on the speed in rad/s.
+        """
+        if self.law.kind in {1, -1}:
+            raise InvalidValueError(
+                f"{name} stretches the time of the motion, which needs a restitution that does not depend on the speed "
+                f"in rad/s, got {type(self.law).__name__}; vary scale and size instead"
+            )
+
+    def attributes(self, work: dict[str, int]) -> dict[str, Any]:
+        """Return what was computed from what and how, as plain values.
+
+        Parameters
+        ----------
+        work : dict of str to int
+            Counts of the engine; empty if the reference engine ran.
+
+        Returns
+        -------
+        dict
+            For the attributes of a dataset.
+        """
+        from rocking import __version__
+
+        motion = self.motion
+        return {
+            "software": f"rocking {__version__}",
+            "engine": f"fast ({instruction_set()})" if work else "reference",
+            "body": repr(self.body),
+            "motion": motion.name,
+            "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
+            "restitution": self.rocker.label,
+            "seed": int(getattr(self.law, "seed", 0)),
+            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in vars(self.settings).items()},
+            **{f"work_{k}": v for k, v in work.items()},
+        }
+
+
+def sides_of(rockers: Sequence[Rocker | None]) -> dict[str, FloatArray]:
+    """Return the sides of many bodies as arrays.
+
+    Parameters
+    ----------
+    rockers : sequence of Rocker or None
+        The bodies; None for one that could not be made.
+
+    Returns
+    -------
+    dict of str to ndarray
+        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-]; NaN where there is no body.
+    """
+    return {
+        f"{short}_{side}": np.array([np.nan if r is None else getattr(getattr(r, side), name) for r in rockers])
+        for short, name in _SIDES
+        for side in ("right", "left")
+    }
+
+
+def modes_of(results: Arrays) -> np.ndarray:
+    """Return how each history ended.
+
+    Parameters
+    ----------
+    results : dict of str to ndarray
+        With outcome and impacts.
+
+    Returns
+    -------
+    ndarray of int
+        -3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts.
+
+    Examples
+    --------
+    >>> modes_of({"outcome": np.array([0, 1, 2, 3]), "impacts": np.array([0, 3, 1, 0])}).tolist()
+    [-2, -1, 1, -3]
+    """
+    outcome = np.asarray(results["outcome"])
+    modes = np.where(outcome == Outcome.OVERTURNED.code, results["impacts"], SURVIVED)
+    modes = np.where(outcome == Outcome.NO_UPLIFT.code, UNLIFTED, modes)
+    return np.asarray(np.where(outcome == Outcome.FAILED.code, FAILED, modes), dtype=np.int64)
+
+
+def peak_ratio(peak: FloatArray, right: FloatArray, left: FloatArray) -> FloatArray:
+    """Return the peak rotation over the slenderness angle of the side it stands on.
+
+    Parameters
+    ----------
+    peak : ndarray
+        Peak rotation with its sign [rad].
+    right, left : ndarray
+        Slenderness angles of the sides [rad].
+
+    Returns
+    -------
+    ndarray
+        The ratio; beyond one is not overturning [-].
+    """
+    return np.abs(peak) / np.where(np.asarray(peak) < 0.0, left, right)

@@ -1,0 +1,146 @@
+"""Rocking spectra: peak rotation of blocks over their size, for several slendernesses and motions."""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import Block
+from rocking.conventions import FloatArray
+from rocking.dynamics.batch import PIECE
+from rocking.dynamics.engine import RESULTS, Arrays
+from rocking.dynamics.export import extra
+from rocking.dynamics.histories import settings_of
+from rocking.dynamics.response import Motion
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.studies.histories import Histories, Product
+from rocking.studies.motion_set import MotionList
+from rocking.studies.overturning_map import VARIABLES
+from rocking.studies.question import Question, modes_of, peak_ratio, sides_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_DIMENSIONS = ("motion", "slenderness_angle", "period")
+
+
+def rocking_spectrum(
+    motions: Motion | Sequence[Motion],
+    slenderness_angles: Any,
+    periods: Any,
+    restitution: Any = "ked",
+    *,
+    gravity: float = conventions.g,
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+    **options: Any,
+) -> "xr.Dataset":
+    """Return the peak rotation of blocks under motions.
+
+    Parameters
+    ----------
+    motions : GroundMotion or Pulse, or a sequence of them
+        All records or all pulses.
+    slenderness_angles : array_like
+        alpha, between 0 and pi/2 [rad].
+    periods : array_like
+        2 pi / p [s], which with p^2 = 3 g / (4 R) sets the size of a block.
+    restitution : as for `simulate`
+        Evaluated for every block.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    threads : int, optional
+        Threads of the fast engine; the results do not depend on them.
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+    **options
+        ``scale``, a factor on the motions [-], ``engine``, and fields of `Settings`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``motion, slenderness_angle, period``: outcome, mode, peak_rotation, peak_ratio and more, with units;
+        coordinates ``semi_diagonal`` [m] and ``coefficient`` of restitution [-]. Where a block overturned the
+        peak is a quarter turn.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range.
+    MissingExtraError
+        If xarray is not installed.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> found = rocking_spectrum(rk.pulses.sine(amplitude=2.0, period=0.8), [0.15, 0.3], [1.0, 2.0, 4.0, 8.0], 0.9)
+    >>> dict(found.sizes), found["mode"].sel(slenderness_angle=0.3).values.tolist()
+    ({'motion': 1, 'slenderness_angle': 2, 'period': 4}, [[-2, -2, -2, -2]])
+    """
+    xarray = extra("xarray", "rocking_spectrum")
+    scale = checks.within("scale", options.pop("scale", 1.0), -1e6, 1e6)
+    engine = options.pop("engine", "auto")
+    settings = settings_of(gravity, options)
+    angles = _row("slenderness_angles", slenderness_angles, "rad")
+    times = _row("periods", periods, "s")
+    sizes = 0.75 * settings.gravity * (0.5 * times / np.pi) ** 2
+    given = MotionList(motions)
+    blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
+    question = Question(blocks[0], given[0], restitution, settings, threads, engine)
+    sides = sides_of([question.rocker_of(block) for block in blocks])
+    histories = Product(
+        given, {name: v[:, None] for name, v in sides.items()}, np.array([scale]),
+        law=question.law, settings=settings, engine=engine,
+    )  # fmt: skip
+    results = _computed(histories, threads, progress)
+    shape = (len(given), angles.size, times.size)
+    alpha = np.tile(sides["alpha_right"], len(given))
+    results |= {"mode": modes_of(results), "peak_ratio": peak_ratio(results["peak_rotation"], alpha, alpha)}
+    data = {name: (_DIMENSIONS, results[name].reshape(shape), _about(name)) for name in VARIABLES}
+    coefficient = sides["r_right"].reshape(shape[1:])
+    made: xr.Dataset = xarray.Dataset(
+        data,
+        coords={
+            "motion": [given[k].name for k in range(len(given))],
+            "slenderness_angle": ("slenderness_angle", angles, {"units": "rad", "long_name": "slenderness angle"}),
+            "period": ("period", times, {"units": "s", "long_name": "2 pi / p"}),
+            "semi_diagonal": ("period", sizes, {"units": "m", "long_name": "semi-diagonal R of the block"}),
+            "coefficient": (_DIMENSIONS[1:], coefficient, {"units": "1", "long_name": "coefficient of restitution"}),
+        },
+        attrs=_attributes(question, settings, scale, given),
+    )
+    return made
+
+
+def _row(name: str, given: Any, unit: str) -> FloatArray:
+    values = np.atleast_1d(checks.positive_array(name, given, unit))
+    if values.ndim != 1 or not values.size:
+        raise InvalidValueError(f"{name} must be a row of numbers [{unit}], got shape {values.shape}")
+    return values
+
+
+def _about(name: str) -> dict[str, str]:
+    unit, words = VARIABLES[name]
+    return {"units": unit, "long_name": words}
+
+
+def _computed(histories: Histories, threads: int | None, progress: Callable[[int], None] | None) -> Arrays:
+    """Return all results, piece by piece so that progress can be told."""
+    results = {name: np.empty(histories.count, dtype) for name, dtype in RESULTS.items()}
+    for first in range(0, histories.count, PIECE):
+        last = min(first + PIECE, histories.count)
+        for name, values in histories.run(first, last, threads=threads).items():
+            results[name][first:last] = values
+        if progress is not None:
+            progress(last - first)
+    return results
+
+
+def _attributes(question: Question, settings: Settings, scale: float, motions: MotionList) -> dict[str, Any]:
+    kept = question.attributes({})
+    told = {k: v for k, v in kept.items() if k in {"software", "seed"} or k.startswith("setting_")}
+    restitution = getattr(question.restitution, "label", None) or str(question.restitution)
+    hashes = "; ".join(item["sha256"] for item in motions.description()["motions"])
+    return {**told, "restitution": restitution, "scale": scale, "motion_sha256": hashes}

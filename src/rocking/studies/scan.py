@@ -1,0 +1,293 @@
+"""Amplitudes of many bodies, sampled, zoomed where something may hide, and bracketed: always in one batch a round."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.studies.question import FAILED, Question
+
+# halvings after which neighbouring doubles have met, and the relative width at which a hunt is given up
+_MOST_ROUNDS, _GIVEN_UP = 70, 1e-9
+_FIELDS = ("body", "scale", "mode", "side", "peak", "time")
+
+
+@dataclass
+class Samples:
+    """Histories of many bodies at many scales, sorted by body and scale.
+
+    Parameters
+    ----------
+    body : ndarray of int
+        Number of the body.
+    scale : ndarray
+        Factor on the motion [-].
+    mode : ndarray of int
+        How it ended.
+    side : ndarray of int
+        Side to which it overturned.
+    peak : ndarray
+        Peak rotation over the slenderness angle [-].
+    time : ndarray
+        Time of overturning, NaN where it did not [s].
+    """
+
+    body: IntArray
+    scale: FloatArray
+    mode: IntArray
+    side: IntArray
+    peak: FloatArray
+    time: FloatArray
+
+    def joined(self, other: "Samples") -> "Samples":
+        """Return these and others, sorted.
+
+        Parameters
+        ----------
+        other : Samples
+            The others.
+
+        Returns
+        -------
+        Samples
+            All of them.
+        """
+        both = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in _FIELDS}
+        order = np.lexsort((both["scale"], both["body"]))
+        return Samples(**{name: values[order] for name, values in both.items()})
+
+    def where(self, keep: BoolArray) -> "Samples":
+        """Return some of them.
+
+        Parameters
+        ----------
+        keep : ndarray of bool
+            Which.
+
+        Returns
+        -------
+        Samples
+            Those.
+        """
+        return Samples(**{name: getattr(self, name)[keep] for name in _FIELDS})
+
+    @property
+    def good(self) -> "Samples":
+        """Those that have a result."""
+        return self.where(self.mode != FAILED)
+
+    @property
+    def falls(self) -> BoolArray:
+        """Whether each overturned."""
+        return self.mode >= 0
+
+    @property
+    def same_body(self) -> BoolArray:
+        """Whether each is of the same body as the next."""
+        return np.asarray(self.body[1:] == self.body[:-1])
+
+
+@dataclass
+class Brackets:
+    """Pairs of scales between which something changes.
+
+    Parameters
+    ----------
+    body : ndarray of int
+        Number of the body.
+    ends : ndarray, shape (n, 2)
+        Scales below and above [-].
+    modes : ndarray of int, shape (n, 2)
+        Modes there.
+    """
+
+    body: IntArray
+    ends: FloatArray
+    modes: IntArray
+
+    @classmethod
+    def between(cls, samples: Samples, changes: BoolArray) -> "Brackets":
+        """Return brackets between neighbouring samples.
+
+        Parameters
+        ----------
+        samples : Samples
+            Sorted.
+        changes : ndarray of bool
+            Whether there is one after each sample but the last.
+
+        Returns
+        -------
+        Brackets
+            In order.
+        """
+        low, high = (np.flatnonzero(changes) + k for k in (0, 1))
+        ends = np.stack([samples.scale[low], samples.scale[high]], axis=1)
+        return cls(samples.body[low], ends, np.stack([samples.mode[low], samples.mode[high]], axis=1))
+
+    def wide(self, tolerance: float) -> IntArray:
+        """Return which are wider than they shall be.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative width [-].
+
+        Returns
+        -------
+        ndarray of int
+            Their numbers.
+        """
+        (low, high), middle = self.ends.T, self.ends.mean(axis=1)
+        return np.flatnonzero((high - low > tolerance * high) & (middle > low) & (middle < high))
+
+    def move(self, rows: IntArray, upper: BoolArray, middle: Samples) -> None:
+        """Put one end of some brackets into their middles.
+
+        Parameters
+        ----------
+        rows : ndarray of int
+            Their numbers.
+        upper : ndarray of bool
+            Whether it is the upper end.
+        middle : Samples
+            Histories there.
+        """
+        end = upper.astype(np.int64)
+        self.ends[rows, end], self.modes[rows, end] = middle.scale, middle.mode
+
+
+class Scan:
+    """Histories of some bodies under one motion.
+
+    Parameters
+    ----------
+    question : Question
+        The motion and the settings.
+    sides : dict of str to ndarray
+        Sides of the bodies [rad, rad/s, -].
+    scales : ndarray, shape (bodies, points)
+        First factors on the motion, increasing [-].
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+    """
+
+    def __init__(
+        self,
+        question: Question,
+        sides: dict[str, FloatArray],
+        scales: FloatArray,
+        progress: Callable[[int], None] | None = None,
+    ) -> None:
+        self.question, self.sides, self.progress = question, sides, progress
+        self.samples = self.compute(np.repeat(np.arange(len(scales)), scales.shape[1]), scales.ravel())
+
+    def compute(self, body: IntArray, scale: FloatArray) -> Samples:
+        """Return histories; the random numbers of a body are the same at every scale.
+
+        Parameters
+        ----------
+        body : ndarray of int
+            Numbers of the bodies.
+        scale : ndarray
+            Factors on the motion [-].
+
+        Returns
+        -------
+        Samples
+            In the order given.
+        """
+        values = {name: array[body] for name, array in self.sides.items()}
+        found, _ = self.question.run({**values, "scale": scale}, np.ones(scale.size), body, self.progress)
+        return Samples(body, scale, *(found[n] for n in ("mode", "side", "peak_ratio", "overturning_time")))
+
+    def zoom(self) -> None:
+        """Halve the intervals in which a change of verdict may hide between ends that agree."""
+        s = self.samples.good
+        wanted = suspicious(s)
+        middle = 0.5 * (s.scale[:-1] + s.scale[1:])
+        self.samples = self.samples.joined(self.compute(s.body[:-1][wanted], middle[wanted]))
+
+    def hunt(self) -> None:
+        """Look for survival between neighbours that overturn differently: one must pass it to get to the other.
+
+        Each such pair is bisected between its own two ways of overturning until a survivor is met; of a third way the
+        nearest is followed.
+        """
+        s = self.samples.good
+        ways = 2 * s.mode + (s.side > 0)
+        changes = s.same_body & s.falls[1:] & s.falls[:-1] & (ways[1:] != ways[:-1])
+        pairs, lower = Brackets.between(s, changes), ways[:-1][changes]
+        lost = np.zeros(lower.size, dtype=np.bool_)
+        for _ in range(_MOST_ROUNDS):
+            rows = pairs.wide(_GIVEN_UP)
+            rows = rows[~lost[rows]]
+            if not rows.size:
+                break
+            middle = self.compute(pairs.body[rows], pairs.ends[rows].mean(axis=1))
+            lost[rows[~middle.falls]] = True
+            self.samples = self.samples.joined(middle.where(~middle.falls))
+            pairs.move(rows, 2 * middle.mode + (middle.side > 0) != lower[rows], middle)
+
+    def brackets(self, tolerance: float) -> Brackets:
+        """Return all changes of verdict between neighbouring samples, bisected together.
+
+        Parameters
+        ----------
+        tolerance : float
+            Relative width of the last brackets [-].
+
+        Returns
+        -------
+        Brackets
+            Sorted by body and scale; one whose middle failed stays as wide as it was.
+        """
+        s = self.samples.good
+        found = Brackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
+        stuck = np.zeros(found.body.size, dtype=np.bool_)
+        for _ in range(_MOST_ROUNDS):
+            rows = found.wide(tolerance)
+            rows = rows[~stuck[rows]]
+            if not rows.size:
+                break
+            middle = self.compute(found.body[rows], found.ends[rows].mean(axis=1))
+            failed = middle.mode == FAILED
+            stuck[rows[failed]] = True
+            rows, middle = rows[~failed], middle.where(~failed)
+            found.move(rows, middle.falls != (found.modes[rows, 0] >= 0), middle)
+        return found
+
+
+def suspicious(s: Samples) -> BoolArray:
+    """Return in which intervals between neighbouring samples of equal verdict another may hide.
+
+    Parameters
+    ----------
+    s : Samples
+        Sorted by body and scale, without failed ones.
+
+    Returns
+    -------
+    ndarray of bool
+        One entry an interval: where the peak of survivors, carried on as steeply as next to it, passes the top; next
+        to a largest peak of survivors; next to a longest time of overturning.
+    """
+    same = s.same_body
+    peak = np.where(s.falls, np.nan, s.peak)
+    steps = np.where(same, np.abs(np.diff(peak)), np.nan)
+    steep = np.fmax(steps, np.fmax(np.append(steps[1:], np.nan), np.append(np.nan, steps[:-1])))
+    with np.errstate(invalid="ignore"):
+        near = np.maximum(peak[1:], peak[:-1]) + steep >= 1.0
+    return np.asarray(same & (near | _beside_largest(peak, same) | _beside_largest(s.time, same)))
+
+
+def _beside_largest(values: FloatArray, same: BoolArray) -> BoolArray:
+    """Return which intervals touch a local maximum among neighbours that are numbers."""
+    with np.errstate(invalid="ignore"):
+        rise, fall = same & (values[1:] > values[:-1]), same & (values[:-1] > values[1:])
+        known = same & np.isfinite(values[1:]) & np.isfinite(values[:-1])
+    left = np.append(True, rise | ~known)  # nothing higher on the left
+    right = np.append(fall | ~known, True)
+    top = left & right & np.isfinite(values)
+    return np.asarray(known & (top[1:] | top[:-1]))

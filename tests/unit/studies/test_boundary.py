@@ -1,0 +1,160 @@
+"""Boundaries: marching squares on known shapes, bisection on a known curve, saddles, closed and open lines."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import rocking as rk
+from rocking.errors import InvalidValueError
+from rocking.studies.boundary import boundary
+from rocking.studies.contours import chains, crossed_edges, edge_numbers, segments
+from rocking.studies.lattice import Lattice
+from rocking.studies.plane import Plane
+
+BLOCK = rk.Block.from_angle(0.15, 1.0)
+HALF_SINE = rk.pulses.half_sine(1.0, 0.5)
+GRID = ("frequency_ratio", np.linspace(1.0, 9.0, 9)), ("amplitude_ratio", np.linspace(1.05, 6.05, 11))
+
+
+def half_sine(omega):
+    """Closed form of the half sine."""
+
+    def open_terms(psi):
+        return math.cos(psi) + math.exp(-(math.pi - psi) / omega) - omega * math.sin(psi)
+
+    return 1.0 / math.sin(brentq(open_terms, 1e-9, 0.5 * math.pi, xtol=1e-16))
+
+
+def outline(inside, centre=False):
+    """Chains of edges around the True points of a grid."""
+    inside = np.asarray(inside, dtype=bool)
+    rows, columns = inside.shape
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(columns - 1), np.arange(rows - 1)))
+    corners = np.stack([inside[j, i], inside[j, i + 1], inside[j + 1, i + 1], inside[j + 1, i]], axis=1)
+    return chains(segments(corners, edge_numbers(i, j, columns), np.full(i.size, centre)))
+
+
+def test_each_of_the_sixteen_cells():
+    """Every pattern of corners crosses as many edges as its corners alternate, and joins them in pairs."""
+    for pattern in range(16):
+        corners = np.array([[bool(pattern >> k & 1) for k in range(4)]])
+        alternations = int(sum(corners[0, k] != corners[0, k - 1] for k in range(4)))
+        assert crossed_edges(corners).sum() == alternations
+        joined = segments(corners, np.array([[10, 11, 12, 13]]), np.array([False]))
+        assert len(joined) == alternations // 2
+        assert len(np.unique(joined)) == alternations
+
+
+def test_a_point_is_enclosed():
+    """One point inside has a closed outline of four edges; a point at the margin an open one."""
+    (ring,) = outline([[0, 0, 0], [0, 1, 0], [0, 0, 0]])
+    assert len(ring) == 5
+    assert ring[0] == ring[-1]
+    (line,) = outline([[0, 1, 0], [0, 0, 0]])
+    assert len(line) == 3
+    assert line[0] != line[-1]
+
+
+def test_saddles_are_decided_by_their_centre():
+    """Opposite corners are two outlines if the centre is outside, and one if it is inside."""
+    diagonal = [[0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 0]]
+    assert len(outline(diagonal, centre=False)) == 2
+    assert len(outline(diagonal, centre=True)) == 1
+    other = [row[::-1] for row in diagonal]
+    assert len(outline(other, centre=False)) == 2
+    assert len(outline(other, centre=True)) == 1
+
+
+def test_neighbours_share_edges():
+    """The right edge of a cell is the left one of the next, its top the bottom of the one above."""
+    numbers = edge_numbers(np.array([0, 1, 0]), np.array([0, 0, 1]), 5)
+    assert numbers[0, 1] == numbers[1, 3]
+    assert numbers[0, 2] == numbers[2, 0]
+    assert len(np.unique(numbers)) == 10
+
+
+def test_vertices_lie_on_the_closed_form():
+    """Every vertex of the half sine's boundary, on upright and level edges, satisfies its equation to 1e-9."""
+    (line,) = boundary(BLOCK, HALF_SINE, *GRID, 0.9, linear=True, threads=1)
+    expected = [half_sine(omega) for omega in line.points[:, 0]]
+    assert len(expected) > 15
+    np.testing.assert_allclose(line.points[:, 1], expected, rtol=1e-9)
+    reported = np.sqrt(1.0 + line.points[:, 0] ** 2)
+    assert (np.abs(line.points[:, 1] / reported - 1.0) > 0.05).all()  # negative control: sqrt(1 + Omega^2)
+    assert line.modes.tolist() == [[-1, 0]] * len(expected)
+    assert not line.closed
+    assert line.axes == ("frequency_ratio", "amplitude_ratio")
+
+
+def test_consecutive_vertices_are_of_one_cell():
+    """A polyline steps from cell to cell: no longer than a cell's diagonal, and sorted along this monotone curve."""
+    (line,) = boundary(BLOCK, HALF_SINE, *GRID, 0.9, linear=True, threads=1)
+    steps = np.abs(np.diff(line.points, axis=0))
+    assert (steps <= [1.0 + 1e-12, 0.5 + 1e-12]).all()
+    assert (np.diff(line.points[:, 0]) > 0.0).all() or (np.diff(line.points[:, 0]) < 0.0).all()
+
+
+@pytest.mark.parametrize("levels", [1, 3])
+def test_refinement_adds_vertices_on_the_curve(levels):
+    """A refined boundary has more vertices, all on the closed form, and goes from margin to margin."""
+    (line,) = boundary(BLOCK, HALF_SINE, *GRID, 0.9, levels=levels, linear=True, threads=1)
+    np.testing.assert_allclose(line.points[:, 1], [half_sine(omega) for omega in line.points[:, 0]], rtol=1e-9)
+    assert len(line.points) > 12 * 2**levels
+    assert sorted(line.points[[0, -1], 0].tolist()) == pytest.approx([1.0, 9.0])
+
+
+def test_tolerance_is_kept():
+    """A loose tolerance leaves brackets that wide, and no more histories than it takes."""
+    told, exact = [], []
+    options = {"linear": True, "threads": 1}
+    (loose,) = boundary(BLOCK, HALF_SINE, *GRID, 0.9, tolerance=1e-3, progress=told.append, **options)
+    (tight,) = boundary(BLOCK, HALF_SINE, *GRID, 0.9, progress=exact.append, **options)
+    np.testing.assert_allclose(loose.points, tight.points, rtol=1e-3)
+    assert sum(told) < 0.5 * sum(exact)
+
+
+def test_outlines_of_modes_enclose_what_the_verdict_does():
+    """Every vertex of the verdict's outline is on that of a mode, which also sees gaps between modes within a cell."""
+    pulse = rk.pulses.sine(1.0, 0.5)
+    axes = ("frequency_ratio", np.linspace(2.0, 6.5, 19)), ("amplitude_ratio", np.linspace(1.1, 9.1, 33))
+    by_mode = boundary(BLOCK, pulse, *axes, 0.9, by="mode", linear=True, threads=1)
+    by_verdict = boundary(BLOCK, pulse, *axes, 0.9, linear=True, threads=1)
+    assert {line.region for line in by_mode} >= {"overturned after 0 impacts", "overturned after 1 impacts"}
+    assert {line.region for line in by_verdict} == {"overturned"}
+
+    def met(lines):
+        return {(*p,) for line in lines for p, m in zip(line.points.tolist(), line.modes, strict=True) if m[0] < 0}
+
+    assert met(by_verdict) < met(by_mode)
+
+
+def test_nothing_changes_nothing_to_draw():
+    """Where all survives or all overturns there is no boundary."""
+    for ratios in ([0.2, 0.5], [50.0, 60.0]):
+        assert boundary(BLOCK, HALF_SINE, ("frequency_ratio", [1.0, 2.0]), ("amplitude_ratio", ratios), 0.9) == []
+
+
+def test_failed_corners_are_left_out():
+    """Where there is no block there is no boundary either, and the rest is drawn."""
+    lines = boundary(
+        BLOCK, HALF_SINE, ("width", np.linspace(0.1, 2.5, 13)), ("semi_diagonal", np.linspace(0.2, 1.0, 9)), 0.9
+    )
+    for line in lines:
+        assert (line.modes != -3).all()
+    plane = Plane.of(BLOCK, HALF_SINE, ("width", [0.1, 2.5]), ("semi_diagonal", [0.2, 1.0]), 0.9, gravity=9.81)
+    lattice = Lattice(plane, 0)
+    assert -3 in lattice.modes_at(*lattice.base())
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [({"by": "side"}, "by"), ({"tolerance": 0.0}, "tolerance"), ({"levels": -1}, "levels"),
+     ({"x": ("frequency_ratio", [1.0])}, "at least 2"), ({"restitution": 2.0}, "energy")],
+)  # fmt: skip
+def test_bad_values_are_refused_by_name(change, words):
+    """Each bad argument is named."""
+    given = {"x": GRID[0], "y": GRID[1], "restitution": 0.9} | change
+    with pytest.raises(InvalidValueError, match=words):
+        boundary(BLOCK, HALF_SINE, **given)

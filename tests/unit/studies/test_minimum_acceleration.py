@@ -1,0 +1,192 @@
+"""Minimum overturning acceleration: all crossings, how they are read, batches, ranges, thin stretches, refusals."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.errors import InvalidValueError
+from rocking.studies.crossings import Crossings
+from rocking.studies.minimum_acceleration import minimum_overturning_acceleration, minimum_overturning_accelerations
+from rocking.studies.question import FAILED
+from rocking.studies.scan import Samples, suspicious
+
+BLOCK = rk.Block.from_angle(0.2, 1.0)
+SINE = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * BLOCK.frequency_parameter))
+
+
+def noise(seed=1, samples=800):
+    """A record of smooth noise that ends calmly."""
+    rng = np.random.default_rng(seed)
+    return rk.GroundMotion(np.convolve(rng.normal(size=samples), np.ones(20) / 5.0, "same") * np.hanning(samples), 0.01)
+
+
+def made(modes, accelerations, *, starts=False):
+    """Crossings by hand."""
+    a = np.array(accelerations)
+    return Crossings(a, a, a, np.array(modes).reshape(-1, 2), 0.0 * a, 1.0, 9.0, 1.0, 0.01, starts, 1, 0)
+
+
+def test_reading_crossings():
+    """Minimum, certainty and intervals of a body that overturns, survives and overturns again."""
+    found = made([[-1, 1], [1, -1], [-1, 0]], [2.0, 3.0, 4.0])
+    assert (len(found), found.minimum, found.certain) == (3, 2.0, 4.0)
+    assert found.safe_intervals == ((1.0, 2.0), (3.0, 4.0))
+    assert found.overturning_intervals == ((2.0, 3.0), (4.0, 9.0))
+    survives = made([[-1, 1], [1, -1]], [2.0, 3.0])
+    assert (survives.minimum, survives.certain) == (2.0, None)
+
+
+def test_reading_none():
+    """Without crossings the body survives, or overturns, all through the range; a minimum is not invented."""
+    safe, fallen = made([], []), made([], [], starts=True)
+    assert (safe.minimum, safe.certain, safe.safe_intervals) == (None, None, ((1.0, 9.0),))
+    assert (fallen.minimum, fallen.certain, fallen.safe_intervals) == (None, 1.0, ())
+    later = made([[1, -1], [-1, 0]], [2.0, 3.0], starts=True)
+    assert (later.minimum, later.certain, later.safe_intervals) == (None, 3.0, ((2.0, 3.0),))
+
+
+def test_the_verdict_on_both_sides_of_every_crossing():
+    """A billionth below and above each crossing single simulations end as the crossing says."""
+    found = minimum_overturning_acceleration(BLOCK, SINE, 0.85, threads=1)
+    assert len(found) == 3
+    for scale, modes in zip(found.scale, found.modes.tolist(), strict=True):
+        for factor, mode in ((1.0 - 1e-9, modes[0]), (1.0 + 1e-9, modes[1])):
+            response = rk.simulate(BLOCK, SINE, 0.85, scale=float(scale * factor))
+            assert (response.outcome is rk.Outcome.OVERTURNED) == (mode >= 0)
+    assert (found.width < 1e-11 * found.acceleration).all()
+    assert found.ratio == pytest.approx(found.acceleration / (9.80665 * math.tan(0.2)), rel=1e-14)
+
+
+def test_the_peak_of_the_given_motion_does_not_matter():
+    """A motion given at another amplitude, or turned round, has the same crossings."""
+    found = minimum_overturning_acceleration(BLOCK, SINE, 0.85, threads=1)
+    for factor in (7.0, -0.03):
+        other = minimum_overturning_acceleration(BLOCK, SINE.scaled(factor), 0.85, threads=1)
+        np.testing.assert_allclose(other.acceleration, found.acceleration, rtol=1e-11)
+        np.testing.assert_array_equal(other.modes, found.modes)
+
+
+def test_a_batch_is_its_members():
+    """Bodies computed together have what each has alone, to the last bit; their model is evaluated for each."""
+    bodies = [rk.Block(width=0.3, height=h) for h in (0.9, 1.8, 2.7)]
+    together = minimum_overturning_accelerations(bodies, SINE, "housner", threads=1)
+    for body, found in zip(bodies, together, strict=True):
+        alone = minimum_overturning_acceleration(body, SINE, "housner", threads=1)
+        np.testing.assert_array_equal(found.acceleration, alone.acceleration)
+        np.testing.assert_array_equal(found.modes, alone.modes)
+        assert (found.samples, found.lowest, found.highest) == (alone.samples, alone.lowest, alone.highest)
+
+
+def test_what_is_missed_is_narrower_than_the_resolution():
+    """Under a record a dense independent sampling contradicts the crossings only in narrower runs.
+
+    The record is chaotic in places, where stretches of any narrowness are interleaved.
+    """
+    record, block = noise(seed=6), rk.Block(width=0.4, height=2.0)
+    found = minimum_overturning_acceleration(block, record, 0.8, points=500, threads=1)
+    scales = np.geomspace(found.lowest, found.highest, 5000) / record.peak
+    single = rk.simulate_many(block, record, 0.8, scale=scales, threads=1)
+    over = single["outcome"].values[0, 0, :, 0] == 2
+    said = np.zeros(scales.size, dtype=bool)
+    for low, high in found.overturning_intervals:
+        said |= (scales * record.peak > low) & (scales * record.peak < high)
+    assert len(found) > 1
+
+    def longest(wrong):
+        ends = np.flatnonzero(np.diff(np.concatenate([[0], wrong.astype(int), [0]])))
+        return (ends[1::2] - ends[::2]).max(initial=0)
+
+    assert longest(said != over) < 10  # ten times finer than the first samples
+    assert longest((scales * record.peak > found.minimum) != over) > 10  # negative control: the first crossing alone
+
+
+def test_a_range_of_ones_own():
+    """Within a range only its crossings are listed; one that starts in overturning has no minimum."""
+    whole = minimum_overturning_acceleration(BLOCK, SINE, 0.85, threads=1)
+    first, second, third = whole.acceleration.tolist()
+    part = minimum_overturning_acceleration(
+        BLOCK, SINE, 0.85, lowest=0.5 * (first + second), highest=0.5 * (second + third), threads=1
+    )
+    assert part.acceleration == pytest.approx([second], rel=1e-11)
+    assert part.starts_overturned
+    assert part.minimum is None
+    assert part.certain is None
+    assert part.safe_intervals == ((pytest.approx(second), 0.5 * (second + third)),)
+
+
+def test_coarse_samples_find_what_hides_between_them():
+    """Twenty samples, 23 % apart, still find the gap of 6 % between the modes: the way of falling changes."""
+    fine = minimum_overturning_acceleration(BLOCK, SINE, 0.85, threads=1)
+    coarse = minimum_overturning_acceleration(BLOCK, SINE, 0.85, points=20, threads=1)
+    assert coarse.resolution > 0.2
+    np.testing.assert_allclose(coarse.acceleration, fine.acceleration, rtol=1e-11)
+
+
+def test_what_is_suspicious():
+    """Next to a largest peak or longest time, and where a peak rises to the top; not across bodies or far below."""
+    n = np.zeros(6, dtype=np.int64)
+    nan = np.full(6, np.nan)
+    scale = np.arange(1.0, 7.0)
+
+    def samples(**given):
+        values = {"body": n, "scale": scale, "mode": n - 1, "side": n, "peak": nan, "time": nan} | given
+        return Samples(**{name: np.asarray(value) for name, value in values.items()})
+
+    far = samples(peak=[0.1, 0.11, 0.12, 0.11, 0.1, 0.09])
+    assert suspicious(far).tolist() == [False, True, True, False, False]
+    steep = samples(peak=[0.1, 0.2, 0.6, 0.61, 0.62, 0.63])
+    assert suspicious(steep).tolist() == [False, True, True, False, True]
+    longest = samples(mode=n, time=[1.0, 2.0, 3.0, 2.0, 1.0, 0.5])
+    assert suspicious(longest).tolist() == [False, True, True, False, False]
+    bodies = samples(body=[0, 0, 0, 1, 1, 1], peak=[0.1, 0.2, 0.3, 0.1, 0.1, 0.05])
+    assert not suspicious(bodies)[2]
+
+
+def test_more_samples_are_told_and_counted():
+    """Progress tells of every history; the samples are at least the first ones, and none failed."""
+    told = []
+    found = minimum_overturning_acceleration(BLOCK, SINE, 0.85, points=100, progress=told.append, threads=1)
+    assert 100 <= found.samples < sum(told) < 1000
+    assert found.failed == 0
+
+
+def test_vertical_motion_lowers_the_start():
+    """With a vertical part, which can lighten the body, the range begins at a tenth of what lifts it."""
+    record = noise()
+    lightened = record.changed("with vertical", vertical=0.5 * record.acceleration)
+    plain = minimum_overturning_acceleration(BLOCK, record, 0.8, points=50, threads=1)
+    both = minimum_overturning_acceleration(BLOCK, lightened, 0.8, points=50, threads=1)
+    assert plain.lowest == pytest.approx(9.80665 * math.tan(0.2), rel=1e-14)
+    assert both.lowest == pytest.approx(0.1 * plain.lowest, rel=1e-14)
+
+
+def test_failed_histories_are_counted():
+    """Histories stopped for too many impacts are counted and set aside; if all are, that is an error."""
+    found = minimum_overturning_acceleration(BLOCK, noise(), 0.9, points=40, levels=0, most_impacts=3, threads=1)
+    assert 0 < found.failed < found.samples
+    assert FAILED not in found.modes
+    with pytest.raises(InvalidValueError, match="could be computed"):
+        minimum_overturning_acceleration(BLOCK, SINE, 0.9, lowest=1e13, highest=1e14, points=5, threads=1)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [({"points": 1}, "points"), ({"points": 2.0}, "points"), ({"levels": 13}, "levels"), ({"lowest": 0.0}, "lowest"),
+     ({"highest": math.inf}, "highest"), ({"lowest": 9.0, "highest": 8.0}, "below highest"),
+     ({"tolerance": -1.0}, "tolerance"), ({"body": None}, "body"), ({"motion": 3}, "motion"),
+     ({"motion": rk.GroundMotion([0.0, 0.0], 0.1)}, "peak above zero")],
+)  # fmt: skip
+def test_bad_values_are_refused_by_name(change, words):
+    """Each bad argument is named."""
+    given = {"body": BLOCK, "motion": SINE, "restitution": 0.9} | change
+    with pytest.raises(InvalidValueError, match=words):
+        minimum_overturning_acceleration(**given)
+
+
+def test_no_bodies_are_refused():
+    """A batch has at least one body, and is a sequence."""
+    for bad in ([], BLOCK, "block", 3):
+        with pytest.raises(InvalidValueError, match="bod"):
+            minimum_overturning_accelerations(bad, SINE)

@@ -1,0 +1,229 @@
+"""Overturning maps: cell by cell the same as single histories, mirrored, stretched, refined, refused."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.errors import InvalidValueError
+from rocking.studies.lattice import Lattice
+from rocking.studies.overturning_map import VARIABLES, overturning_map
+from rocking.studies.plane import Plane
+from rocking.studies.refined import refined_map
+
+BLOCK = rk.Block(width=0.5, height=2.0)
+PULSE = rk.pulses.sine(3.0, 0.7)
+RATIOS = ("frequency_ratio", np.linspace(1.5, 6.0, 19)), ("amplitude_ratio", np.linspace(0.5, 8.0, 26))
+SAME = ("outcome", "peak_rotation", "impacts", "side", "status", "error", "overturning_time")
+
+
+def noise(samples=400):
+    """A record of smooth noise."""
+    rng = np.random.default_rng(4)
+    return rk.GroundMotion(np.convolve(rng.normal(size=samples), np.ones(8) / 2.0, "same"), 0.02)
+
+
+def test_a_map_is_simulate_many_cell_by_cell():
+    """Scale against size, with the restitution evaluated for each body: the same bits as `simulate_many`."""
+    scales, sizes = np.linspace(0.5, 4.0, 23), np.linspace(0.3, 3.0, 17)
+    found = overturning_map(BLOCK, noise(), ("scale", scales), ("semi_diagonal", sizes), "ked", threads=1)
+    bodies = [BLOCK.scaled(size=size / BLOCK.semi_diagonal) for size in sizes]
+    single = rk.simulate_many(bodies, noise(), "ked", scale=scales, threads=1)
+    for name in SAME:
+        np.testing.assert_array_equal(found[name].values, single[name].values[:, 0, :, 0], strict=True)
+    assert len(np.unique(found["mode"])) > 3
+
+
+def test_slenderness_against_restitution_is_simulate_many():
+    """Two axes of the body: the same bits as one call for each coefficient."""
+    ratios, coefficients = np.linspace(2.0, 9.0, 8), [0.5, 0.8, 0.95]
+    found = overturning_map(BLOCK, PULSE, ("slenderness_ratio", ratios), ("restitution", coefficients), threads=1)
+    angles = np.arctan(1.0 / ratios)
+    bodies = [rk.Block.from_angle(angle, BLOCK.semi_diagonal) for angle in angles]
+    single = rk.simulate_many(bodies, PULSE, coefficients, threads=1)
+    for name in SAME:
+        np.testing.assert_array_equal(found[name].values, single[name].values[:, 0, 0, :].T, strict=True)
+
+
+def test_a_stretched_motion_is_the_motion_with_another_period():
+    """Period against scale, from one pulse: rotations and times agree with pulses of their own to 1e-12."""
+    periods, scales = [0.3, 0.7, 1.9], [0.6, 1.0, 2.5]
+    found = overturning_map(BLOCK, PULSE, ("period", periods), ("scale", scales), 0.9, threads=1)
+    pulses = [rk.pulses.sine(3.0, period) for period in periods]
+    single = rk.simulate_many(BLOCK, pulses, 0.9, scale=scales, threads=1)
+    for name in ("outcome", "impacts", "side"):
+        np.testing.assert_array_equal(found[name].values, single[name].values[0, :, :, 0].T)
+    for name in ("peak_rotation", "overturning_time"):
+        np.testing.assert_allclose(found[name].values, single[name].values[0, :, :, 0].T, rtol=1e-12, atol=0.0)
+    assert np.isfinite(found["overturning_time"]).any()
+
+
+def test_a_stretched_record_is_the_record_with_another_step():
+    """Duration against scale: the same as records of another time step; the wrong step is rejected."""
+    record, factor = noise(), 1.7
+    axes = ("duration", [record.duration * factor]), ("scale", [0.5, 0.8])
+    found = overturning_map(BLOCK, record, *axes, 0.9, threads=1)["peak_rotation"].values[:, 0]
+    for step, same in ((0.02 * factor, True), (0.02 * factor * 1.001, False)):
+        other = rk.GroundMotion(record.acceleration, step)
+        single = rk.simulate_many(BLOCK, other, 0.9, scale=[0.5, 0.8], threads=1)["peak_rotation"].values.ravel()
+        assert np.allclose(found, single, rtol=1e-9, atol=0.0) == same
+
+
+def test_mirrored_motion():
+    """A symmetric block under the mirrored motion has the same map, with the sides exchanged."""
+    one = overturning_map(BLOCK, PULSE, *RATIOS, 0.9, threads=1)
+    other = overturning_map(BLOCK, PULSE.scaled(-1.0), *RATIOS, 0.9, threads=1)
+    for name in ("mode", "peak_ratio", "impacts", "overturning_time"):
+        np.testing.assert_array_equal(one[name].values, other[name].values)
+    for name in ("peak_rotation", "side"):
+        np.testing.assert_array_equal(one[name].values, -other[name].values)
+
+
+def test_dimensionless_axes_forget_the_pulse():
+    """Over omega_p / p and a_p / (g tan alpha) the pulse that was given does not matter, nor the size of the block."""
+    one = overturning_map(BLOCK, PULSE, *RATIOS, 0.9, threads=1)
+    other = overturning_map(BLOCK.scaled(size=7.0), rk.pulses.sine(0.01, 40.0), *RATIOS, 0.9, gravity=1.6, threads=1)
+    np.testing.assert_array_equal(one["mode"].values, other["mode"].values)
+    np.testing.assert_allclose(one["peak_ratio"].values, other["peak_ratio"].values, rtol=1e-9)
+
+
+def test_threads_and_neighbours_change_nothing():
+    """A cell is the same to the last bit whatever else is on the map and however many threads compute it."""
+    whole = overturning_map(BLOCK, PULSE, *RATIOS, 0.9, threads=1)
+    part = overturning_map(BLOCK, PULSE, (RATIOS[0][0], RATIOS[0][1][3:5]), (RATIOS[1][0], RATIOS[1][1][7:9]), 0.9)
+    for name in SAME:
+        np.testing.assert_array_equal(part[name].values, whole[name].values[7:9, 3:5])
+
+
+def test_what_a_map_says_of_itself():
+    """Units and meanings of variables and coordinates; software, settings, motion and restitution in the attributes."""
+    found = overturning_map(BLOCK, PULSE, ("pga", [1.0, 2.0]), ("pgv", [0.1, 0.2, 0.3]), "housner", linear=True)
+    assert found["mode"].dims == ("pgv", "pga")
+    assert set(found.data_vars) == set(VARIABLES)
+    assert all({"units", "long_name"} <= set(found[name].attrs) for name in found.variables)
+    assert found["pgv"].attrs["units"] == "m/s"
+    assert found.attrs["software"] == f"rocking {rk.__version__}"
+    assert found.attrs["setting_linear"] == 1
+    assert "sine pulse" in found.attrs["motion"]
+    assert found.attrs["restitution"] == "housner"
+
+
+def test_modes_and_relative_peaks():
+    """Below g tan alpha nothing lifts; the relative peak is over the angle, and a quarter turn where it overturned."""
+    found = overturning_map(BLOCK, PULSE, *RATIOS, 0.9, threads=1)
+    weak = found.sel(amplitude_ratio=slice(0.0, 0.99))
+    assert (weak["mode"] == -2).all()
+    assert (weak["peak_ratio"] == 0.0).all()
+    over = found["mode"].values >= 0
+    np.testing.assert_array_equal(over, found["outcome"].values == 2)
+    np.testing.assert_array_equal(found["mode"].values[over], found["impacts"].values[over])
+    assert found["peak_ratio"].values[over] == pytest.approx(0.5 * math.pi / BLOCK.slenderness_angle)
+
+
+def test_an_asymmetric_body_divides_by_the_side_it_stands_on():
+    """The relative peak of a body with two slendernesses uses that of the side of the peak."""
+    body = BLOCK.with_feet(0.0, 0.4)
+    found = overturning_map(body, PULSE, ("scale", [0.7, 0.8]), ("semi_diagonal", [1.0, 2.0]), 0.7, threads=1)
+    angles = {sign: body.side(foot).slenderness_angle for sign, foot in ((1.0, "right"), (-1.0, "left"))}
+    peaks = found["peak_rotation"].values
+    expected = np.abs(peaks) / np.vectorize(angles.get)(np.sign(peaks))
+    np.testing.assert_allclose(found["peak_ratio"].values, expected.astype(float), rtol=1e-14)
+
+
+def test_a_bad_cell_touches_no_other():
+    """A cell without a block is failed and says so; the others are as if it were not there."""
+    found = overturning_map(BLOCK, PULSE, ("width", [0.4, 5.0]), ("semi_diagonal", [1.0, 3.0]), 0.9, threads=1)
+    assert found["mode"].values[0, 1] == -3
+    assert found["status"].values[0, 1] != 0
+    assert np.isnan(found["peak_ratio"].values[0, 1])
+    alone = overturning_map(BLOCK, PULSE, ("width", [0.4]), ("semi_diagonal", [1.0, 3.0]), 0.9, threads=1)
+    np.testing.assert_array_equal(found["peak_rotation"].values[:, :1], alone["peak_rotation"].values)
+
+
+def test_refinement_keeps_the_base_and_finds_what_a_fine_map_has():
+    """Points of the map stay to the last bit; new ones are those of the map of that spacing, and fewer."""
+    x, y = ("frequency_ratio", np.linspace(1.5, 6.0, 10)), ("amplitude_ratio", np.linspace(0.5, 8.0, 11))
+    base = overturning_map(BLOCK, PULSE, x, y, 0.9, threads=1)
+    finer = overturning_map(BLOCK, PULSE, x, y, 0.9, threads=1, refine=2)
+    for name in VARIABLES:
+        np.testing.assert_array_equal(base[name].values, finer[name].values)
+    np.testing.assert_array_equal(finer["refined_mode"].values[: base["mode"].size], base["mode"].values.ravel())
+    fine = overturning_map(
+        BLOCK, PULSE, (x[0], np.linspace(1.5, 6.0, 37)), (y[0], np.linspace(0.5, 8.0, 41)), 0.9, threads=1
+    )
+    table = fine["mode"].sel(
+        frequency_ratio=finer["refined_x"], amplitude_ratio=finer["refined_y"], method="nearest", tolerance=1e-9
+    )
+    np.testing.assert_array_equal(table.values, finer["refined_mode"].values)
+    assert base["mode"].size < finer.sizes["point"] < 0.7 * fine["mode"].size
+
+
+def test_refined_map_is_the_same():
+    """`refined_map` gives the points of ``refine=`` with their relative peaks, the base first."""
+    x, y = ("frequency_ratio", np.linspace(2.0, 4.0, 4)), ("amplitude_ratio", np.linspace(1.0, 5.0, 5))
+    one = refined_map(BLOCK, PULSE, x, y, 0.9, levels=2, threads=1)
+    other = overturning_map(BLOCK, PULSE, x, y, 0.9, refine=2, threads=1)
+    np.testing.assert_array_equal(one.modes, other["refined_mode"].values)
+    np.testing.assert_array_equal(one.peak_ratio, other["refined_peak_ratio"].values)
+    assert one.base.sum() == 20
+    assert one.base[:20].all()
+
+
+def test_the_reference_engine_draws_the_same_map():
+    """The other engine gives the same modes, and rotations to 1e-10, and says that it ran."""
+    x, y = ("frequency_ratio", [2.0, 3.0, 5.0]), ("amplitude_ratio", [0.9, 1.5, 2.2, 3.0])
+    fast = overturning_map(BLOCK, PULSE, x, y, 0.9, threads=1)
+    slow = overturning_map(BLOCK, PULSE, x, y, 0.9, engine="reference")
+    np.testing.assert_array_equal(fast["mode"].values, slow["mode"].values)
+    np.testing.assert_allclose(fast["peak_rotation"].values, slow["peak_rotation"].values, rtol=1e-10)
+    assert (fast.attrs["engine"][:4], slow.attrs["engine"]) == ("fast", "reference")
+
+
+def test_progress_counts_every_history():
+    """Progress adds up to the number of histories, refinement included."""
+    told = []
+    x, y = ("frequency_ratio", np.linspace(2.0, 4.0, 4)), ("amplitude_ratio", np.linspace(1.0, 5.0, 5))
+    found = overturning_map(BLOCK, PULSE, x, y, 0.9, refine=1, threads=1, progress=told.append)
+    assert sum(told) == found.sizes["point"]
+
+
+def test_lattice_points_of_the_axes_are_theirs():
+    """Whatever the level, the axes' own values are on the lattice to the last bit."""
+    x = np.array([0.1, 0.3, 0.7, 1.9])
+    plane = Plane.of(BLOCK, PULSE, ("scale", x), ("semi_diagonal", [0.3, 0.9]), 0.9, gravity=9.81)
+    lattice = Lattice(plane, 3)
+    found, _ = lattice.coordinates(np.arange(0, lattice.columns, 8), np.zeros(4, dtype=np.int64))
+    assert found.tolist() == x.tolist()
+
+
+@pytest.mark.parametrize("refine", [-1, 13, 1.5, True, "2"])
+def test_levels_are_refused(refine):
+    """Levels of refinement are whole numbers from 0 to 12."""
+    with pytest.raises(InvalidValueError, match="levels"):
+        overturning_map(BLOCK, PULSE, ("scale", [1.0, 2.0]), ("period", [0.3, 0.6]), 0.9, refine=refine)
+
+
+def test_random_restitution():
+    """Random coefficients: every cell draws its own, as in `simulate_many`; refinement is refused."""
+    law = rk.RandomRestitution.normal(0.9, 0.03, seed=3)
+    scales = np.linspace(0.5, 1.0, 30)
+    found = overturning_map(BLOCK, noise(), ("scale", scales), ("semi_diagonal", [1.5]), law, threads=1)
+    body = BLOCK.scaled(size=1.5 / BLOCK.semi_diagonal)
+    single = rk.simulate_many(body, noise(), law, scale=scales, threads=1)
+    np.testing.assert_array_equal(found["peak_rotation"].values.ravel(), single["peak_rotation"].values.ravel())
+    with pytest.raises(InvalidValueError, match="random"):
+        overturning_map(BLOCK, noise(), ("scale", scales), ("semi_diagonal", [1.5]), law, refine=1)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [({"motion": 3.0}, "motion"), ({"body": "block"}, "body"), ({"gravity": -1.0}, "gravity"),
+     ({"nonsense": 1}, "nonsense"), ({"threads": 0}, "threads"), ({"progress": 3}, "progress"),
+     ({"restitution": 1.2}, "energy"), ({"engine": "slow"}, "engine")],
+)  # fmt: skip
+def test_bad_values_are_refused_by_name(change, words):
+    """Each bad argument is named."""
+    given = {"body": BLOCK, "motion": PULSE, "restitution": 0.9} | change
+    with pytest.raises(InvalidValueError, match=words):
+        overturning_map(x=("scale", [1.0, 2.0]), y=("period", [0.3, 0.6]), **given)
