@@ -4,7 +4,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rocking import bodies, conventions, dynamics, errors, evidence, motions, plots, report, restitution
+    from rocking import bodies, conventions, dynamics, errors, evidence, motions, plots, report, restitution, studies
     from rocking.bodies import Block, Body, MassPoints, Region, Section, Side, shapes
     from rocking.bodies.formats import read_body
     from rocking.dynamics import (
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rocking.motions import GroundMotion, pulses, synthetic
     from rocking.motions.formats import read_motion
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
+    from rocking.studies import minimum_overturning_acceleration, overturning_map, rocking_spectrum
 
 __version__ = "0.1.0"
 
@@ -42,16 +43,20 @@ __all__ = [
     "errors",
     "evidence",
     "free_rocking",
+    "minimum_overturning_acceleration",
     "motions",
+    "overturning_map",
     "plots",
     "pulses",
     "read_body",
     "read_motion",
     "report",
     "restitution",
+    "rocking_spectrum",
     "shapes",
     "simulate",
     "simulate_many",
+    "studies",
     "synthetic",
 ]
 
@@ -70,9 +75,12 @@ _HOME = {
     "SpeedRestitution": "rocking.dynamics",
     "coefficient_of_restitution": "rocking.restitution",
     "free_rocking": "rocking.dynamics",
+    "minimum_overturning_acceleration": "rocking.studies",
+    "overturning_map": "rocking.studies",
     "pulses": "rocking.motions",
     "read_body": "rocking.bodies.formats",
     "read_motion": "rocking.motions.formats",
+    "rocking_spectrum": "rocking.studies",
     "shapes": "rocking.bodies",
     "simulate": "rocking.dynamics",
     "simulate_many": "rocking.dynamics",

@@ -1,6 +1,41 @@
 """Many histories: overturning maps, rocking spectra, sensitivity to the restitution, fragility, campaigns."""
 
+from rocking.studies.axes import axes
+from rocking.studies.axis import Axis
+from rocking.studies.boundary import Polyline, boundary
+from rocking.studies.crossings import Crossings
 from rocking.studies.histories import Histories, Product, Table
+from rocking.studies.islands import Island, Islands, safe_beyond_overturning, safe_islands
+from rocking.studies.minimum_acceleration import (
+    minimum_overturning_acceleration,
+    minimum_overturning_accelerations,
+)
 from rocking.studies.motion_set import MotionList, MotionSet
+from rocking.studies.overturning_map import overturning_map
+from rocking.studies.record_set import SyntheticSet
+from rocking.studies.refined import Refined, refined_map
+from rocking.studies.rocking_spectrum import rocking_spectrum
 
-__all__ = ["Histories", "MotionList", "MotionSet", "Product", "Table"]
+__all__ = [
+    "Axis",
+    "Crossings",
+    "Histories",
+    "Island",
+    "Islands",
+    "MotionList",
+    "MotionSet",
+    "Polyline",
+    "Product",
+    "Refined",
+    "SyntheticSet",
+    "Table",
+    "axes",
+    "boundary",
+    "minimum_overturning_acceleration",
+    "minimum_overturning_accelerations",
+    "overturning_map",
+    "refined_map",
+    "rocking_spectrum",
+    "safe_beyond_overturning",
+    "safe_islands",
+]
