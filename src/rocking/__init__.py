@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from rocking.motions import GroundMotion, pulses, synthetic
     from rocking.motions.formats import read_motion
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
-    from rocking.studies import minimum_overturning_acceleration, overturning_map, rocking_spectrum
+    from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
+    from rocking.studies.overturning_map import overturning_map
+    from rocking.studies.rocking_spectrum import rocking_spectrum
 
 __version__ = "0.1.0"
 

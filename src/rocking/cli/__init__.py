@@ -1,4 +1,4 @@
-"""The command line: `rocking cor`, `simulate`, `motion`, `formats`, `paper`, `models`."""
+"""The command line: `rocking cor`, `simulate`, `motion`, `formats`, `inventory`, `paper`, `models`."""
 
 import sys
 import warnings

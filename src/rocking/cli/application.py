@@ -4,6 +4,7 @@ import typer
 
 from rocking.cli.cor import cor
 from rocking.cli.formats import formats
+from rocking.cli.inventory import inventory
 from rocking.cli.models import models
 from rocking.cli.motion import motion
 from rocking.cli.paper import paper
@@ -27,7 +28,7 @@ def application() -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    for command in (cor, simulate, paper, models, motion, formats):
+    for command in (cor, simulate, paper, models, motion, formats, inventory):
         app.command()(command)
     return app
 

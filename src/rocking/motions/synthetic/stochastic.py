@@ -22,6 +22,8 @@ from rocking.motions.synthetic.sampling import described, generator, times
 FORGOTTEN = 40.0
 """Decays of an impulse response after which it is below rounding: exp(-40) = 4e-18."""
 
+_BLOCK = 24
+
 
 @dataclass(frozen=True)
 class NonstationaryFilter:
@@ -151,13 +153,38 @@ def nonstationary_motion(
 def _unit_process(noise: FloatArray, omega: FloatArray, damping: float, step: float) -> FloatArray:
     """Return noise through a filter that changes, over its own standard deviation: variance 1 after the start."""
     total, variance = np.zeros(noise.size), np.zeros(noise.size)
-    root = math.sqrt(1.0 - damping * damping)
-    for i in range(noise.size - 1):
-        reach = min(noise.size - 1 - i, math.ceil(FORGOTTEN / (damping * omega[i] * step)))
-        phase = omega[i] * step * np.arange(1, reach + 1)
-        response = omega[i] / root * np.exp(-damping * phase) * np.sin(root * phase)
-        total[i + 1 : i + 1 + reach] += response * noise[i]
-        variance[i + 1 : i + 1 + reach] += response * response
+    for first in range(0, noise.size - 1, _BLOCK):
+        turn = omega[first : min(first + _BLOCK, noise.size - 1)] * step
+        left = noise.size - 1 - first
+        reach = min(left, math.ceil(FORGOTTEN / (damping * turn.min())))
+        response = _responses(turn, damping, reach) * (turn / step)[:, np.newaxis]
+        for out, weights in (
+            (total, response * noise[first : first + turn.size, np.newaxis]),
+            (variance, response * response),
+        ):
+            arrived = _staggered(weights)[:left]
+            out[first + 1 : first + 1 + arrived.size] += arrived
     # at the first sample nothing has come through yet
     variance[0] = 1.0
     return total / np.sqrt(variance)
+
+
+def _responses(turn: FloatArray, damping: float, reach: int) -> FloatArray:
+    """Return exp(-zeta k turn) sin(k root turn) / root for k = 1 ... reach, a row for each turn."""
+    root = math.sqrt(1.0 - damping * damping)
+    rate = complex(-damping, root) * turn[:, np.newaxis]
+    # powers of a number are those of its own power, times the first few: few exponentials are left
+    far = np.exp(rate * (_BLOCK * np.arange(-(-reach // _BLOCK))))[:, :, np.newaxis]
+    near = np.exp(rate * np.arange(1, _BLOCK + 1))[:, np.newaxis, :] / root
+    powers: FloatArray = far.real * near.imag + far.imag * near.real
+    return powers.reshape(turn.size, -1)[:, :reach]
+
+
+def _staggered(rows: FloatArray) -> FloatArray:
+    """Return the sum of rows each of which starts one place after the one above it."""
+    count, width = rows.shape
+    padded = np.zeros((count, width + count))
+    padded[:, :width] = rows
+    # read with rows one shorter, every row comes to stand one place further right
+    together: FloatArray = padded.ravel()[: count * (width + count - 1)].reshape(count, -1).sum(axis=0)
+    return together

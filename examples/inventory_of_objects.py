@@ -1,0 +1,21 @@
+"""An inventory of ten objects at PGA 0.3 g: which of them fall over, the worst first, in plain words."""
+
+from pathlib import Path
+
+from rocking.studies.inventory import Hazard, Level, assess, read_inventory
+from rocking.studies.inventory.words import advice, model_note, sentence
+
+inventory = read_inventory(Path(__file__).with_name("inventory.csv"))
+hazard = Hazard.of_family("point-source", Level.of("PGA", "0.3g"), count=200, seed=1)
+assessment = assess(inventory, hazard)
+
+print(f"{len(assessment.verdicts)} objects at {hazard.words()}, {hazard.source}\n")
+for rank, verdict in enumerate(assessment.verdicts, start=1):
+    print(f"{rank:2}. [{verdict.light.word.upper():5}] {verdict.item.name}: {sentence(verdict, assessment)}")
+    print(f"    {advice(verdict, assessment)} {model_note(verdict, assessment)}")
+for row in assessment.not_assessed:
+    print(f"    {row.name} (line {row.row}) not assessed: {row.reason}")
+
+severities = [verdict.light.severity for verdict in assessment.verdicts]
+assert severities == sorted(severities, reverse=True)
+assert [row.name for row in assessment.not_assessed] == ["framed mirror on a stand"]

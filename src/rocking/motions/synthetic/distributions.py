@@ -1,0 +1,243 @@
+"""Distributions of parameters, all with two finite ends: what a family of synthetic motions draws from."""
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+
+
+@dataclass(frozen=True)
+class Distribution(ABC):
+    """A distribution between two ends.
+
+    Parameters
+    ----------
+    low, high : float
+        The ends, in the unit of the parameter.
+
+    Raises
+    ------
+    InvalidValueError
+        If the ends are not two finite numbers in order.
+    """
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        """Check the ends."""
+        object.__setattr__(self, "low", checks.number("low", self.low))
+        object.__setattr__(self, "high", checks.number("high", self.high))
+        if not self.low < self.high:
+            raise InvalidValueError(f"low must be below high, got {self.low:g} and {self.high:g}")
+
+    @abstractmethod
+    def words(self) -> str:
+        """Return the distribution in words.
+
+        Returns
+        -------
+        str
+            Kind and numbers.
+        """
+
+    @abstractmethod
+    def share_below(self, value: FloatArray) -> FloatArray:
+        """Return the cumulative distribution function.
+
+        Parameters
+        ----------
+        value : ndarray
+            Values of the parameter.
+
+        Returns
+        -------
+        ndarray
+            From 0 at the low end to 1 at the high end [-].
+        """
+
+    @abstractmethod
+    def _inverse(self, share: float) -> float:
+        """Return the value of which a share lies below."""
+
+    def value_at(self, share: float) -> float:
+        """Return the quantile function.
+
+        Parameters
+        ----------
+        share : float
+            From 0 to 1; uniform random numbers give values of this distribution [-].
+
+        Returns
+        -------
+        float
+            Value between the ends.
+        """
+        share = checks.within("share", share, 0.0, 1.0, hint="not a percentage")
+        return min(max(float(self._inverse(share)), self.low), self.high)
+
+
+class Uniform(Distribution):
+    """Every value between the ends alike.
+
+    Examples
+    --------
+    >>> Uniform(2.0, 4.0).value_at(0.25), Uniform(2.0, 4.0).words()
+    (2.5, 'uniform from 2 to 4')
+    """
+
+    def words(self) -> str:
+        """Return the distribution in words.
+
+        Returns
+        -------
+        str
+            Kind and ends.
+        """
+        return f"uniform from {self.low:g} to {self.high:g}"
+
+    def share_below(self, value: FloatArray) -> FloatArray:
+        """Return the cumulative distribution function.
+
+        Parameters
+        ----------
+        value : ndarray
+            Values of the parameter.
+
+        Returns
+        -------
+        ndarray
+            From 0 to 1 [-].
+        """
+        return np.clip((value - self.low) / (self.high - self.low), 0.0, 1.0)
+
+    def _inverse(self, share: float) -> float:
+        return self.low + share * (self.high - self.low)
+
+
+@dataclass(frozen=True)
+class LogUniform(Distribution):
+    """Every ratio alike: the logarithm is uniform.
+
+    Parameters
+    ----------
+    low, high : float
+        The ends, above zero.
+
+    Examples
+    --------
+    >>> round(LogUniform(1.0, 100.0).value_at(0.5), 12)
+    10.0
+    """
+
+    def __post_init__(self) -> None:
+        """Check the ends."""
+        super().__post_init__()
+        checks.positive("low", self.low)
+
+    def words(self) -> str:
+        """Return the distribution in words.
+
+        Returns
+        -------
+        str
+            Kind and ends.
+        """
+        return f"log-uniform from {self.low:g} to {self.high:g}"
+
+    def share_below(self, value: FloatArray) -> FloatArray:
+        """Return the cumulative distribution function.
+
+        Parameters
+        ----------
+        value : ndarray
+            Values of the parameter.
+
+        Returns
+        -------
+        ndarray
+            From 0 to 1 [-].
+        """
+        inside = np.clip(value, self.low, self.high)
+        return np.asarray(np.log(inside / self.low) / math.log(self.high / self.low))
+
+    def _inverse(self, share: float) -> float:
+        return self.low * math.exp(share * math.log(self.high / self.low))
+
+
+@dataclass(frozen=True)
+class Lognormal(Distribution):
+    """A lognormal distribution cut off at two ends.
+
+    Parameters
+    ----------
+    low, high : float
+        The ends, above zero.
+    median : float
+        Median before it is cut, between the ends.
+    deviation : float
+        Standard deviation of the natural logarithm before it is cut [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a number is outside its range.
+
+    Examples
+    --------
+    >>> round(Lognormal(1.0, 9.0, median=3.0, deviation=0.4).value_at(0.5), 12)
+    3.0
+    """
+
+    median: float
+    deviation: float
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        super().__post_init__()
+        checks.positive("low", self.low)
+        checks.within("median", self.median, self.low, self.high)
+        checks.positive("deviation", self.deviation)
+
+    def words(self) -> str:
+        """Return the distribution in words.
+
+        Returns
+        -------
+        str
+            Kind, median, deviation and ends.
+        """
+        cut = f"between {self.low:g} and {self.high:g}"
+        return f"lognormal, median {self.median:g}, deviation of the logarithm {self.deviation:g}, {cut}"
+
+    def share_below(self, value: FloatArray) -> FloatArray:
+        """Return the cumulative distribution function.
+
+        Parameters
+        ----------
+        value : ndarray
+            Values of the parameter.
+
+        Returns
+        -------
+        ndarray
+            From 0 to 1 [-].
+        """
+        first, last = self._normal(np.array([self.low, self.high]))
+        return np.asarray((self._normal(np.clip(value, self.low, self.high)) - first) / (last - first))
+
+    def _normal(self, value: FloatArray) -> FloatArray:
+        from scipy.special import ndtr
+
+        return np.asarray(ndtr(np.log(value / self.median) / self.deviation))
+
+    def _inverse(self, share: float) -> float:
+        from scipy.special import ndtri
+
+        first, last = self._normal(np.array([self.low, self.high]))
+        return self.median * math.exp(self.deviation * float(ndtri(first + share * (last - first))))

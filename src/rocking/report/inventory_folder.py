@@ -1,0 +1,100 @@
+"""The folder that an inventory is written to: HTML, PDF, spreadsheet, CSV, JSON."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from rocking.errors import MissingExtraError, RockingError
+from rocking.report.html import render_html
+from rocking.report.inventory_document import inventory_document
+from rocking.report.inventory_spreadsheet import write_spreadsheet
+from rocking.report.pdf import render_pdf
+from rocking.studies.inventory.table import as_csv, as_plain
+from rocking.studies.inventory.verdict import Assessment
+
+STEM = "inventory"
+"""Name of every file, before its suffix."""
+
+
+def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], list[str]]:
+    """Write an assessment in every form; what needs a library that is not installed is left out and named.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        The inventory, assessed.
+    folder : Path
+        Folder to write, made if it does not exist.
+
+    Returns
+    -------
+    written : list of Path
+        The files.
+    left_out : list of str
+        What could not be written and how to get it, one sentence each.
+
+    Raises
+    ------
+    RockingError
+        If the folder cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RockingError(f"cannot write to {folder}: {error.strerror}") from error
+    written: list[Path] = []
+    left_out: list[str] = []
+    for suffix, write in _WRITERS.items():
+        path = folder / f"{STEM}.{suffix}"
+        try:
+            write(assessment, path)
+        except MissingExtraError as error:
+            left_out.append(str(error))
+        else:
+            written.append(path)
+    return written, left_out
+
+
+def inventory_json(assessment: Assessment) -> str:
+    """Return an assessment as JSON.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        The inventory, assessed.
+
+    Returns
+    -------
+    str
+        One object; SI units, named in the keys.
+    """
+    return json.dumps(as_plain(assessment), indent=2, allow_nan=False, ensure_ascii=False)
+
+
+def _html(assessment: Assessment, path: Path) -> None:
+    path.write_text(render_html(inventory_document(assessment), path.parent), encoding="utf-8")
+
+
+def _pdf(assessment: Assessment, path: Path) -> None:
+    # the renderer leaves its source beside the pictures for a moment: not among the user's files
+    with TemporaryDirectory() as folder:
+        render_pdf(inventory_document(assessment), Path(folder), path)
+
+
+def _csv(assessment: Assessment, path: Path) -> None:
+    # the byte order mark tells Excel that it is UTF-8
+    path.write_text(as_csv(assessment), encoding="utf-8-sig", newline="")
+
+
+def _json(assessment: Assessment, path: Path) -> None:
+    path.write_text(inventory_json(assessment) + "\n", encoding="utf-8")
+
+
+_WRITERS: dict[str, Callable[[Assessment, Path], None]] = {
+    "html": _html,
+    "pdf": _pdf,
+    "xlsx": write_spreadsheet,
+    "csv": _csv,
+    "json": _json,
+}

@@ -1,0 +1,198 @@
+"""The assessment: every object in both directions under every motion, the worse direction counts."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FEET, FloatArray, g
+from rocking.dynamics.engine import Arrays
+from rocking.dynamics.impact_law import ImpactLaw
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.rocker import Rocker
+from rocking.errors import InvalidValueError, RockingError
+from rocking.studies.histories import Product
+from rocking.studies.inventory.hazard import Hazard
+from rocking.studies.inventory.lights import Thresholds, share_interval
+from rocking.studies.inventory.objects import DIRECTIONS, Direction, InventoryObject, NotAssessed
+from rocking.studies.inventory.reading import Inventory
+from rocking.studies.inventory.verdict import Assessment, DirectionResult, Verdict
+from rocking.studies.motion_set import MotionList
+
+PIECE = 1 << 18
+"""Histories between two calls of the progress."""
+
+
+@dataclass
+class _Bodies:
+    items: list[InventoryObject] = field(default_factory=list)
+    pairs: list[list[Rocker]] = field(default_factory=list)
+    refused: list[NotAssessed] = field(default_factory=list)
+
+
+def assess(
+    inventory: Inventory | Sequence[InventoryObject],
+    hazard: Hazard,
+    *,
+    restitution: Any = "ked",
+    thresholds: Thresholds | None = None,
+    gravity: float = g,
+    threads: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> Assessment:
+    """Assess an inventory.
+
+    Parameters
+    ----------
+    inventory : Inventory or sequence of InventoryObject
+        The objects.
+    hazard : Hazard
+        The motions; each acts in either direction by itself.
+    restitution : str, RestitutionModel, float or mapping
+        Model of impact; the verdict of Housner's stands beside it (of KED, if Housner's was asked for).
+    thresholds : Thresholds, optional
+        What the lights mean.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    threads : int, optional
+        Threads of the fast engine.
+    progress : callable, optional
+        Told how many histories have been computed since it was last called.
+
+    Returns
+    -------
+    Assessment
+        Verdicts, the worst first, and rows without one.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no object, or the restitution is a law that changes from impact to impact.
+
+    Examples
+    --------
+    >>> from rocking.studies.inventory.hazard import Hazard, Level
+    >>> vase = InventoryObject(name="tall vase", width=0.2, depth=0.2, height=1.0)
+    >>> hazard = Hazard.of_family("point-source", Level.of("PGA", "0.1g"), count=5, seed=1)
+    >>> assess([vase], hazard).verdicts[0].light.word
+    'green'
+    """
+    given = inventory if isinstance(inventory, Inventory) else Inventory(tuple(inventory))
+    if not given.objects and not given.not_assessed:
+        raise InvalidValueError("an inventory must have at least one object, got none")
+    if isinstance(restitution, ImpactLaw):
+        raise InvalidValueError("restitution of an inventory must be a model or a coefficient, not a law of impacts")
+    gravity, limits = checks.positive("gravity", gravity, "m/s2"), thresholds or Thresholds()
+    other = "ked" if _is_housner(restitution) else "housner"
+    labels = _labels(restitution, other, gravity)
+    bodies = _bodies(given.objects, restitution, other, gravity)
+    tables = _run(bodies, hazard, threads, progress) if bodies.items else {}
+    verdicts, refused = [], [*given.not_assessed, *bodies.refused]
+    for k, item in enumerate(bodies.items):
+        found = _verdict(item, {name: values[:, 2 * k : 2 * k + 2] for name, values in tables.items()}, limits, gravity)
+        if isinstance(found, Verdict):
+            verdicts.append(found)
+        else:
+            refused.append(found)
+    verdicts.sort(key=lambda each: (each.worse.severity, -each.item.row), reverse=True)
+    refused.sort(key=lambda each: each.row)
+    return Assessment(
+        tuple(verdicts), tuple(refused), hazard, limits, *labels,
+        source=given.source, ignored=given.ignored, gravity=gravity,
+    )  # fmt: skip
+
+
+def _is_housner(restitution: Any) -> bool:
+    return restitution == "housner" or getattr(restitution, "name", None) == "housner"
+
+
+def _labels(restitution: Any, other: str, gravity: float) -> tuple[str, str]:
+    # a wrong word is the user's slip, not that of every row: it is refused here, with any body
+    from rocking.bodies import Block
+
+    block = Block(width=1.0, height=4.0)
+    return Rocker.of_body(block, restitution, gravity).label, Rocker.of_body(block, other, gravity).label
+
+
+def _bodies(objects: Sequence[InventoryObject], restitution: Any, other: str, gravity: float) -> _Bodies:
+    bodies = _Bodies()
+    for item in objects:
+        try:
+            pairs = [[Rocker.of_body(item.body(way), r, gravity) for r in (restitution, other)] for way in DIRECTIONS]
+        except RockingError as error:
+            bodies.refused.append(NotAssessed(item.row, item.name, str(error)))
+            continue
+        bodies.items.append(item)
+        bodies.pairs.extend(pairs)
+    return bodies
+
+
+def _run(
+    bodies: _Bodies, hazard: Hazard, threads: int | None, progress: Callable[[int], None] | None
+) -> Mapping[str, np.ndarray]:
+    """Return outcome and peak rotation over the slenderness angle, each by motion, body and model."""
+    product = Product(MotionList(hazard.motions), _sides(bodies.pairs), np.ones(1))
+    pieces: list[Arrays] = []
+    for first in range(0, product.count, PIECE):
+        last = min(first + PIECE, product.count)
+        pieces.append(product.run(first, last, threads=threads))
+        if progress is not None:
+            progress(last - first)
+    motions, count, _, choices = product.shape
+    shape = motions, count, choices
+    joined = {
+        name: np.concatenate([piece[name] for piece in pieces]).reshape(shape) for name in ("outcome", "peak_rotation")
+    }
+    angle = np.array([[rocker.right.slenderness_angle for rocker in pair] for pair in bodies.pairs])
+    return {"outcome": joined["outcome"], "ratio": np.abs(joined["peak_rotation"]) / angle}
+
+
+def _sides(pairs: Sequence[Sequence[Rocker]]) -> dict[str, FloatArray]:
+    attributes = {"alpha": "slenderness_angle", "p": "frequency_parameter", "r": "coefficient"}
+    return {
+        f"{short}_{foot}": np.array([[getattr(getattr(rocker, foot), name) for rocker in pair] for pair in pairs])
+        for short, name in attributes.items()
+        for foot in FEET
+    }
+
+
+def _verdict(
+    item: InventoryObject, table: Mapping[str, np.ndarray], limits: Thresholds, gravity: float
+) -> Verdict | NotAssessed:
+    failed = table["outcome"] == Outcome.FAILED.code
+    if failed.all(axis=0).any():
+        return NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
+    found = [
+        tuple(
+            _direction(item, way, table["outcome"][:, k, choice], table["ratio"][:, k, choice], limits, gravity)
+            for k, way in enumerate(DIRECTIONS)
+        )
+        for choice in range(2)
+    ]
+    worse = max(found[0], key=lambda each: each.severity)
+    return Verdict(item, found[0], found[1], share_interval(worse.overturned, worse.count, limits.level))
+
+
+def _direction(
+    item: InventoryObject, way: Direction, outcome: np.ndarray, ratio: FloatArray, limits: Thresholds, gravity: float
+) -> DirectionResult:
+    good = outcome != Outcome.FAILED.code
+    fell = outcome[good] == Outcome.OVERTURNED.code
+    lifted = outcome[good] != Outcome.NO_UPLIFT.code
+    middle, high = (_quantile(ratio[good], fell, share) for share in (0.5, 0.84))
+    counts = {"lifted": int(lifted.sum()), "overturned": int(fell.sum()), "count": int(good.sum())}
+    failed = int((~good).sum())
+    light = limits.light(high_rotation=high, failed=failed, **counts)
+    uplift = item.uplift_acceleration(way, gravity)
+    return DirectionResult(
+        way, uplift, median_rotation=middle, high_rotation=high, light=light, failed=failed, **counts
+    )
+
+
+def _quantile(ratio: FloatArray, fell: np.ndarray, share: float) -> float | None:
+    """Return the smallest ratio that at least a share of the motions do not exceed; None if that one overturns."""
+    ordered = np.sort(np.where(fell, np.inf, ratio))
+    value = float(ordered[int(np.ceil(share * ordered.size - 1e-9)) - 1])
+    return value if np.isfinite(value) else None

@@ -1,0 +1,256 @@
+"""How strong the shaking is, and with which motions: what an inventory is assessed against."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rocking import checks
+from rocking.conventions import ACCELERATION_UNITS, g
+from rocking.errors import InvalidValueError
+from rocking.motions.intensity import peak_ground_acceleration, peak_ground_velocity
+from rocking.motions.motion import GroundMotion, checked_motion
+from rocking.motions.scaling import scaled_to_pga, scaled_to_pgv
+from rocking.motions.synthetic.family import Family, whole
+from rocking.studies.record_set import SyntheticSet
+
+VELOCITY_UNITS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001}
+"""Units of a peak ground velocity [m/s]."""
+
+MOST_MOTIONS = 5000
+"""No hazard has more motions: all of them are held in memory."""
+
+FAMILY, COUNT, SEED = "firm-ground", 200, 1
+"""What serves where nobody says otherwise."""
+
+_LEVEL = re.compile(r"([0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)\s*([a-z].*)")
+
+
+@dataclass(frozen=True)
+class Level:
+    """Peak ground acceleration or velocity to which motions are scaled.
+
+    Parameters
+    ----------
+    kind : {"PGA", "PGV"}
+        Which of the two.
+    value : float
+        The level [m/s2 or m/s].
+
+    Raises
+    ------
+    InvalidValueError
+        If it is not one finite number above zero, or another kind.
+
+    Examples
+    --------
+    >>> Level.of("PGA", "0.3g").value, str(Level.of("PGV", "25 cm/s"))
+    (2.941995, 'PGV 0.25 m/s')
+    """
+
+    kind: str
+    value: float
+
+    def __post_init__(self) -> None:
+        """Check kind and value."""
+        if self.kind not in {"PGA", "PGV"}:
+            raise InvalidValueError(f"a level is a PGA or a PGV, got {self.kind!r:.40}")
+        unit, most = ("m/s2", 1000.0) if self.kind == "PGA" else ("m/s", 100.0)
+        value = checks.within(self.kind, self.value, 0.0, most, unit=unit, open_low=True, hint="wrong unit?")
+        object.__setattr__(self, "value", value)
+
+    def __str__(self) -> str:
+        """Return the level with its unit."""
+        if self.kind == "PGV":
+            return f"PGV {self.value:.4g} m/s"
+        return f"PGA {self.value / g:.4g} g"
+
+    @classmethod
+    def of(cls, kind: str, words: str) -> "Level":
+        """Return a level from a number with its unit.
+
+        Parameters
+        ----------
+        kind : {"PGA", "PGV"}
+            Which of the two.
+        words : str
+            Such as ``0.3g``, ``2.9 m/s2`` or ``25cm/s``.
+
+        Returns
+        -------
+        Level
+            The level.
+
+        Raises
+        ------
+        InvalidValueError
+            If there is no number or no unit: units are never guessed.
+        """
+        if kind not in {"PGA", "PGV"}:
+            raise InvalidValueError(f"a level is a PGA or a PGV, got {kind!r:.40}")
+        units = ACCELERATION_UNITS if kind == "PGA" else VELOCITY_UNITS
+        given: object = words
+        match = _LEVEL.fullmatch(given.strip()) if isinstance(given, str) else None
+        if match is None or match[2] not in units:
+            raise InvalidValueError(
+                f"{kind} must be a number with its unit, one of {', '.join(units)}, "
+                f"such as {'0.3g' if kind == 'PGA' else '25cm/s'}, got {words!r:.40}"
+            )
+        return cls(kind, float(match[1]) * units[match[2]])
+
+
+@dataclass(frozen=True, eq=False)
+class Hazard:
+    """Motions that shake every object of an inventory.
+
+    Parameters
+    ----------
+    motions : tuple of GroundMotion
+        The motions, scaled.
+    level : Level or None
+        To what they are scaled; None for records as they are.
+    source : str
+        Where they come from, in words.
+    description : dict
+        The same as plain values.
+
+    Examples
+    --------
+    >>> hazard = Hazard.of_family("point-source", Level.of("PGA", "0.3g"), count=3, seed=1)
+    >>> [round(motion.peak, 6) for motion in hazard.motions]
+    [2.941995, 2.941995, 2.941995]
+    """
+
+    motions: tuple[GroundMotion, ...]
+    level: Level | None
+    source: str
+    description: dict[str, Any]
+
+    @classmethod
+    def of_family(
+        cls,
+        which: str | Family,
+        level: Level,
+        *,
+        count: int = COUNT,
+        seed: int = SEED,
+        progress: Callable[[int], None] | None = None,
+    ) -> "Hazard":
+        """Return synthetic motions scaled to a level.
+
+        Parameters
+        ----------
+        which : str or Family
+            The family.
+        level : Level
+            To what each motion is scaled; the families do not say how strong the shaking is.
+        count : int
+            How many motions [-].
+        seed : int
+            Seed of the set [-].
+        progress : callable, optional
+            Told how many motions have been made since it was last called.
+
+        Returns
+        -------
+        Hazard
+            The motions.
+        """
+        count = whole("count", count, 1, MOST_MOTIONS)
+        scale = {"pga": level.value} if level.kind == "PGA" else {"pgv": level.value}
+        motions = SyntheticSet(which, count, seed, **scale)
+        made = []
+        for k in range(count):
+            made.append(motions[k])
+            if progress is not None:
+                progress(1)
+        name = motions.family.name
+        words = f"{count} synthetic motions of the family {name} ({motions.family.title}), seed {seed}"
+        return cls(tuple(made), level, words, motions.description())
+
+    @classmethod
+    def of_records(cls, records: Sequence[GroundMotion], level: Level | None = None) -> "Hazard":
+        """Return records, scaled if a level is given.
+
+        Parameters
+        ----------
+        records : sequence of GroundMotion
+            The records.
+        level : Level, optional
+            To what each is scaled, with its vertical component; as they are if not given.
+
+        Returns
+        -------
+        Hazard
+            The motions.
+
+        Raises
+        ------
+        InvalidValueError
+            If there is none, too many, or one cannot be scaled.
+        """
+        found = [checked_motion(record, f"records[{k}]") for k, record in enumerate(records)]
+        if not 1 <= len(found) <= MOST_MOTIONS:
+            raise InvalidValueError(f"records must be 1 to {MOST_MOTIONS} motions, got {len(found)}")
+        scaled = [_scaled(record, level) for record in found]
+        how = "as recorded" if level is None else f"each scaled to {level}"
+        names = [record.name for record in found]
+        words = f"{len(found)} record{'s' if len(found) > 1 else ''}, {how}"
+        plain = {"kind": "records", "names": names, "provenance": [list(one.provenance) for one in scaled]}
+        return cls(tuple(scaled), level, words, plain)
+
+    @property
+    def synthetic(self) -> bool:
+        """Whether the motions are synthetic."""
+        return self.description.get("kind") == "synthetic"
+
+    @property
+    def vertical(self) -> bool:
+        """Whether any motion has a vertical component."""
+        return any(motion.vertical is not None for motion in self.motions)
+
+    def words(self) -> str:
+        """Return how strong the shaking is.
+
+        Returns
+        -------
+        str
+            The level, or the range of the records' own.
+        """
+        if self.level is not None:
+            return str(self.level)
+        peaks = [peak_ground_acceleration(motion) / g for motion in self.motions]
+        if max(peaks) - min(peaks) <= 1e-9 * max(peaks):
+            return f"PGA {max(peaks):.3g} g"
+        return f"PGA {min(peaks):.3g} to {max(peaks):.3g} g"
+
+    def peak(self) -> float:
+        """Return the largest peak ground acceleration of all motions.
+
+        Returns
+        -------
+        float
+            The acceleration [m/s2].
+        """
+        return max(peak_ground_acceleration(motion) for motion in self.motions)
+
+    def velocity(self) -> tuple[float, float]:
+        """Return the range of the peak ground velocity.
+
+        Returns
+        -------
+        tuple of float
+            The least and the most [m/s].
+        """
+        found = [peak_ground_velocity(motion) for motion in self.motions]
+        return min(found), max(found)
+
+
+def _scaled(record: GroundMotion, level: Level | None) -> GroundMotion:
+    if level is None:
+        return record
+    scale = scaled_to_pga if level.kind == "PGA" else scaled_to_pgv
+    try:
+        return scale(record, level.value)
+    except InvalidValueError as error:
+        raise InvalidValueError(f"{record.name!r:.80}: {error}") from error

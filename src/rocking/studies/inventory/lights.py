@@ -1,0 +1,154 @@
+"""Traffic lights: what counts as safe, in numbers that stand in every report."""
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from rocking import checks
+from rocking.errors import InvalidValueError
+
+
+class Light(Enum):
+    """What a light says; the value is the letter that stands beside the colour."""
+
+    GREEN = "G"
+    AMBER = "A"
+    RED = "R"
+
+    @property
+    def word(self) -> str:
+        """The light in a word."""
+        return self.name.lower()
+
+    @property
+    def severity(self) -> int:
+        """0 for green, 1 for amber, 2 for red [-]."""
+        return list(Light).index(self)
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """Where one light ends and the next begins.
+
+    They are a convention of this package, not of a code: change them where another one is agreed.
+
+    Parameters
+    ----------
+    rocking : float
+        Green needs the 84 % quantile of the peak rotation over the slenderness angle below this [-].
+    overturning_green : float
+        Green needs the upper end of the interval of the overturning share at or below this [-].
+    overturning_red : float
+        Red from this share of motions that overturn [-].
+    level : float
+        Confidence of the interval [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a number is outside its range.
+
+    Examples
+    --------
+    >>> Thresholds().light(lifted=0, overturned=0, count=20, high_rotation=0.0).word
+    'green'
+    >>> Thresholds().light(lifted=20, overturned=0, count=20, high_rotation=0.1).word
+    'amber'
+    """
+
+    rocking: float = 0.2
+    overturning_green: float = 0.05
+    overturning_red: float = 0.20
+    level: float = 0.95
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        checks.within("rocking", self.rocking, 0.0, 1.0, open_low=True)
+        checks.within("overturning_green", self.overturning_green, 0.0, 1.0, open_low=True, open_high=True)
+        low = self.overturning_green
+        checks.within("overturning_red", self.overturning_red, low, 1.0, hint="not below overturning_green")
+        checks.within("level", self.level, 0.5, 1.0, open_high=True)
+
+    def light(self, *, lifted: int, overturned: int, count: int, high_rotation: float | None, failed: int = 0) -> Light:
+        """Return the light of what was counted.
+
+        Parameters
+        ----------
+        lifted, overturned : int
+            How many motions lift the object, how many overturn it [-].
+        count : int
+            How many motions there are that could be computed, at least one [-].
+        high_rotation : float or None
+            The 84 % quantile of the peak rotation over the slenderness angle, None if it overturns there [-].
+        failed : int
+            How many motions could not be computed: with any there is no green [-].
+
+        Returns
+        -------
+        Light
+            The light.
+        """
+        if overturned >= self.overturning_red * count:
+            return Light.RED
+        if lifted == 0 and failed == 0:
+            return Light.GREEN
+        small = high_rotation is not None and high_rotation < self.rocking
+        sure = share_interval(overturned, count, self.level)[1] <= self.overturning_green
+        return Light.GREEN if small and overturned == 0 and sure and failed == 0 else Light.AMBER
+
+    def sentences(self) -> dict[Light, str]:
+        """Return what each light means.
+
+        Returns
+        -------
+        dict of Light to str
+            One sentence each, with the numbers.
+        """
+        needed = math.ceil(math.log(0.5 * (1.0 - self.level)) / math.log(1.0 - self.overturning_green))
+        return {
+            Light.RED: f"At least {self.overturning_red:.0%} of the motions overturn the object.",
+            Light.AMBER: "Neither red nor green: it rocks notably, overturns now and then, or there are too few "
+            "motions to rule overturning out.",
+            Light.GREEN: f"No motion lifts it; or none overturns it, the upper end of the {self.level:.0%} interval of "
+            f"the overturning share is at most {self.overturning_green:.0%} (which takes at least {needed} motions), "
+            f"and 84 % of the motions turn it by less than {self.rocking:g} of its slenderness angle.",
+        }
+
+
+def share_interval(hits: int, count: int, level: float = 0.95) -> tuple[float, float]:
+    """Return the interval of Clopper and Pearson (1934) for a share.
+
+    It covers the true share at least as often as its level says, for any number of trials.
+
+    Parameters
+    ----------
+    hits, count : int
+        How many of how many [-].
+    level : float
+        Confidence, equal tails [-].
+
+    Returns
+    -------
+    tuple of float
+        Lower and upper end [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If there are no trials or more hits than trials.
+
+    Examples
+    --------
+    >>> low, high = share_interval(0, 100)
+    >>> low, round(high, 6), round(1.0 - 0.025 ** (1 / 100), 6)
+    (0.0, 0.036217, 0.036217)
+    """
+    from scipy.special import betaincinv
+
+    level = checks.within("level", level, 0.0, 1.0, open_low=True, open_high=True)
+    if not 0 <= hits <= count or count < 1:
+        raise InvalidValueError(f"hits must be in [0, count] with a count of at least 1, got {hits} of {count}")
+    tail = 0.5 * (1.0 - level)
+    low = 0.0 if hits == 0 else float(betaincinv(hits, count - hits + 1, tail))
+    high = 1.0 if hits == count else float(betaincinv(hits + 1, count - hits, 1.0 - tail))
+    return low, high

@@ -1,0 +1,209 @@
+"""One object of an inventory: what a tape measure says, and the two plane bodies that it stands for."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from rocking import checks
+from rocking.bodies import Block, Body, Region, Section, shapes
+from rocking.bodies.body import DEFAULT_DENSITY
+from rocking.conventions import g
+from rocking.errors import InvalidValueError
+
+Direction = Literal["width", "depth"]
+
+DIRECTIONS: tuple[Direction, Direction] = ("width", "depth")
+"""The two horizontal directions in which an object may rock."""
+
+SMALLEST, LARGEST = 0.001, 100.0
+"""Allowed lengths [m]."""
+
+LIGHTEST, DENSEST = 1.0, 23000.0
+"""Allowed mass over the volume of the enclosing box [kg/m3]: from air to the densest metal."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class InventoryObject:
+    """A rigid object that stands freely on level ground.
+
+    In either direction it is a rectangle of its outer size. If the base is smaller than the body, the feet stand
+    inside. If the height of the centre of mass is known, the mass below it and the mass above it are each spread
+    evenly, in the one ratio that puts the centre there. The weight does not change how it rocks.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    width, depth, height : float
+        Outer size [m].
+    mass : float, optional
+        Its mass [kg].
+    base_width, base_depth : float, optional
+        Size of the base that stands on the floor, at most that of the body [m].
+    centre_of_mass_height : float, optional
+        Height of the centre of mass above the floor; half the height if not given [m].
+    count : int
+        How many alike [-].
+    note : str
+        Anything.
+    row : int
+        Line of the file that it comes from, 0 for none [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range; it names what was measured.
+
+    Examples
+    --------
+    >>> vase = InventoryObject(name="tall vase", width=0.2, depth=0.2, height=1.0)
+    >>> round(vase.uplift_acceleration("width"), 5)
+    1.96133
+    """
+
+    name: str
+    width: float
+    depth: float
+    height: float
+    mass: float | None = None
+    base_width: float | None = None
+    base_depth: float | None = None
+    centre_of_mass_height: float | None = None
+    count: int = 1
+    note: str = ""
+    row: int = 0
+
+    def __post_init__(self) -> None:
+        """Check each value and how they fit one another."""
+        given: object = self.name
+        if not isinstance(given, str) or not given.strip():
+            raise InvalidValueError("name must not be empty")
+        for name in ("width", "depth", "height"):
+            object.__setattr__(self, name, _length(name, getattr(self, name)))
+        for name, most in (("base_width", self.width), ("base_depth", self.depth)):
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, self._base(name, value, most))
+        self._check_centre()
+        self._check_mass()
+        count: object = self.count
+        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 1_000_000:
+            raise InvalidValueError(f"count must be a whole number in [1, 1000000], got {count!r:.40}")
+
+    def base(self, direction: Direction) -> float:
+        """Return the size of the base in a direction.
+
+        Parameters
+        ----------
+        direction : {"width", "depth"}
+            The direction.
+
+        Returns
+        -------
+        float
+            That of the body if no other was given [m].
+        """
+        found = self.base_width if direction == "width" else self.base_depth
+        return self._size(direction) if found is None else found
+
+    def uplift_acceleration(self, direction: Direction, gravity: float = g) -> float:
+        """Return the horizontal acceleration of the ground below which the object stays still.
+
+        Parameters
+        ----------
+        direction : {"width", "depth"}
+            The direction.
+        gravity : float
+            Acceleration of gravity [m/s2].
+
+        Returns
+        -------
+        float
+            ``g b / h`` with half the base and the height of the centre [m/s2].
+        """
+        height = 0.5 * self.height if self.centre_of_mass_height is None else self.centre_of_mass_height
+        return gravity * 0.5 * self.base(direction) / height
+
+    def body(self, direction: Direction) -> Body:
+        """Return the plane body that rocks in a direction.
+
+        Parameters
+        ----------
+        direction : {"width", "depth"}
+            The direction.
+
+        Returns
+        -------
+        Body
+            A `Block`, or a `Section` if the base or the centre of mass say otherwise.
+        """
+        size, across = self._size(direction), self._size("depth" if direction == "width" else "width")
+        density = DEFAULT_DENSITY if self.mass is None else self.mass / (size * across * self.height)
+        base, centre = self.base(direction), self.centre_of_mass_height
+        if base == size and centre is None:
+            return Block(width=size, height=self.height, depth=across, density=density)
+        feet = (0.5 * (size - base), 0.5 * (size + base))
+        if centre is None:
+            regions = [Region(shapes.rectangle(size, self.height), density)]
+        else:
+            below, above = (self.height - centre) / centre, centre / (self.height - centre)
+            upper = [(x, centre + y) for x, y in shapes.rectangle(size, self.height - centre)]
+            regions = [Region(shapes.rectangle(size, centre), density * below), Region(upper, density * above)]
+        return Section(regions, feet, depth=across)
+
+    def _size(self, direction: Direction) -> float:
+        return self.width if direction == "width" else self.depth
+
+    @staticmethod
+    def _base(name: str, value: float, most: float) -> float:
+        found = _length(name, value)
+        if found > most * (1.0 + 1e-9):
+            raise InvalidValueError(
+                f"{name} must be at most the {name.removeprefix('base_')} of the body, {most:g} m, got {found:g} m; "
+                "an object fixed to a wider plinth is measured together with it"
+            )
+        return most if found > most * (1.0 - 1e-9) else found
+
+    def _check_centre(self) -> None:
+        if self.centre_of_mass_height is None:
+            return
+        found = _length("centre_of_mass_height", self.centre_of_mass_height)
+        if not found < self.height:
+            raise InvalidValueError(
+                f"centre_of_mass_height must be below the height of the body, {self.height:g} m, got {found:g} m"
+            )
+        object.__setattr__(self, "centre_of_mass_height", found)
+
+    def _check_mass(self) -> None:
+        if self.mass is None:
+            return
+        mass = checks.positive("weight", self.mass, "kg")
+        density = mass / (self.width * self.depth * self.height)
+        if not LIGHTEST <= density <= DENSEST:
+            raise InvalidValueError(
+                f"weight must give between {LIGHTEST:g} and {DENSEST:g} kg/m3 over the box of the object, got "
+                f"{mass:g} kg, that is {density:.3g} kg/m3; wrong unit of the weight or of a length?"
+            )
+        object.__setattr__(self, "mass", mass)
+
+
+@dataclass(frozen=True)
+class NotAssessed:
+    """A row that could not be assessed.
+
+    Parameters
+    ----------
+    row : int
+        Line of the file [-].
+    name : str
+        What the row says the object is called, possibly nothing.
+    reason : str
+        Why not, in one sentence.
+    """
+
+    row: int
+    name: str
+    reason: str
+
+
+def _length(name: str, value: float) -> float:
+    return checks.within(name, value, SMALLEST, LARGEST, unit="m", hint="wrong unit in the name of the column?")

@@ -1,0 +1,103 @@
+"""Synthetic sets of records by family and seed: a study that needs nobody's files."""
+
+from typing import Any
+
+from rocking import checks
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.scaling import scaled_to_pga, scaled_to_pgv
+from rocking.motions.synthetic.families import family
+from rocking.motions.synthetic.family import Family, whole
+from rocking.studies.motion_set import MotionSet
+
+MOST_MOTIONS = 10_000_000
+"""No set has more motions: asking for more is a slip."""
+
+
+class SyntheticSet(MotionSet):
+    """Motions of a family, each made when it is asked for.
+
+    A motion depends on the family, the seed and its number alone: a larger set begins with the motions of a smaller
+    one.
+
+    Parameters
+    ----------
+    which : str or Family
+        The family: a name of `rocking.motions.synthetic.families.families`, or one of your own.
+    count : int
+        How many motions [-].
+    seed : int
+        Seed of the set, at least 0 [-].
+    pga : float, optional
+        Peak ground acceleration to which each motion is scaled [m/s2].
+    pgv : float, optional
+        Peak ground velocity to which each motion is scaled, in place of the acceleration [m/s].
+    time_step : float, optional
+        Step between samples; that of the family if not given [s].
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or both levels are given.
+
+    Examples
+    --------
+    >>> motions = SyntheticSet("point-source", count=100, seed=1, pga=3.0)
+    >>> len(motions), round(motions[99].peak, 12)
+    (100, 3.0)
+    """
+
+    def __init__(
+        self,
+        which: str | Family,
+        count: int,
+        seed: int,
+        *,
+        pga: float | None = None,
+        pgv: float | None = None,
+        time_step: float | None = None,
+    ) -> None:
+        self.family = family(which)
+        self.count, self.seed = whole("count", count, 1, MOST_MOTIONS), whole("seed", seed)
+        if pga is not None and pgv is not None:
+            raise InvalidValueError("motions can be scaled to pga or to pgv, not to both")
+        self.pga = None if pga is None else checks.positive("pga", pga, "m/s2")
+        self.pgv = None if pgv is None else checks.positive("pgv", pgv, "m/s")
+        step = self.family.time_step if time_step is None else time_step
+        self.time_step = checks.positive("time_step", step, "s")
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return self.count
+
+    def __getitem__(self, index: int) -> GroundMotion:
+        """Return one of them."""
+        place = index + self.count if index < 0 else index
+        if not 0 <= place < self.count:
+            raise IndexError(f"motions are numbered 0 to {self.count - 1}, got {index}")
+        motion = self.family.motion(self.seed, int(place), self.time_step)
+        if self.pga is not None:
+            return scaled_to_pga(motion, self.pga)
+        return motion if self.pgv is None else scaled_to_pgv(motion, self.pgv)
+
+    def description(self) -> dict[str, Any]:
+        """Return family, distributions, seed and level.
+
+        Returns
+        -------
+        dict
+            Plain values; two sets that describe themselves alike hold the same motions.
+        """
+        return {
+            "kind": "synthetic",
+            "family": self.family.name,
+            "generator": self.family.generator,
+            "distributions": {name: repr(each) for name, each in self.family.distributions.items()},
+            "make": f"{self.family.make.__module__}.{self.family.make.__qualname__}",
+            "origin": self.family.origin,
+            "count": self.count,
+            "seed": self.seed,
+            "pga_m_s2": self.pga,
+            "pgv_m_s": self.pgv,
+            "time_step_s": self.time_step,
+        }

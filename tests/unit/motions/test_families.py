@@ -1,0 +1,144 @@
+"""Families of synthetic motions: what is drawn follows what is stated, and a motion is its seed and number."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from rocking.errors import InvalidValueError
+from rocking.motions.intensity import peak_ground_acceleration, peak_ground_velocity
+from rocking.motions.kinematics import ground_velocity
+from rocking.motions.motion import GroundMotion
+from rocking.motions.synthetic.distributions import Lognormal, LogUniform, Uniform
+from rocking.motions.synthetic.families import families, family
+
+DRAWS = 600
+STATED = [(name, parameter) for name, one in families().items() for parameter in one.distributions]
+
+
+def drawn(name, seed=5):
+    """Parameters of many motions of a family, without the work of making them."""
+    bare = replace(family(name), make=lambda values, noise, step: GroundMotion([0.0, 1.0], step))
+    told = [bare.motion(seed, number).metadata for number in range(DRAWS)]
+    return {key: np.array([float(each[key]) for each in told]) for key in bare.distributions}
+
+
+def independent(distribution):
+    """The distribution as SciPy has it, written down without this package's formulas."""
+    low, high = distribution.low, distribution.high
+    if isinstance(distribution, Lognormal):
+        ends = [math.log(end / distribution.median) / distribution.deviation for end in (low, high)]
+        return lambda x: stats.truncnorm.cdf(np.log(x / distribution.median) / distribution.deviation, *ends)
+    if isinstance(distribution, LogUniform):
+        return stats.loguniform(low, high).cdf
+    assert isinstance(distribution, Uniform)
+    return stats.uniform(low, high - low).cdf
+
+
+@pytest.fixture(scope="module")
+def samples():
+    """Draws of every family."""
+    return {name: drawn(name) for name in families()}
+
+
+@pytest.mark.parametrize(("name", "parameter"), STATED)
+def test_draws_follow_the_stated_distribution(samples, name, parameter):
+    """Kolmogorov-Smirnov does not reject 600 draws at 0.1 %; it rejects the same draws stretched by a fifth."""
+    values, stated = samples[name][parameter], family(name).distributions[parameter]
+    cdf = independent(stated)
+    assert stats.kstest(values, cdf).pvalue > 1e-3
+    assert stated.low <= values.min()
+    assert values.max() <= stated.high
+    # negative control: the same shares on a wider range
+    wide = stated.low + 1.2 * (values - stated.low)
+    assert stats.kstest(wide, cdf).pvalue < 1e-3
+
+
+@pytest.mark.parametrize("name", list(families()))
+def test_parameters_are_drawn_independently(samples, name):
+    """No two parameters of a family correlate by ranks beyond five standard errors of chance."""
+    ranks = np.array([stats.rankdata(values) for values in samples[name].values()])
+    off = np.corrcoef(ranks) - np.eye(len(ranks))
+    assert np.abs(off).max() < 5.0 / math.sqrt(DRAWS)
+
+
+@pytest.mark.parametrize(
+    "distribution", [Uniform(-2.0, 3.0), LogUniform(0.1, 7.0), Lognormal(0.5, 6.0, median=2.0, deviation=0.5)]
+)
+def test_quantiles_and_shares_are_inverse(distribution):
+    """The share below the quantile of a share is that share; the ends are the quantiles of 0 and 1."""
+    shares = np.linspace(0.0, 1.0, 21)
+    values = np.array([distribution.value_at(float(share)) for share in shares])
+    assert np.asarray(distribution.share_below(values)) == pytest.approx(shares, abs=1e-12)
+    assert (values[0], values[-1]) == (distribution.low, distribution.high)
+    assert independent(distribution)(values) == pytest.approx(shares, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", list(families()))
+def test_motion_is_its_seed_and_number(name):
+    """The same seed and number give the same bits; another seed or number another motion."""
+    one, again = family(name).motion(3, 7), family(name).motion(3, 7)
+    assert np.array_equal(one.acceleration, again.acceleration)
+    assert one.metadata == again.metadata
+    for other in (family(name).motion(4, 7), family(name).motion(3, 8)):
+        assert not np.array_equal(one.acceleration[:100], other.acceleration[:100])
+    assert one.name == f"{name}, seed 3, number 7"
+    assert "no hazard model" in one.provenance[-1]
+
+
+@pytest.mark.parametrize("name", list(families()))
+def test_motions_are_of_the_size_of_earthquakes_and_end_at_rest(name):
+    """PGA from 0.001 to 3 g, PGV below 5 m/s; at the end hardly any velocity is left: a twentieth of the PGV."""
+    for number in range(3):
+        motion = family(name).motion(11, number)
+        velocity = peak_ground_velocity(motion)
+        assert 0.01 < peak_ground_acceleration(motion) < 30.0
+        assert velocity < 5.0
+        assert abs(ground_velocity(motion)[-1]) < 0.05 * velocity
+
+
+def test_soft_ground_is_slower_than_firm_ground():
+    """The median ratio of PGV to PGA, a measure of the period, is more than twice as large on soft ground."""
+    ratio = {
+        name: np.median(
+            [peak_ground_velocity(motion) / motion.peak for motion in (family(name).motion(2, k) for k in range(9))]
+        )
+        for name in ("firm-ground", "soft-ground")
+    }
+    assert ratio["soft-ground"] > 2.0 * ratio["firm-ground"]
+
+
+def test_every_family_says_where_it_comes_from():
+    """Each names its generator and that its ranges are illustrative; each distribution has words."""
+    for one in families().values():
+        assert "illustrative" in one.origin
+        assert "20" in one.generator or "19" in one.generator
+        json.dumps([each.words() for each in one.distributions.values()])
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: family("near-fault"), "family must be one of firm-ground"),
+        (lambda: family(3), "family must be one of"),
+        (lambda: family("firm-ground").motion(-1), "seed must be a whole number"),
+        (lambda: family("firm-ground").motion(1.0), "seed must be a whole number"),
+        (lambda: family("firm-ground").motion(True), "seed must be a whole number"),
+        (lambda: family("firm-ground").motion(1, -2), "number must be a whole number"),
+        (lambda: family("firm-ground").motion(1, time_step=0.0), "time_step"),
+        (lambda: family("firm-ground").parameters(np.zeros(2)), "shares must be 7 numbers"),
+        (lambda: Uniform(1.0, 1.0), "low must be below high"),
+        (lambda: Uniform(math.nan, 1.0), "low must be finite"),
+        (lambda: LogUniform(0.0, 1.0), "low must be > 0"),
+        (lambda: Lognormal(1.0, 2.0, median=3.0, deviation=0.1), "median must be in"),
+        (lambda: Lognormal(1.0, 2.0, median=1.5, deviation=0.0), "deviation must be > 0"),
+        (lambda: Uniform(0.0, 1.0).value_at(1.5), "share must be in"),
+    ],
+)
+def test_refusals(call, words):
+    """What is no family, seed, number or distribution is refused with the value and the range."""
+    with pytest.raises(InvalidValueError, match=words):
+        call()

@@ -1,0 +1,225 @@
+"""Verdicts: closed forms for uplift and overturning, counts made by hand, rows that do not touch one another."""
+
+import csv
+import io
+import json
+import math
+
+import numpy as np
+import pytest
+
+from rocking.dynamics.impact_law import RandomRestitution
+from rocking.dynamics.outcome import Outcome
+from rocking.errors import InvalidValueError, UnknownModelError
+from rocking.motions.motion import GroundMotion
+from rocking.studies.inventory import assessment as module
+from rocking.studies.inventory import words
+from rocking.studies.inventory.assessment import assess
+from rocking.studies.inventory.hazard import Hazard, Level
+from rocking.studies.inventory.lights import Light, Thresholds
+from rocking.studies.inventory.objects import InventoryObject
+from rocking.studies.inventory.reading import parse_inventory
+from rocking.studies.inventory.table import HEADER, as_csv, as_plain, rows, safe
+
+G = 9.80665
+# tan alpha = 1/4 along the width, 1/2 along the depth
+COLUMN = InventoryObject(name="column", width=0.5, depth=1.0, height=2.0)
+# p of a block: sqrt(3 g / (4 R)), R = sqrt(0.25^2 + 1)
+P = math.sqrt(3.0 * G / (4.0 * math.hypot(0.25, 1.0)))
+# a rectangular pulse of 2 g tan(alpha) overturns from p t = 0.69465741849470975 on (exact nonlinear integral)
+CRITICAL = 0.69465741849470975 / P
+
+
+def rectangle(duration, acceleration=0.5 * G):
+    """A constant acceleration, twice that of uplift along the width and just not beyond it along the depth."""
+    return GroundMotion([acceleration, acceleration], duration)
+
+
+@pytest.fixture(scope="module")
+def quakes():
+    """Synthetic motions at PGA 0.3 g."""
+    return Hazard.of_family("point-source", Level.of("PGA", "0.3g"), count=60, seed=3)
+
+
+def test_counts_by_hand():
+    """Pulses 1 % shorter than the closed form for overturning leave it standing, 1 % longer do not: 3 of 10 fall."""
+    hazard = Hazard.of_records([rectangle(0.99 * CRITICAL)] * 7 + [rectangle(1.01 * CRITICAL)] * 3)
+    (verdict,) = (found := assess([COLUMN], hazard)).verdicts
+    wide = {each.direction: each for each in verdict.results}["width"]
+    assert (wide.count, wide.lifted, wide.overturned, wide.failed) == (10, 10, 3, 0)
+    assert verdict.worse is wide
+    assert wide.high_rotation is None
+    assert wide.median_rotation > 0.5
+    assert (verdict.light, wide.overturned_share) == (Light.RED, 0.3)
+    # Clopper & Pearson for 3 of 10, as tables print it
+    assert verdict.interval == pytest.approx((0.0667, 0.6525), abs=5e-5)
+    assert words.sentence(verdict, found) == (
+        "Stays still up to 0.25 g; at PGA 0.5 g it rocks, and fell over in 3 of 10 records."
+    )
+    # b / h = a / g along the width needs a base of 0.5 m * 2
+    assert "its width is 50 cm, and 100 cm would not be lifted" in words.advice(verdict, found)
+
+
+@pytest.mark.parametrize("way", ["width", "depth"])
+def test_uplift_is_sharp(way):
+    """A millionth below g b / h no motion lifts the object, a millionth above every one does."""
+    limit = COLUMN.uplift_acceleration(way)
+    shape = np.sin(np.linspace(0.0, 6.0 * np.pi, 601))
+    for factor, lifted in ((1.0 - 1e-6, 0), (1.0 + 1e-6, 1)):
+        hazard = Hazard.of_records([GroundMotion(shape, 0.01)], Level("PGA", factor * limit))
+        (verdict,) = assess([COLUMN], hazard).verdicts
+        assert {each.direction: each.lifted for each in verdict.results}[way] == lifted
+    assert limit == pytest.approx(G * {"width": 0.25, "depth": 0.5}[way], rel=1e-14)
+
+
+def test_what_is_never_lifted_is_green():
+    """Below g b / h: no lift, no rotation, green with a single motion, and the words say so."""
+    hazard = Hazard.of_records([rectangle(1.0, 0.24 * G)])
+    (verdict,) = (found := assess([COLUMN], hazard)).verdicts
+    assert (verdict.light, verdict.worse.lifted, verdict.worse.high_rotation) == (Light.GREEN, 0, 0.0)
+    assert words.sentence(verdict, found).endswith("at PGA 0.24 g it stood still in the one record.")
+    assert words.advice(verdict, found).startswith("Nothing to do")
+
+
+def test_share_lifted_grows_with_the_level(quakes):
+    """At every PGV the share lifted is the share of motions whose PGA passes g b / h, which cannot fall with PGV."""
+    shares = []
+    for level in (0.1, 0.2, 0.3, 0.6):
+        hazard = Hazard.of_family("point-source", Level("PGV", level), count=30, seed=1)
+        (verdict,) = assess([COLUMN], hazard).verdicts
+        for each in verdict.results:
+            assert each.lifted == sum(motion.peak > each.uplift_acceleration for motion in hazard.motions)
+        shares.append(verdict.results[0].lifted_share)
+    assert shares == sorted(shares)
+    assert 0.0 < shares[2] < 1.0
+
+
+def test_worse_direction_governs(quakes):
+    """Width and depth exchanged exchange the results and leave the verdict."""
+    turned = InventoryObject(name="turned", width=1.0, depth=0.5, height=2.0)
+    one, two = (assess([item], quakes).verdicts[0] for item in (COLUMN, turned))
+    assert (one.worse.direction, two.worse.direction) == ("width", "depth")
+    assert one.worse.overturned == two.worse.overturned
+    assert one.results[1].high_rotation == two.results[0].high_rotation
+
+
+def test_larger_of_two_alike_stands_better(quakes):
+    """Of equal slenderness, the smaller overturns more often: Housner's scale effect, and the ranking shows it."""
+    small, large = (
+        InventoryObject(name=name, width=0.2 * size, depth=0.2 * size, height=size)
+        for name, size in (("small", 1.0), ("large", 5.0))
+    )
+    found = assess([large, small], quakes)
+    assert [each.item.name for each in found.verdicts] == ["small", "large"]
+    assert found.verdicts[0].worse.overturned > found.verdicts[1].worse.overturned
+    severities = [each.worse.severity for each in found.verdicts]
+    assert severities == sorted(severities, reverse=True)
+
+
+def test_bad_rows_touch_no_other(quakes):
+    """With a bad row between, the verdict of a good one is the same to the last bit."""
+    head = "name,width_cm,depth_cm,height_cm\n"
+    alone = assess(parse_inventory(head + "vase,20,20,90"), quakes)
+    mixed = assess(parse_inventory(head + "bad,?,20,90\nvase,20,20,90\nworse,20,20"), quakes)
+    assert mixed.verdicts[0].results == alone.verdicts[0].results
+    assert [(each.row, each.name) for each in mixed.not_assessed] == [(2, "bad"), (4, "worse")]
+    nothing = assess(parse_inventory(head + "bad,?,20,90"), quakes)
+    assert (nothing.verdicts, len(nothing.not_assessed), nothing.counts()[Light.RED]) == ((), 1, 0)
+
+
+def test_model_of_impact_is_flagged(quakes):
+    """Without any loss at impacts more objects fall than by Housner; where the light differs, it is said."""
+    items = [InventoryObject(name=f"{cm} cm", width=0.01 * cm, depth=2.0, height=1.8) for cm in range(36, 54, 2)]
+    found = assess(items, quakes, restitution=1.0)
+    assert found.comparison == "housner"
+    assert sum(v.worse.overturned for v in found.verdicts) > sum(v.worse_compared.overturned for v in found.verdicts)
+    flagged = [each for each in found.verdicts if each.model_decides]
+    assert flagged
+    for verdict in found.verdicts:
+        note = words.model_note(verdict, found)
+        assert bool(note) == (verdict.light is not verdict.worse_compared.light)
+    assert words.model_note(flagged[0], found).startswith("The model of impact decides: housner shows")
+    assert assess(items[:1], quakes, restitution="housner").comparison == "ked"
+
+
+def test_failed_motions_are_said_and_forbid_green(monkeypatch, quakes):
+    """Where a motion could not be computed it is not counted as standing; where none could, there is no verdict."""
+    original = module._run
+
+    def broken(bodies, *rest):
+        table = original(bodies, *rest)
+        table["outcome"][0, :2] = Outcome.FAILED.code
+        table["ratio"][0, :2] = np.nan
+        table["outcome"][:, 2:] = Outcome.FAILED.code
+        return table
+
+    monkeypatch.setattr(module, "_run", broken)
+    chest = InventoryObject(name="chest", width=2.0, depth=2.0, height=0.5)
+    found = assess([chest, COLUMN], quakes)
+    (verdict,) = found.verdicts
+    assert (verdict.light, verdict.worse.failed, verdict.worse.count) == (Light.AMBER, 1, 59)
+    assert "1 of 60 motions could not be computed" in words.sentence(verdict, found)
+    assert "no motion could be computed" in found.not_assessed[0].reason
+    json.dumps(as_plain(found), allow_nan=False)
+
+
+def test_progress_and_threads(quakes):
+    """The progress adds up to all histories: motions x objects x 2 directions x 2 models; threads change nothing."""
+    told = []
+    one = assess([COLUMN, COLUMN], quakes, progress=told.append, threads=1)
+    assert sum(told) == 60 * 2 * 2 * 2
+    assert one.verdicts[0].results == assess([COLUMN], quakes, threads=2).verdicts[0].results
+
+
+def test_refusals(quakes):
+    """No objects, a law of impacts, an unknown model: refused as a whole, since no row is at fault."""
+    with pytest.raises(InvalidValueError, match="at least one object"):
+        assess([], quakes)
+    with pytest.raises(UnknownModelError):
+        assess([COLUMN], quakes, restitution="no-such")
+    with pytest.raises(InvalidValueError, match="restitution must be in"):
+        assess([COLUMN], quakes, restitution=-0.5)
+    with pytest.raises(InvalidValueError, match="not a law"):
+        assess([COLUMN], quakes, restitution=RandomRestitution([0.9, 1.0], times="ked", seed=1))
+
+
+def test_thresholds_of_ones_own(quakes):
+    """A stricter threshold turns amber into red and is what the plain values say."""
+    item = InventoryObject(name="case", width=0.45, depth=2.0, height=1.8)
+    usual, strict = assess([item], quakes), assess([item], quakes, thresholds=Thresholds(0.2, 0.001, 0.002))
+    assert usual.verdicts[0].light is Light.AMBER
+    assert strict.verdicts[0].light is Light.RED
+    assert as_plain(strict)["thresholds"]["overturning_red"] == 0.002
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@cmd", "\t=1", " =1", "\r=1"])
+def test_no_cell_is_a_formula(text, quakes):
+    """Names and notes that a spreadsheet would run have an apostrophe before them, in good rows and bad ones."""
+    assert safe(text) == "'" + text
+    good = InventoryObject(name=text, width=0.5, depth=1.0, height=2.0, note=text)
+    lines = rows(assess([good], quakes))
+    assert lines[0][HEADER.index("name")] == lines[0][HEADER.index("note")] == "'" + text
+    bad = parse_inventory(f'name,width_cm,depth_cm,height_cm,note\n"{text}",?,1,1,x')
+    for line in rows(assess(bad, quakes)):
+        assert not any(isinstance(cell, str) and cell.lstrip(" ").startswith(("=", "+", "-", "@")) for cell in line)
+    # negative control: words without such a beginning stay as they are
+    assert safe("vase = 3") == "vase = 3"
+
+
+def test_table_and_plain_values_agree(quakes):
+    """CSV, its rows and the JSON say the same of every object, the worst first, and of rows without a verdict."""
+    text = "name,width_cm,depth_cm,height_cm\nvase,20,20,90\nchest,200,200,50\nbad,?,1,1"
+    found = assess(parse_inventory(text), quakes)
+    lines = list(csv.DictReader(io.StringIO(as_csv(found))))
+    plain = json.loads(json.dumps(as_plain(found), allow_nan=False))
+    assert [line["name"] for line in lines] == ["vase", "chest", "bad"]
+    for line, item in zip(lines[:2], plain["objects"], strict=True):
+        worse = next(each for each in item["directions"] if each["direction"] == item["worse_direction"])
+        assert int(line["overturned"]) == worse["overturned"]
+        assert float(line["overturned, high [%]"]) == pytest.approx(100.0 * item["overturned_interval"][1], abs=0.005)
+        assert float(line["uplift acceleration [g]"]) == pytest.approx(item["uplift_acceleration_m_s2"] / G, abs=5e-5)
+        assert line["in words"] == item["in_words"]
+    assert lines[2]["in words"].startswith("not assessed: width_cm must be one number")
+    assert plain["counts"] == {"red": 1, "amber": 0, "green": 1, "not_assessed": 1}
+    assert plain["hazard"]["number_of_motions"] == 60
+    assert any("Sliding is not assessed" in each for each in plain["assumptions"])

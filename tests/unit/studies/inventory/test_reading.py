@@ -1,0 +1,177 @@
+"""Inventories from files: every separator and unit, every kind of bad row, nothing guessed."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rocking.errors import InvalidValueError
+from rocking.studies.inventory.numerals import DecimalMark
+from rocking.studies.inventory.reading import parse_inventory, read_inventory
+
+HEAD = "name,width_cm,depth_cm,height_cm"
+GOOD = "vase,20,25,100"
+
+
+def only(text):
+    """The single object of a text."""
+    found = parse_inventory(text)
+    assert found.not_assessed == ()
+    (one,) = found.objects
+    return one
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "name,width_cm,depth_cm,height_cm\nvase,12.5,20,100",
+        "name;width_cm;depth_cm;height_cm\nvase;12,5;20;100",
+        "name;width_cm;depth_cm;height_cm\r\nvase;12.5;20.0;100\r\n",
+        "name\twidth_cm\tdepth_cm\theight_cm\nvase\t12,5\t20\t100",
+        'name,width_cm,depth_cm,height_cm\nvase,"12,5",20,100',
+        "\ufeffName , Width (cm),Depth [cm],HEIGHT cm\nvase, 12.5 ,20,1e2\n\n",
+        "height_m,name,width_mm,depth_in\n1,vase,125,7.874015748031496",
+        "\n name;width_cm;depth_cm;height_cm\nvase;12,5;20;100\n;;;\n",
+    ],
+)
+def test_same_object_however_it_is_written(text):
+    """Commas, semicolons, tabs, decimal commas, units by the column, blanks and empty lines: one vase."""
+    vase = only(text)
+    assert vase.name == "vase"
+    assert (vase.width, vase.depth, vase.height) == pytest.approx((0.125, 0.2, 1.0), rel=1e-12)
+
+
+def test_every_column():
+    """Optional columns arrive in SI units; what is not known is named as not read."""
+    head = "room,base_width_cm,base_depth_mm,centre of mass height (cm),weight_g,count,note," + HEAD
+    found = parse_inventory(f"{head}\nhall,10,120,45,5000,3,on a shelf,{GOOD}")
+    (vase,) = found.objects
+    assert (vase.base_width, vase.base_depth, vase.centre_of_mass_height, vase.mass) == pytest.approx(
+        (0.1, 0.12, 0.45, 5.0)
+    )
+    assert (vase.count, vase.note, vase.row, found.ignored) == (3, "on a shelf", 2, ("room",))
+    assert only(f"center_of_mass_height_cm,{HEAD}\n30,{GOOD}").centre_of_mass_height == 0.3
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        (",20,25,100", "name_or_title is empty"),
+        ("x,,25,100", "width_cm is empty"),
+        ("x,20,25", "it has 3 fields, the header 4; a separator missing"),
+        ("x,20,5,25,100", "a decimal comma between commas"),
+        ("x,20 cm,25,100", "without unit"),
+        ("x,abc,25,100", "must be one number"),
+        ("x,nan,25,100", "must be one number"),
+        ("x,inf,25,100", "must be one number"),
+        ("x,1e999,25,100", "must be finite"),
+        ("x,-20,25,100", "width must be in"),
+        ("x,0,25,100", "width must be in"),
+        ("x,20,25,100000", "wrong unit"),
+        ("x,0x14,25,100", "must be one number"),
+        ("x,1_000,25,100", "must be one number"),
+        ("x,=20,25,100", "must be one number"),
+        ("x,\u0662\u0660,25,100", "must be one number"),
+        ('x,"1,234",25,100', "ambiguous"),
+        ('x,"1.234,5",25,100', "separators of thousands"),
+        ("x,20..5,25,100", "must be one number"),
+    ],
+)
+def test_bad_row_is_reported_and_touches_no_other(row, words):
+    """The row is named with its line and the reason; the rows around it are read as if it were not there."""
+    if row.startswith(","):
+        words = "name is empty"
+    found = parse_inventory(f"{HEAD}\n{GOOD}\n{row}\nbox,30,30,60")
+    assert [one.name for one in found.objects] == ["vase", "box"]
+    assert found.objects[0] == only(f"{HEAD}\n{GOOD}")
+    (bad,) = found.not_assessed
+    assert (bad.row, bad.name) == (3, row.split(",", maxsplit=1)[0])
+    assert words in bad.reason
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "words"),
+    [
+        ("base_width_cm", "21", "at most the width"),
+        ("centre_of_mass_height_cm", "120", "below the height"),
+        ("weight_kg", "1e7", "wrong unit of the weight"),
+        ("count", "1.5", "count must be a whole number"),
+        ("count", "1e300", "count must be a whole number"),
+        ("count", "0", "count must be a whole number"),
+    ],
+)
+def test_bad_optional_value(column, value, words):
+    """A value that does not fit the others makes the row one that is not assessed."""
+    found = parse_inventory(f"{HEAD},{column}\n{GOOD},{value}\n{GOOD},")
+    assert len(found.objects) == 1
+    assert words in found.not_assessed[0].reason
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "the first line must name the columns"),
+        ("vase,20,25,100", "the first line must name the columns"),
+        ("name,width,depth,height\nvase,20,25,100", "'width' must name its unit: width_m, width_cm"),
+        (HEAD, "at least one row"),
+        (f"{HEAD},width_mm\n{GOOD},200", "two columns give the width"),
+        (f"{HEAD},name\n{GOOD},x", "two columns give the name"),
+        (f"{HEAD},base_width\n{GOOD},10", "must name its unit: base_width_m"),
+        (f"{HEAD},base_width_km\n{GOOD},10", "must name its unit"),
+        (f"{HEAD},weight_stone\n{GOOD},10", "must name its unit: weight_kg"),
+        (f"{HEAD},base_widht_cm\n{GOOD},10", "base_width_cm\\?"),
+        (f"{HEAD},wieght_kg\n{GOOD},10", "weight_kg\\?"),
+        (f'{HEAD}\n"vase,20,25,100', "quotation mark"),
+    ],
+)
+def test_file_that_cannot_be_understood(text, words):
+    """A header without columns or units, or a broken table, refuses the whole file: nothing is guessed."""
+    with pytest.raises(InvalidValueError, match=words):
+        parse_inventory(text)
+
+
+@pytest.mark.parametrize(
+    ("cells", "cell", "value"),
+    [
+        (["1,5", "1,234"], "1,234", 1.234),
+        (["0,125"], "0,125", 0.125),
+        (["1.234"], "1.234", 1.234),
+        (["12,5", "1.234"], "1.234", None),
+        (["12,5", "7.5", "1,234"], "1,234", None),
+        (["1,234"], "1,234", None),
+        (["1234,567"], "1234,567", 1234.567),
+        (["1,2345"], "1,2345", 1.2345),
+        (["-1,5e-3"], "-1,5e-3", -0.0015),
+    ],
+)
+def test_decimal_mark(cells, cell, value):
+    """A comma or point before three digits is read only where the table itself settles what it is."""
+    mark = DecimalMark(cells)
+    if value is None:
+        with pytest.raises(InvalidValueError, match="ambiguous"):
+            mark.number("width_cm", cell)
+    else:
+        assert mark.number("width_cm", cell) == pytest.approx(value, rel=1e-15)
+
+
+def test_encodings(tmp_path):
+    """A list from an older spreadsheet is refused with the remedy, and read with its encoding named."""
+    path = tmp_path / "objects.csv"
+    path.write_bytes(f"{HEAD}\nfigurine en gr\u00e8s,20,25,100".encode("cp1252"))
+    with pytest.raises(InvalidValueError, match="CSV UTF-8"):
+        read_inventory(path)
+    assert read_inventory(path, "cp1252").objects[0].name == "figurine en gr\u00e8s"
+    assert read_inventory(path, "cp1252").source == "objects.csv"
+    with pytest.raises(InvalidValueError, match="name its encoding"):
+        read_inventory(path, "no-such")
+
+
+@given(st.text(max_size=60), st.sampled_from([",", ";", "\t"]))
+def test_any_text_is_an_inventory_or_an_error(junk, mark):
+    """Whatever stands below the header is an object, a row with a reason, or refused: never another exception."""
+    head = HEAD.replace(",", mark)
+    try:
+        found = parse_inventory(f"{head}\n{junk}\n{GOOD.replace(',', mark)}")
+    except InvalidValueError:
+        return
+    assert all(row.reason for row in found.not_assessed)
+    assert found.objects or found.not_assessed
