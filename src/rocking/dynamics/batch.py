@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -150,6 +150,8 @@ class Batch:
         if given is not None and not callable(given):
             raise InvalidValueError(f"progress must be a function of the histories done, or None, got {given!r:.60}")
         _check_threads(threads)
+        if self.law.per_history:
+            return self._constant.run(count, lambda first, last: _drawn(rows(first, last), self.law), progress, threads)
         quick = fast_engine.chosen(self.engine, self.law) == "fast"
         self._check_order(quick=quick)
         results = fast_engine.empty_results(count)
@@ -171,6 +173,11 @@ class Batch:
             if progress is not None:
                 progress(last - first)
         return results, total
+
+    @cached_property
+    def _constant(self) -> "Batch":
+        """The same with the coefficients of the rows, into which a draw for every history goes beforehand."""
+        return replace(self, law=ConstantRestitution())
 
     @cached_property
     def _library(self) -> fast_engine.Library:
@@ -232,6 +239,11 @@ def valid_row(row: dict[str, float]) -> bool:
     coefficients = all(0.0 <= row[f"r_{s}"] <= 100.0 for s in ("right", "left"))
     motion = abs(row["scale"]) <= 1e9 and abs(row["rotation"]) < half_pi and abs(row["velocity"]) < 1e9
     return bool(angles and frequencies and coefficients and motion)
+
+
+def _drawn(rows: Rows, law: ImpactLaw) -> Rows:
+    factor = law.draws(rows.key)
+    return replace(rows, values=rows.values | {name: rows.values[name] * factor for name in ("r_right", "r_left")})
 
 
 def _check_threads(threads: object) -> None:

@@ -22,6 +22,8 @@ class ImpactLaw:
     ----------
     kind : int
         0 constant, 1 a table over the speed, 2 a random number; -1 a law that only `factor` knows.
+    per_history : bool
+        Whether all impacts of a history share one draw; such a law has `draws` for many histories at once.
     at, factors : ndarray
         The table, of laws that have one.
     seed : int
@@ -29,6 +31,7 @@ class ImpactLaw:
     """
 
     kind: ClassVar[int] = -1
+    per_history: ClassVar[bool] = False
     at: FloatArray
     factors: FloatArray
     seed: int
@@ -67,6 +70,21 @@ class ImpactLaw:
         -------
         float
             Factor on the side's coefficient [-].
+        """
+        raise NotImplementedError
+
+    def draws(self, numbers: Any) -> FloatArray:
+        """Return the factors of many histories, of a law that draws once for each.
+
+        Parameters
+        ----------
+        numbers : array_like of int
+            Numbers of histories.
+
+        Returns
+        -------
+        ndarray
+            Factors on the side's coefficient [-].
         """
         raise NotImplementedError
 

@@ -6,6 +6,7 @@ from rocking.evidence.coefficient_table import CoefficientRow, coefficient_table
 from rocking.evidence.errata import Erratum, errata
 from rocking.evidence.league import LeagueRow, league
 from rocking.evidence.measurements import DataSet, all_measurements, datasets
+from rocking.evidence.restitution_distribution import RestitutionDistribution, restitution_distribution
 from rocking.evidence.verdict import verdict
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "Erratum",
     "LeagueRow",
     "Prediction",
+    "RestitutionDistribution",
     "all_measurements",
     "calibrate",
     "claims",
@@ -24,5 +26,6 @@ __all__ = [
     "errata",
     "interval_for",
     "league",
+    "restitution_distribution",
     "verdict",
 ]

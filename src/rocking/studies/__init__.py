@@ -15,6 +15,14 @@ from rocking.studies.overturning_map import overturning_map
 from rocking.studies.record_set import SyntheticSet
 from rocking.studies.refined import Refined, refined_map
 from rocking.studies.rocking_spectrum import rocking_spectrum
+from rocking.studies.sensitivity import (
+    SampledHistories,
+    SampledRestitution,
+    Sensitivity,
+    fragility_sensitivity,
+    map_sensitivity,
+    spectrum_sensitivity,
+)
 
 __all__ = [
     "Axis",
@@ -27,10 +35,15 @@ __all__ = [
     "Polyline",
     "Product",
     "Refined",
+    "SampledHistories",
+    "SampledRestitution",
+    "Sensitivity",
     "SyntheticSet",
     "Table",
     "axes",
     "boundary",
+    "fragility_sensitivity",
+    "map_sensitivity",
     "minimum_overturning_acceleration",
     "minimum_overturning_accelerations",
     "overturning_map",
@@ -38,4 +51,5 @@ __all__ = [
     "rocking_spectrum",
     "safe_beyond_overturning",
     "safe_islands",
+    "spectrum_sensitivity",
 ]

@@ -1,0 +1,266 @@
+"""Results of one study with several choices of restitution, compared in numbers and words."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.dynamics.export import extra
+from rocking.dynamics.outcome import Outcome
+from rocking.errors import InvalidValueError
+from rocking.studies.sensitivity.curves import CurveChange, curve_change, percent
+from rocking.studies.sensitivity.differences import Flips, difference_of, flips_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_COUNTS = ("count", "gained", "lost", "compared", "unknown", "share", "low", "high")
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """Results of one study with several restitutions, compared.
+
+    Parameters
+    ----------
+    results : dict of str to result
+        Results by the name of the choice: datasets with an outcome, or analyses that have a `dataset`.
+    baseline : str
+        The choice that the others are compared with.
+    repetitions : int
+        Sets of motions that are drawn for the intervals of fragility curves.
+    seed : int
+        Seed of these draws.
+
+    Raises
+    ------
+    InvalidValueError
+        If a result has no outcome, results are of different shapes, or there is no such choice.
+    """
+
+    results: dict[str, Any]
+    baseline: str = field(kw_only=True)
+    repetitions: int = field(default=1000, kw_only=True)
+    seed: int = field(default=0, kw_only=True)
+
+    def __post_init__(self) -> None:
+        """Check that the results can be compared."""
+        if self.baseline not in self.results:
+            raise InvalidValueError(f"baseline must be one of {', '.join(self.results)}, got {self.baseline!r:.60}")
+        shapes = {label: dict(found["outcome"].sizes) for label, found in self.datasets.items()}
+        odd = next((label for label, shape in shapes.items() if shape != shapes[self.baseline]), None)
+        if odd is not None:
+            raise InvalidValueError(
+                f"results must be of one shape, got {shapes[odd]} with {odd}, {shapes[self.baseline]} "
+                f"with {self.baseline}; are they of the same study?"
+            )
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the choices, the baseline first."""
+        return (self.baseline, *(label for label in self.results if label != self.baseline))
+
+    @cached_property
+    def datasets(self) -> dict[str, "xr.Dataset"]:
+        """The outcomes by the name of the choice."""
+        return {label: _dataset(label, result) for label, result in self.results.items()}
+
+    @property
+    def cases(self) -> str:
+        """What is counted: histories where there are motions to count over, otherwise cells of a map."""
+        return "histories" if "motion" in self.datasets[self.baseline]["outcome"].dims else "cells"
+
+    def flips_between(self, first: str, second: str) -> Flips:
+        """Return how many verdicts differ between two choices.
+
+        Parameters
+        ----------
+        first, second : str
+            Names of choices.
+
+        Returns
+        -------
+        Flips
+            The counts; the interval takes motions for independent where there are several, otherwise cells. A choice
+            compared with itself is known to flip nothing.
+        """
+        a, b = (self._of(label, self.datasets)["outcome"] for label in (first, second))
+        if first == second:
+            return replace(flips_of(a.values, b.values), low=0.0, high=0.0)
+        if "motion" not in a.dims:
+            return flips_of(a.values, b.values)
+        shape = [-1 if name == "motion" else 1 for name in a.dims]
+        return flips_of(a.values, b.values, np.arange(a.sizes["motion"]).reshape(shape))
+
+    def flips(self) -> "xr.Dataset":
+        """Return how many verdicts differ between every two choices.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over ``first, second``: count, gained (overturned in the second only), lost, compared, unknown, and the
+            share with its 95 % interval from low to high.
+        """
+        xarray = extra("xarray", "a table of flips")
+        pairs = [self.flips_between(first, second) for first, second in product(self.labels, self.labels)]
+        shape, both = (len(self.labels),) * 2, ("first", "second")
+        data = {name: (both, np.array([getattr(p, name) for p in pairs]).reshape(shape)) for name in _COUNTS}
+        made: xr.Dataset = xarray.Dataset(data, coords={name: list(self.labels) for name in both})
+        clusters = max(pair.clusters for pair in pairs)
+        return made.assign_attrs(cases=self.cases, independent=f"{clusters} motions" if clusters else self.cases)
+
+    def differences(self, name: str = "verdict") -> "xr.DataArray":
+        """Return how a value moves from the baseline to every other choice.
+
+        Parameters
+        ----------
+        name : str
+            ``verdict`` (-1 overturned with the baseline only, 0 the same, 1 overturned with the choice only, 2 one of
+            them failed), or a variable of the results such as ``peak_ratio``.
+
+        Returns
+        -------
+        xarray.DataArray
+            Over ``restitution`` and the dimensions of the study; values are missing where either did not stand.
+        """
+        xarray = extra("xarray", "a map of differences")
+        base, others = self.datasets[self.baseline], self.labels[1:]
+        maps = [difference_of(base, self.datasets[label], name) for label in others]
+        made: xr.DataArray = xarray.concat(maps, xarray.DataArray(list(others), dims="restitution", name="restitution"))
+        return made.assign_attrs(maps[0].attrs, baseline=self.baseline)
+
+    def curve_change(self, choice: str, state: str = "overturned", *, baseline: str | None = None) -> CurveChange:
+        """Return what changes of a fragility curve.
+
+        Parameters
+        ----------
+        choice : str
+            Name of the choice.
+        state : str
+            Name of the state.
+        baseline : str, optional
+            The choice to compare with; the baseline if not given.
+
+        Returns
+        -------
+        CurveChange
+            Ratio of the medians, difference of the dispersions and largest distance, with intervals paired by motion.
+
+        Raises
+        ------
+        InvalidValueError
+            If the study has no such curves.
+        """
+        pair = [self._of(label, self.results) for label in (baseline or self.baseline, choice)]
+        if state not in self.states:
+            known = ", ".join(self.states) or "none: it is no fragility analysis by stripes"
+            raise InvalidValueError(f"state must be one of the study's, {known}; got {state!r:.60}")
+        first, second = (_curve(result.fits[state]) for result in pair)
+        reached = [_reached(result, state) for result in pair]
+        return curve_change((first, second), pair[0].levels, *reached, repetitions=self.repetitions, seed=self.seed)
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states that have a fragility curve; none unless the study is of stripes."""
+        found = self.results.values()
+        stripes = "level" in self.datasets[self.baseline]["outcome"].dims
+        if not stripes or not all(hasattr(result, name) for result in found for name in ("fits", "responses")):
+            return ()
+        return tuple(name for name in self.results[self.baseline].fits if all(name in r.fits for r in found))
+
+    @cached_property
+    def _curve_changes(self) -> dict[str, dict[str, CurveChange | str]]:
+        return {label: {state: self._change_or_why(label, state) for state in self.states} for label in self.labels[1:]}
+
+    def _change_or_why(self, label: str, state: str) -> CurveChange | str:
+        try:
+            return self.curve_change(label, state)
+        except InvalidValueError as error:  # data without a curve are an answer, not a mistake of the user
+            return str(error)
+
+    def summary(self) -> list[dict[str, Any]]:
+        """Return one row of plain values for every choice.
+
+        Returns
+        -------
+        list of dict
+            The choice, the share that overturns, flips against the baseline with the 95 % interval of their share, and
+            for every state the change of its curve.
+        """
+        rows = []
+        for label in self.labels:
+            outcome = self.datasets[label]["outcome"].values
+            good = int((outcome != Outcome.FAILED.code).sum())
+            flips = self.flips_between(self.baseline, label)
+            row = {"choice": label, "overturned": int((outcome == Outcome.OVERTURNED.code).sum()), "computed": good}
+            row |= {"flips" if name == "count" else name: getattr(flips, name) for name in _COUNTS}
+            for state, change in self._curve_changes.get(label, {}).items():
+                row |= _plain(state, change) | {f"{state}: fit": self.results[label].fits[state].method}
+            rows.append(row)
+        return rows
+
+    @property
+    def verdict(self) -> str:
+        """The comparison in words, a sentence for every choice but the baseline."""
+        return "\n".join(self._sentence(label) for label in self.labels[1:])
+
+    def _sentence(self, label: str) -> str:
+        flips = self.flips_between(self.baseline, label)
+        where = f"{flips.count:,}" if flips.count else "none"
+        share = f"{percent(flips.share)}, 95 % interval {percent(flips.low)} to {percent(flips.high)}"
+        words = [
+            f"The choice between {self.baseline} and {label} changes the verdict in {where} of {flips.compared:,} "
+            f"{self.cases} ({share})"
+        ]
+        if flips.count:
+            words.append(f"{flips.gained:,} overturn only with {label}, {flips.lost:,} only with {self.baseline}")
+        if flips.unknown:
+            words.append(f"{flips.unknown:,} could not be computed")
+        changes = self._curve_changes.get(label, {})
+        words += [
+            f"{state}: {change if isinstance(change, str) else change.words}" for state, change in changes.items()
+        ]
+        return "; ".join(words) + "."
+
+    def _of(self, label: str, found: dict[str, Any]) -> Any:
+        if label not in found:
+            raise InvalidValueError(f"choice must be one of {', '.join(self.labels)}, got {label!r:.60}")
+        return found[label]
+
+
+def _dataset(label: str, result: Any) -> "xr.Dataset":
+    found = getattr(result, "dataset", result)
+    if not hasattr(found, "data_vars") or "outcome" not in found:
+        raise InvalidValueError(
+            f"the study must return a dataset with an outcome, or an analysis with one, got {found!r:.60} with {label}"
+        )
+    if found.sizes.get("restitution", 1) > 1:
+        raise InvalidValueError("the study varies the restitution itself: give one of its axes to the study instead")
+    made: xr.Dataset = found.squeeze("restitution", drop=True) if "restitution" in found.dims else found
+    return made
+
+
+def _curve(fit: Any) -> tuple[float, float]:
+    """Return median and dispersion, or refuse with the fit's own words why there is no curve."""
+    if fit.median is None or fit.dispersion is None:
+        raise InvalidValueError(f"no curve to compare: {fit.verdict}".rstrip("."))
+    return float(fit.median), float(fit.dispersion)
+
+
+def _reached(analysis: Any, state: str) -> np.ndarray:
+    """Return which histories reached a state; NaN for those that failed."""
+    wanted = next(s for s in analysis.states if s.name == state)
+    return np.where(analysis.responses.good, analysis.responses.exceed(wanted), np.nan)
+
+
+def _plain(state: str, change: CurveChange | str) -> dict[str, Any]:
+    if isinstance(change, str):
+        return {f"{state}: no comparison": change}
+    plain: dict[str, Any] = {}
+    for name, word in (("median", "median ratio"), ("dispersion", "dispersion"), ("distance", "largest distance")):
+        found = getattr(change, name)
+        plain[f"{state}: {word}"] = found.value
+        plain |= {f"{state}: {word} {end}": v for end, v in zip(("low", "high"), found.interval or (), strict=False)}
+    return plain

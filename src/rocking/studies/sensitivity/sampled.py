@@ -1,0 +1,298 @@
+"""A coefficient of restitution drawn once for every history, and histories that carry such draws."""
+
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.dynamics.batch import Rows
+from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, interpolated, uniform
+from rocking.errors import InvalidValueError
+from rocking.studies.histories import Histories, hash_of
+
+_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
+_FIRST, _SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
+
+
+@dataclass(frozen=True, eq=False)
+class SampledRestitution(ImpactLaw):
+    """A coefficient drawn once for every history: all its impacts share the draw, as if r were uncertain, not random.
+
+    The draw depends on the seed and on the number of the history, on nothing else. As a law of impact it is known to
+    the reference engine alone; `sampled` turns histories that carry it into histories for the fast engine. For
+    a new draw at every impact take `RandomRestitution`.
+
+    Parameters
+    ----------
+    factors : array_like
+        Quantiles of the distribution at equally spaced probabilities from 0 to 1 [-].
+    seed : int
+        Seed of the draws.
+    times : optional
+        What they multiply: a coefficient, a model or its name; 1 if not given.
+
+    Raises
+    ------
+    InvalidValueError
+        If the quantiles decrease or are outside [0, 1], or the seed is not a whole number from 0 to 2^64 - 1.
+
+    Examples
+    --------
+    >>> law = SampledRestitution.normal(0.9, 0.02, seed=1)
+    >>> bool(law.factor(1.0, 5, 0) == law.factor(2.0, 5, 3) == law.draws([5])[0])
+    True
+    """
+
+    kind: ClassVar[int] = 2
+    per_history: ClassVar[bool] = True
+    factors: FloatArray
+    seed: int
+    times: Any = 1.0
+    at: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Check quantiles and seed as the law that draws for every impact does."""
+        checked = RandomRestitution(self.factors, self.seed, self.times)
+        object.__setattr__(self, "factors", checked.factors)
+        object.__setattr__(self, "at", checked.at)
+
+    @classmethod
+    def of_law(cls, law: RandomRestitution) -> "SampledRestitution":
+        """Return the same distribution, drawn once for every history instead of at every impact.
+
+        Parameters
+        ----------
+        law : RandomRestitution
+            The law that draws for every impact.
+
+        Returns
+        -------
+        SampledRestitution
+            With the quantiles, the seed and the base of that law.
+
+        Raises
+        ------
+        InvalidValueError
+            If it is no such law.
+        """
+        given: object = law
+        if not isinstance(given, RandomRestitution):
+            raise InvalidValueError(f"law must be a RandomRestitution, got {law!r:.60}")
+        return cls(law.factors, law.seed, law.times)
+
+    @classmethod
+    def normal(cls, mean: float, deviation: float, *, seed: int, times: Any = 1.0) -> "SampledRestitution":
+        """Return draws from a normal distribution cut to [0, 1].
+
+        Parameters
+        ----------
+        mean, deviation : float
+            Of the distribution before it is cut [-].
+        seed : int
+            Seed of the draws.
+        times : optional
+            What the draws multiply.
+
+        Returns
+        -------
+        SampledRestitution
+            The distribution.
+        """
+        return cls.of_law(RandomRestitution.normal(mean, deviation, seed=seed, times=times))
+
+    @classmethod
+    def of_sample(cls, values: Any, *, seed: int, times: Any = 1.0) -> "SampledRestitution":
+        """Return draws from measured or simulated values, for instance a posterior.
+
+        Parameters
+        ----------
+        values : array_like
+            Values of the coefficient or factor [-].
+        seed : int
+            Seed of the draws.
+        times : optional
+            What the draws multiply.
+
+        Returns
+        -------
+        SampledRestitution
+            The distribution.
+        """
+        return cls.of_law(RandomRestitution.of_sample(values, seed=seed, times=times))
+
+    def factor(self, speed: float, key: int, impact: int) -> float:
+        """Return the draw of a history.
+
+        Parameters
+        ----------
+        speed : float
+            Not used [rad/s].
+        key : int
+            Number of the history.
+        impact : int
+            Not used: all impacts of a history share the draw.
+
+        Returns
+        -------
+        float
+            Coefficient or factor [-].
+        """
+        return interpolated(self.at, self.factors, uniform(self.seed, key, 0))
+
+    def draws(self, numbers: Any) -> FloatArray:
+        """Return the draws of many histories, to the last bit those of `factor`.
+
+        Parameters
+        ----------
+        numbers : array_like of int
+            Numbers of histories.
+
+        Returns
+        -------
+        ndarray
+            Coefficients or factors [-].
+        """
+        u = uniforms(self.seed, numbers)
+        above = np.maximum(np.searchsorted(self.at, u, side="right"), 1)
+        low, high = self.factors[above - 1], self.factors[above]
+        return np.asarray(low + (high - low) * ((u - self.at[above - 1]) / (self.at[above] - self.at[above - 1])))
+
+
+@dataclass(frozen=True, eq=False)
+class SampledHistories(Histories):
+    """Histories whose coefficients are multiplied by a draw for each, keyed by its number.
+
+    Parameters
+    ----------
+    base : Histories
+        The histories; with r = 1 on both sides the draw is the coefficient itself.
+    draw : SampledRestitution
+        The distribution; what it multiplies is in the rows of the base.
+    """
+
+    base: Histories
+    draw: SampledRestitution
+
+    @classmethod
+    def of(cls, base: Histories, draw: SampledRestitution) -> "SampledHistories":
+        """Return histories with the draws.
+
+        Parameters
+        ----------
+        base : Histories
+            The histories, with the coefficients that the draws multiply.
+        draw : SampledRestitution
+            The distribution.
+
+        Returns
+        -------
+        SampledHistories
+            Of the same motions, settings and engine.
+
+        Raises
+        ------
+        InvalidValueError
+            If the histories draw already, or either is something else.
+        """
+        given: object = base
+        if not isinstance(given, Histories) or not isinstance(draw, SampledRestitution):
+            raise InvalidValueError(f"give Histories and a SampledRestitution, got {base!r:.40} and {draw!r:.40}")
+        if isinstance(given, SampledHistories):
+            raise InvalidValueError("these histories draw their coefficients already; give the ones they are made from")
+        law = ConstantRestitution() if isinstance(base.law, SampledRestitution) else base.law
+        return cls(base.motions, base, draw, law=law, settings=base.settings, engine=base.engine)
+
+    @property
+    def count(self) -> int:
+        """Number of histories."""
+        return self.base.count
+
+    def rows(self, first: int, last: int) -> Rows:
+        """Return some of the rows.
+
+        Parameters
+        ----------
+        first, last : int
+            Numbers: from the first up to but not including the last.
+
+        Returns
+        -------
+        Rows
+            Those of the base, with the coefficients times the draws.
+        """
+        rows = self.base.rows(first, last)
+        factor = self.draw.draws(rows.key)
+        return replace(rows, values=rows.values | {name: rows.values[name] * factor for name in ("r_right", "r_left")})
+
+    def content(self) -> dict[str, Any]:
+        """Return the content of the base, the hash of the quantiles and the seed.
+
+        Returns
+        -------
+        dict
+            By name.
+        """
+        base = {"histories": type(self.base).__name__, "content": self.base.content()}
+        return {"base": base, "quantiles": hash_of(self.draw.factors), "seed": int(self.draw.seed)}
+
+
+def sampled(histories: Histories) -> Histories:
+    """Return histories that the fast engine can take, where their law is a draw for every history.
+
+    Parameters
+    ----------
+    histories : Histories
+        Any.
+
+    Returns
+    -------
+    Histories
+        `SampledHistories` if the law is a `SampledRestitution`; otherwise the same.
+    """
+    return SampledHistories.of(histories, histories.law) if isinstance(histories.law, SampledRestitution) else histories
+
+
+def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
+    """Return numbers in [0, 1) that depend on seed, history and impact: `rocking.dynamics.impact_law.uniform`, of many.
+
+    Parameters
+    ----------
+    seed : int
+        Seed.
+    numbers : array_like of int
+        Numbers of histories.
+    impact : int
+        Number of the impact.
+
+    Returns
+    -------
+    ndarray
+        The numbers, to the last bit those of `uniform`.
+
+    Raises
+    ------
+    InvalidValueError
+        If the numbers are not whole numbers of 64 bits.
+
+    Examples
+    --------
+    >>> from rocking.dynamics.impact_law import uniform
+    >>> bool(uniforms(7, [123])[0] == uniform(7, 123, 0))
+    True
+    """
+    keys = np.atleast_1d(np.asarray(numbers))
+    if keys.dtype.kind not in "iu":
+        raise InvalidValueError(f"numbers must be whole numbers of histories, got {keys.dtype} {numbers!r:.40}")
+    place = np.uint64(int(checks.within("impact", impact, 0, 2**53)))
+    words = _mixed(_mixed(_mixed(np.full(1, seed, np.uint64)) + keys.astype(np.uint64)) + place)
+    return np.asarray((words >> np.uint64(11)).astype(np.float64) * 2.0**-53)
+
+
+def _mixed(z: Any) -> Any:
+    """Splitmix64 of words of 64 bits, which overflow as they should."""
+    z = z + _GOLDEN
+    z = (z ^ (z >> np.uint64(30))) * _FIRST
+    z = (z ^ (z >> np.uint64(27))) * _SECOND
+    return z ^ (z >> np.uint64(31))

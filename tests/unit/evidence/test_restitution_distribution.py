@@ -1,0 +1,115 @@
+"""The calibrated distribution of a coefficient: what the posterior says, in quantiles that can be drawn from."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from rocking import Block, Region, Section, simulate
+from rocking.errors import AsymmetricBodyError, InvalidValueError
+from rocking.evidence.calibration import calibrate
+from rocking.evidence.likelihood import scatter
+from rocking.evidence.restitution_distribution import restitution_distribution
+from rocking.motions.pulses import sine
+from rocking.restitution import ShiftedImpulse
+
+# one false alarm in a million: the draws never change, so a failure is no accident
+ALARM = 1e-6
+LEANING = Section([Region([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 3.0)], 2400.0)])
+
+
+@pytest.mark.parametrize("slenderness", [2.0, 4.0, 8.0])
+def test_agrees_with_the_prediction(slenderness):
+    """Mean, scatter and 95 % interval are those of the calibration's own prediction, found by another way."""
+    found, prediction = restitution_distribution(slenderness), calibrate().predict([slenderness])
+    assert found.mean == pytest.approx(prediction.coefficient[0], abs=1e-6)
+    assert found.standard_deviation == pytest.approx(prediction.standard_deviation[0], rel=2e-3)
+    ends = prediction.low[0], prediction.high[0]
+    assert found.quantile([0.025, 0.975]) == pytest.approx(ends, abs=1e-5)
+
+
+def simulated(slenderness, count, *, scattered):
+    """Coefficients straight from the definition: draw the parameters, evaluate the model, add the scatter."""
+    rng = np.random.default_rng(6)
+    eta, k, s, gamma = calibrate().draw(count, seed=5).T
+    mean = eta * np.array([float(ShiftedImpulse(one).of_slenderness([slenderness])[0]) for one in k])
+    return np.clip(mean + scattered * scatter(mean, s, gamma) * rng.normal(size=count), 0.0, 1.0)
+
+
+def test_agrees_with_simulation():
+    """20,000 draws and 20,000 simulated coefficients pass Kolmogorov-Smirnov; without the scatter they do not."""
+    drawn = restitution_distribution(4.0).sample(20_000, seed=1)
+    assert stats.ks_2samp(drawn, simulated(4.0, 20_000, scattered=True)).pvalue > ALARM
+    assert stats.ks_2samp(drawn, simulated(4.0, 20_000, scattered=False)).pvalue < ALARM
+
+
+def test_a_body_and_its_slenderness_are_one():
+    """A block of any size has the distribution of its slenderness, on both feet."""
+    block = Block(width=0.25, height=1.0)
+    expected = restitution_distribution(4.0).quantiles
+    assert restitution_distribution(block).quantiles == pytest.approx(expected, abs=1e-12)
+    assert restitution_distribution(block, onto="left").quantiles == pytest.approx(expected, abs=1e-12)
+
+
+def test_never_creates_energy():
+    """Quantiles increase and stay within [0, energy bound], also far outside what was measured."""
+    for body in (0.3, 30.0, LEANING):
+        found = restitution_distribution(body)
+        assert found.extrapolated is (body in {0.3, 30.0})
+        assert np.all(np.diff(found.quantiles) >= 0.0)
+        assert found.quantiles[0] >= 0.0
+    old, new = LEANING.side("left"), LEANING.side("right")
+    bound = math.sqrt(old.moment_of_inertia / new.moment_of_inertia)
+    assert restitution_distribution(LEANING, onto="right").quantiles[-1] <= bound
+
+
+def test_laws_are_made_of_it():
+    """Per history and per impact the law has these quantiles, and a simulation takes its draw."""
+    found, block = restitution_distribution(4.0), Block(width=0.25, height=1.0)
+    once, each = found.per_history(seed=3), found.per_impact(seed=3)
+    assert once.factors.tolist() == each.factors.tolist() == found.quantiles.tolist()
+    response = simulate(block, sine(4.0, 0.4), restitution=once)
+    assert len(response.impacts) > 2
+    assert response.impacts["coefficient"] == pytest.approx(once.factor(1.0, 0, 0), rel=1e-12)
+    varied = simulate(block, sine(4.0, 0.4), restitution=each).impacts["coefficient"]
+    assert len(set(varied.tolist())) > 2
+
+
+def test_a_narrower_posterior_is_narrower():
+    """With one point of the posterior the distribution is the normal one of that point's scatter."""
+    posterior = calibrate()
+    point = type(posterior)(posterior.samples[:1], posterior.marginals, posterior.joint)
+    found = restitution_distribution(4.0, calibration=point)
+    eta, k, s, gamma = posterior.samples[0]
+    mean = eta * float(ShiftedImpulse(k).of_slenderness([4.0])[0])
+    expected = stats.norm(mean, scatter(np.array(mean), s, gamma))
+    assert found.quantile([0.1, 0.5, 0.9]) == pytest.approx(expected.ppf([0.1, 0.5, 0.9]), abs=1e-5)
+
+
+def test_a_side_of_its_own_is_no_law():
+    """A body with unequal sides has quantiles for each foot, but no law for both."""
+    right, left = (restitution_distribution(LEANING, onto=foot) for foot in ("right", "left"))
+    assert abs(right.mean - left.mean) > 1e-3
+    for make in (right.per_history, left.per_impact):
+        with pytest.raises(AsymmetricBodyError, match="each side"):
+            make(seed=1)
+
+
+@pytest.mark.parametrize("body", [0.0, -1.0, float("nan"), float("inf"), "block", None])
+def test_what_is_no_body_is_refused(body):
+    """Slendernesses that are none are refused."""
+    with pytest.raises(InvalidValueError):
+        restitution_distribution(body)
+
+
+def test_bad_questions_are_refused():
+    """Probabilities outside [0, 1], unknown feet and negative counts are refused."""
+    found = restitution_distribution(4.0)
+    for probability in (-0.1, 1.1, float("nan")):
+        with pytest.raises(InvalidValueError, match="probability"):
+            found.quantile(probability)
+    with pytest.raises(InvalidValueError, match="onto"):
+        restitution_distribution(4.0, onto="middle")
+    with pytest.raises(InvalidValueError, match="count"):
+        found.sample(-1, seed=1)

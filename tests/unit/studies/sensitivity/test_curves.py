@@ -1,0 +1,160 @@
+"""Distances between fragility curves, and intervals that know that both curves saw the same motions."""
+
+import numpy as np
+import pytest
+from scipy import optimize, stats
+
+from rocking.errors import InvalidValueError
+from rocking.studies.sensitivity.curves import curve_change, curve_distance, fits, percent, signed
+
+LEVELS = np.geomspace(0.4, 4.0, 9)
+
+
+def test_equal_dispersions_are_farthest_apart_half_way():
+    """With equal dispersions the distance is 2 Phi(d / 2 beta) - 1, half way between the logarithms of the medians."""
+    for apart, beta in ((1.0, 0.5), (-0.3, 0.4), (1e-9, 0.4)):
+        distance, where = curve_distance(np.array([0.2, 0.2 + apart]), np.array([beta, beta]))
+        assert distance == pytest.approx(2.0 * stats.norm.cdf(abs(apart) / (2.0 * beta)) - 1.0, rel=1e-7)
+        assert where == pytest.approx(0.2 + 0.5 * apart, abs=1e-12)
+
+
+def test_equal_medians_are_farthest_apart_at_the_closed_form():
+    """With equal medians the densities are equal at u^2 = 2 ln(t/s) / (1/s^2 - 1/t^2)."""
+    s, t = 0.3, 0.7
+    u = np.sqrt(2.0 * np.log(t / s) / (1.0 / s**2 - 1.0 / t**2))
+    distance, where = curve_distance(np.zeros(2), np.array([s, t]))
+    assert abs(where) == pytest.approx(u, rel=1e-12)
+    assert distance == pytest.approx(stats.norm.cdf(u / s) - stats.norm.cdf(u / t), rel=1e-12)
+
+
+def test_no_place_is_farther_apart():
+    """On 300 random pairs, nearly equal dispersions among them, a numerical search finds the same largest distance."""
+    rng = np.random.default_rng(3)
+    for k in range(300):
+        m, s = rng.normal(size=2), np.exp(0.7 * rng.normal(size=2))
+        if k % 4 == 0:
+            s[1] = s[0] * (1.0 + 1e-9 * rng.normal())
+
+        def apart(u, m=m, s=s):
+            return np.abs(stats.norm.cdf((u - m[0]) / s[0]) - stats.norm.cdf((u - m[1]) / s[1]))
+
+        grid = np.linspace(-15.0, 15.0, 3001)
+        best = grid[apart(grid).argmax()]
+        found = optimize.minimize_scalar(lambda u: -apart(u), bounds=(best - 0.02, best + 0.02), method="bounded")
+        assert curve_distance(m, s)[0] == pytest.approx(-found.fun, abs=1e-9)
+
+
+def test_identical_curves_do_not_differ():
+    """A curve and itself: no distance, ratio one, difference zero, also in every set of motions."""
+    hits = np.exp(0.4 * np.random.default_rng(1).normal(size=(60, 1))) < LEVELS
+    found = curve_change(((1.0, 0.4), (1.0, 0.4)), LEVELS, hits, hits, repetitions=50)
+    assert (found.median.value, found.dispersion.value, found.distance.value) == (1.0, 0.0, 0.0)
+    assert (found.median.interval, found.dispersion.interval, found.distance.interval) == ((1, 1), (0, 0), (0, 0))
+
+
+def fitted(hits):
+    """Curve of stripes by maximum likelihood, straight from the definition."""
+    z, n = hits.sum(axis=0), len(hits)
+
+    def loss(parameters):
+        eta = (np.log(LEVELS) - parameters[0]) / np.exp(parameters[1])
+        return -(z * stats.norm.logcdf(eta) + (n - z) * stats.norm.logcdf(-eta)).sum()
+
+    best = optimize.minimize(loss, [0.3, -1.0], method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-12})
+    return best.x[0], np.exp(best.x[1])
+
+
+def test_curves_are_the_likeliest():
+    """Curves of sets of motions agree with a direct maximisation of the likelihood to 1e-6."""
+    rng = np.random.default_rng(5)
+    for _ in range(5):
+        hits = 1.3 * np.exp(0.4 * rng.normal(size=(40, LEVELS.size))) < LEVELS
+        found = fits(LEVELS, hits.sum(axis=0)[np.newaxis].astype(float), np.full((1, LEVELS.size), 40.0))
+        assert found[:, 0] == pytest.approx(fitted(hits), abs=1e-6)
+
+
+def capacities(rng, motions):
+    """Capacities of the same motions under two choices: medians 1.2 and 1.32, nearly the same scatter by motion."""
+    common = 0.4 * rng.normal(size=(motions, 1))
+    own = 0.05 * rng.normal(size=(2, motions, 1))
+    return 1.2 * np.exp(common + own[0]), 1.32 * np.exp(common + own[1])
+
+
+def test_intervals_of_the_ratio_cover():
+    """Of 200 studies with 60 motions, about 95 % of the intervals hold the true ratio of medians, 1.1."""
+    rng, inside = np.random.default_rng(11), 0
+    for k in range(200):
+        first, second = (capacity < LEVELS for capacity in capacities(rng, 60))
+        curves = tuple((np.exp(m), b) for m, b in (_curve(first), _curve(second)))
+        interval = curve_change(curves, LEVELS, first, second, repetitions=200, seed=k).median.interval
+        inside += interval[0] <= 1.1 <= interval[1]
+    # four standard deviations of a binomial share of 200 below 0.95, two above
+    assert 0.89 <= inside / 200 <= 0.98
+
+
+def _curve(hits):
+    return fits(LEVELS, hits.sum(axis=0)[np.newaxis].astype(float), np.full((1, LEVELS.size), float(len(hits))))[:, 0]
+
+
+def test_pairing_is_what_makes_the_interval_narrow():
+    """With the motions of one choice shuffled the interval is more than twice as wide: pairs were really kept."""
+    first, second = (capacity < LEVELS for capacity in capacities(np.random.default_rng(2), 60))
+    curves = ((1.2, 0.4), (1.32, 0.4))
+    paired, shuffled = (
+        curve_change(curves, LEVELS, first, other).median.interval
+        for other in (second, np.random.default_rng(0).permutation(second))
+    )
+    assert 2.0 * (paired[1] - paired[0]) < shuffled[1] - shuffled[0]
+
+
+def test_failed_histories_count_on_neither_side():
+    """A history that failed with one choice is left out of both curves: the change is that of the other motions."""
+    first, second = ((capacity < LEVELS).astype(float) for capacity in capacities(np.random.default_rng(4), 60))
+    first[:3], second[3:6] = np.nan, np.nan
+    found = curve_change(((1.2, 0.4), (1.3, 0.4)), LEVELS, first, second, repetitions=200)
+    hidden, wrong = [[values.copy() for values in (first, second)] for _ in range(2)]
+    hidden[0][3:6], hidden[1][:3] = 1.0, 0.0  # what the other choice gave for a history that failed
+    wrong[0][:3] = 0.0  # a failed history taken for one that stood
+    again, other = (curve_change(((1.2, 0.4), (1.3, 0.4)), LEVELS, *pair, repetitions=200) for pair in (hidden, wrong))
+    assert again == found
+    assert other != found
+
+
+def test_without_curves_there_is_no_interval():
+    """Where nothing ever reaches the state no curve exists, and no interval is claimed."""
+    nothing = np.zeros((20, LEVELS.size))
+    found = curve_change(((1.0, 0.4), (1.1, 0.4)), LEVELS, nothing, nothing, repetitions=50)
+    assert (found.median.interval, found.without_curve) == (None, 50)
+    assert "no interval" in found.words
+
+
+def test_words():
+    """Percent with as many digits as a reader needs; a rise and a fall are told apart."""
+    assert [percent(x) for x in (0.14, 0.0078, 0.00031, 1.0, 0.0)] == ["14 %", "0.78 %", "0.031 %", "100 %", "0 %"]
+    assert [signed(x) for x in (0.1, -0.1, 0.0)] == ["+10 %", "-10 %", "+0 %"]
+    hits = 1.2 * np.exp(0.4 * np.random.default_rng(1).normal(size=(60, 1))) < LEVELS
+    for second, word in ((1.32, "the median changes by +10 % "), (1.08, "the median changes by -10 % ")):
+        found = curve_change(((1.2, 0.4), (second, 0.4)), LEVELS, hits, hits, repetitions=10)
+        assert word in found.words
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"levels": LEVELS[::-1]}, "above the one before"),
+        ({"levels": [1.0]}, "two or more"),
+        ({"levels": -LEVELS}, "> 0"),
+        ({"first": np.zeros((20, 3))}, "shape"),
+        ({"first": np.zeros((19, LEVELS.size))}, "same motions"),
+        ({"second": np.full((20, LEVELS.size), 2.0)}, "0 or 1"),
+        ({"curves": ((1.0, 0.0), (1.0, 0.4))}, "dispersion"),
+        ({"curves": ((1.0, 0.4), (float("nan"), 0.4))}, "finite"),
+        ({"repetitions": -1}, "repetitions"),
+    ],
+)
+def test_bad_input_is_refused(changes, message):
+    """Levels that do not increase, arrays that do not fit and curves that are none are refused."""
+    hits = np.zeros((20, LEVELS.size))
+    given = {"curves": ((1.0, 0.4), (1.1, 0.4)), "levels": LEVELS, "first": hits, "second": hits} | changes
+    with pytest.raises(InvalidValueError, match=message):
+        curve_change(**given)
