@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test lint engine campaign fuzz bench gallery lock clean
+.PHONY: help demo test lint engine campaign fuzz durability bench gallery lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -13,7 +13,8 @@ help:
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make gallery  run every example         make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
-	@echo "make campaign the long verifications    make clean    remove what was made"
+	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"
+	@echo "make clean    remove what was made"
 
 $(VENV)/created:
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "rocking needs Python 3.11 or newer, this is " + sys.version)'
@@ -69,6 +70,9 @@ test: lint
 
 fuzz: $(VENV)/dev
 	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py -q
+
+durability: $(VENV)/dev $(ENGINE)
+	ROCKING_KILLS=300 $(BIN)/python -m pytest tests/verification/test_campaign_durability.py -q -rP
 
 bench: $(VENV)/bench $(ENGINE)
 	$(BIN)/python -m benchmarks

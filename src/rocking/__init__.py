@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rocking.motions import GroundMotion, pulses, synthetic
     from rocking.motions.formats import read_motion
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
+    from rocking.studies.campaign import Campaign
     from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
     from rocking.studies.overturning_map import overturning_map
     from rocking.studies.rocking_spectrum import rocking_spectrum
@@ -28,6 +29,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Block",
     "Body",
+    "Campaign",
     "GroundMotion",
     "MassPoints",
     "Outcome",
@@ -65,6 +67,7 @@ __all__ = [
 _HOME = {
     "Block": "rocking.bodies",
     "Body": "rocking.bodies",
+    "Campaign": "rocking.studies.campaign",
     "GroundMotion": "rocking.motions",
     "MassPoints": "rocking.bodies",
     "Outcome": "rocking.dynamics",

@@ -32,7 +32,7 @@ _COLUMNS = (
     ("vertical_force", "N", "force of the ground on the body, upwards"),
 )
 _UNITS = {name: unit for name, unit, _ in _COLUMNS}
-_EXTRAS = {"openpyxl": "excel", "pyarrow": "parquet", "distributed": "cluster", "dask": "cluster"}
+_EXTRAS = {"openpyxl": "excel", "pyarrow": "parquet", "distributed": "dask"}
 
 
 def extra(module: str, what: str) -> ModuleType:

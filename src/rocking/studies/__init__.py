@@ -3,6 +3,7 @@
 from rocking.studies.axes import axes
 from rocking.studies.axis import Axis
 from rocking.studies.boundary import Polyline, boundary
+from rocking.studies.campaign import Campaign
 from rocking.studies.crossings import Crossings
 from rocking.studies.histories import Histories, Product, Table
 from rocking.studies.islands import Island, Islands, safe_beyond_overturning, safe_islands
@@ -26,6 +27,7 @@ from rocking.studies.sensitivity import (
 
 __all__ = [
     "Axis",
+    "Campaign",
     "Crossings",
     "Histories",
     "Island",

@@ -221,7 +221,8 @@ class Table(Histories):
         Rows
             The rows.
         """
-        return part(Rows(self.values, self.motion, np.arange(self.count, dtype=np.int64)), first, last)
+        values = {name: array[first:last] for name, array in self.values.items()}
+        return Rows(values, self.motion[first:last], np.arange(first, last, dtype=np.int64))
 
     def content(self) -> dict[str, Any]:
         """Return the hashes of the arrays.

@@ -1,0 +1,296 @@
+"""A campaign: very many histories, computed once, whatever happens on the way."""
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rocking.dynamics.engine import Arrays
+from rocking.errors import InvalidValueError
+from rocking.studies.campaign import disk, reading
+from rocking.studies.campaign.chunks import DEFAULT_CHUNK, Plan
+from rocking.studies.campaign.errors import CampaignMismatchError
+from rocking.studies.campaign.executors import Executor, chosen
+from rocking.studies.campaign.forecast import Forecast, forecast
+from rocking.studies.campaign.identity import NAME, SHARDS, Identity
+from rocking.studies.campaign.ledger import NAME as LEDGER
+from rocking.studies.campaign.ledger import Ledger
+from rocking.studies.campaign.lock import NAME as LOCK
+from rocking.studies.campaign.lock import FolderLock, holder
+from rocking.studies.campaign.recovery import rebuild
+from rocking.studies.campaign.running import run
+from rocking.studies.campaign.status import Progress, Status, Summary
+from rocking.studies.histories import Histories
+
+_UNKNOWN = "nothing that was recorded before is lost"
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Very many histories in a folder: interrupted, killed or damaged, it goes on where it stood.
+
+    Make one with `create`, or go on with `open`; the results are the same to the last bit whatever the workers, the
+    size of the chunks, the order and the interruptions.
+
+    Parameters
+    ----------
+    folder : Path
+        Where it is kept.
+    histories : Histories
+        What is computed.
+    identity : Identity
+        What was written when it was created.
+    """
+
+    folder: Path
+    histories: Histories
+    identity: Identity
+
+    @classmethod
+    def create(cls, folder: str | os.PathLike[str], histories: Histories, chunk: int | None = None) -> "Campaign":
+        """Begin a campaign.
+
+        Parameters
+        ----------
+        folder : path
+            Where to keep it: a new folder, or an empty one.
+        histories : Histories
+            What to compute.
+        chunk : int, optional
+            Histories of a chunk; as many as take about 0.3 s of the fast engine, if not given.
+
+        Returns
+        -------
+        Campaign
+            It is on disk; nothing is computed yet.
+
+        Raises
+        ------
+        CampaignMismatchError
+            If the folder holds something already.
+        """
+        path = Path(folder)
+        identity = Identity.of(_histories(histories), DEFAULT_CHUNK if chunk is None else chunk)
+        with disk.guarded(path, lambda: "nothing was written"):
+            disk.make_folder(path)
+            with FolderLock(path):
+                _refuse_used(path)
+                disk.make_folder(path / SHARDS)
+                identity.write(path)
+        return cls(path, histories, identity)
+
+    @classmethod
+    def open(cls, folder: str | os.PathLike[str], histories: Histories) -> "Campaign":
+        """Go on with a campaign.
+
+        Parameters
+        ----------
+        folder : path
+            Where it is kept.
+        histories : Histories
+            The same as when it was created: they must describe themselves alike.
+
+        Returns
+        -------
+        Campaign
+            With all that is finished.
+        """
+        path = Path(folder)
+        with disk.guarded(path, lambda: _UNKNOWN):
+            identity = Identity.read(path)
+        identity.refuse_other(path, _histories(histories))
+        return cls(path, histories, identity)
+
+    @staticmethod
+    def status_of(folder: str | os.PathLike[str]) -> Status:
+        """Return how far a campaign is, without its histories and while another process may run it.
+
+        Parameters
+        ----------
+        folder : path
+            Where it is kept; nothing is written there.
+
+        Returns
+        -------
+        Status
+            As recorded at this instant.
+        """
+        path = Path(folder)
+        with disk.guarded(path, lambda: _UNKNOWN):
+            plan = Identity.read(path).plan
+            running = holder(path)
+            if not (path / LEDGER).exists():
+                return Status(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software)
+            with Ledger(path) as ledger:
+                chunks, histories = ledger.finished()
+                effort, damaged = ledger.effort(), tuple(ledger.events("damaged"))
+            return Status(path, plan.count, histories, plan.chunks, chunks, running, *effort, damaged, plan.software)
+
+    @property
+    def plan(self) -> Plan:
+        """How it is cut."""
+        return self.identity.plan
+
+    @property
+    def key(self) -> str:
+        """Name of the histories: 64 hexadecimal digits."""
+        return self.identity.plan.key
+
+    def status(self) -> Status:
+        """Return how far it is.
+
+        Returns
+        -------
+        Status
+            As recorded at this instant.
+        """
+        return self.status_of(self.folder)
+
+    def check(self) -> Forecast:
+        """Look ahead: compute a sample of the histories and compare the room on the disk with what is needed.
+
+        Returns
+        -------
+        Forecast
+            What remains to be done will take this.
+        """
+        return forecast(self.status(), self.plan, self.histories)
+
+    def run(
+        self,
+        executor: str | Executor = "serial",
+        *,
+        workers: int | None = None,
+        start_method: str | None = None,
+        order_seed: int | None = None,
+        progress: Callable[[Progress], object] | None = None,
+    ) -> Summary:
+        """Compute what is missing.
+
+        Parameters
+        ----------
+        executor : {"serial", "processes"} or Executor
+            Who computes: this process, processes of this machine, or what was made before, as a `DaskExecutor`.
+        workers : int, optional
+            Threads, or processes; as many as the processor has, if not given.
+        start_method : {"spawn", "fork", "forkserver"}, optional
+            How processes start; "spawn" if not given.
+        order_seed : int, optional
+            Seed of the order of the chunks; that of the histories, if not given. The results do not depend on it.
+        progress : callable, optional
+            Called with a `Progress` at the start and after every chunk that is recorded.
+
+        Returns
+        -------
+        Summary
+            What was done, and what was found damaged.
+
+        Raises
+        ------
+        InvalidValueError
+            If an argument is out of range.
+        CampaignBusyError
+            If another process runs this campaign.
+        CampaignStorageError
+            If the disk is full or cannot be written.
+        CampaignDamagedError
+            If the ledger is not what was written.
+        CampaignWorkerError
+            If a chunk cannot be computed.
+        CampaignInterrupted
+            If Ctrl-C or SIGTERM asked it to stop.
+        """
+        given: object = progress
+        if given is not None and not callable(given):
+            raise InvalidValueError(f"progress must be a function of a Progress, or None, got {given!r:.60}")
+        seed: object = order_seed
+        if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
+            raise InvalidValueError(f"order_seed must be a whole number >= 0, got {seed!r:.60}")
+        who = chosen(executor, workers, start_method)
+        return run(self.folder, self.identity, self.histories, who, order_seed, progress)
+
+    def pieces(self) -> Iterator[reading.Piece]:
+        """Return the results in the order of the histories, one chunk in memory at a time.
+
+        Yields
+        ------
+        Piece
+            First history, last one (not included), and their results.
+        """
+        with disk.guarded(self.folder, lambda: _UNKNOWN):
+            yield from reading.pieces(self.folder, self.plan)
+
+    def results(self) -> Arrays:
+        """Return all results at once: 75 bytes a history.
+
+        Returns
+        -------
+        dict of str to ndarray
+            The keys of `rocking.dynamics.engine.RESULTS`, one entry a history.
+        """
+        with disk.guarded(self.folder, lambda: _UNKNOWN):
+            return reading.results(self.folder, self.plan)
+
+    def column(self, name: str) -> Iterator[np.ndarray]:
+        """Return one result of all histories, piece by piece.
+
+        Parameters
+        ----------
+        name : str
+            A key of `rocking.dynamics.engine.RESULTS`.
+
+        Yields
+        ------
+        ndarray
+            Its values for one chunk after another.
+        """
+        with disk.guarded(self.folder, lambda: _UNKNOWN):
+            yield from reading.column(self.folder, self.plan, name)
+
+    def sha256(self) -> str:
+        """Return the hash of all results; it does not depend on the size of the chunks.
+
+        Returns
+        -------
+        str
+            64 hexadecimal digits.
+        """
+        return reading.digest(self.pieces())
+
+    def verify(self) -> list[str]:
+        """Read every shard that the ledger has.
+
+        Returns
+        -------
+        list of str
+            A sentence for each that is damaged or missing; a run computes those again.
+        """
+        with disk.guarded(self.folder, lambda: _UNKNOWN):
+            return reading.damage(self.folder, self.plan)
+
+    def rebuild_ledger(self) -> int:
+        """Make the ledger anew from the shards; the old one is kept beside it.
+
+        Returns
+        -------
+        int
+            Chunks that are finished.
+        """
+        with disk.guarded(self.folder, lambda: _UNKNOWN), FolderLock(self.folder):
+            return rebuild(self.folder, self.plan)
+
+
+def _refuse_used(folder: Path) -> None:
+    there = {entry.name for entry in folder.iterdir() if not entry.name.startswith(".")} - {LOCK, SHARDS}
+    if NAME in there:
+        raise CampaignMismatchError(f"{folder}: a campaign is here already: open it, or take a new folder")
+    if there:
+        raise CampaignMismatchError(f"{folder}: not empty ({min(there)} ...); a campaign takes a folder of its own")
+
+
+def _histories(given: object) -> Histories:
+    if not isinstance(given, Histories):
+        raise InvalidValueError(f"histories must be a Table, a Product or another Histories, got {given!r:.60}")
+    return given

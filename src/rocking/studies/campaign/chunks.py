@@ -1,0 +1,103 @@
+"""How a campaign is cut: chunks of histories, each named by the hash of what it holds."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from typing import NamedTuple
+
+from rocking.errors import InvalidValueError
+
+FORMAT = 1
+"""Version of the files of a campaign."""
+
+DEFAULT_CHUNK = 32768
+"""Histories of a chunk: about 0.3 s of work, beside which a few milliseconds of safety are small."""
+
+LARGEST_CHUNK = 1 << 22
+"""A chunk is held in memory as a whole: 0.3 GB."""
+
+
+class Chunk(NamedTuple):
+    """Some histories: from the first up to but not including the last."""
+
+    number: int
+    first: int
+    last: int
+    name: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What fixes the name of every chunk, and with it the bytes of its shard.
+
+    Parameters
+    ----------
+    key : str
+        Name of the histories.
+    count : int
+        Number of histories.
+    size : int
+        Histories of a chunk.
+    engine : {"fast", "reference"}
+        The engine that computes all of them.
+    software : str
+        Version of this package.
+    format : int
+        Version of the files.
+
+    Raises
+    ------
+    InvalidValueError
+        If the numbers are not whole or out of range.
+
+    Examples
+    --------
+    >>> plan = Plan("0" * 64, 100, 40, "fast", "1.0")
+    >>> [plan.chunk(k)[1:3] for k in range(plan.chunks)]
+    [(0, 40), (40, 80), (80, 100)]
+    """
+
+    key: str
+    count: int
+    size: int
+    engine: str
+    software: str
+    format: int = FORMAT
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        for name, value, low, high in (("count", self.count, 1, 1 << 48), ("chunk", self.size, 1, LARGEST_CHUNK)):
+            given: object = value
+            if isinstance(given, bool) or not isinstance(given, int) or not low <= value <= high:
+                raise InvalidValueError(f"{name} must be a whole number of histories in [{low}, {high}], got {value!r}")
+
+    @property
+    def chunks(self) -> int:
+        """Number of chunks."""
+        return -(-self.count // self.size)
+
+    def chunk(self, number: int) -> Chunk:
+        """Return one of the chunks.
+
+        Parameters
+        ----------
+        number : int
+            From 0 to `chunks` - 1.
+
+        Returns
+        -------
+        Chunk
+            The chunk; its name is the SHA-256 of the plan without its size, and of the first and last history.
+
+        Raises
+        ------
+        InvalidValueError
+            If there is no such chunk.
+        """
+        if not 0 <= number < self.chunks:
+            raise InvalidValueError(f"chunk must be in [0, {self.chunks - 1}], got {number}")
+        first = number * self.size
+        last = min(first + self.size, self.count)
+        content = {name: value for name, value in asdict(self).items() if name != "size"}
+        text = json.dumps(content | {"first": first, "last": last}, sort_keys=True)
+        return Chunk(number, first, last, hashlib.sha256(text.encode()).hexdigest())

@@ -1,0 +1,237 @@
+"""Who computes the chunks: the rules for all, and the one that computes them here."""
+
+import os
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from rocking.dynamics import engine
+from rocking.errors import InvalidValueError
+from rocking.studies.campaign import disk, shard
+from rocking.studies.campaign.chunks import DEFAULT_CHUNK, Chunk
+from rocking.studies.campaign.errors import CampaignWorkerError
+from rocking.studies.histories import Histories
+
+SUFFIX = ".shard"
+
+
+class Done(NamedTuple):
+    """A chunk whose shard is on disk."""
+
+    chunk: Chunk
+    seal: str
+    size: int
+    seconds: float
+    worker: str
+    attempts: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """What workers need: it can be pickled.
+
+    Parameters
+    ----------
+    histories : Histories
+        What to compute.
+    engine : {"fast", "reference"}
+        The engine that all workers must have.
+    folder : Path
+        Where the shards are.
+    """
+
+    histories: Histories
+    engine: str
+    folder: Path
+
+    def compute(self, chunk: Chunk, threads: int | None = 1, stop: Callable[[], bool] = lambda: False) -> bytes | None:
+        """Return the shard of a chunk.
+
+        Parameters
+        ----------
+        chunk : Chunk
+            Which.
+        threads : int, optional
+            Threads of the fast engine; as many as the processor has, if None.
+        stop : callable
+            Whether to stop; asked every 0.2 s or so.
+
+        Returns
+        -------
+        bytes or None
+            The shard; None if it was stopped.
+
+        Raises
+        ------
+        CampaignWorkerError
+            If this worker lacks the engine of the campaign.
+        """
+        chosen = engine.chosen(self.histories.engine, self.histories.law)
+        if chosen != self.engine:
+            raise CampaignWorkerError(f"this worker has the {chosen} engine, the campaign takes the {self.engine} one")
+        results = engine.empty_results(chunk.last - chunk.first)
+        for first in range(chunk.first, chunk.last, DEFAULT_CHUNK):
+            if first > chunk.first and stop():
+                return None
+            last = min(first + DEFAULT_CHUNK, chunk.last)
+            for name, values in self.histories.run(first, last, threads=threads).items():
+                results[name][first - chunk.first : last - chunk.first] = values
+        return shard.pack(chunk, results)
+
+    def keep(self, chunk: Chunk, data: bytes, seconds: float, worker: str = "") -> Done:
+        """Write the shard of a chunk.
+
+        Parameters
+        ----------
+        chunk : Chunk
+            Which.
+        data : bytes
+            The shard.
+        seconds : float
+            What it took [s].
+        worker : str
+            Who computed it; this process, if not given.
+
+        Returns
+        -------
+        Done
+            For the ledger.
+        """
+        disk.write_new(self.folder / f"{chunk.name}{SUFFIX}", data)
+        return Done(chunk, shard.seal(data), len(data), seconds, worker or f"process {os.getpid()}")
+
+
+class Executor(ABC):
+    """Computes chunks, wherever; the shards are the same whoever does."""
+
+    @abstractmethod
+    def run(
+        self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
+    ) -> Iterator[Done]:
+        """Compute chunks, taking no more of them than are being computed or about to be.
+
+        Parameters
+        ----------
+        job : Job
+            What to compute.
+        chunks : iterator of Chunk
+            What remains to be done; it ends early when the campaign is to stop.
+        stop : callable
+            Whether to stop within a second.
+        retried : callable
+            Called with a chunk that is tried again, and why.
+
+        Yields
+        ------
+        Done
+            Chunks whose shards are on disk, in any order.
+        """
+
+
+class Serial(Executor):
+    """Computes the chunks one after another in this process.
+
+    Parameters
+    ----------
+    threads : int, optional
+        Threads of the fast engine; as many as the processor has, if not given.
+    """
+
+    def __init__(self, threads: int | None = None) -> None:
+        self._threads = None if threads is None else whole("workers", threads)
+
+    def run(
+        self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
+    ) -> Iterator[Done]:
+        """Compute chunks.
+
+        Parameters
+        ----------
+        job : Job
+            What to compute.
+        chunks : iterator of Chunk
+            What remains to be done.
+        stop : callable
+            Whether to stop; a large chunk is left unfinished then.
+        retried : callable
+            Never called.
+
+        Yields
+        ------
+        Done
+            One after another.
+        """
+        for chunk in chunks:
+            start = time.perf_counter()
+            data = job.compute(chunk, self._threads, stop)
+            if data is None:
+                return
+            yield job.keep(chunk, data, time.perf_counter() - start)
+
+
+def chosen(executor: "str | Executor", workers: int | None, start_method: str | None) -> Executor:
+    """Return the executor that was asked for.
+
+    Parameters
+    ----------
+    executor : {"serial", "processes"} or Executor
+        Name or object.
+    workers : int, optional
+        Threads, or processes.
+    start_method : {"spawn", "fork", "forkserver"}, optional
+        How processes start.
+
+    Returns
+    -------
+    Executor
+        The executor.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is none of that name, or the others do not go with it.
+    """
+    given: object = executor
+    if given != "processes" and start_method is not None:
+        raise InvalidValueError(f'start_method={start_method!r} goes with executor="processes" only')
+    if isinstance(given, Executor):
+        if workers is not None:
+            raise InvalidValueError(f"workers={workers!r} goes with the name of an executor; the object has its own")
+        return given
+    if given == "serial":
+        return Serial(workers)
+    if given == "processes":
+        from rocking.studies.campaign.processes import Processes
+
+        return Processes(workers, start_method or "spawn")
+    raise InvalidValueError(f'executor must be "serial", "processes" or an Executor, got {given!r:.60}')
+
+
+def whole(name: str, value: object, high: int = 4096) -> int:
+    """Return a whole number of things of which there is at least one.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    value : object
+        What the user gave.
+    high : int
+        The most.
+
+    Returns
+    -------
+    int
+        The number.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is none.
+    """
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= high:
+        raise InvalidValueError(f"{name} must be a whole number in [1, {high}], got {value!r:.60}")
+    return value

@@ -1,0 +1,180 @@
+"""What a campaign is: written once, when it is created, in words that a person can read."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from rocking.dynamics import engine
+from rocking.errors import InvalidValueError
+from rocking.studies.campaign import disk
+from rocking.studies.campaign.chunks import FORMAT, Plan
+from rocking.studies.campaign.errors import CampaignDamagedError, CampaignMismatchError
+from rocking.studies.histories import Histories
+
+NAME = "campaign.json"
+SHARDS = "shards"
+_SHOWN = 5
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Plan of a campaign, and what its histories are.
+
+    Parameters
+    ----------
+    plan : Plan
+        How it is cut.
+    histories : dict
+        What they say of themselves.
+    """
+
+    plan: Plan
+    histories: dict[str, Any]
+
+    @classmethod
+    def of(cls, histories: Histories, size: int) -> "Identity":
+        """Return the identity of a new campaign.
+
+        Parameters
+        ----------
+        histories : Histories
+            What to compute.
+        size : int
+            Histories of a chunk.
+
+        Returns
+        -------
+        Identity
+            The same wherever it is made with this version of the package.
+        """
+        chosen = engine.chosen(histories.engine, histories.law)
+        return cls(Plan(histories.key(), histories.count, size, chosen, software()), _plain(histories))
+
+    @classmethod
+    def read(cls, folder: Path) -> "Identity":
+        """Return the identity of a campaign on disk.
+
+        Parameters
+        ----------
+        folder : Path
+            The campaign.
+
+        Returns
+        -------
+        Identity
+            As it was written.
+
+        Raises
+        ------
+        CampaignMismatchError
+            If there is no campaign, or one of another version.
+        CampaignDamagedError
+            If the file has changed.
+        """
+        path = folder / NAME
+        try:
+            text = path.read_bytes()
+        except (FileNotFoundError, NotADirectoryError) as error:
+            raise CampaignMismatchError(f"{folder}: no campaign here ({NAME} is missing)") from error
+        try:
+            content = _decoded(text)
+            if content["plan"]["format"] != FORMAT:
+                raise CampaignMismatchError(f"{path}: format {content['plan']['format']}, this is {FORMAT}")
+            return cls(Plan(**content["plan"]), content["histories"])
+        except (ValueError, KeyError, TypeError, InvalidValueError) as error:
+            raise CampaignDamagedError(
+                f"{path} is damaged ({error}); the shards are intact: create a campaign of the same histories and "
+                "chunk size elsewhere, copy them into its folder shards, and run it"
+            ) from error
+
+    def write(self, folder: Path) -> None:
+        """Write it; a folder becomes a campaign by this.
+
+        Parameters
+        ----------
+        folder : Path
+            The campaign.
+        """
+        content = {"plan": asdict(self.plan), "histories": self.histories}
+        disk.write_new(folder / NAME, _encoded(content, _sum(content)))
+
+    def refuse_other(self, folder: Path, histories: Histories) -> None:
+        """Refuse histories, or a version of this package, that the campaign was not created with.
+
+        Parameters
+        ----------
+        folder : Path
+            The campaign.
+        histories : Histories
+            What was given.
+
+        Raises
+        ------
+        CampaignMismatchError
+            If they differ, with what differs.
+        """
+        given = Identity.of(histories, self.plan.size)
+        if given.plan.key != self.plan.key:
+            differences = _differences(self.histories, given.histories, "")
+            found = sorted(differences, key=lambda text: "..." in text)  # what a person can read comes first
+            shown = "; ".join(found[:_SHOWN]) + (f"; and {len(found) - _SHOWN} more" if len(found) > _SHOWN else "")
+            raise CampaignMismatchError(f"{folder}: this campaign is of other histories: {shown or 'their key'}")
+        for what in ("software", "engine"):
+            was, now = getattr(self.plan, what), getattr(given.plan, what)
+            if was != now:
+                raise CampaignMismatchError(
+                    f"{folder}: begun with {what} {was}, this is {now}, whose results may differ in their last bits; "
+                    f"finish it with {was}, or create a new campaign"
+                )
+
+
+def software() -> str:
+    """Return the version of this package.
+
+    Returns
+    -------
+    str
+        As in its metadata.
+    """
+    from rocking import __version__
+
+    return str(__version__)
+
+
+def _decoded(text: bytes) -> Any:
+    outer = json.loads(text)
+    content, stated = outer["campaign"], outer["sha256"]
+    if _encoded(content, stated) != text or _sum(content) != stated:
+        raise ValueError("its checksum does not fit")
+    return content
+
+
+def _plain(histories: Histories) -> dict[str, Any]:
+    return dict(json.loads(json.dumps(histories.description(), allow_nan=False)))
+
+
+def _sum(content: Any) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _encoded(content: Any, stated: str) -> bytes:
+    return (json.dumps({"campaign": content, "sha256": stated}, sort_keys=True, indent=1) + "\n").encode()
+
+
+def _differences(was: Any, now: Any, where: str) -> Iterator[str]:
+    if isinstance(was, dict) and isinstance(now, dict):
+        for name in sorted(was.keys() | now.keys()):
+            yield from _differences(was.get(name), now.get(name), f"{where}.{name}" if where else str(name))
+    elif isinstance(was, list) and isinstance(now, list) and len(was) == len(now):
+        for k, (one, other) in enumerate(zip(was, now, strict=True)):
+            yield from _differences(one, other, f"{where}[{k}]")
+    elif was != now:
+        yield f"{where} was {_short(was)}, is {_short(now)}"
+
+
+def _short(value: Any) -> str:
+    text = f"a list of {len(value)}" if isinstance(value, list) else str(value)
+    return text if len(text) <= 24 else text[:12] + "..."

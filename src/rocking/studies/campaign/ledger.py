@@ -1,0 +1,219 @@
+"""Which chunks are finished: a small database that only the process which runs the campaign writes."""
+
+import hashlib
+import sqlite3
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from rocking.studies.campaign.chunks import FORMAT, Plan
+from rocking.studies.campaign.disk import ledger_damaged, sync_folder
+from rocking.studies.campaign.errors import CampaignDamagedError
+
+NAME = "ledger.sqlite"
+_TABLES = """
+CREATE TABLE IF NOT EXISTS chunks (
+    number INTEGER PRIMARY KEY, first INTEGER NOT NULL, last INTEGER NOT NULL, name TEXT NOT NULL UNIQUE,
+    seal TEXT NOT NULL, size INTEGER NOT NULL, attempts INTEGER NOT NULL, seconds REAL NOT NULL,
+    worker TEXT NOT NULL, finished TEXT NOT NULL, sum TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS events (
+    id INTEGER PRIMARY KEY, happened TEXT NOT NULL, what TEXT NOT NULL, chunk INTEGER, detail TEXT NOT NULL);
+"""
+
+
+class Record(NamedTuple):
+    """A finished chunk."""
+
+    number: int
+    first: int
+    last: int
+    name: str
+    seal: str
+    size: int
+    attempts: int
+    seconds: float
+    worker: str
+    finished: str
+
+
+class Ledger:
+    """The ledger of a campaign: what it has recorded outlives the process, the machine and a power cut.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign.
+    writable : bool
+        Whether to record; otherwise it may be read while another process records.
+    """
+
+    def __init__(self, folder: Path, *, writable: bool = False) -> None:
+        self._folder = folder
+        self._database = _writable(folder / NAME) if writable else _readable(folder / NAME)
+
+    def __enter__(self) -> "Ledger":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def record(self, record: Record) -> None:
+        """Acknowledge a chunk; on return this is on disk.
+
+        Parameters
+        ----------
+        record : Record
+            The chunk, whose shard is on disk already.
+        """
+        row = (*record, _sum(record))
+        self._database.execute(f"INSERT OR REPLACE INTO chunks VALUES ({', '.join('?' * len(row))})", row)
+
+    def forget(self, number: int) -> None:
+        """Take a chunk back: its shard turned out to be damaged.
+
+        Parameters
+        ----------
+        number : int
+            The chunk.
+        """
+        self._database.execute("DELETE FROM chunks WHERE number = ?", (number,))
+
+    def note(self, what: str, number: int | None, detail: str) -> None:
+        """Write down what happened.
+
+        Parameters
+        ----------
+        what : str
+            A word: adopted, damaged, retried, rebuilt.
+        number : int or None
+            The chunk.
+        detail : str
+            A sentence.
+        """
+        self._database.execute(
+            "INSERT INTO events (happened, what, chunk, detail) VALUES (datetime('now'), ?, ?, ?)",
+            (what, number, detail),
+        )
+
+    def records(self) -> Iterator[Record]:
+        """Return the finished chunks, in order.
+
+        Yields
+        ------
+        Record
+            One after another; none that was changed behind the ledger's back.
+
+        Raises
+        ------
+        CampaignDamagedError
+            If a row is not what was recorded.
+        """
+        for *values, checked in self._database.execute("SELECT * FROM chunks ORDER BY number"):
+            record = Record(*values)
+            if _sum(record) != checked:
+                raise CampaignDamagedError(ledger_damaged(self._folder, f"row {record.number!r:.20} has changed"))
+            yield record
+
+    def check(self, plan: Plan) -> None:
+        """Refuse a ledger that is damaged or of another campaign.
+
+        Parameters
+        ----------
+        plan : Plan
+            How the campaign is cut.
+
+        Raises
+        ------
+        CampaignDamagedError
+            If anything is wrong with it.
+        """
+        (found,) = self._database.execute("PRAGMA integrity_check(1)").fetchone()
+        (version,) = self._database.execute("PRAGMA user_version").fetchone()
+        if found != "ok" or version != FORMAT:
+            why = f"it says version {version}, not {FORMAT}" if found == "ok" else str(found)
+            raise CampaignDamagedError(ledger_damaged(self._folder, " ".join(why.split())[:120]))
+        for record in self.records():
+            if record.number >= plan.chunks or plan.chunk(record.number)[:4] != record[:4]:
+                why = f"its chunk {record.number} is not of this campaign"
+                raise CampaignDamagedError(ledger_damaged(self._folder, why))
+
+    def finished(self) -> tuple[int, int]:
+        """Return how much is finished.
+
+        Returns
+        -------
+        chunks, histories : int
+            Their numbers.
+        """
+        found = self._database.execute("SELECT count(*), coalesce(sum(last - first), 0) FROM chunks").fetchone()
+        return int(found[0]), int(found[1])
+
+    def effort(self) -> tuple[float, int]:
+        """Return what the finished chunks took.
+
+        Returns
+        -------
+        seconds : float
+            Time of all workers [s].
+        retries : int
+            Attempts beyond the first.
+        """
+        asked = "SELECT coalesce(sum(seconds), 0), coalesce(sum(attempts - 1), 0) FROM chunks"
+        found = self._database.execute(asked).fetchone()
+        return float(found[0]), int(found[1])
+
+    def events(self, what: str) -> list[str]:
+        """Return what happened of a kind.
+
+        Parameters
+        ----------
+        what : str
+            The word.
+
+        Returns
+        -------
+        list of str
+            The sentences, the oldest first.
+        """
+        found = self._database.execute("SELECT detail FROM events WHERE what = ? ORDER BY id", (what,))
+        return [str(detail) for (detail,) in found]
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._database.close()
+
+
+def _writable(path: Path) -> sqlite3.Connection:
+    fresh = not path.exists()
+    database = sqlite3.connect(path, timeout=30.0, isolation_level=None)
+    database.execute("PRAGMA journal_mode = WAL")
+    database.execute("PRAGMA synchronous = FULL")
+    database.execute("PRAGMA fullfsync = ON")
+    if database.execute("PRAGMA user_version").fetchone() == (0,):
+        database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {FORMAT}; COMMIT;")
+    if fresh:
+        sync_folder(path.parent)
+    return database
+
+
+def _readable(path: Path) -> sqlite3.Connection:
+    """Open without writing a byte where nobody writes: the log is there only while somebody does, or was killed."""
+    address = f"{path.absolute().as_uri()}?mode=ro"
+    if path.with_name(f"{path.name}-wal").exists():
+        try:
+            database = _connected(address)
+            database.execute("SELECT 1 FROM sqlite_schema").fetchone()
+        except sqlite3.OperationalError:  # in a folder that cannot be written: what the log has beyond is not seen
+            if not path.exists():
+                raise
+        else:
+            return database
+    return _connected(f"{address}&immutable=1")
+
+
+def _connected(address: str) -> sqlite3.Connection:
+    return sqlite3.connect(address, timeout=5.0, isolation_level=None, uri=True)
+
+
+def _sum(record: Record) -> str:
+    return hashlib.sha256(repr(tuple(record)).encode()).hexdigest()[:32]

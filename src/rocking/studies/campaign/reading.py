@@ -1,0 +1,169 @@
+"""Results of a campaign, read piece by piece: no number leaves a shard whose seal is broken."""
+
+import hashlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from rocking.dynamics.engine import RESULTS, Arrays, empty_results
+from rocking.errors import InvalidValueError
+from rocking.studies.campaign import shard
+from rocking.studies.campaign.chunks import Chunk, Plan
+from rocking.studies.campaign.errors import CampaignDamagedError, CampaignIncompleteError
+from rocking.studies.campaign.executors import SUFFIX
+from rocking.studies.campaign.identity import SHARDS
+from rocking.studies.campaign.ledger import NAME, Ledger
+
+
+class Piece(NamedTuple):
+    """Results of some histories: from the first up to but not including the last."""
+
+    first: int
+    last: int
+    results: Arrays
+
+
+def pieces(folder: Path, plan: Plan) -> Iterator[Piece]:
+    """Return the results of a finished campaign in the order of the histories, one chunk in memory at a time.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign.
+    plan : Plan
+        How it is cut.
+
+    Yields
+    ------
+    Piece
+        One chunk after another.
+
+    Raises
+    ------
+    CampaignIncompleteError
+        If it is not finished; before the first piece.
+    CampaignDamagedError
+        If a shard or the ledger is not what was written.
+    """
+    seals = _seals(folder, plan)
+    if len(seals) < plan.chunks:
+        raise CampaignIncompleteError(f"{folder}: {len(seals)} of {plan.chunks} chunks are finished; run the campaign")
+    for number in range(plan.chunks):
+        chunk = plan.chunk(number)
+        yield Piece(chunk.first, chunk.last, _read(folder, chunk, seals[number]))
+
+
+def results(folder: Path, plan: Plan) -> Arrays:
+    """Return all results at once.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign.
+    plan : Plan
+        How it is cut.
+
+    Returns
+    -------
+    dict of str to ndarray
+        The keys of `rocking.dynamics.engine.RESULTS`, one entry a history: 75 bytes each.
+    """
+    whole = empty_results(plan.count)
+    for piece in pieces(folder, plan):
+        for name, values in piece.results.items():
+            whole[name][piece.first : piece.last] = values
+    return whole
+
+
+def column(folder: Path, plan: Plan, name: str) -> Iterator[np.ndarray]:
+    """Return one result of all histories, piece by piece.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign.
+    plan : Plan
+        How it is cut.
+    name : str
+        A key of `rocking.dynamics.engine.RESULTS`.
+
+    Yields
+    ------
+    ndarray
+        Its values for one chunk after another.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such result.
+    """
+    if name not in RESULTS:
+        raise InvalidValueError(f"column must be one of {', '.join(RESULTS)}, got {name!r:.60}")
+    for piece in pieces(folder, plan):
+        yield piece.results[name]
+
+
+def digest(found: Iterator[Piece]) -> str:
+    """Return the hash of results: it does not depend on how they are cut.
+
+    Parameters
+    ----------
+    found : iterator of Piece
+        The results, in order.
+
+    Returns
+    -------
+    str
+        SHA-256, 64 hexadecimal digits, of names, types and the hashes of the columns.
+    """
+    columns = {name: hashlib.sha256() for name in RESULTS}
+    for piece in found:
+        for name, values in piece.results.items():
+            columns[name].update(np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes())
+    text = "".join(f"{name} {np.dtype(RESULTS[name]).name} {made.hexdigest()}\n" for name, made in columns.items())
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def damage(folder: Path, plan: Plan) -> list[str]:
+    """Return what is wrong with the shards that the ledger has.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign.
+    plan : Plan
+        How it is cut.
+
+    Returns
+    -------
+    list of str
+        A sentence for each that is not what was recorded.
+    """
+    wrong = []
+    for number, sealed in _seals(folder, plan).items():
+        try:
+            _read(folder, plan.chunk(number), sealed)
+        except CampaignDamagedError as error:
+            wrong.append(str(error))
+    return wrong
+
+
+def _seals(folder: Path, plan: Plan) -> dict[int, str]:
+    if not (folder / NAME).exists():
+        return {}
+    with Ledger(folder) as ledger:
+        ledger.check(plan)
+        return {record.number: record.seal for record in ledger.records()}
+
+
+def _read(folder: Path, chunk: Chunk, sealed: str) -> Arrays:
+    path = folder / SHARDS / f"{chunk.name}{SUFFIX}"
+    advice = "run the campaign again: it is computed anew"
+    try:
+        return shard.unpack(path.read_bytes(), chunk, sealed)
+    except FileNotFoundError as error:
+        raise CampaignDamagedError(f"{path} is missing; {advice}") from error
+    except CampaignDamagedError as error:
+        raise CampaignDamagedError(f"{path}: {error}; {advice}") from error

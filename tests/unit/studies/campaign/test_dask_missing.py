@@ -1,0 +1,17 @@
+"""Without Dask, a campaign on a cluster says what to install."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from rocking.errors import MissingExtraError
+from rocking.studies import Table
+from rocking.studies.campaign import Campaign, DaskExecutor
+
+
+def test_missing_dask_has_a_sentence(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The extra is named."""
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(MissingExtraError, match=r"pip install rocking\[dask\]"):
+        Campaign.create(tmp_path / "c", work).run(DaskExecutor("tcp://127.0.0.1:9"))

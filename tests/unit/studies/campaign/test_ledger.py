@@ -1,0 +1,101 @@
+"""The ledger: damage is noticed, never believed, and the shards make it anew."""
+
+import shutil
+import sqlite3
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rocking.studies.campaign import Campaign, CampaignDamagedError
+from rocking.studies.campaign.ledger import Ledger, Record
+
+FLIPS = 400
+Shards = Callable[[Campaign], dict[str, str]]
+
+
+def flip(path: Path, bit: int) -> None:
+    data = bytearray(path.read_bytes())
+    data[bit // 8] ^= 1 << bit % 8
+    path.write_bytes(data)
+
+
+def records(campaign: Campaign) -> list[Record]:
+    with Ledger(campaign.folder) as ledger:
+        ledger.check(campaign.plan)
+        return list(ledger.records())
+
+
+def test_flipped_ledger_never_lies(finished: Campaign, tmp_path: Path) -> None:
+    """Of 400 flips anywhere in the file each is refused with the way out, or changes nothing that is recorded."""
+    good = records(finished)
+    path, copy = finished.folder / "ledger.sqlite", tmp_path / "good"
+    shutil.copy(path, copy)
+    refused = []
+    for bit in np.random.default_rng(2).integers(0, 8 * copy.stat().st_size, FLIPS):
+        shutil.copy(copy, path)
+        flip(path, int(bit))
+        try:
+            assert finished.verify() == []
+            assert records(finished) == good
+        except CampaignDamagedError as error:
+            refused.append(str(error))
+    assert all("ledger.sqlite is damaged" in text and "rebuild_ledger" in text for text in refused)
+    assert len(refused) > FLIPS / 20  # most bytes of the small file are empty room
+
+
+def test_flips_within_rows_are_all_refused(finished: Campaign) -> None:
+    """A row that was changed by a bit in a text or a number does not carry its own sum any more."""
+    path = finished.folder / "ledger.sqlite"
+    good = path.read_bytes()
+    place = good.index(finished.plan.chunk(2).name.encode())
+    for bit in range(8 * place, 8 * (place + 128), 7):
+        path.write_bytes(good)
+        flip(path, bit)
+        with pytest.raises(CampaignDamagedError, match=r"ledger\.sqlite is damaged"):
+            finished.run(workers=1)
+
+
+def test_rebuilt_ledger_has_everything(finished: Campaign, shards: Shards) -> None:
+    """After the ledger was overwritten, the shards make it anew; nothing is computed again, nothing deleted."""
+    before, digest = shards(finished), finished.sha256()
+    path = finished.folder / "ledger.sqlite"
+    path.write_bytes(b"no database at all" * 100)
+    with pytest.raises(CampaignDamagedError, match=r"Campaign\.rebuild_ledger"):
+        finished.run()
+    with pytest.raises(CampaignDamagedError, match="the shards are intact"):
+        finished.results()
+    assert finished.rebuild_ledger() == 6
+    assert finished.run().computed == 0
+    assert (shards(finished), finished.sha256()) == (before, digest)
+    assert (finished.folder / "ledger.sqlite.damaged-1").read_bytes().startswith(b"no database")
+
+
+def test_lost_ledger_is_made_by_the_next_run(finished: Campaign) -> None:
+    """Without a ledger nothing counts as finished; a run adopts the shards."""
+    for path in finished.folder.glob("ledger.sqlite*"):
+        path.unlink()
+    assert finished.status().chunks_done == 0
+    summary = finished.run(workers=1)
+    assert (summary.adopted, summary.computed) == (6, 0)
+
+
+@pytest.mark.parametrize("order", ["UPDATE chunks SET number = 77 WHERE number = 2", "UPDATE chunks SET seal = 'x'"])
+def test_rows_that_were_meddled_with_are_refused(finished: Campaign, order: str) -> None:
+    """A valid database with an edited row is damaged all the same."""
+    with sqlite3.connect(finished.folder / "ledger.sqlite") as database:
+        database.execute(order)
+    database.close()
+    with pytest.raises(CampaignDamagedError, match=r"row .* has changed"):
+        finished.run()
+
+
+def test_ledger_of_another_campaign_is_refused(finished: Campaign, make: Any, tmp_path: Path) -> None:
+    """A ledger that was copied from elsewhere is not of this campaign."""
+    other = Campaign.create(tmp_path / "other", make(seed=8), 50)
+    other.run(workers=1)
+    shutil.copy(other.folder / "ledger.sqlite", finished.folder / "ledger.sqlite")
+    with pytest.raises(CampaignDamagedError, match="chunk 0 is not of this campaign"):
+        finished.run()

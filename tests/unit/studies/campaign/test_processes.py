@@ -1,0 +1,123 @@
+"""Worker processes: any of them may die, none of them decides."""
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rocking.studies import Table
+from rocking.studies.campaign import Campaign, CampaignWorkerError, Progress
+from rocking.studies.campaign.chunks import Chunk
+from rocking.studies.campaign.executors import Job
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="workers are forked, so that they can be made to fail")
+FORK: dict[str, Any] = {"executor": "processes", "start_method": "fork"}
+
+
+def breaking(monkeypatch: pytest.MonkeyPatch, what: Callable[[Chunk], None]) -> None:
+    """Have workers do something bad before a chunk."""
+    compute = Job.compute
+
+    def broken(self: Job, chunk: Chunk, *args: Any) -> Any:
+        what(chunk)
+        return compute(self, chunk, *args)
+
+    monkeypatch.setattr(Job, "compute", broken)
+
+
+def test_worker_that_dies_once_costs_nothing(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """kill -9 in the middle of a chunk: it is computed again by another worker, which is told and recorded."""
+    marker = tmp_path / "died"
+
+    def die_once(chunk: Chunk) -> None:
+        if chunk.number == 3 and not marker.exists():
+            marker.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    breaking(monkeypatch, die_once)
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    seen: list[Progress] = []
+    summary = campaign.run(**FORK, workers=2, progress=seen.append)
+    assert summary.computed == 6
+    assert len(summary.retries) == seen[-1].retries == campaign.status().retries == 1
+    assert "by SIGKILL" in summary.retries[0]
+    bare = work.run(0, work.count, threads=1)
+    assert all(campaign.results()[name].tobytes() == bare[name].tobytes() for name in bare)
+
+
+def test_chunk_that_kills_every_worker_is_named(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three deaths of the same chunk end the run with its histories; the others that were done are safe."""
+    breaking(monkeypatch, lambda chunk: os.kill(os.getpid(), signal.SIGTERM) if chunk.number == 4 else None)
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    with pytest.raises(CampaignWorkerError, match=r"histories 200 to 249: 3 workers died of them, .* by SIGTERM"):
+        campaign.run(**FORK, workers=2)
+    assert campaign.verify() == []
+    monkeypatch.undo()
+    assert campaign.run(workers=1).computed < 6
+
+
+def test_error_in_a_worker_is_told(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a worker raises is raised where the campaign runs, with the histories, and is not tried again."""
+
+    def fail(_: Chunk) -> None:
+        raise ZeroDivisionError("by nought")
+
+    breaking(monkeypatch, fail)
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    with pytest.raises(CampaignWorkerError, match="histories 0 to 49: ZeroDivisionError: by nought"):
+        campaign.run(**FORK, workers=1)
+
+
+def test_worker_without_the_engine_is_refused(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Results of two engines are never mixed."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    monkeypatch.setattr("rocking.dynamics.engine.chosen", lambda *_: "reference")
+    with pytest.raises(CampaignWorkerError, match="this worker has the reference engine"):
+        campaign.run(**FORK, workers=1)
+
+
+def test_histories_that_cannot_be_sent_are_refused(tmp_path: Path, work: Table) -> None:
+    """What cannot be pickled has a sentence."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    object.__setattr__(work, "listener", threading.Lock())
+    with pytest.raises(CampaignWorkerError, match="cannot be sent to a process"):
+        campaign.run("processes", workers=1)
+
+
+def test_no_worker_stays(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After a run, one that failed, and one that was interrupted, all processes are gone."""
+    Campaign.create(tmp_path / "c", work, 50).run(**FORK, workers=3)
+    assert multiprocessing.active_children() == []
+
+    def leave(_: Progress) -> None:
+        raise RuntimeError("no more")
+
+    with pytest.raises(RuntimeError):
+        Campaign.create(tmp_path / "d", work, 50).run(**FORK, workers=3, progress=leave)
+    assert multiprocessing.active_children() == []
+
+
+def test_work_is_taken_as_it_is_needed(tmp_path: Path, work: Table) -> None:
+    """However many chunks there are, few are waiting: two a worker."""
+    from rocking.studies.campaign.processes import Processes
+
+    campaign = Campaign.create(tmp_path / "c", work, 5)
+    taken = finished = most = 0
+
+    def chunks() -> Iterator[Chunk]:
+        nonlocal taken
+        for k in range(campaign.plan.chunks):
+            taken += 1
+            yield campaign.plan.chunk(k)
+
+    job = Job(work, campaign.plan.engine, campaign.folder / "shards")
+    for _ in Processes(2, "fork").run(job, chunks(), lambda: False, lambda *_: None):
+        finished += 1
+        most = max(most, taken - finished)
+    assert finished == 60
+    assert most <= 4

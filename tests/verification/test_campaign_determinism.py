@@ -1,0 +1,114 @@
+"""The same bits whatever the workers, the size of the chunks, the order, the way processes start, and interruptions."""
+
+import dataclasses
+import os
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rocking.dynamics import engine
+from rocking.dynamics.engine import Arrays
+from rocking.dynamics.impact_law import RandomRestitution
+from rocking.studies import Table
+from rocking.studies.campaign import Campaign, CampaignInterrupted, Progress
+
+sys.path.insert(0, str(Path(__file__).parent / "durability"))
+from workload import histories
+
+sys.path.pop(0)
+
+pytestmark = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+COUNT = 2500
+FORK: dict[str, Any] = {"executor": "processes", "start_method": "fork"}
+unforked = pytest.mark.skipif(os.name == "nt", reason="this system does not fork")
+
+
+@pytest.fixture(scope="module")
+def work() -> Table:
+    return histories(COUNT)
+
+
+@pytest.fixture(scope="module")
+def bare(work: Table) -> Arrays:
+    """What the engine gives without any campaign."""
+    found = work.run(0, COUNT, threads=1)
+    assert min(np.bincount(found["outcome"], minlength=3)[:3]) > COUNT / 20  # worth it: all three outcomes
+    return found
+
+
+def same(campaign: Campaign, bare: Arrays) -> bool:
+    found = campaign.results()
+    return all(found[name].tobytes() == values.tobytes() for name, values in bare.items())
+
+
+@unforked
+@pytest.mark.parametrize("workers", [1, 2, 4, 8])
+@pytest.mark.parametrize("chunk", [7, 64, 1000])
+def test_workers_and_chunks_do_not_matter(tmp_path: Path, work: Table, bare: Arrays, workers: int, chunk: int) -> None:
+    """1, 2, 4 and 8 workers, chunks of 7, 64 and 1000, each in an order of its own: the bits of a bare run."""
+    campaign = Campaign.create(tmp_path / "c", work, chunk)
+    campaign.run(**FORK, workers=workers, order_seed=workers)
+    assert same(campaign, bare)
+
+
+@unforked
+@pytest.mark.parametrize("workers", [1, 2, 4, 8])
+def test_chunks_of_one(tmp_path: Path, workers: int) -> None:
+    """Each history a chunk of its own."""
+    few = histories(120)
+    campaign = Campaign.create(tmp_path / "c", few, 1)
+    campaign.run(**FORK, workers=workers, order_seed=1)
+    assert same(campaign, few.run(0, 120, threads=1))
+
+
+@pytest.mark.parametrize("chunk", [1, 7, 64, 1000])
+def test_hash_does_not_depend_on_the_size(tmp_path: Path, chunk: int) -> None:
+    """The hash of the results is the same for all sizes, serially and threaded."""
+    few = histories(200)
+    campaign, whole = Campaign.create(tmp_path / "c", few, chunk), Campaign.create(tmp_path / "d", few)
+    campaign.run("serial", workers=2, order_seed=5)
+    whole.run("serial", workers=1)
+    assert campaign.sha256() == whole.sha256()
+
+
+@pytest.mark.parametrize("start_method", ["spawn", "fork", "forkserver"])
+def test_start_of_processes_does_not_matter(tmp_path: Path, work: Table, bare: Arrays, start_method: str) -> None:
+    """Spawned, forked, and forked from a server."""
+    if os.name == "nt" and start_method != "spawn":
+        pytest.skip("this system does not fork")
+    campaign = Campaign.create(tmp_path / "c", work, 200)
+    campaign.run("processes", workers=2, start_method=start_method)
+    assert same(campaign, bare)
+
+
+def test_interruptions_do_not_matter(tmp_path: Path, work: Table, bare: Arrays) -> None:
+    """Stopped after every third chunk, and gone on with by changing executors and orders."""
+    campaign = Campaign.create(tmp_path / "c", work, 100)
+    runs: list[dict[str, Any]] = [{"workers": 1}, {"workers": 2, "order_seed": 7}]
+    runs += [FORK | {"workers": 2, "order_seed": 2}] if os.name != "nt" else []
+    stops = 0
+    while not campaign.status().complete:
+        start = campaign.status().chunks_done
+
+        def stop(progress: Progress, start: int = start) -> None:
+            if progress.chunks_done == start + 3:
+                signal.raise_signal(signal.SIGINT)
+
+        try:
+            campaign.run(**runs[stops % len(runs)], progress=stop)
+        except CampaignInterrupted:
+            stops += 1
+    assert stops >= 4
+    assert same(campaign, bare)
+
+
+def test_negative_control(tmp_path: Path, work: Table, bare: Arrays) -> None:
+    """The comparison sees a law with another seed: it is not the case that anything passes."""
+    law = RandomRestitution.normal(0.95, 0.02, seed=4)
+    campaign = Campaign.create(tmp_path / "c", dataclasses.replace(work, law=law), 1000)
+    campaign.run(workers=1)
+    assert not same(campaign, bare)
