@@ -60,7 +60,8 @@ def _scipy_one(batch: Histories, k: int, method: str, tolerance: float) -> bool:
         found = solve_ivp(
             rates, (t, end), y, method=method, rtol=tolerance, atol=tolerance * alpha, events=(contact, lies)
         )
-        t, y = float(found.t[-1]), found.y[:, -1]
+        # an uplift that rounding takes back at once would go on for ever at the same instant
+        t, y = max(float(found.t[-1]), t + 1e-9), found.y[:, -1]
         if found.t_events[1].size:
             return True
         if found.t_events[0].size:

@@ -5,6 +5,14 @@ from rocking.studies.axis import Axis
 from rocking.studies.boundary import Polyline, boundary
 from rocking.studies.campaign import Campaign
 from rocking.studies.crossings import Crossings
+from rocking.studies.fragility import (
+    LognormalFit,
+    cloud,
+    compare_measures,
+    fit_lognormal,
+    incremental,
+    multiple_stripes,
+)
 from rocking.studies.histories import Histories, Product, Table
 from rocking.studies.islands import Island, Islands, safe_beyond_overturning, safe_islands
 from rocking.studies.minimum_acceleration import (
@@ -32,6 +40,7 @@ __all__ = [
     "Histories",
     "Island",
     "Islands",
+    "LognormalFit",
     "MotionList",
     "MotionSet",
     "Polyline",
@@ -44,10 +53,15 @@ __all__ = [
     "Table",
     "axes",
     "boundary",
+    "cloud",
+    "compare_measures",
+    "fit_lognormal",
     "fragility_sensitivity",
+    "incremental",
     "map_sensitivity",
     "minimum_overturning_acceleration",
     "minimum_overturning_accelerations",
+    "multiple_stripes",
     "overturning_map",
     "refined_map",
     "rocking_spectrum",

@@ -1,0 +1,250 @@
+"""Bootstrap: the study repeated many times on the computer, all repetitions fitted at once."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.counts import Counts
+from rocking.studies.fragility.estimate import (
+    Curves,
+    Scale,
+    find_curves,
+    log_dispersion,
+    log_fractile,
+    quadratic_error,
+    standard_errors,
+)
+
+Resampling = Literal["parametric", "cases", "clusters"]
+Ends = Literal["studentised", "percentile", "basic"]
+RESAMPLING: tuple[Resampling, ...] = ("parametric", "cases", "clusters")
+Pair = tuple[FloatArray, FloatArray]
+ENDS: tuple[Ends, ...] = ("studentised", "percentile", "basic")
+
+
+def resample(
+    counts: Counts, probability: FloatArray, kind: Resampling, repetitions: int, seed: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return data sets that might have been found instead.
+
+    Parameters
+    ----------
+    counts : Counts
+        The data.
+    probability : ndarray
+        Probability of failure at each level, from the fitted curve [-].
+    kind : {"parametric", "cases", "clusters"}
+        New outcomes from the curve; single trials drawn again from the data; or whole clusters drawn again, which
+        keeps what the outcomes of one record have in common.
+    repetitions : int
+        How many data sets.
+    seed : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    tuple of ndarray
+        Failures and trials, one row a data set, one column a level [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If the kind is unknown, clusters were not named, or the repetitions are not between 1 and ten millions.
+    """
+    checks.within("repetitions", repetitions, 1, 10**7)
+    random = np.random.default_rng(seed)
+    if kind == "parametric":
+        trials = np.broadcast_to(counts.trials, (repetitions, counts.levels.size))
+        return random.binomial(trials.astype(np.int64), probability).astype(np.float64), trials
+    if kind == "cases":
+        cells = np.concatenate([counts.failures, counts.survivals]) / counts.trials.sum()
+        drawn = random.multinomial(counts.observations, cells, size=repetitions).astype(np.float64)
+        failures, survivals = np.split(drawn, 2, axis=1)
+        return failures, failures + survivals
+    if kind != "clusters":
+        raise InvalidValueError(f"kind must be one of {', '.join(RESAMPLING)}, got {kind!r}")
+    if counts.cluster_failures is None or counts.cluster_trials is None:
+        raise InvalidValueError("kind must not be 'clusters' unless clusters= names the record of each outcome")
+    number = counts.cluster_trials.shape[0]
+    drawn = random.multinomial(number, np.full(number, 1.0 / number), size=repetitions).astype(np.float64)
+    return drawn @ counts.cluster_failures, drawn @ counts.cluster_trials
+
+
+@dataclass(frozen=True, eq=False)
+class BootstrapSample:
+    """Curves of repeated studies, beside the one of the study itself.
+
+    Repetitions whose outcomes form a step are fitted by the penalised likelihood. Those that no rising curve fits are
+    taken to lie beyond both ends of every interval, so that they can only widen it.
+
+    Parameters
+    ----------
+    curves : Curves
+        The curves of the repetitions.
+    original : Curves
+        The curve of the study: one row.
+    scale : Scale
+        Scale of the coefficients.
+    kind : {"parametric", "cases", "clusters"}
+        How the repetitions were drawn.
+    """
+
+    curves: Curves
+    original: Curves
+    scale: Scale
+    kind: Resampling
+
+    @property
+    def repetitions(self) -> int:
+        """Number of repeated studies [-]."""
+        return self.curves.found.size
+
+    @property
+    def undetermined(self) -> int:
+        """Number of repeated studies that no rising curve fits [-]."""
+        return int(np.sum(~self.curves.found))
+
+    @property
+    def penalised(self) -> int:
+        """Number of repeated studies fitted by the penalised likelihood [-]."""
+        return int(np.sum(self.curves.penalised & self.curves.found))
+
+    def log_interval(self, variate: float | None, level: float, ends: Ends = "studentised") -> tuple[float, float]:
+        """Return the interval of a logarithmic fractile or of the logarithmic dispersion.
+
+        Parameters
+        ----------
+        variate : float, optional
+            Standard normal variate of the fractile; the dispersion without [-].
+        level : float
+            Confidence level [-].
+        ends : {"studentised", "percentile", "basic"}
+            How ends follow from the repetitions: by their distances in standard errors, which is second-order
+            accurate; as their percentiles; or mirrored.
+
+        Returns
+        -------
+        tuple of float
+            Lower and upper end, infinite where the repetitions leave it open [-].
+        """
+        one, many = (
+            (
+                self._quantity(curves, variate)[:, None],
+                standard_errors(curves.theta, curves.curvature, self.scale, variate)[:, None],
+            )
+            for curves in (self.original, self.curves)
+        )
+        low, high = self._ends(one, many, level, ends)
+        return float(low[0]), float(high[0])
+
+    def variate_band(
+        self, position: FloatArray, level: float, ends: Ends = "studentised"
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return pointwise intervals of the variate a + b u of the probability.
+
+        Parameters
+        ----------
+        position : ndarray
+            u [-].
+        level : float
+            Confidence level [-].
+        ends : {"studentised", "percentile", "basic"}
+            How ends follow from the repetitions.
+
+        Returns
+        -------
+        tuple of ndarray
+            Lower and upper ends [-].
+        """
+        slope = np.stack([np.ones_like(position), position], axis=1)
+        one, many = (
+            (
+                curves.theta @ slope.T,
+                np.stack([quadratic_error(row[None], curves.curvature) for row in slope], axis=1),
+            )
+            for curves in (self.original, self.curves)
+        )
+        return self._ends(one, many, level, ends)
+
+    def _ends(self, one: Pair, many: Pair, level: float, ends: Ends) -> Pair:
+        """Return both ends, column by column, from values and errors of the study and of the repetitions."""
+        if ends not in ENDS:
+            raise InvalidValueError(f"ends must be one of {', '.join(ENDS)}, got {ends!r}")
+        distance = many[0] if ends == "percentile" else many[0] - one[0]
+        distance = distance / many[1] if ends == "studentised" else distance
+        found, tail = self.curves.found[:, None], 0.5 * (1.0 - level)
+        low = _order_statistic(np.where(found, distance, -np.inf), tail)
+        high = -_order_statistic(np.where(found, -distance, -np.inf), tail)
+        if ends == "percentile":
+            return low, high
+        unit = one[1][0] if ends == "studentised" else 1.0
+        return one[0][0] - high * unit, one[0][0] - low * unit
+
+    def _quantity(self, curves: Curves, variate: float | None) -> FloatArray:
+        if variate is None:
+            return log_dispersion(curves.theta, self.scale)
+        return log_fractile(curves.theta, self.scale, variate)
+
+
+def bootstrap(
+    counts: Counts, original: Curves, scale: Scale, kind: Resampling, repetitions: int, seed: int
+) -> BootstrapSample:
+    """Repeat a study many times and fit every repetition as the study itself was.
+
+    Parameters
+    ----------
+    counts : Counts
+        The data.
+    original : Curves
+        The curve of the study: one row.
+    scale : Scale
+        Scale of the coefficients.
+    kind : {"parametric", "cases", "clusters"}
+        How to draw the repetitions.
+    repetitions : int
+        How many.
+    seed : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    BootstrapSample
+        Their curves.
+    """
+    failures, trials = resample(counts, curve_probability(original, scale, counts.levels), kind, repetitions, seed)
+    curves = find_curves(counts.levels, scale, failures, trials, penalised=bool(original.penalised[0]))
+    return BootstrapSample(curves, original, scale, kind)
+
+
+def curve_probability(curves: Curves, scale: Scale, levels: FloatArray) -> FloatArray:
+    """Return the probability of failure of the first curve.
+
+    Parameters
+    ----------
+    curves : Curves
+        Curves, of which the first counts.
+    scale : Scale
+        Scale of the coefficients.
+    levels : ndarray
+        Levels, > 0 [any unit].
+
+    Returns
+    -------
+    ndarray
+        Probabilities [-].
+    """
+    from scipy.special import ndtr
+
+    return np.asarray(ndtr(curves.theta[0, 0] + curves.theta[0, 1] * scale.position(levels)))
+
+
+def _order_statistic(values: FloatArray, share: float) -> FloatArray:
+    """Return the value below which a share of the rows lie, rounded outwards (B + 1 points make B + 1 equal parts)."""
+    place = int(np.floor(share * (values.shape[0] + 1))) - 1
+    if place < 0:
+        return np.full(values.shape[1], -np.inf)
+    return np.asarray(np.partition(values, place, axis=0)[place])

@@ -1,0 +1,204 @@
+"""Outcomes of a fragility study, checked: how many of how many trials failed at each level."""
+
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray, IntArray
+from rocking.errors import InvalidValueError
+
+NARROWEST = 1e-9
+"""Least relative distance between the lowest and the highest level [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Counts:
+    """Failures and trials at ascending levels; use `count_outcomes` to make one.
+
+    Parameters
+    ----------
+    levels : ndarray
+        Distinct levels of the intensity measure, ascending [any unit].
+    failures, trials : ndarray
+        Trials that failed, and all trials, at each level [-].
+    cluster_failures, cluster_trials : ndarray, optional
+        The same by cluster: one row a cluster, one column a level [-].
+    """
+
+    levels: FloatArray
+    failures: FloatArray
+    trials: FloatArray
+    cluster_failures: FloatArray | None = None
+    cluster_trials: FloatArray | None = None
+
+    @property
+    def survivals(self) -> FloatArray:
+        """Trials that survived at each level [-]."""
+        return self.trials - self.failures
+
+    @property
+    def observations(self) -> int:
+        """Number of trials in all [-]."""
+        return int(self.trials.sum())
+
+
+@dataclass(frozen=True, eq=False)
+class StateCounts:
+    """Three states at ascending levels; use `count_states` to make one.
+
+    Parameters
+    ----------
+    levels : ndarray
+        Distinct levels of the intensity measure, ascending [any unit].
+    rocked : ndarray
+        Trials that rocked at least (to the chosen level, or overturned) at each level [-].
+    overturned : ndarray
+        Trials that overturned at each level [-].
+    trials : ndarray
+        All trials at each level [-].
+    """
+
+    levels: FloatArray
+    rocked: FloatArray
+    overturned: FloatArray
+    trials: FloatArray
+
+
+def count_outcomes(
+    levels: Any, failures: Any, trials: Any = None, clusters: Iterable[Hashable] | None = None
+) -> Counts:
+    """Check outcomes and pool those of equal levels.
+
+    Parameters
+    ----------
+    levels : array_like
+        Level of the intensity measure of each entry, in any order, > 0 [any unit].
+    failures : array_like
+        How many trials of each entry failed; 0 or 1, or booleans, without `trials` [-].
+    trials : array_like, optional
+        How many trials each entry holds, at least 1; 1 each by default [-].
+    clusters : iterable, optional
+        Name of the cluster of each entry, such as its record: outcomes of one cluster are not independent.
+
+    Returns
+    -------
+    Counts
+        One entry a distinct level, ascending.
+
+    Raises
+    ------
+    InvalidValueError
+        If a level is not a finite number > 0, a count is not whole or failures exceed trials; naming the first.
+
+    Examples
+    --------
+    >>> count_outcomes([0.4, 0.2, 0.4], [1, 0, 0]).trials
+    array([1., 2.])
+    """
+    level = _row("levels", levels)
+    checks.all_positive("levels", level)
+    number = np.ones_like(level) if trials is None else _whole("trials", trials, level.size, 1.0)
+    failed = _whole("failures", failures, level.size, 0.0)
+    _none_above("failures", failed, number)
+    distinct, where = np.unique(level, return_inverse=True)
+    _check_spread(distinct)
+    pooled = [_pool(values, where, distinct.size) for values in (failed, number)]
+    if clusters is None:
+        return Counts(distinct, pooled[0], pooled[1])
+    cluster = _cluster_numbers(clusters, level.size)
+    shape = (int(cluster.max()) + 1, distinct.size)
+    tables = [np.zeros(shape), np.zeros(shape)]
+    for table, values in zip(tables, (failed, number), strict=True):
+        np.add.at(table, (cluster, where), values)
+    return Counts(distinct, pooled[0], pooled[1], tables[0], tables[1])
+
+
+def count_states(levels: Any, rocked: Any, overturned: Any, trials: Any = None) -> StateCounts:
+    """Check outcomes of three states and pool those of equal levels.
+
+    Parameters
+    ----------
+    levels : array_like
+        Level of the intensity measure of each entry, in any order, > 0 [any unit].
+    rocked : array_like
+        How many trials of each entry rocked to the chosen level or further, the overturned ones among them [-].
+    overturned : array_like
+        How many trials of each entry overturned [-].
+    trials : array_like, optional
+        How many trials each entry holds, at least 1; 1 each by default [-].
+
+    Returns
+    -------
+    StateCounts
+        One entry a distinct level, ascending.
+
+    Raises
+    ------
+    InvalidValueError
+        If a count is refused, or more trials overturned than rocked.
+
+    Examples
+    --------
+    >>> count_states([0.2, 0.4], rocked=[1, 5], overturned=[0, 2], trials=[5, 5]).overturned
+    array([0., 2.])
+    """
+    worst, least = count_outcomes(levels, overturned, trials), count_outcomes(levels, rocked, trials)
+    pair = [_whole(name, values, np.size(levels), 0.0) for name, values in (("o", overturned), ("r", rocked))]
+    _none_above("overturned", pair[0], pair[1], "rocked")
+    return StateCounts(least.levels, least.failures, worst.failures, least.trials)
+
+
+def _pool(values: FloatArray, where: IntArray, size: int) -> FloatArray:
+    return np.asarray(np.bincount(where, weights=values, minlength=size), dtype=np.float64)
+
+
+def _row(name: str, values: Any) -> FloatArray:
+    array = checks.real_array(name, values)
+    if array.ndim != 1 or not array.size:
+        raise InvalidValueError(f"{name} must be one row of at least one number, got shape {array.shape}")
+    return array
+
+
+def _whole(name: str, values: Any, size: int, least: float) -> FloatArray:
+    yes_or_no = getattr(values, "dtype", None) == np.bool_ or (
+        isinstance(values, (list, tuple)) and all(isinstance(value, (bool, np.bool_)) for value in values)
+    )
+    array = _row(name, np.asarray(values, dtype=np.float64) if yes_or_no else values)
+    if array.size != size:
+        raise InvalidValueError(f"{name} must have one number a level: {size}, got {array.size}")
+    bad = ~(np.isfinite(array) & (array >= least) & (array == np.round(array)) & (array < 2.0**53))
+    if bad.any():
+        first = int(np.argmax(bad))
+        cause = "leave out levels without trials" if least > array[first] == 0.0 else "a fraction or a percentage?"
+        raise InvalidValueError(
+            f"{name} must be whole numbers >= {least:g}, got {array[first]:g} at index {first}; {cause}"
+        )
+    return array
+
+
+def _none_above(name: str, part: FloatArray, whole: FloatArray, of: str = "trials") -> None:
+    bad = part > whole
+    if bad.any():
+        first = int(np.argmax(bad))
+        raise InvalidValueError(
+            f"{name} must not exceed {of}, got {part[first]:g} of {whole[first]:g} at index {first}; is {of}= missing?"
+        )
+
+
+def _check_spread(levels: FloatArray) -> None:
+    if levels.size > 1 and levels[-1] <= levels[0] * (1.0 + NARROWEST):
+        raise InvalidValueError(
+            f"levels must differ by more than {NARROWEST:g} of themselves in all, got {levels[0]:.17g} to"
+            f" {levels[-1]:.17g}; rounding of one and the same level?"
+        )
+
+
+def _cluster_numbers(clusters: Iterable[Hashable], size: int) -> IntArray:
+    known: dict[Hashable, int] = {}
+    numbers = [known.setdefault(name, len(known)) for name in clusters]
+    if len(numbers) != size:
+        raise InvalidValueError(f"clusters must name one cluster a level: {size}, got {len(numbers)}")
+    return np.array(numbers, dtype=np.int64)

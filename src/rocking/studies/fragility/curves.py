@@ -1,0 +1,244 @@
+"""Fragility curves apart from how they were found: what is exported, and what an analysis turns into."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.dynamics.export import extra
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.states import LimitState, Responses
+from rocking.studies.fragility.subject import Subject, checked_levels
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rocking.studies.fragility.lognormal import LognormalFit
+
+
+@dataclass(frozen=True)
+class FragilityCurve:
+    """The lognormal probability of one state.
+
+    Parameters
+    ----------
+    state : str
+        Name of the state.
+    median : float
+        Level that half of the motions need for it [unit of the measure].
+    dispersion : float
+        Standard deviation of the natural logarithm of that level [-].
+    method : str
+        How it was fitted.
+
+    Raises
+    ------
+    InvalidValueError
+        If the median or the dispersion is not a finite number above zero.
+    """
+
+    state: str
+    median: float
+    dispersion: float
+    method: str = ""
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        checks.positive(f"median of {self.state!r:.60}", self.median)
+        checks.positive(f"dispersion of {self.state!r:.60}", self.dispersion)
+
+    def probability(self, level: Any) -> FloatArray:
+        """Return the probability of the state at levels of the measure.
+
+        Parameters
+        ----------
+        level : float or array_like
+            Levels, zero or above [unit of the measure].
+
+        Returns
+        -------
+        ndarray
+            Probabilities [-].
+
+        Examples
+        --------
+        >>> float(FragilityCurve("overturned", 3.0, 0.4).probability(3.0))
+        0.5
+        """
+        from scipy.special import ndtr
+
+        with np.errstate(divide="ignore"):
+            return np.asarray(ndtr(np.log(np.asarray(level, dtype=np.float64) / self.median) / self.dispersion))
+
+
+@dataclass(frozen=True, eq=False)
+class FragilityModel:
+    """Fragility curves of one body against one measure, with what they rest on.
+
+    Parameters
+    ----------
+    name : str
+        Name of the body, as in an inventory.
+    measure : str
+        Name of the measure.
+    unit : str
+        Its unit; ``-`` if it has none.
+    curves : tuple of FragilityCurve
+        From the least to the worst state.
+    levels : ndarray
+        Levels that were tried [unit of the measure].
+    trials : ndarray of int
+        Histories at each level.
+    reached : dict of str to ndarray
+        How many of them reached each state.
+    source : str
+        Where the data come from.
+    uplift_threshold : float, optional
+        Level below which nothing rocks, if there is one [unit of the measure].
+    about : dict
+        Provenance, plain values.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no curve, two have the same name, or the counts do not fit the levels.
+    """
+
+    name: str
+    measure: str
+    unit: str
+    curves: tuple[FragilityCurve, ...]
+    levels: FloatArray
+    trials: np.ndarray
+    reached: Mapping[str, np.ndarray]
+    source: str = ""
+    uplift_threshold: float | None = None
+    about: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check that the parts fit one another."""
+        names = [curve.state for curve in self.curves]
+        if not names or len(set(names)) < len(names):
+            raise InvalidValueError(f"curves must be at least one, of different states, got {names}")
+        levels = np.asarray(self.levels, dtype=np.float64)
+        object.__setattr__(self, "levels", checked_levels("levels", levels, self.unit))
+        for name, counts in {"trials": self.trials, **self.reached}.items():
+            if np.shape(counts) != self.levels.shape:
+                raise InvalidValueError(f"{name} must be {self.levels.size} counts, got shape {np.shape(counts)}")
+
+    @property
+    def dataset(self) -> "xr.Dataset":
+        """Curves, levels and counts with their units, over state and level."""
+        xarray = extra("xarray", "a labelled dataset")
+        unit = "1" if self.unit == "-" else self.unit
+        counted = [name for name in self.reached if len(self.levels)]
+        data = {
+            "median": ("state", [c.median for c in self.curves], {"units": unit}),
+            "dispersion": ("state", [c.dispersion for c in self.curves], {"units": "1"}),
+            "probability": (("state", "level"), np.array([c.probability(self.levels) for c in self.curves])),
+            "exceeded": (("counted_state", "level"), np.array([self.reached[name] for name in counted])),
+            "trials": ("level", np.asarray(self.trials), {"units": "1"}),
+        }
+        coords = {
+            "state": [c.state for c in self.curves],
+            "counted_state": counted,
+            "level": ("level", self.levels, {"units": unit, "long_name": self.measure}),
+        }
+        about = {"component": self.name, "measure": self.measure, "source": self.source, **self.about}
+        made: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=about)
+        return made
+
+
+def model_of(analysis: Any, name: str, source: str = "") -> FragilityModel:
+    """Return the curves of an analysis, ready for export.
+
+    Parameters
+    ----------
+    analysis : StripeAnalysis, CloudAnalysis or IncrementalAnalysis
+        The analysis.
+    name : str
+        Name of the body, as in an inventory.
+    source : str
+        Where the data come from; the definition of the analysis, if not given.
+
+    Returns
+    -------
+    FragilityModel
+        States whose curve has no finite median and dispersion are left out; ``about["without_curve"]`` names them.
+
+    Raises
+    ------
+    InvalidValueError
+        If no state has a curve.
+    """
+    subject: Subject = analysis.subject
+    found = {state: curve_of(state, fit) for state, fit in analysis.fits.items()}
+    without = [state for state, curve in found.items() if curve is None]
+    curves = tuple(curve for curve in found.values() if curve is not None)
+    if not curves:
+        raise InvalidValueError(
+            f"nothing to export: no state of {name!r:.60} has a lognormal curve; the histories must both reach a "
+            f"state and miss it, at levels that overlap ({', '.join(without)})"
+        )
+    about = subject.about() | {"definition": analysis.definition, "without_curve": ", ".join(without)}
+    return FragilityModel(
+        name, subject.measure.name, subject.measure.unit, curves, analysis.levels, analysis.trials, analysis.counts,
+        source or analysis.definition, subject.uplift_threshold, about,
+    )  # fmt: skip
+
+
+def curve_of(state: str, fit: "LognormalFit") -> FragilityCurve | None:
+    """Return a fit as a curve.
+
+    Parameters
+    ----------
+    state : str
+        Name of the state.
+    fit : LognormalFit
+        The fit.
+
+    Returns
+    -------
+    FragilityCurve or None
+        None if the fit has no finite median and dispersion above zero.
+    """
+    median, dispersion = fit.median, fit.dispersion
+    if median is None or dispersion is None or not 0.0 < median < math.inf or not 0.0 < dispersion < math.inf:
+        return None
+    return FragilityCurve(state, float(median), float(dispersion), fit.method)
+
+
+def fits_of(
+    subject: Subject, states: Sequence[LimitState], levels: FloatArray, responses: Responses
+) -> "dict[str, LognormalFit]":
+    """Return the lognormal curve of each state.
+
+    Parameters
+    ----------
+    subject : Subject
+        The body, the motions and the measure.
+    states : sequence of LimitState
+        The states; rocking is left out where a level decides it.
+    levels : ndarray
+        Level of the measure of each history [its unit].
+    responses : Responses
+        Their outcomes, of the same shape; motions come first, and the histories of one motion are a cluster.
+
+    Returns
+    -------
+    dict of str to LognormalFit
+        By name of the state.
+    """
+    from rocking.studies.fragility.lognormal import fit_lognormal
+
+    good = responses.good
+    motion = np.broadcast_to(np.arange(good.shape[0]).reshape(-1, *[1] * (good.ndim - 1)), good.shape)
+    clusters = motion[good].tolist() if good.ndim > 1 else None
+    wanted = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
+    return {
+        state.name: fit_lognormal(levels[good], responses.exceed(state)[good], clusters=clusters) for state in wanted
+    }

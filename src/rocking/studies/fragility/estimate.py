@@ -1,0 +1,235 @@
+"""One curve found in the data: its coefficients in a scale near one, what they mean, and their standard errors."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.studies.fragility.counts import Counts
+from rocking.studies.fragility.likelihood import Probit
+from rocking.studies.fragility.maximum import maximise_from
+from rocking.studies.fragility.penalised import PenalisedProbit, starts
+from rocking.studies.fragility.separation import Separation, classify
+
+
+@dataclass(frozen=True)
+class Scale:
+    """From logarithms of levels to numbers near one: u = (ln level - center) / spread.
+
+    Parameters
+    ----------
+    center, spread : float
+        Mean and standard deviation of the logarithms over the trials [-].
+    """
+
+    center: float
+    spread: float
+
+    @classmethod
+    def of(cls, counts: Counts) -> "Scale":
+        """Return the scale of some data.
+
+        Parameters
+        ----------
+        counts : Counts
+            The data, of two levels or more.
+
+        Returns
+        -------
+        Scale
+            Its scale.
+        """
+        logarithm = np.log(counts.levels)
+        center = float(np.average(logarithm, weights=counts.trials))
+        return cls(center, float(np.sqrt(np.average((logarithm - center) ** 2, weights=counts.trials))))
+
+    def position(self, levels: FloatArray) -> FloatArray:
+        """Return u.
+
+        Parameters
+        ----------
+        levels : ndarray
+            Levels, > 0 [any unit].
+
+        Returns
+        -------
+        ndarray
+            Their positions [-].
+        """
+        return (np.log(levels) - self.center) / self.spread
+
+    def log_level(self, position: FloatArray) -> FloatArray:
+        """Return the logarithms of levels.
+
+        Parameters
+        ----------
+        position : ndarray
+            u [-].
+
+        Returns
+        -------
+        ndarray
+            ln level [-].
+        """
+        return self.center + self.spread * position
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Curves Phi(a + b u) found in many data sets of the same levels.
+
+    Parameters
+    ----------
+    theta : ndarray
+        Rows of a and b; NaN where there is no rising curve [-].
+    curvature : ndarray
+        Observed information of each [-].
+    value : ndarray
+        Log likelihood of each, penalised where that was maximised [-].
+    found : ndarray of bool
+        Whether a rising curve was found and proven to be a maximum.
+    penalised : ndarray of bool
+        Whether the penalised likelihood was maximised.
+    separation : ndarray of int
+        `Separation.number` of each data set.
+    """
+
+    theta: FloatArray
+    curvature: FloatArray
+    value: FloatArray
+    found: BoolArray
+    penalised: BoolArray
+    separation: IntArray
+
+
+def find_curves(
+    levels: FloatArray, scale: Scale, failures: FloatArray, trials: FloatArray, *, penalised: bool = False
+) -> Curves:
+    """Return the likeliest curves of many data sets; of those with a step, the penalised one.
+
+    Parameters
+    ----------
+    levels : ndarray
+        Distinct levels, ascending [any unit].
+    scale : Scale
+        Scale of the coefficients.
+    failures, trials : ndarray
+        One row a data set, one column a level [-].
+    penalised : bool
+        Maximise the penalised likelihood in all of them.
+
+    Returns
+    -------
+    Curves
+        One row a data set.
+    """
+    kinds = classify(levels, failures, trials)
+    step = np.isin(kinds, [kind.number for kind in Separation if kind.step])
+    overlap = kinds == Separation.OVERLAP.number
+    count = kinds.size
+    firth = (overlap | step) if penalised else step
+    theta, value = np.full((count, 2), np.nan), np.full(count, np.nan)
+    curvature, found = np.full((count, 2, 2), np.nan), np.zeros(count, dtype=bool)
+    position = scale.position(levels)[None]
+    for model, which in ((Probit, overlap & ~firth), (PenalisedProbit, firth)):
+        start = np.zeros((1, 2)) if model.concave else starts(position[0])
+        for rows in _pieces(np.flatnonzero(which), levels.size * len(start)):
+            data = model(position, failures[rows], trials[rows] - failures[rows])
+            best = maximise_from(data, np.repeat(start[:, None], rows.size, axis=1))
+            theta[rows], curvature[rows], value[rows] = best.theta, best.curvature, best.value
+            found[rows] = best.proven & (best.theta[:, 1] > 0.0)
+    theta[~found] = np.nan
+    return Curves(theta, curvature, value, found, firth, kinds)
+
+
+def _pieces(rows: IntArray, width: int) -> list[IntArray]:
+    """Return the rows in pieces that keep an array below a few megabytes."""
+    size = max(1, 400_000 // width)
+    return [rows[start : start + size] for start in range(0, rows.size, size)]
+
+
+def log_fractile(theta: FloatArray, scale: Scale, variate: float | FloatArray) -> FloatArray:
+    """Return the logarithm of the level where curves reach a probability.
+
+    Parameters
+    ----------
+    theta : ndarray
+        Rows of a and b [-].
+    scale : Scale
+        Scale of the coefficients.
+    variate : float or ndarray
+        Standard normal variate of the probability [-].
+
+    Returns
+    -------
+    ndarray
+        ln level [-].
+    """
+    return scale.log_level((variate - theta[:, 0]) / theta[:, 1])
+
+
+def log_dispersion(theta: FloatArray, scale: Scale) -> FloatArray:
+    """Return the logarithm of the dispersion of curves.
+
+    Parameters
+    ----------
+    theta : ndarray
+        Rows of a and b, b > 0 [-].
+    scale : Scale
+        Scale of the coefficients.
+
+    Returns
+    -------
+    ndarray
+        ln beta [-].
+    """
+    return np.log(scale.spread / theta[:, 1])
+
+
+def standard_errors(theta: FloatArray, curvature: FloatArray, scale: Scale, variate: float | None) -> FloatArray:
+    """Return the standard errors of a logarithmic fractile or of the logarithmic dispersion.
+
+    Parameters
+    ----------
+    theta : ndarray
+        Rows of a and b [-].
+    curvature : ndarray
+        Their observed information [-].
+    scale : Scale
+        Scale of the coefficients.
+    variate : float, optional
+        Standard normal variate of the fractile; the dispersion without [-].
+
+    Returns
+    -------
+    ndarray
+        Standard errors [-].
+    """
+    a, b = theta[:, 0], theta[:, 1]
+    if variate is None:
+        slope = np.stack([np.zeros_like(b), -1.0 / b], axis=1)
+    else:
+        slope = scale.spread * np.stack([-1.0 / b, (a - variate) / b**2], axis=1)
+    return quadratic_error(slope, curvature)
+
+
+def quadratic_error(slope: FloatArray, curvature: FloatArray) -> FloatArray:
+    """Return the standard errors of functions of the coefficients (delta method).
+
+    Parameters
+    ----------
+    slope : ndarray
+        Rows of derivatives with respect to a and b [-].
+    curvature : ndarray
+        Observed information, one matrix a row [-].
+
+    Returns
+    -------
+    ndarray
+        Standard errors [-].
+    """
+    h = curvature
+    determinant = h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2
+    first, second = slope[:, 0], slope[:, 1]
+    form = h[:, 1, 1] * first**2 - 2.0 * h[:, 0, 1] * first * second + h[:, 0, 0] * second**2
+    return np.asarray(np.sqrt(form / determinant))

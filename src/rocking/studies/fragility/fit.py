@@ -1,0 +1,274 @@
+"""A lognormal fragility curve as found: median, dispersion, how well they are known, and what can be claimed."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.bootstrap import BootstrapSample, Resampling, bootstrap
+from rocking.studies.fragility.counts import Counts
+from rocking.studies.fragility.estimate import Curves, Scale
+from rocking.studies.fragility.goodness import Goodness, goodness_of
+from rocking.studies.fragility.intervals import IntervalMethod, Intervals
+from rocking.studies.fragility.separation import Separation, median_interval
+from rocking.studies.fragility.verdict import verdict_of
+
+
+@dataclass(frozen=True, eq=False)
+class LognormalFit:
+    """What outcomes say about a lognormal fragility curve; `fit_lognormal` makes one.
+
+    Where no curve was fitted, `median` and `dispersion` are None, `verdict` says why, and what needs a curve raises.
+
+    Parameters
+    ----------
+    counts : Counts
+        The outcomes.
+    separation : Separation
+        How failures and survivals lie along the levels; its value is a sentence.
+    method : {"maximum-likelihood", "penalised", "none"}
+        What was maximised; "none" where there is no curve.
+    scale : Scale, optional
+        Scale of the coefficients; None with a single level.
+    curves : Curves, optional
+        The one curve; None where there is none.
+    """
+
+    counts: Counts
+    separation: Separation
+    method: str
+    scale: Scale | None = None
+    curves: Curves | None = None
+
+    @property
+    def exists(self) -> bool:
+        """Whether a curve was fitted."""
+        return self.curves is not None
+
+    @property
+    def median(self) -> float | None:
+        """Level that half of the trials survive [unit of the levels]."""
+        return self.intervals.fractile(0.5) if self.exists else None
+
+    @property
+    def dispersion(self) -> float | None:
+        """Standard deviation of the natural logarithm of the level at failure, beta [-]."""
+        return self.intervals.dispersion if self.exists else None
+
+    @property
+    def log_likelihood(self) -> float | None:
+        """Logarithm of the likelihood at the curve, without binomial coefficients and without penalty [-]."""
+        return self.intervals.log_likelihood if self.exists else None
+
+    @property
+    def observations(self) -> int:
+        """Number of trials in all [-]."""
+        return self.counts.observations
+
+    @property
+    def median_interval(self) -> tuple[float | None, float | None]:
+        """Largest level survived and smallest failed, where no single median is likeliest [unit of the levels].
+
+        After quasi-complete separation both are the level with mixed outcomes: the limit of the likelihood, not a
+        certainty. None where the data bound nothing; both None where a median is likeliest, or no curve rises.
+        """
+        return median_interval(self.counts, self.separation)
+
+    @property
+    def covariance(self) -> FloatArray | None:
+        """Covariance of (ln median, dispersion), from the observed information [-]."""
+        return self.intervals.covariance if self.exists else None
+
+    @property
+    def standard_errors(self) -> dict[str, float] | None:
+        """Standard errors of `median` [unit of the levels] and `dispersion` [-], by the delta method."""
+        return self.intervals.standard_errors if self.exists else None
+
+    @cached_property
+    def verdict(self) -> str:
+        """What can be claimed, in plain words."""
+        median, dispersion = self.median, self.dispersion
+        curve = None if median is None or dispersion is None else (median, dispersion)
+        rise = self.intervals.rise if self.exists and self.method == "maximum-likelihood" else None
+        return verdict_of(self.counts, self.separation, curve, rise)
+
+    @cached_property
+    def intervals(self) -> Intervals:
+        """What the curve's coefficients mean, and how far the data let them move.
+
+        Raises
+        ------
+        InvalidValueError
+            If no curve was fitted.
+        """
+        if self.curves is None or self.scale is None:
+            raise InvalidValueError(f"a fragility curve is needed, got none: {self.verdict}")
+        return Intervals(self.counts, self.scale, self.curves)
+
+    def probability(self, im: Any) -> FloatArray:
+        """Return the probability of failure.
+
+        Parameters
+        ----------
+        im : array_like
+            Levels of the intensity measure, >= 0 [unit of the levels].
+
+        Returns
+        -------
+        ndarray
+            Probabilities, of the same shape [-].
+        """
+        return self.intervals.probability(im)
+
+    def fractile(self, probability: float) -> float:
+        """Return the level at which a probability of failure is reached.
+
+        Parameters
+        ----------
+        probability : float
+            Between 0 and 1, both excluded [-].
+
+        Returns
+        -------
+        float
+            The level [unit of the levels].
+        """
+        return self.intervals.fractile(probability)
+
+    def interval(
+        self,
+        parameter: str | float,
+        level: float = 0.95,
+        method: IntervalMethod = "profile",
+        *,
+        repetitions: int = 1000,
+        seed: int = 0,
+    ) -> tuple[float, float]:
+        """Return a confidence interval.
+
+        Parameters
+        ----------
+        parameter : {"median", "dispersion"} or float
+            A number is the probability of a fractile [-].
+        level : float
+            Confidence level, between 0 and 1 [-].
+        method : {"profile", "bootstrap", "wald"}
+            By the likelihood; by repeating the study (whole clusters where they were named, else from the curve), with
+            studentised ends; or from standard errors on the logarithmic scale.
+        repetitions : int
+            Number of repetitions of the bootstrap.
+        seed : int
+            Seed of the bootstrap.
+
+        Returns
+        -------
+        tuple of float
+            Both ends [unit of the levels, or - for the dispersion]; 0 or infinite where the data leave it open.
+        """
+        sample = self.bootstrap(repetitions=repetitions, seed=seed) if method == "bootstrap" else None
+        return self.intervals.interval(parameter, level, method, sample)
+
+    def band(
+        self,
+        im: Any,
+        level: float = 0.95,
+        method: IntervalMethod = "profile",
+        *,
+        repetitions: int = 1000,
+        seed: int = 0,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return pointwise confidence intervals of the probability of failure.
+
+        Parameters
+        ----------
+        im : array_like
+            Levels of the intensity measure, >= 0 [unit of the levels].
+        level : float
+            Confidence level, between 0 and 1 [-].
+        method : {"profile", "bootstrap", "wald"}
+            See `interval`.
+        repetitions : int
+            Number of repetitions of the bootstrap.
+        seed : int
+            Seed of the bootstrap.
+
+        Returns
+        -------
+        tuple of ndarray
+            Lower and upper ends, of the shape of `im` [-].
+        """
+        sample = self.bootstrap(repetitions=repetitions, seed=seed) if method == "bootstrap" else None
+        return self.intervals.band(im, level, method, sample)
+
+    def bootstrap(self, kind: Resampling | None = None, *, repetitions: int = 1000, seed: int = 0) -> BootstrapSample:
+        """Return curves of the study repeated many times.
+
+        Parameters
+        ----------
+        kind : {"parametric", "cases", "clusters"}, optional
+            How to draw; whole clusters where they were named, else parametric, by default.
+        repetitions : int
+            How many.
+        seed : int
+            Seed of the random numbers.
+
+        Returns
+        -------
+        BootstrapSample
+            Their curves.
+        """
+        own = self.intervals
+        usual: Resampling = "parametric" if self.counts.cluster_trials is None else "clusters"
+        return bootstrap(self.counts, own.curves, own.scale, kind or usual, repetitions, seed)
+
+    def goodness(self, *, groups: int = 10, repetitions: int = 1000, seed: int = 0) -> Goodness:
+        """Return how well the curve agrees with the outcomes.
+
+        Parameters
+        ----------
+        groups : int
+            Most groups of neighbouring levels that outcomes are gathered in.
+        repetitions : int
+            Number of data sets drawn from the curve and refitted.
+        seed : int
+            Seed of the random numbers.
+
+        Returns
+        -------
+        Goodness
+            Statistics with their p-values, and observed beside expected failures.
+        """
+        own = self.intervals
+        return goodness_of(self.counts, own.curves, own.scale, groups, repetitions, seed)
+
+    def summary(self) -> dict[str, Any]:
+        """Return the fit as plain numbers and words.
+
+        Returns
+        -------
+        dict
+            Ready for JSON: None where something does not exist or an interval is open.
+        """
+        ends = {name: self.interval(name) if self.exists else (0.0, np.inf) for name in ("median", "dispersion")}
+        closed = {
+            name: [low if low > 0.0 else None, high if np.isfinite(high) else None]
+            for name, (low, high) in ends.items()
+        }
+        return {
+            "median": self.median,
+            "dispersion": self.dispersion,
+            "median_95": closed["median"],
+            "dispersion_95": closed["dispersion"],
+            "standard_errors": self.standard_errors,
+            "log_likelihood": self.log_likelihood,
+            "method": self.method,
+            "separation": self.separation.value,
+            "median_interval": list(self.median_interval),
+            "observations": self.observations,
+            "failures": int(self.counts.failures.sum()),
+            "levels": int(self.counts.levels.size),
+            "verdict": self.verdict,
+        }

@@ -1,0 +1,177 @@
+"""Whether a lognormal curve agrees with the outcomes: statistics whose p-values come from refitted simulations."""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rocking.conventions import FloatArray, IntArray
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.bootstrap import resample
+from rocking.studies.fragility.counts import Counts
+from rocking.studies.fragility.estimate import Curves, Scale, find_curves
+
+
+class Statistic(NamedTuple):
+    """A measure of disagreement.
+
+    Parameters
+    ----------
+    value : float
+        The measure; zero for perfect agreement [-].
+    p_value : float
+        Share of data sets drawn from the curve, refitted, that disagree as much: small where the curve is wrong [-].
+    """
+
+    value: float
+    p_value: float
+
+
+@dataclass(frozen=True, eq=False)
+class Goodness:
+    """Agreement of a curve with the outcomes it was fitted to.
+
+    Parameters
+    ----------
+    deviance : Statistic
+        Twice the log likelihood lost against a curve free at every level; tells little with few trials a level.
+    pearson : Statistic
+        Sum over levels of squared differences over variances.
+    hosmer_lemeshow : Statistic
+        The same over groups of neighbouring levels, which suits single observations.
+    kolmogorov : Statistic
+        Largest distance between the share of failures in a group and the curve.
+    lower, upper : ndarray
+        Lowest and highest level of each group [unit of the levels].
+    trials, observed, expected : ndarray
+        Trials, failures, and failures by the curve in each group [-].
+    band : tuple of ndarray
+        Where 95 % of the shares of failures in each group fall that the curve would give [-].
+    distance_limit : float
+        Largest distance that 95 % of data sets drawn from the curve stay below [-].
+    repetitions : int
+        Number of data sets drawn whose refit succeeded.
+    """
+
+    deviance: Statistic
+    pearson: Statistic
+    hosmer_lemeshow: Statistic
+    kolmogorov: Statistic
+    lower: FloatArray
+    upper: FloatArray
+    trials: FloatArray
+    observed: FloatArray
+    expected: FloatArray
+    band: tuple[FloatArray, FloatArray]
+    distance_limit: float
+    repetitions: int
+
+    def summary(self) -> dict[str, Any]:
+        """Return the statistics as plain numbers.
+
+        Returns
+        -------
+        dict
+            Value and p-value of each [-].
+        """
+        names = ("deviance", "pearson", "hosmer_lemeshow", "kolmogorov")
+        return {name: dict(zip(Statistic._fields, getattr(self, name), strict=True)) for name in names}
+
+
+def goodness_of(counts: Counts, curves: Curves, scale: Scale, groups: int, repetitions: int, seed: int) -> Goodness:
+    """Return how well a curve agrees with the outcomes.
+
+    Parameters
+    ----------
+    counts : Counts
+        The outcomes.
+    curves : Curves
+        The curve: one row.
+    scale : Scale
+        Scale of the coefficients.
+    groups : int
+        Most groups of neighbouring levels.
+    repetitions : int
+        Number of data sets drawn from the curve and refitted.
+    seed : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    Goodness
+        Statistics with their p-values.
+
+    Raises
+    ------
+    InvalidValueError
+        If there are fewer than 2 groups or 20 repetitions, or too few repetitions can be refitted.
+    """
+    if groups < 2 or repetitions < 20:
+        raise InvalidValueError(f"groups must be >= 2 and repetitions >= 20, got {groups} and {repetitions}")
+    from scipy.special import ndtr
+
+    position = scale.position(counts.levels)
+    own = ndtr(curves.theta[:, :1] + curves.theta[:, 1:] * position)
+    failures, trials = resample(counts, own[0], "parametric", repetitions, seed)
+    drawn = find_curves(counts.levels, scale, failures, trials, penalised=bool(curves.penalised[0]))
+    fitted = np.flatnonzero(drawn.found)
+    if fitted.size < 0.5 * repetitions:
+        raise InvalidValueError(
+            f"half of {repetitions} repetitions must be refitted, got {fitted.size}; too few trials"
+        )
+    theta, failures, trials = drawn.theta[fitted], failures[fitted], trials[fitted]
+    member = group_of(counts.trials, groups)
+    simulated = _statistics(failures, trials, ndtr(theta[:, :1] + theta[:, 1:] * position), member)
+    found = _statistics(counts.failures[None], counts.trials[None], own, member)
+    # discrete statistics tie, but for rounding
+    beyond = [int(np.sum(s >= f[0] * (1.0 - 1e-9))) for s, f in zip(simulated, found, strict=True)]
+    tests = [Statistic(float(f[0]), (1 + n) / (1 + fitted.size)) for f, n in zip(found, beyond, strict=True)]
+    first = np.flatnonzero(np.diff(member, prepend=-1))
+    total, observed = np.add.reduceat(counts.trials, first), np.add.reduceat(counts.failures, first)
+    shares = np.add.reduceat(failures, first, axis=1) / total
+    return Goodness(
+        tests[0], tests[1], tests[2], tests[3],
+        counts.levels[first], counts.levels[np.append(first[1:], member.size) - 1], total, observed,
+        np.add.reduceat(counts.trials * own[0], first),
+        (np.quantile(shares, 0.025, axis=0), np.quantile(shares, 0.975, axis=0)),
+        float(np.quantile(simulated[3], 0.95)), int(fitted.size),
+    )  # fmt: skip
+
+
+def group_of(trials: FloatArray, groups: int) -> IntArray:
+    """Return the group of each level, so that groups of neighbours hold about equally many trials.
+
+    Parameters
+    ----------
+    trials : ndarray
+        Trials at each level [-].
+    groups : int
+        Most groups.
+
+    Returns
+    -------
+    ndarray
+        Numbers that never fall from a level to the next; each level has its own where there are no more than groups.
+
+    Examples
+    --------
+    >>> group_of(np.ones(6), 3)
+    array([0, 0, 1, 1, 2, 2])
+    """
+    if trials.size <= groups:
+        return np.arange(trials.size)
+    middle = (np.cumsum(trials) - 0.5 * trials) / trials.sum()
+    return np.asarray(np.minimum((middle * groups).astype(np.int64), groups - 1))
+
+
+def _statistics(z: FloatArray, n: FloatArray, p: FloatArray, member: IntArray) -> tuple[FloatArray, ...]:
+    """Return deviance, Pearson's, Hosmer and Lemeshow's and Kolmogorov's statistics, one row a data set."""
+    from scipy.special import xlogy
+
+    p = np.clip(p, 1e-300, 1.0 - 1e-16)
+    deviance = 2.0 * np.sum(xlogy(z, z / (n * p)) + xlogy(n - z, (n - z) / (n * (1.0 - p))), axis=1)
+    pearson = np.sum((z - n * p) ** 2 / (n * p * (1.0 - p)), axis=1)
+    first = np.flatnonzero(np.diff(member, prepend=-1))
+    observed, expected, variance, total = (np.add.reduceat(v, first, axis=1) for v in (z, n * p, n * p * (1.0 - p), n))
+    grouped = np.sum((observed - expected) ** 2 / variance, axis=1)
+    return deviance, pearson, grouped, np.max(np.abs(observed - expected) / total, axis=1)

@@ -1,0 +1,261 @@
+"""A fitted curve read off: fractiles, probabilities, and how far the data let each of them move."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.bootstrap import BootstrapSample, curve_probability
+from rocking.studies.fragility.constraints import (
+    FractileConstraint,
+    ProbabilityConstraint,
+    SlopeConstraint,
+)
+from rocking.studies.fragility.counts import Counts
+from rocking.studies.fragility.estimate import (
+    Curves,
+    Scale,
+    log_dispersion,
+    log_fractile,
+    quadratic_error,
+    standard_errors,
+)
+from rocking.studies.fragility.likelihood import Probit
+from rocking.studies.fragility.lines import flat_line
+from rocking.studies.fragility.penalised import PenalisedProbit
+from rocking.studies.fragility.profile import Profile
+
+IntervalMethod = Literal["profile", "bootstrap", "wald"]
+INTERVAL_METHODS: tuple[IntervalMethod, ...] = ("profile", "bootstrap", "wald")
+SIDES = np.array([-1.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Intervals:
+    """One fitted curve and the likelihood it is the maximum of.
+
+    Parameters
+    ----------
+    counts : Counts
+        The outcomes.
+    scale : Scale
+        Scale of the coefficients.
+    curves : Curves
+        The curve: one row.
+    """
+
+    counts: Counts
+    scale: Scale
+    curves: Curves
+
+    @cached_property
+    def model(self) -> Probit:
+        """The likelihood that was maximised."""
+        return (PenalisedProbit if self.curves.penalised[0] else Probit)(*self._data)
+
+    @property
+    def _data(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        return self.scale.position(self.counts.levels)[None], self.counts.failures[None], self.counts.survivals[None]
+
+    @property
+    def dispersion(self) -> float:
+        """Dispersion beta [-]."""
+        return float(np.exp(log_dispersion(self.curves.theta, self.scale)[0]))
+
+    @property
+    def log_likelihood(self) -> float:
+        """Log likelihood at the curve, without penalty [-]."""
+        return float(Probit(*self._data).derivatives(self.curves.theta).value[0])
+
+    @property
+    def rise(self) -> float:
+        """Likelihood ratio against a line that does not depend on the level, a chi-square of one degree [-]."""
+        return float(2.0 * (self.curves.value - flat_line(self.model)[1])[0])
+
+    @property
+    def covariance(self) -> FloatArray:
+        """Covariance of (ln median, dispersion) [-]."""
+        a, b = self.curves.theta[0]
+        turn = self.scale.spread * np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
+        return np.asarray(turn @ np.linalg.inv(self.curves.curvature[0]) @ turn.T)
+
+    @property
+    def standard_errors(self) -> dict[str, float]:
+        """Standard errors of `median` [unit of the levels] and `dispersion` [-]."""
+        errors = np.sqrt(np.diag(self.covariance))
+        return {"median": float(self.fractile(0.5) * errors[0]), "dispersion": float(errors[1])}
+
+    def fractile(self, probability: float) -> float:
+        """Return the level at which a probability of failure is reached.
+
+        Parameters
+        ----------
+        probability : float
+            Between 0 and 1, both excluded [-].
+
+        Returns
+        -------
+        float
+            The level [unit of the levels].
+
+        Raises
+        ------
+        InvalidValueError
+            If the level is beyond what a float64 holds.
+        """
+        level = float(_exp(log_fractile(self.curves.theta, self.scale, _variate(probability)))[0])
+        if not 0.0 < level < np.inf:
+            raise InvalidValueError(
+                f"fractile {probability:g} must be a float64, got {level}; the dispersion is {self.dispersion:.3g}"
+            )
+        return level
+
+    def probability(self, im: Any) -> FloatArray:
+        """Return the probability of failure.
+
+        Parameters
+        ----------
+        im : array_like
+            Levels of the intensity measure, >= 0 [unit of the levels].
+
+        Returns
+        -------
+        ndarray
+            Probabilities, of the same shape [-].
+        """
+        given, some = _levels(im)
+        result = np.zeros_like(given)
+        result[some] = curve_probability(self.curves, self.scale, given[some])
+        return result
+
+    def interval(
+        self, parameter: str | float, level: float, method: IntervalMethod, sample: BootstrapSample | None
+    ) -> tuple[float, float]:
+        """Return a confidence interval.
+
+        Parameters
+        ----------
+        parameter : {"median", "dispersion"} or float
+            A number is the probability of a fractile [-].
+        level : float
+            Confidence level [-].
+        method : {"profile", "bootstrap", "wald"}
+            How.
+        sample : BootstrapSample, optional
+            Needed by the bootstrap.
+
+        Returns
+        -------
+        tuple of float
+            Both ends [unit of the levels, or - for the dispersion]; 0 or infinite where open.
+        """
+        quantile, variate = _quantile(level, method), _parameter(parameter)
+        if sample is not None:
+            ends = np.array(sample.log_interval(variate, level))
+        else:
+            error = standard_errors(self.curves.theta, self.curves.curvature, self.scale, variate)[0]
+            if variate is None:
+                middle = log_dispersion(self.curves.theta, self.scale)[0]
+            else:
+                middle = log_fractile(self.curves.theta, self.scale, variate)[0]
+            ends = middle + SIDES * quantile * error
+            if method == "profile":
+                ends = self._profile(variate, quantile, error)
+        low, high = _exp(ends)
+        return float(low), float(high)
+
+    def _profile(self, variate: float | None, quantile: float, error: float) -> FloatArray:
+        a, b = self.curves.theta[0]
+        profile = Profile(self.model, self.curves.value, self.curves.theta, quantile)
+        if variate is None:
+            ends = profile.ends(SlopeConstraint(), np.full(2, np.log(b)), np.full(2, error), -SIDES)
+            return np.asarray(np.log(self.scale.spread) - ends)
+        start = np.full(2, (variate - a) / b)
+        ends = profile.ends(
+            FractileConstraint(np.full(2, variate)), start, np.full(2, error / self.scale.spread), SIDES
+        )
+        return self.scale.log_level(ends)
+
+    def band(
+        self, im: Any, level: float, method: IntervalMethod, sample: BootstrapSample | None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return pointwise confidence intervals of the probability of failure.
+
+        Parameters
+        ----------
+        im : array_like
+            Levels of the intensity measure, >= 0 [unit of the levels].
+        level : float
+            Confidence level [-].
+        method : {"profile", "bootstrap", "wald"}
+            How.
+        sample : BootstrapSample, optional
+            Needed by the bootstrap.
+
+        Returns
+        -------
+        tuple of ndarray
+            Lower and upper ends, of the shape of `im` [-].
+        """
+        from scipy.special import ndtr
+
+        quantile, (given, some) = _quantile(level, method), _levels(im)
+        position = self.scale.position(given[some])
+        if sample is not None:
+            ends = sample.variate_band(position, level)
+        else:
+            ends = self._variates(position, quantile, profile=method == "profile")
+        result = np.zeros((2, *given.shape))
+        result[:, some] = ndtr(np.stack(ends))
+        return result[0], result[1]
+
+    def _variates(self, position: FloatArray, quantile: float, *, profile: bool) -> tuple[FloatArray, FloatArray]:
+        count = position.size
+        middle = self.curves.theta[0, 0] + self.curves.theta[0, 1] * position
+        slope = np.stack([np.ones_like(position), position], axis=1)
+        error = quadratic_error(slope, np.broadcast_to(self.curves.curvature, (count, 2, 2)))
+        if not profile or not count:
+            return middle - quantile * error, middle + quantile * error
+        start = Profile(self.model, self.curves.value, self.curves.theta, quantile)
+        both = ProbabilityConstraint(np.tile(position, 2))
+        ends = start.ends(both, np.tile(middle, 2), np.tile(error, 2), np.repeat(SIDES, count))
+        return ends[:count], ends[count:]
+
+
+def _variate(probability: float) -> float:
+    from scipy.special import ndtri
+
+    return float(ndtri(checks.within("probability", probability, 0.0, 1.0, open_low=True, open_high=True)))
+
+
+def _parameter(parameter: str | float) -> float | None:
+    """Return the variate of a fractile, or None for the dispersion."""
+    if isinstance(parameter, str):
+        if parameter not in {"median", "dispersion"}:
+            raise InvalidValueError(
+                f"parameter must be 'median', 'dispersion' or the probability of a fractile, got {parameter!r}"
+            )
+        return 0.0 if parameter == "median" else None
+    return _variate(parameter)
+
+
+def _quantile(level: float, method: str) -> float:
+    if method not in INTERVAL_METHODS:
+        raise InvalidValueError(f"method must be one of {', '.join(INTERVAL_METHODS)}, got {method!r}")
+    return _variate(0.5 * (1.0 + checks.within("level", level, 0.0, 1.0, open_low=True, open_high=True)))
+
+
+def _levels(im: Any) -> tuple[FloatArray, Any]:
+    given = checks.real_array("im", im)
+    if not (np.isfinite(given) & (given >= 0.0)).all():
+        raise InvalidValueError("im must be finite and >= 0, got a value that is not")
+    return given, given > 0.0
+
+
+def _exp(logarithm: FloatArray) -> FloatArray:
+    with np.errstate(over="ignore", under="ignore"):
+        return np.asarray(np.exp(logarithm))

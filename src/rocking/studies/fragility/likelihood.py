@@ -1,0 +1,194 @@
+"""Probit likelihood of many data sets at once, safe however far in the tails a curve is tried."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+
+FAR = 300.0
+"""Beyond this many standard deviations the curvature comes from its series: the closed form cancels [-]."""
+
+
+class Tails(NamedTuple):
+    """The normal distribution at one place, seen from both sides: failing below it, surviving above it.
+
+    Parameters
+    ----------
+    log_failure, log_survival : ndarray
+        ln Phi(eta) and ln Phi(-eta) [-].
+    failure_rate, survival_rate : ndarray
+        phi(eta) / Phi(eta) and phi(eta) / Phi(-eta): slopes of the two logarithms, up to sign [-].
+    failure_bend, survival_bend : ndarray
+        Minus the second derivatives of the two logarithms, between 0 and 1 [-].
+    """
+
+    log_failure: FloatArray
+    log_survival: FloatArray
+    failure_rate: FloatArray
+    survival_rate: FloatArray
+    failure_bend: FloatArray
+    survival_bend: FloatArray
+
+
+def tails(eta: FloatArray) -> Tails:
+    """Return logarithms, slopes and curvatures of both tails of the normal distribution.
+
+    Parameters
+    ----------
+    eta : ndarray
+        Standard normal variate [-].
+
+    Returns
+    -------
+    Tails
+        Relative errors near 1e-15, and near 1e-11 in the curvature of the far tail.
+
+    Examples
+    --------
+    >>> float(tails(np.array(-1e4)).log_failure)
+    -50000010.12927891
+    """
+    from scipy.special import erfcx
+
+    t = np.abs(eta)
+    scaled = erfcx(np.sqrt(0.5) * t)
+    bell = np.exp(-0.5 * t * t)
+    tail = 0.5 * scaled * bell
+    log_tail, log_body = np.log(0.5 * scaled) - 0.5 * t * t, np.log1p(-tail)
+    tail_rate = np.sqrt(2.0 / np.pi) / scaled
+    body_rate = bell / np.sqrt(2.0 * np.pi) / (1.0 - tail)
+    tail_bend = tail_rate * (tail_rate - t)
+    if t.size and t.max() > FAR:
+        u = 1.0 / np.maximum(t, FAR) ** 2
+        tail_bend = np.where(t > FAR, 1.0 - u + 6.0 * u * u, tail_bend)
+    body_bend = body_rate * (body_rate + t)
+    low = eta < 0.0
+    both = ((log_tail, log_body), (tail_rate, body_rate), (tail_bend, body_bend))
+    return Tails(*(np.where(low, *pair) if first else np.where(low, *pair[::-1]) for pair in both for first in (1, 0)))
+
+
+class Derivatives(NamedTuple):
+    """A function of a few coefficients, and its first and second derivatives, one row a data set.
+
+    Parameters
+    ----------
+    value : ndarray
+        The function [-].
+    gradient : ndarray
+        Its gradient; the last axis is the coefficient [-].
+    curvature : ndarray
+        Minus its Hessian; positive definite where the function is strictly concave [-].
+    """
+
+    value: FloatArray
+    gradient: FloatArray
+    curvature: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Probit:
+    """Log likelihood of failing with probability Phi(a + b u), one row a data set.
+
+    It is concave in (a, b), strictly so once two levels hold data: a stationary point is the one maximum. The binomial
+    coefficients are left out, so that pooling equal levels changes nothing.
+
+    Parameters
+    ----------
+    position : ndarray
+        u, the logarithms of the levels in a scale near one; one row, or one row a data set [-].
+    failures, survivals : ndarray
+        Trials that failed and survived at each level; one row, or one row a data set [-].
+    """
+
+    position: FloatArray
+    failures: FloatArray
+    survivals: FloatArray
+    concave: ClassVar[bool] = True
+
+    def rows(self, index: Any) -> Self:
+        """Return the same likelihood of some of the data sets.
+
+        Parameters
+        ----------
+        index : array of int or bool
+            Which data sets; a field that all share stays shared.
+
+        Returns
+        -------
+        Probit
+            The likelihood of those.
+        """
+        fields = (self.position, self.failures, self.survivals)
+        return type(self)(*(field if field.shape[0] == 1 else field[index] for field in fields))
+
+    def eta(self, theta: FloatArray) -> FloatArray:
+        """Return a + b u.
+
+        Parameters
+        ----------
+        theta : ndarray
+            Rows of a and b [-].
+
+        Returns
+        -------
+        ndarray
+            Rows of standard normal variates [-].
+        """
+        return theta[:, :1] + theta[:, 1:2] * self.position
+
+    def derivatives(self, theta: FloatArray) -> Derivatives:
+        """Return the log likelihood with its gradient and minus its Hessian, the observed information.
+
+        Parameters
+        ----------
+        theta : ndarray
+            Rows of a and b [-].
+
+        Returns
+        -------
+        Derivatives
+            One row a data set.
+        """
+        at = tails(self.eta(theta))
+        value = np.sum(_times(self.failures, at.log_failure) + _times(self.survivals, at.log_survival), axis=1)
+        slope = self.failures * at.failure_rate - self.survivals * at.survival_rate
+        bend = self.failures * at.failure_bend + self.survivals * at.survival_bend
+        return Derivatives(value, self._moments(slope, 2), _matrix(self._moments(bend, 3)))
+
+    def information(self, theta: FloatArray) -> FloatArray:
+        """Return the expected (Fisher) information.
+
+        Parameters
+        ----------
+        theta : ndarray
+            Rows of a and b [-].
+
+        Returns
+        -------
+        ndarray
+            One matrix a row [-].
+        """
+        at = tails(self.eta(theta))
+        weight = (self.failures + self.survivals) * at.failure_rate * at.survival_rate
+        return _matrix(self._moments(weight, 3))
+
+    def _moments(self, weight: FloatArray, count: int) -> FloatArray:
+        """Return the sums over levels of a weight times u to the powers 0 to count - 1."""
+        sums = [weight.sum(axis=1)]
+        for _ in range(count - 1):
+            weight = weight * self.position
+            sums.append(weight.sum(axis=1))
+        return np.stack(sums, axis=1)
+
+
+def _times(count: FloatArray, logarithm: FloatArray) -> FloatArray:
+    """Return the product where 0 times minus infinity is 0: nobody was there to fail."""
+    if np.isfinite(logarithm).all():
+        return count * logarithm
+    return np.where(count > 0.0, count * np.where(count > 0.0, logarithm, 0.0), 0.0)
+
+
+def _matrix(moments: FloatArray) -> FloatArray:
+    return moments[:, [[0, 1], [1, 2]]]

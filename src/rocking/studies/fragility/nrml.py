@@ -1,0 +1,183 @@
+"""Fragility as OpenQuake reads it: NRML 0.5, continuous lognormal functions."""
+
+import math
+import re
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+from rocking import checks, conventions
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.curves import FragilityModel
+from rocking.studies.fragility.export import Destination, checked_path
+from rocking.studies.fragility.measures import spectral_period
+
+NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
+LOSS_CATEGORIES = ("structural", "nonstructural", "contents", "business_interruption", "occupants")
+
+_XML = re.compile("[\\t\\n\\r\\x20-\\ud7ff\\ue000-\\ufffd\\U00010000-\\U0010ffff]+")
+
+_TYPES = {
+    "pga": ("PGA", 1.0 / conventions.g),
+    "pgv": ("PGV", 100.0),
+    "pgd": ("PGD", 100.0),
+    "arias": ("IA", 1.0),
+    "cav": ("CAV", 1.0 / conventions.g),
+}
+"""Names of intensity measures there, and one SI unit in its: PGA and SA in g, PGV in cm/s, PGD in cm, CAV in g s."""
+
+
+def to_nrml(
+    model: FragilityModel,
+    path: Destination,
+    *,
+    asset_category: str = "contents",
+    loss_category: str = "contents",
+    description: str = "",
+    highest: float | None = None,
+) -> Path:
+    """Write a model as an OpenQuake fragility model (NRML 0.5).
+
+    The parameters there are mean and standard deviation of the lognormal variable itself, not of its logarithm.
+
+    Parameters
+    ----------
+    model : FragilityModel
+        The curves, against a measure that OpenQuake knows: pga, pgv, pgd, sa(period) with 5 % damping, arias or cav.
+    path : str or path
+        The file.
+    asset_category : str
+        What the assets are.
+    loss_category : {"structural", "nonstructural", "contents", "business_interruption", "occupants"}
+        What kind of loss.
+    description : str
+        Words for the reader; the source of the model, if not given.
+    highest : float, optional
+        OpenQuake takes the measure for no larger than this; four dispersions above all medians and all levels, if
+        not given [unit of the measure].
+
+    Returns
+    -------
+    Path
+        The file. Below the level where nothing rocks, if there is one, OpenQuake takes all probabilities for zero.
+
+    Raises
+    ------
+    InvalidValueError
+        If OpenQuake does not know the measure or the loss category, or a name cannot stand in XML.
+    """
+    target = checked_path(path)
+    if loss_category not in LOSS_CATEGORIES:
+        raise InvalidValueError(f"loss_category must be one of {', '.join(LOSS_CATEGORIES)}, got {loss_category!r:.60}")
+    imt, unit = intensity_type(model.measure)
+    top = (
+        highest
+        if highest is not None
+        else max(float(model.levels[-1]), *(c.median * math.exp(4.0 * c.dispersion) for c in model.curves))
+    )
+    states = _identifiers([curve.state for curve in model.curves])
+    root = ET.Element("nrml", xmlns=NAMESPACE)
+    about = {"id": _identifier(model.name), "assetCategory": asset_category, "lossCategory": loss_category}
+    node = ET.SubElement(root, "fragilityModel", {k: _word(v) for k, v in about.items()})
+    ET.SubElement(node, "description").text = _word(description or model.source or "fragility of a rocking body")
+    ET.SubElement(node, "limitStates").text = " ".join(states)
+    function = ET.SubElement(
+        node, "fragilityFunction", {"id": _word(model.name), "format": "continuous", "shape": "logncdf"}
+    )
+    levels = {
+        "noDamageLimit": (model.uplift_threshold or 0.0) * unit,
+        "minIML": 0.0,
+        "maxIML": checks.positive("highest", top, model.unit) * unit,
+    }
+    ET.SubElement(function, "imls", {"imt": imt} | {name: repr(value) for name, value in levels.items()})
+    for state, curve in zip(states, model.curves, strict=True):
+        mean, deviation = moments_of_lognormal(curve.median * unit, curve.dispersion)
+        ET.SubElement(function, "params", {"ls": state, "mean": repr(mean), "stddev": repr(deviation)})
+    ET.indent(root)
+    ET.ElementTree(root).write(target, encoding="utf-8", xml_declaration=True)
+    return target
+
+
+def intensity_type(measure: str) -> tuple[str, float]:
+    """Return what OpenQuake calls a measure, and the factor from SI to its unit.
+
+    Parameters
+    ----------
+    measure : str
+        Name of the measure.
+
+    Returns
+    -------
+    name : str
+        Such as ``PGA`` or ``SA(0.5)``.
+    factor : float
+        One SI unit in the unit there: g, cm/s, cm, m/s or g s.
+
+    Raises
+    ------
+    InvalidValueError
+        If it has no name for it.
+
+    Examples
+    --------
+    >>> intensity_type("pgv")
+    ('PGV', 100.0)
+    """
+    if measure in _TYPES:
+        return _TYPES[measure]
+    if (found := spectral_period(measure)) is not None and found[1] == 0.05:
+        return f"SA({found[0]!r})", 1.0 / conventions.g
+    raise InvalidValueError(
+        f"OpenQuake knows {', '.join(_TYPES)} and sa(period) with 5 % damping, got {measure!r:.60}; "
+        "fit the curves against one of these"
+    )
+
+
+def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float]:
+    """Return mean and standard deviation of a lognormal variable.
+
+    Parameters
+    ----------
+    median : float
+        Its median [any unit].
+    dispersion : float
+        Standard deviation of its natural logarithm [-].
+
+    Returns
+    -------
+    mean, deviation : float
+        Of the variable [the same unit].
+
+    Raises
+    ------
+    InvalidValueError
+        If they are too large for a number.
+
+    Examples
+    --------
+    >>> mean, deviation = moments_of_lognormal(1.0, 0.5)
+    >>> round(mean, 6), round(deviation, 6)
+    (1.133148, 0.603901)
+    """
+    if dispersion > 25.0:
+        raise InvalidValueError(f"dispersion must be at most 25 for a finite standard deviation, got {dispersion:g}")
+    mean = median * math.exp(0.5 * dispersion**2)
+    return mean, mean * math.sqrt(math.expm1(dispersion**2))
+
+
+def _identifier(name: str) -> str:
+    made = re.sub(r"[^A-Za-z0-9_-]+", "_", name).strip("_")[:60]
+    return made or "fragility"
+
+
+def _identifiers(names: list[str]) -> list[str]:
+    """Names of limit states stand in a list separated by blanks: they hold letters, digits and underscores only."""
+    made = [re.sub(r"[^A-Za-z0-9]+", "_", name.replace(">", "above")).strip("_") or "state" for name in names]
+    made = [name if name[0].isalpha() else f"state_{name}" for name in made]
+    return [name if made.count(name) == 1 else f"{name}_{k}" for k, name in enumerate(made, 1)]
+
+
+def _word(text: str) -> str:
+    """Refuse what no XML file can hold, escaped or not."""
+    if not _XML.fullmatch(text):
+        raise InvalidValueError(f"words in XML must be printable and not empty, got {text!r:.60}")
+    return text

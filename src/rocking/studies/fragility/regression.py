@@ -1,0 +1,140 @@
+"""A straight line through points, with what is known of its slope and scatter."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+
+
+@dataclass(frozen=True, eq=False)
+class Regression:
+    """A line y = intercept + slope x by least squares.
+
+    Parameters
+    ----------
+    intercept, slope : float
+        The line.
+    scatter : float
+        Standard deviation of the residuals, with n - 2 degrees of freedom.
+    slope_error : float
+        Standard error of the slope.
+    determination : float
+        R squared: the share of the variance of y that the line explains.
+    residuals : ndarray
+        What is left of each y.
+    """
+
+    intercept: float
+    slope: float
+    scatter: float
+    slope_error: float
+    determination: float
+    residuals: FloatArray
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return int(self.residuals.size)
+
+    def at(self, x: Any) -> FloatArray:
+        """Return the line.
+
+        Parameters
+        ----------
+        x : array_like
+            Where.
+
+        Returns
+        -------
+        ndarray
+            Its height there.
+        """
+        return np.asarray(self.intercept + self.slope * np.asarray(x, dtype=np.float64))
+
+    def probability_above(self, y: float, x: Any) -> FloatArray:
+        """Return the probability that a new point is above a height, for normal residuals.
+
+        Parameters
+        ----------
+        y : float
+            The height.
+        x : array_like
+            Where.
+
+        Returns
+        -------
+        ndarray
+            The probability, without the uncertainty of the line itself [-].
+        """
+        from scipy.special import ndtr
+
+        margin = self.at(x) - y
+        if self.scatter == 0.0:
+            return np.asarray(margin > 0.0, dtype=np.float64)
+        return np.asarray(ndtr(margin / self.scatter))
+
+    @property
+    def p_value(self) -> float:
+        """Probability of a slope at least this large if there were none: Student's t with n - 2 degrees of freedom."""
+        from scipy.special import stdtr
+
+        if self.slope_error == 0.0:
+            return 1.0 if self.slope == 0.0 else 0.0
+        return float(2.0 * stdtr(self.count - 2, -abs(self.slope) / self.slope_error))
+
+    def summary(self) -> dict[str, Any]:
+        """Return the line as plain values.
+
+        Returns
+        -------
+        dict
+            Numbers.
+        """
+        names = ("intercept", "slope", "scatter", "slope_error", "determination", "p_value", "count")
+        return {name: getattr(self, name) for name in names}
+
+
+def regression(x: FloatArray, y: FloatArray) -> Regression:
+    """Return the line of least squares.
+
+    Parameters
+    ----------
+    x, y : ndarray
+        The points.
+
+    Returns
+    -------
+    Regression
+        The line.
+
+    Raises
+    ------
+    InvalidValueError
+        If there are fewer than three points, they are not finite, or all have the same x.
+
+    Examples
+    --------
+    >>> line = regression(np.array([0.0, 1.0, 2.0]), np.array([1.0, 3.0, 5.0]))
+    >>> line.slope, line.intercept, line.scatter
+    (2.0, 1.0, 0.0)
+    """
+    count = int(np.size(x))
+    if count < 3 or np.shape(x) != np.shape(y):
+        raise InvalidValueError(f"a line needs at least 3 points, got {count}; too few rocked and stayed standing?")
+    if not (np.isfinite(x).all() and np.isfinite(y).all()):
+        raise InvalidValueError("points of a line must be finite, got NaN or infinity")
+    dx, dy = x - x.mean(), y - y.mean()
+    spread, total = float(dx @ dx), float(dy @ dy)
+    if not spread > (1e-12 * max(1.0, float(np.abs(x).max()))) ** 2 * count:
+        raise InvalidValueError(f"a line needs points at different places, got {count} at {float(x.mean()):g}")
+    slope = float(dx @ dy) / spread
+    residuals = dy - slope * dx
+    left = float(residuals @ residuals)
+    scatter = math.sqrt(left / (count - 2))
+    explained = 1.0 - left / total if total > 0.0 else 0.0
+    intercept = float(y.mean() - slope * x.mean())
+    return Regression(intercept, slope, scatter, scatter / math.sqrt(spread), explained, residuals)

@@ -1,0 +1,196 @@
+"""How a history ended, in three states with levels between: no rocking, rocking beyond a level, overturned."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.dynamics.engine import Arrays
+from rocking.dynamics.outcome import Outcome
+from rocking.errors import InvalidValueError
+
+
+class RockingState(Enum):
+    """The three states of a body after a motion; the values are the sentences that a user reads."""
+
+    NO_ROCKING = "no rocking: the ground never lifted it"
+    ROCKING = "rocked and stayed standing"
+    OVERTURNED = "overturned"
+
+
+@dataclass(frozen=True)
+class LimitState:
+    """A state that a history reaches or does not; one that reaches a state has reached all before it.
+
+    Parameters
+    ----------
+    name : str
+        ``rocking``, ``rotation > 0.5 alpha`` or ``overturned``.
+    level : float
+        Rotation over alpha that must be exceeded: 0 for rocking at all, infinite for overturning [-].
+    """
+
+    name: str
+    level: float
+
+
+def limit_states(levels: Sequence[float] = (0.5,)) -> tuple[LimitState, ...]:
+    """Return the limit states: rocking, rotations beyond levels, overturned.
+
+    Parameters
+    ----------
+    levels : sequence of float
+        Rotations over alpha, above zero, each above the one before [-].
+
+    Returns
+    -------
+    tuple of LimitState
+        From the least to the worst.
+
+    Raises
+    ------
+    InvalidValueError
+        If a level is not a finite number above zero, or they do not increase.
+
+    Examples
+    --------
+    >>> [state.name for state in limit_states((0.2, 0.5))]
+    ['rocking', 'rotation > 0.2 alpha', 'rotation > 0.5 alpha', 'overturned']
+    """
+    given = np.atleast_1d(np.asarray(levels))
+    wanted = checks.positive_array("states", given) if given.size else np.empty(0)
+    if wanted.ndim != 1 or np.any(np.diff(wanted) <= 0.0):
+        raise InvalidValueError(f"states must be rotations over alpha, each above the one before, got {levels!r:.60}")
+    between = [LimitState(f"rotation > {level:.6g} alpha", float(level)) for level in wanted]
+    return LimitState("rocking", 0.0), *between, LimitState("overturned", math.inf)
+
+
+@dataclass(frozen=True, eq=False)
+class Responses:
+    """What the states are read from: the results of some histories, of any shape.
+
+    Parameters
+    ----------
+    outcome : ndarray of int
+        Codes of `Outcome`.
+    rotation : ndarray
+        Largest rotation over the alpha of its side; infinite if overturned, NaN if the history failed [-].
+    sides : ndarray of int
+        Side overturned to: 1 right, -1 left, 0 if it did not.
+    """
+
+    outcome: np.ndarray
+    rotation: FloatArray
+    sides: IntArray
+
+    @classmethod
+    def of(cls, arrays: Arrays, rocker: Any, shape: tuple[int, ...]) -> "Responses":
+        """Return the responses of one body from results.
+
+        Parameters
+        ----------
+        arrays : dict of str to ndarray
+            Results of `Histories.run`; of the keys of `RESULTS`, outcome and peak_rotation count.
+        rocker : Rocker
+            The body.
+        shape : tuple of int
+            Shape that the histories have.
+
+        Returns
+        -------
+        Responses
+            Of that shape.
+
+        Raises
+        ------
+        InvalidValueError
+            If the results are not of as many histories.
+        """
+        missing = {"outcome", "peak_rotation"} - set(arrays)
+        sizes = {np.size(arrays[name]) for name in ("outcome", "peak_rotation") if name in arrays}
+        if missing or sizes != {math.prod(shape)}:
+            raise InvalidValueError(
+                f"results must be outcome and peak_rotation of {math.prod(shape)} histories, got {sorted(arrays)} of "
+                f"{sorted(sizes)}; of another study?"
+            )
+        outcome = np.asarray(arrays["outcome"], dtype=np.int8).reshape(shape)
+        peak = np.asarray(arrays["peak_rotation"], dtype=np.float64).reshape(shape)
+        alpha = np.where(peak > 0.0, rocker.right.slenderness_angle, rocker.left.slenderness_angle)
+        rotation = np.where(outcome == Outcome.OVERTURNED.code, math.inf, np.abs(peak) / alpha)
+        sides = np.where(outcome == Outcome.OVERTURNED.code, np.where(peak > 0.0, 1, -1), 0)
+        return cls(outcome, np.where(outcome == Outcome.FAILED.code, math.nan, rotation), sides)
+
+    @property
+    def good(self) -> BoolArray:
+        """Which histories could be computed."""
+        return np.asarray(self.outcome != Outcome.FAILED.code)
+
+    @property
+    def rocked(self) -> BoolArray:
+        """Which histories rocked and stayed standing."""
+        return np.asarray(self.outcome == Outcome.ROCKED.code)
+
+    @property
+    def overturned(self) -> BoolArray:
+        """Which histories overturned."""
+        return np.asarray(self.outcome == Outcome.OVERTURNED.code)
+
+    def exceed(self, state: LimitState) -> BoolArray:
+        """Return which histories reached a limit state; failed ones did not.
+
+        Parameters
+        ----------
+        state : LimitState
+            The state.
+
+        Returns
+        -------
+        ndarray of bool
+            One entry a history.
+        """
+        if state.level == 0.0:
+            return self.rocked | self.overturned
+        if math.isinf(state.level):
+            return self.overturned
+        with np.errstate(invalid="ignore"):
+            return np.asarray(self.rotation > state.level)
+
+    def labelled(self, dimensions: Any) -> dict[str, Any]:
+        """Return outcome and rotation as variables of a labelled dataset.
+
+        Parameters
+        ----------
+        dimensions : str or tuple of str
+            Names of the dimensions.
+
+        Returns
+        -------
+        dict
+            Dimensions, values and attributes by name.
+        """
+        told = "largest rotation over alpha; infinite if overturned, NaN if the history failed"
+        codes = ", ".join(f"{one.code} {one.value}" for one in Outcome)
+        return {
+            "outcome": (dimensions, self.outcome, {"units": "1", "long_name": codes}),
+            "rotation": (dimensions, self.rotation, {"units": "1", "long_name": told}),
+        }
+
+    def counts(self) -> dict[RockingState, int]:
+        """Return how many histories ended in which state.
+
+        Returns
+        -------
+        dict of RockingState to int
+            Failed histories are in none.
+        """
+        codes = {
+            RockingState.NO_ROCKING: Outcome.NO_UPLIFT,
+            RockingState.ROCKING: Outcome.ROCKED,
+            RockingState.OVERTURNED: Outcome.OVERTURNED,
+        }
+        return {state: int((self.outcome == outcome.code).sum()) for state, outcome in codes.items()}

@@ -1,0 +1,245 @@
+"""One body under a set of motions: what all fragility analyses ask about."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import Body
+from rocking.conventions import FloatArray
+from rocking.dynamics.batch import PIECE
+from rocking.dynamics.engine import Arrays, empty_results
+from rocking.dynamics.histories import settings_of
+from rocking.dynamics.response import Motion
+from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.measures import IntensityMeasure, RockingScale, measure
+from rocking.studies.histories import Histories, Product, Table
+from rocking.studies.motion_set import MotionList, MotionSet
+
+Motions = MotionSet | Motion | Sequence[Motion]
+Progress = Callable[[int], None] | None
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """A body with its restitution, a set of motions, and the measure of their intensity.
+
+    Parameters
+    ----------
+    rocker : Rocker
+        The body as the equations see it.
+    motions : MotionSet
+        The motions.
+    measure : IntensityMeasure
+        The measure.
+    settings : Settings
+        How to integrate.
+    engine : {"auto", "fast", "reference"}
+        Which engine.
+    """
+
+    rocker: Rocker
+    motions: MotionSet
+    measure: IntensityMeasure
+    settings: Settings
+    engine: str = "auto"
+
+    @classmethod
+    def of(cls, body: Body, motions: Motions, restitution: Any, measure_name: Any, options: dict[str, Any]) -> Self:
+        """Return the subject of an analysis.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+        motions : GroundMotion or Pulse, a sequence of them, or MotionSet
+            All records or all pulses.
+        restitution : as for `simulate`
+            Model or its name, number, pair by side, or law.
+        measure_name : str or IntensityMeasure
+            The measure.
+        options : dict
+            ``gravity`` [m/s2], ``engine`` and other fields of `Settings`.
+
+        Returns
+        -------
+        Subject
+            The subject.
+        """
+        rest = dict(options)
+        engine = rest.pop("engine", "auto")
+        settings = settings_of(rest.pop("gravity", conventions.g), rest)
+        rocker = Rocker.of_body(body, restitution, settings.gravity)
+        given = motions if isinstance(motions, MotionSet) else MotionList(motions)
+        return cls(rocker, given, measure(measure_name), settings, engine)
+
+    @cached_property
+    def scale(self) -> RockingScale:
+        """What of the body the measures know: of the side that lifts first."""
+        side = min(self.rocker.right, self.rocker.left, key=lambda s: s.slenderness_angle)
+        alpha, gravity = side.slenderness_angle, self.settings.gravity
+        tangent = alpha if self.settings.linear else math.tan(alpha)
+        return RockingScale(gravity * tangent, side.frequency_parameter, gravity)
+
+    @cached_property
+    def intensities(self) -> FloatArray:
+        """Measure of each motion as it is given [unit of the measure]."""
+        return self.measure.values(self.motions, self.scale)
+
+    @cached_property
+    def uplift_threshold(self) -> float | None:
+        """Level of the measure above which every motion lifts the body, and below which none does, if there is one.
+
+        There is one for PGA, absolute or normalised, of a body with equal sides under horizontal motions.
+        """
+        levels = {"pga": self.scale.threshold, "pga/(g tan alpha)": 1.0}
+        equal = math.isclose(self.rocker.right.slenderness_angle, self.rocker.left.slenderness_angle, rel_tol=1e-12)
+        level = levels.get(self.measure.name)
+        horizontal = all(getattr(self.motions[k], "vertical", None) is None for k in range(len(self.motions)))
+        return level if level is not None and equal and horizontal else None
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the motions."""
+        return [self.motions[k].name for k in range(len(self.motions))]
+
+    @property
+    def label(self) -> dict[str, str]:
+        """Unit and words of the measure, for labelled datasets."""
+        unit = self.measure.unit
+        return {"units": "1" if unit == "-" else unit, "long_name": self.measure.words}
+
+    @property
+    def _sides(self) -> dict[str, float]:
+        return {
+            f"{short}_{foot}": getattr(getattr(self.rocker, foot), name)
+            for short, name in (("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"))
+            for foot in ("right", "left")
+        }
+
+    def product(self, factors: FloatArray) -> Product:
+        """Return the histories of every motion with factors.
+
+        Parameters
+        ----------
+        factors : ndarray, shape (factors,) or (motions, factors)
+            Factors on the motions [-].
+
+        Returns
+        -------
+        Product
+            The motion changes slowest.
+        """
+        sides = {name: np.array([[value]]) for name, value in self._sides.items()}
+        return Product(self.motions, sides, factors, law=self.rocker.law, settings=self.settings, engine=self.engine)
+
+    def table(self, motion: np.ndarray, factors: FloatArray) -> Table:
+        """Return histories given one by one.
+
+        Parameters
+        ----------
+        motion : ndarray of int
+            Number of each history's motion.
+        factors : ndarray
+            Factor on it [-].
+
+        Returns
+        -------
+        Table
+            The histories.
+        """
+        values = {name: np.array([value]) for name, value in self._sides.items()}
+        return Table(
+            self.motions, motion, values | {"scale": factors},
+            law=self.rocker.law, settings=self.settings, engine=self.engine,
+        )  # fmt: skip
+
+    def about(self) -> dict[str, Any]:
+        """Return what was asked about, as plain values for the attributes of a file.
+
+        Returns
+        -------
+        dict
+            Numbers and words.
+        """
+        from rocking import __version__
+
+        sides = {f"body_{name}": value for name, value in self._sides.items()}
+        return {
+            "software": f"rocking {__version__}",
+            "measure": self.measure.name,
+            "measure_words": self.measure.words,
+            "measure_unit": self.measure.unit,
+            "restitution": self.rocker.label,
+            **sides,
+            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in vars(self.settings).items()},
+        }
+
+
+def checked_levels(name: str, given: Any, unit: str) -> FloatArray:
+    """Return levels of a measure if they are above zero and increase.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    given : array_like
+        The levels [unit of the measure].
+    unit : str
+        Unit that the error shows.
+
+    Returns
+    -------
+    ndarray
+        The levels.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is none, one is not finite or not above zero, or they do not increase.
+    """
+    levels = np.atleast_1d(checks.positive_array(name, given, unit)).copy()
+    if levels.ndim != 1 or not levels.size or np.any(np.diff(levels) <= 0.0):
+        raise InvalidValueError(f"{name} must be numbers [{unit}], each above the one before, got {given!r:.60}")
+    return levels
+
+
+def results_of(histories: Histories, *, threads: int | None = None, progress: Progress = None) -> Arrays:
+    """Return the results of all histories, computed piece by piece.
+
+    Parameters
+    ----------
+    histories : Histories
+        The histories.
+    threads : int, optional
+        Threads of the fast engine; the results do not depend on them.
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+
+    Returns
+    -------
+    dict of str to ndarray
+        The keys of `rocking.dynamics.engine.RESULTS`.
+
+    Raises
+    ------
+    InvalidValueError
+        If progress is no function.
+    """
+    given: object = progress
+    if given is not None and not callable(given):
+        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {given!r:.60}")
+    results = empty_results(histories.count)
+    for first in range(0, histories.count, PIECE):
+        last = min(first + PIECE, histories.count)
+        for name, values in histories.run(first, last, threads=threads).items():
+            results[name][first:last] = values
+        if progress is not None:
+            progress(last - first)
+    return results

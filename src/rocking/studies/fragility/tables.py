@@ -1,0 +1,208 @@
+"""Fragility curves as tables of plain cells: parameters, points, and the style of FEMA P-58."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking import checks
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.curves import FragilityModel
+
+TABLES = ("parameters", "points", "fema-p58")
+"""Tables that can be written."""
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
+
+Cell = str | int | float
+
+
+@dataclass(frozen=True)
+class CellTable:
+    """A table of cells.
+
+    Parameters
+    ----------
+    title : str
+        What it shows.
+    header : tuple of str
+        Names of the columns, with units in brackets.
+    rows : tuple of tuple
+        Words and finite numbers; an empty word where there is no number.
+    """
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+    def safe(self) -> list[list[Cell]]:
+        """Return header and rows with all words made harmless to spreadsheets.
+
+        Returns
+        -------
+        list of list
+            The header first.
+        """
+        return [[safe_cell(cell) for cell in row] for row in (self.header, *self.rows)]
+
+
+def safe_cell(cell: Cell) -> Cell:
+    """Return a cell that no spreadsheet takes for a formula.
+
+    Parameters
+    ----------
+    cell : str, int or float
+        The cell.
+
+    Returns
+    -------
+    str, int or float
+        A word that starts with ``=``, ``+``, ``-``, ``@``, a tab or a line break gets an apostrophe before it; control
+        characters are taken out; numbers stay.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is a number that is not finite.
+
+    Examples
+    --------
+    >>> safe_cell("=1+1"), safe_cell(-1.5)
+    ("'=1+1", -1.5)
+    """
+    if not isinstance(cell, str):
+        if not math.isfinite(cell):
+            raise InvalidValueError(f"cells of a table must be finite, got {cell}")
+        return cell
+    clean = "".join(c if c.isprintable() else " " for c in cell)
+    return f"'{clean}" if cell.lstrip(" ").startswith(_FORMULA) else clean
+
+
+def table(model: FragilityModel, which: str = "parameters") -> CellTable:
+    """Return one of the tables of a model.
+
+    Parameters
+    ----------
+    model : FragilityModel
+        The curves.
+    which : {"parameters", "points", "fema-p58"}
+        Median and dispersion of each state; observed and fitted probabilities at each level; or what FEMA P-58 asks
+        for, a row a damage state.
+
+    Returns
+    -------
+    CellTable
+        The table.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such table.
+    """
+    made = {"parameters": _parameters, "points": _points, "fema-p58": fema_p58_table}
+    given: object = which
+    if not isinstance(given, str) or which not in made:
+        raise InvalidValueError(f"table must be one of {', '.join(TABLES)}, got {which!r:.60}")
+    return made[which](model)
+
+
+def _bracket(model: FragilityModel) -> str:
+    return f"[{model.unit}]"
+
+
+def _parameters(model: FragilityModel) -> CellTable:
+    header = (
+        "component", "state", "measure", f"median {_bracket(model)}", "dispersion [-]", "method",
+        f"lowest level {_bracket(model)}", f"highest level {_bracket(model)}", "histories", "source",
+    )  # fmt: skip
+    ends = float(model.levels[0]), float(model.levels[-1])
+    count = int(np.sum(model.trials))
+    rows = tuple(
+        (model.name, c.state, model.measure, c.median, c.dispersion, c.method, *ends, count, model.source)
+        for c in model.curves
+    )
+    return CellTable("parameters", header, rows)
+
+
+def _points(model: FragilityModel) -> CellTable:
+    fitted = {c.state: c.probability(model.levels) for c in model.curves}
+    observed = {f"observed {name} [histories]": np.asarray(values) for name, values in model.reached.items()}
+    columns = {
+        f"{model.measure} {_bracket(model)}": model.levels,
+        "histories": np.asarray(model.trials),
+        **observed,
+        **{f"fitted {name} [-]": values for name, values in fitted.items()},
+    }
+    rows = tuple(zip(*(values.tolist() for values in columns.values()), strict=True))
+    return CellTable("points", tuple(columns), rows)
+
+
+def fema_p58_table(
+    model: FragilityModel, description: str = "", demand_parameter: str = "", quality: str = "Analytical"
+) -> CellTable:
+    """Return the table of a component as FEMA P-58 asks for it, one row a damage state.
+
+    Parameters
+    ----------
+    model : FragilityModel
+        The curves; its name is the component's id.
+    description : str
+        What the component is.
+    demand_parameter : str
+        The demand in the words of the method; the measure, if not given.
+    quality : str
+        What the data are: a derivation by analysis, unless said otherwise.
+
+    Returns
+    -------
+    CellTable
+        Damage states DS1, DS2, ... from the least to the worst, sequential.
+
+    Examples
+    --------
+    >>> from rocking.studies.fragility.curves import FragilityCurve
+    >>> curve = FragilityCurve("overturned", 3.0, 0.4)
+    >>> model = FragilityModel("E2022.001", "pga", "m/s2", (curve,), [1.0, 5.0], [9, 9], {}, "a study")
+    >>> fema_p58_table(model).rows[0][:4]
+    ('E2022.001', '', 'DS1', 'overturned')
+    """
+    header = (
+        "Component ID", "Component Description", "Damage State", "Damage State Description", "Median Demand",
+        "Total Dispersion (Beta)", "Demand Parameter", "Demand Unit", "Damage State Relation",
+        "Data Quality and Relevance", "Source of Data", "Number of Histories",
+    )  # fmt: skip
+    demand, count = demand_parameter or model.measure, int(np.sum(model.trials))
+    unit = "dimensionless" if model.unit == "-" else model.unit
+    rows = tuple(
+        (
+            model.name, description, f"DS{k}", curve.state, curve.median, curve.dispersion, demand, unit,
+            "sequential", quality, model.source, count,
+        )
+        for k, curve in enumerate(model.curves, 1)
+    )  # fmt: skip
+    return CellTable("fema-p58", header, rows)
+
+
+def with_added_dispersion(dispersion: float, *others: float) -> float:
+    """Return the dispersion with others added, as the root of the sum of squares.
+
+    Parameters
+    ----------
+    dispersion : float
+        Dispersion from record to record [-].
+    *others : float
+        Of modelling, of construction, and so on [-].
+
+    Returns
+    -------
+    float
+        Total dispersion [-].
+
+    Examples
+    --------
+    >>> round(with_added_dispersion(0.3, 0.4), 12)
+    0.5
+    """
+    parts = [checks.positive("dispersion", dispersion)]
+    parts += [checks.within("dispersion", other, 0.0, 10.0) for other in others]
+    return math.hypot(*parts)

@@ -1,0 +1,156 @@
+"""Cloud analysis: the line, the three parts of the probability, plans, what is refused."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import rocking as rk
+from rocking.dynamics.outcome import Outcome
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.cloud import cloud, cloud_plan
+from rocking.studies.fragility.regression import regression
+
+BLOCK = rk.Block(width=0.5, height=2.0)
+
+
+def records(count, seed=3, samples=500):
+    """Noise in a window, smoothed, of peaks from 1.5 to 9 m/s2."""
+    random = np.random.default_rng(seed)
+    window = np.sin(np.linspace(0.0, math.pi, samples)) ** 2
+    made = []
+    for peak in np.geomspace(1.5, 9.0, count):
+        noise = np.convolve(random.normal(size=samples), np.ones(15) / 15.0, mode="same") * window
+        made.append(rk.GroundMotion(noise * peak / np.abs(noise).max(), 0.02))
+    return made
+
+
+MOTIONS = records(80)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return cloud(BLOCK, MOTIONS, restitution=0.9, states=(0.2, 0.5))
+
+
+def test_outcomes_are_those_of_the_motions_as_they_are(found):
+    """Every tenth motion, simulated alone by the reference engine, ends in the same state with the same rotation."""
+    alpha = math.atan(0.25)
+    for k in range(0, 80, 10):
+        one = rk.simulate(BLOCK, MOTIONS[k], restitution=0.9, engine="reference")
+        assert found.responses.outcome[k] == one.outcome.code
+        if one.outcome is Outcome.ROCKED:
+            assert found.responses.rotation[k] == pytest.approx(one.peak_rotation / alpha, rel=1e-6)
+    assert found.responses.overturned.sum() > 5
+
+
+def test_the_line_against_scipy(found):
+    """Slope, intercept, p-value, errors and R squared are those of scipy's independent regression."""
+    rocked = found.responses.rocked
+    peaks = np.array([np.abs(m.acceleration).max() for m in MOTIONS])
+    line = stats.linregress(np.log(peaks[rocked]), np.log(found.responses.rotation[rocked]))
+    mine = found.regression
+    assert mine.count == rocked.sum()
+    assert mine.slope == pytest.approx(line.slope, rel=1e-11)
+    assert mine.intercept == pytest.approx(line.intercept, rel=1e-11)
+    assert mine.slope_error == pytest.approx(line.stderr, rel=1e-11)
+    assert mine.determination == pytest.approx(line.rvalue**2, rel=1e-11)
+    assert mine.p_value == pytest.approx(line.pvalue, rel=1e-9)
+
+
+def test_three_parts_of_the_probability(found):
+    """No rocking, below, beyond and overturned add up to one, and each is what its definition says."""
+    levels, threshold = np.array([2.0, 2.6, 4.0, 8.0]), rk.conventions.g * 0.25
+    parts = found.parts(levels, 0.3)
+    np.testing.assert_allclose(sum(parts.values()), 1.0, rtol=1e-14)
+    assert parts["no rocking"].tolist() == [1.0, 0.0, 0.0, 0.0]
+    fit, line = found.fits["overturned"], found.regression
+    over = stats.norm.cdf(np.log(levels / fit.median) / fit.dispersion) * (levels > threshold)
+    beyond = stats.norm.sf((math.log(0.3) - line.intercept - line.slope * np.log(levels)) / line.scatter)
+    expected = over + (1.0 - over) * beyond * (levels > threshold)
+    np.testing.assert_allclose(found.probability(levels, 0.3), expected, rtol=1e-12)
+
+
+def test_probability_follows_what_was_observed(found):
+    """Averaged over the motions, the probability of 0.3 alpha is the observed share of it."""
+    observed = np.mean(found.responses.rotation > 0.3)
+    expected = found.probability(found.motion_levels, 0.3).mean()
+    # four standard errors of a share of 80
+    assert abs(expected - observed) < 4.0 * math.sqrt(0.25 / 80)
+
+
+def test_a_factor_is_a_scaled_set_of_motions(found):
+    """One factor on all motions gives what motions multiplied beforehand give, level and outcome."""
+    scaled = cloud(BLOCK, MOTIONS, restitution=0.9, factor=1.5)
+    beforehand = cloud(BLOCK, [m.scaled(1.5) for m in MOTIONS], restitution=0.9)
+    np.testing.assert_allclose(scaled.motion_levels, 1.5 * found.motion_levels, rtol=1e-14)
+    np.testing.assert_allclose(scaled.motion_levels, beforehand.motion_levels, rtol=1e-14)
+    assert scaled.responses.outcome.tolist() == beforehand.responses.outcome.tolist()
+
+
+def test_plan_and_failures(found):
+    """Results computed elsewhere finish as the same analysis; a failed one leaves the fits and is counted."""
+    histories, finish = cloud_plan(BLOCK, MOTIONS, restitution=0.9, states=(0.2, 0.5))
+    arrays = histories.run(0, 80)
+    same = finish(arrays)
+    assert same.fits["overturned"].median == found.fits["overturned"].median
+    arrays["outcome"][79], arrays["peak_rotation"][79] = Outcome.FAILED.code, math.nan
+    less = finish(arrays)
+    assert (less.failed, int(less.trials.sum()), less.fits["overturned"].observations) == (1, 79, 79)
+
+
+def test_counts_by_level_are_those_of_the_motions(found):
+    """Motions at equal levels are counted together."""
+    twice = cloud(BLOCK, [*MOTIONS[:5], *MOTIONS[:5]], restitution=0.9)
+    assert twice.levels.size == 5
+    assert twice.trials.tolist() == [2] * 5
+    assert sum(found.counts["overturned"]) == found.responses.overturned.sum()
+
+
+def test_rocking_gets_a_curve_where_no_level_decides():
+    """Against PGV the probability of rocking is fitted, and overturning never exceeds it."""
+    by_velocity = cloud(BLOCK, MOTIONS, restitution=0.9, measure="pgv")
+    levels = np.array([0.1, 0.3, 1.0])
+    rocks = by_velocity.probability_of_rocking(levels)
+    assert np.all((rocks > 0.0) & (rocks <= 1.0))
+    assert np.all(by_velocity.parts(levels, 0.5)["overturned"] <= rocks)
+
+
+def test_dataset_and_summary(found):
+    """Outcomes with units, and a summary that names definition, line and states."""
+    assert found.dataset.level.attrs["units"] == "m/s2"
+    told = json.loads(json.dumps(found.summary()))
+    assert sum(told["states"].values()) == 80
+    assert told["definition"].startswith("cloud")
+
+
+def test_a_line_without_scatter():
+    """Points on a line leave no scatter: the probability above it is a step, and the slope is certain."""
+    x = np.arange(4.0)
+    line, flat = regression(x, 2.0 * x), regression(x, np.ones(4))
+    assert line.probability_above(3.0, [1.0, 2.0]).tolist() == [0.0, 1.0]
+    assert (line.p_value, flat.p_value) == (0.0, 1.0)
+
+
+def test_summary_without_a_line():
+    """Too few motions that rocked leave no line: the summary says why, and the rest stands."""
+    told = cloud(BLOCK, MOTIONS[:3], restitution=0.9).summary()
+    assert "at least 3 points" in told["regression"]["none"]
+    assert told["states"]["no_rocking"] > 0
+
+
+def test_what_is_refused(found):
+    """Levels and rotations that are no positive numbers, and a line through fewer than three points."""
+    for level in (0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(InvalidValueError):
+            found.probability(level, 0.5)
+    with pytest.raises(InvalidValueError):
+        found.probability(3.0, 0.0)
+    with pytest.raises(InvalidValueError, match="at least 3 points"):
+        _ = cloud(BLOCK, MOTIONS[:3], restitution=0.9).regression
+    with pytest.raises(InvalidValueError, match="different places"):
+        regression(np.ones(5), np.arange(5.0))
+    with pytest.raises(InvalidValueError, match="finite"):
+        regression(np.array([0.0, 1.0, 2.0]), np.array([0.0, math.nan, 1.0]))

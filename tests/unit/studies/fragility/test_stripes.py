@@ -1,0 +1,142 @@
+"""Multiple stripes: counts against single simulations, plans, the check of uplift, failures."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.dynamics.outcome import Outcome
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.stripes import multiple_stripes, stripes_plan
+from rocking.studies.fragility.uplift import uplift_check
+
+BLOCK = rk.Block(width=0.5, height=2.0)
+
+
+def records(count, seed=7, samples=600):
+    """Noise in a window, smoothed: long enough to rock a block of 2 m."""
+    random = np.random.default_rng(seed)
+    window = np.sin(np.linspace(0.0, math.pi, samples)) ** 2
+    made = []
+    for k in range(count):
+        noise = np.convolve(random.normal(size=samples), np.ones(15) / 15.0, mode="same") * window
+        made.append(rk.GroundMotion(noise, 0.02, name=f"noise {k}"))
+    return made
+
+
+MOTIONS, LEVELS = records(12), np.array([1.5, 3.0, 4.5, 6.0, 8.0, 10.0])
+
+
+@pytest.fixture(scope="module")
+def stripes():
+    return multiple_stripes(BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5))
+
+
+def test_counts_against_single_simulations(stripes):
+    """The states of each history are those of a simulation of the record scaled by its own peak."""
+    expected = {name: np.zeros(LEVELS.size, int) for name in stripes.counts}
+    alpha = math.atan(0.25)
+    for level, target in enumerate(LEVELS):
+        for record in MOTIONS:
+            one = rk.simulate(BLOCK, record.scaled(target / float(np.abs(record.acceleration).max())), restitution=0.9)
+            over = one.outcome is Outcome.OVERTURNED
+            reached = (
+                one.outcome is not Outcome.NO_UPLIFT,
+                over or one.peak_rotation > 0.2 * alpha,
+                over or one.peak_rotation > 0.5 * alpha,
+                over,
+            )
+            for name, yes in zip(expected, reached, strict=True):
+                expected[name][level] += yes
+    assert list(expected) == ["rocking", "rotation > 0.2 alpha", "rotation > 0.5 alpha", "overturned"]
+    for name, counts in expected.items():
+        assert stripes.counts[name].tolist() == counts.tolist()
+    assert 0 < stripes.counts["overturned"].sum() < 12 * LEVELS.size
+    assert stripes.trials.tolist() == [12] * LEVELS.size
+    assert stripes.failed == 0
+
+
+def test_rocking_is_no_matter_of_probability(stripes):
+    """Under horizontal motions PGA alone decides: no history contradicts g tan(alpha), and no curve is fitted."""
+    assert stripes.uplift.threshold == pytest.approx(rk.conventions.g * 0.25, rel=1e-14)
+    assert (stripes.uplift.checked, stripes.uplift.contradictions) == (12 * LEVELS.size, 0)
+    assert "rocking" not in stripes.fits
+    assert stripes.counts["rocking"].tolist() == [0, 12, 12, 12, 12, 12]
+
+
+def test_the_check_of_uplift_can_fail(stripes):
+    """Negative control: against levels shifted by a factor of two the same histories contradict the threshold."""
+    shifted = np.broadcast_to(LEVELS * 0.5, (12, LEVELS.size))
+    assert uplift_check(stripes.subject, shifted, stripes.responses).contradictions == 24
+
+
+def test_no_threshold_with_a_vertical_part_or_another_measure():
+    """With a vertical part, or against PGV, no level decides: rocking gets a curve, and the check says so."""
+    shaken = [rk.GroundMotion(m.acceleration, 0.02, vertical=0.5 * m.acceleration[::-1]) for m in MOTIONS]
+    found = multiple_stripes(BLOCK, shaken, LEVELS, restitution=0.9)
+    assert found.uplift.threshold is None
+    assert "no level" in found.uplift.verdict
+    by_velocity, _ = stripes_plan(BLOCK, MOTIONS, [0.1, 0.2], measure="pgv")
+    assert by_velocity.count == 24
+
+
+def test_a_plan_computed_elsewhere_gives_the_same_analysis(stripes):
+    """Histories run in two pieces and joined finish as the analysis that was computed at once."""
+    histories, finish = stripes_plan(BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5))
+    assert histories.key() == stripes.histories.key()
+    halves = histories.run(0, 31), histories.run(31, histories.count)
+    found = finish({name: np.concatenate([half[name] for half in halves]) for name in halves[0]})
+    np.testing.assert_array_equal(found.responses.rotation, stripes.responses.rotation)
+    for name, fit in stripes.fits.items():
+        assert found.fits[name].median == fit.median
+
+
+def test_failed_histories_are_left_out_and_counted(stripes):
+    """One failed history lowers the trials of its level by one and touches nothing else."""
+    histories, finish = stripes_plan(BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5))
+    arrays = histories.run(0, histories.count)
+    arrays["outcome"][4] = Outcome.FAILED.code
+    arrays["peak_rotation"][4] = math.nan
+    found = finish(arrays)
+    assert found.failed == 1
+    assert found.trials.tolist() == [12, 12, 12, 12, 11, 12]
+    lost = {name: int(stripes.counts[name][4] - counts[4]) for name, counts in found.counts.items()}
+    assert lost == {s.name: int(stripes.responses.exceed(s)[0, 4]) for s in stripes.states}
+    assert np.isnan(found.responses.rotation[0, 4])
+
+
+def test_progress_and_threads_change_nothing(stripes):
+    """The numbers of done histories add up, and one thread gives the same states."""
+    done = []
+    found = multiple_stripes(
+        BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5), threads=1, progress=done.append
+    )
+    assert sum(done) == found.histories.count == 72
+    np.testing.assert_array_equal(found.responses.outcome, stripes.responses.outcome)
+
+
+def test_dataset_and_summary(stripes):
+    """All outcomes with units, and a summary of plain values that names its definition."""
+    data = stripes.dataset
+    assert dict(data.sizes) == {"motion": 12, "level": 6, "state": 4}
+    assert data.level.attrs["units"] == "m/s2"
+    assert data.exceeded.sel(state="overturned").values.tolist() == stripes.counts["overturned"].tolist()
+    assert "stripes" in data.attrs["definition"]
+    assert "0 of 72" in json.dumps(stripes.summary(), default=str)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"levels": []}, {"levels": [2.0, 1.0]}, {"levels": [1.0, math.nan]}, {"levels": [0.0, 1.0]}, {"measure": "x"},
+        {"measure": "pgv/pga"}, {"states": (0.5, 0.1)}, {"motions": []}, {"body": "block"}, {"restitution": 2.0},
+        {"progress": 3}, {"threads": 0}, {"gravity": -1.0}, {"engine": "slow"}, {"nonsense": 1},
+    ],
+)  # fmt: skip
+def test_bad_questions_are_refused(change):
+    """Nothing outside its range becomes a number."""
+    question = {"body": BLOCK, "motions": MOTIONS[:2], "levels": [2.0, 4.0]} | change
+    with pytest.raises(InvalidValueError):
+        multiple_stripes(**question)
