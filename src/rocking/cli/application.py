@@ -2,6 +2,7 @@
 
 import typer
 
+from rocking.cli.campaign import campaign
 from rocking.cli.cor import cor
 from rocking.cli.formats import formats
 from rocking.cli.inventory import inventory
@@ -30,6 +31,7 @@ def application() -> typer.Typer:
     app.callback()(_root)
     for command in (cor, simulate, paper, models, motion, formats, inventory):
         app.command()(command)
+    app.add_typer(campaign, name="campaign")
     return app
 
 

@@ -121,9 +121,12 @@ class Campaign:
         with disk.guarded(path, lambda: _UNKNOWN):
             plan = Identity.read(path).plan
             running = holder(path)
+            nothing = Status(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software)
             if not (path / LEDGER).exists():
-                return Status(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software)
+                return nothing
             with Ledger(path) as ledger:
+                if not ledger.begun:
+                    return nothing
                 chunks, histories = ledger.finished()
                 effort, damaged = ledger.effort(), tuple(ledger.events("damaged"))
             return Status(path, plan.count, histories, plan.chunks, chunks, running, *effort, damaged, plan.software)

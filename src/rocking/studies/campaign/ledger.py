@@ -57,6 +57,12 @@ class Ledger:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    @property
+    def begun(self) -> bool:
+        """Whether its tables are there: for an instant after its file is made they are not."""
+        (tables,) = self._database.execute("SELECT count(*) FROM sqlite_schema").fetchone()
+        return bool(tables)
+
     def record(self, record: Record) -> None:
         """Acknowledge a chunk; on return this is on disk.
 

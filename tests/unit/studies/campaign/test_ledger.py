@@ -99,3 +99,10 @@ def test_ledger_of_another_campaign_is_refused(finished: Campaign, make: Any, tm
     shutil.copy(other.folder / "ledger.sqlite", finished.folder / "ledger.sqlite")
     with pytest.raises(CampaignDamagedError, match="chunk 0 is not of this campaign"):
         finished.run()
+
+
+def test_a_ledger_that_is_just_being_made_says_nothing_is_done(tmp_path: Path, work: Any) -> None:
+    """Between the making of the file and of its tables, the status is that of a campaign that has not begun."""
+    campaign = Campaign.create(tmp_path / "c", work)
+    (campaign.folder / "ledger.sqlite").touch()
+    assert Campaign.status_of(campaign.folder).chunks_done == 0

@@ -1,0 +1,110 @@
+"""`rocking campaign`: very many histories that a job file describes, computed once, whatever happens on the way."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+_CODES = (
+    "Exit codes: 0 done; 2 bad input, or nothing to export yet; 3 interrupted, what is finished is safe; "
+    "4 the disk is full or cannot be written; 5 another process runs this campaign."
+)
+
+campaign = typer.Typer(
+    name="campaign",
+    help="Compute very many histories that a job file (TOML) describes; stop it, kill it, and resume it.",
+    epilog=_CODES,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+
+JobFile = Annotated[Path, typer.Argument(help="Job file (TOML); files in it are relative to it.")]
+Folder = Annotated[Path, typer.Argument(help="Folder of the campaign.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Workers = Annotated[
+    int | None,
+    typer.Option(min=1, max=4096, help="Processes, or threads of the serial executor; all cores if not given."),
+]
+Executor = Annotated[str, typer.Option(help="Who computes: serial (this process), processes, or dask.")]
+Address = Annotated[str | None, typer.Option(help="Address of a Dask scheduler that is there: tcp://host:8786.")]
+Inputs = Annotated[Path | None, typer.Option(help="Where the files of the job are now, if they were moved.")]
+
+
+@campaign.command(epilog=_CODES)
+def check(
+    job: JobFile,
+    out: Annotated[Path | None, typer.Option(help="Where it would be kept, to see if the disk has room.")] = None,
+    workers: Annotated[int, typer.Option(min=1, max=4096, help="Cores that would compute.")] = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Read a job and all its files, and say what it will take, from a trial of one second."""
+    from rocking.cli import campaign_output as output
+
+    with output.codes():
+        output.show_forecast(job, workers, out, as_json)
+
+
+@campaign.command(epilog=_CODES)
+def run(
+    job: JobFile,
+    out: Annotated[Path, typer.Option(help="New folder of the campaign.")],
+    workers: Workers = None,
+    executor: Executor = "serial",
+    address: Address = None,
+    as_json: AsJson = False,
+) -> None:
+    """Begin a campaign and compute it; the job is copied into its folder."""
+    from rocking.cli import campaign_output as output
+    from rocking.studies.job import Job, JobFolder
+
+    with output.codes():
+        who = output.executor_of(executor, workers, address)
+        output.compute(JobFolder.create(out, Job.read(job)), who, as_json)
+
+
+@campaign.command(epilog=_CODES)
+def resume(
+    folder: Folder,
+    workers: Workers = None,
+    executor: Executor = "serial",
+    address: Address = None,
+    inputs: Inputs = None,
+    as_json: AsJson = False,
+) -> None:
+    """Go on with a campaign where it stopped; files that have changed since are refused."""
+    from rocking.cli import campaign_output as output
+    from rocking.studies.job import JobFolder
+
+    with output.codes():
+        who = output.executor_of(executor, workers, address)
+        output.compute(JobFolder.open(folder, inputs), who, as_json)
+
+
+@campaign.command(epilog=_CODES)
+def status(folder: Folder, as_json: AsJson = False) -> None:
+    """Say how far a campaign is, also while another process runs it."""
+    from rocking.cli import campaign_output as output
+
+    with output.codes():
+        output.show_status(folder, as_json)
+
+
+@campaign.command(epilog=_CODES)
+def export(
+    folder: Folder,
+    to: Annotated[Path, typer.Option(help="File: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML.")],
+    what: Annotated[
+        str, typer.Option(help="histories, or of fragility campaigns: fragility, fema-p58 (.csv).")
+    ] = "histories",
+    restitution: Annotated[
+        str | None, typer.Option(help="Which restitution's fragility, where the job has several.")
+    ] = None,
+    inputs: Inputs = None,
+    as_json: AsJson = False,
+) -> None:
+    """Write the results of a finished campaign into a file, with where they come from."""
+    from rocking.cli import campaign_output as output
+
+    with output.codes():
+        output.write(folder, to, what, restitution, inputs, as_json)

@@ -1,0 +1,285 @@
+"""What `rocking campaign` prints, shows while it computes, and exits with."""
+
+import hashlib
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from rocking.errors import InvalidValueError
+from rocking.studies.campaign import (
+    CampaignBusyError,
+    CampaignInterrupted,
+    CampaignStorageError,
+    DaskExecutor,
+    Executor,
+    Progress,
+    Status,
+)
+from rocking.studies.job import Job, JobFolder, export, forecast, status_of
+
+INTERRUPTED, STORAGE, BUSY = 3, 4, 5
+"""Exit codes beside 0 (done) and 2 (bad input)."""
+
+
+@contextmanager
+def codes() -> Iterator[None]:
+    """Turn what stops a campaign into a sentence and its exit code; the rest passes.
+
+    Yields
+    ------
+    None
+        While it watches.
+
+    Raises
+    ------
+    typer.Exit
+        With the code.
+    """
+    try:
+        yield
+    except (CampaignInterrupted, CampaignStorageError, CampaignBusyError) as error:
+        print(f"rocking: {error}", file=sys.stderr)
+        kinds = ((CampaignInterrupted, INTERRUPTED), (CampaignStorageError, STORAGE), (CampaignBusyError, BUSY))
+        code = next(code for kind, code in kinds if isinstance(error, kind))
+        raise typer.Exit(code) from error
+    except KeyboardInterrupt as error:
+        print("rocking: stopped; what was recorded before is safe", file=sys.stderr)
+        raise typer.Exit(INTERRUPTED) from error
+
+
+def executor_of(name: str, workers: int | None, address: str | None) -> tuple[str | Executor, int | None]:
+    """Return who computes.
+
+    Parameters
+    ----------
+    name : {"serial", "processes", "dask"}
+        Who.
+    workers : int, optional
+        Threads or processes.
+    address : str, optional
+        Address of a Dask scheduler.
+
+    Returns
+    -------
+    executor : str or Executor
+        As `Campaign.run` takes it.
+    workers : int or None
+        The same.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such executor, or the options do not go with it.
+    """
+    if name not in {"serial", "processes", "dask"}:
+        raise InvalidValueError(f"--executor must be serial, processes or dask, got {name!r:.60}")
+    if (address is not None) != (name == "dask"):
+        raise InvalidValueError("--address goes with --executor dask, which needs it: tcp://host:8786")
+    if address is None:
+        return name, workers
+    if workers is not None:
+        raise InvalidValueError("--workers does not go with --executor dask: the cluster has its own")
+    return DaskExecutor(address), None
+
+
+def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: bool) -> None:
+    """Compute what is missing of a campaign, with a bar, and say what was done.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign.
+    who : tuple
+        As of `executor_of`.
+    as_json : bool
+        Whether to print JSON.
+    """
+    name = folder.job.document.campaign.name
+    with _bar(name, folder.campaign.plan.count, quiet=as_json) as tell:
+        done = folder.campaign.run(who[0], workers=who[1], progress=tell)
+    status = folder.campaign.status()
+    told = {
+        **_facts(folder.path, name, folder.job.document.campaign.kind, status),
+        "computed_chunks": done.computed,
+        "resumed_chunks": done.resumed,
+        "adopted_chunks": done.adopted,
+        "set_aside": list(done.set_aside),
+        "retries": list(done.retries),
+        "run_seconds": done.seconds,
+    }
+    if as_json:
+        print(json.dumps(told, indent=1))
+        return
+    print(_words(folder.path, name, status))
+    for sentence in (*done.set_aside, *done.retries):
+        print(f"note: {sentence}")
+    print(f"next: rocking campaign export {folder.path} --to result.nc")
+
+
+def show_status(folder: Path, as_json: bool) -> None:
+    """Print how far a campaign is.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign.
+    as_json : bool
+        Whether to print JSON.
+    """
+    found = status_of(folder)
+    if as_json:
+        print(json.dumps(_facts(folder, found.name, found.kind, found.status), indent=1))
+        return
+    print(_words(folder, found.name, found.status))
+    for sentence in found.status.damaged if found.status else ():
+        print(f"note: {sentence}")
+
+
+def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> None:
+    """Print what a job will take.
+
+    Parameters
+    ----------
+    path : Path
+        The job file.
+    workers : int
+        Cores that would compute.
+    out : Path, optional
+        Where it would be kept.
+    as_json : bool
+        Whether to print JSON.
+
+    Raises
+    ------
+    CampaignStorageError
+        If the disk is too small.
+    """
+    job = Job.read(path)
+    found = forecast(job, workers, out)
+    told = {
+        "job": str(path),
+        "campaign": job.document.campaign.name,
+        "kind": job.document.campaign.kind,
+        "dimensions": dict(job.study.dims),
+        "inputs": job.inputs,
+        **vars(found),
+    }
+    if as_json:
+        print(json.dumps(told, indent=1))
+    else:
+        over = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
+        print(f"{path}: {told['campaign']} ({told['kind']}), {len(job.inputs)} input files, no mistake found")
+        print(f"  histories  {found.histories} = {over}, in {found.chunks} chunks of {found.chunk}")
+        print(f"  time       about {_span(found.seconds)} with {workers} core(s): {found.rate:.0f} histories/s each")
+        print(f"  memory     about {found.memory / 1e6:.0f} MB")
+        free = "" if found.free is None else f", {found.free / 1e6:.0f} MB are free"
+        print(f"  disk       {found.disk / 1e6:.1f} MB{free}")
+    if found.free is not None and found.free < found.disk:
+        raise CampaignStorageError(f"{out}: {found.disk / 1e6:.0f} MB are needed, {found.free / 1e6:.0f} MB are free")
+
+
+def write(folder: Path, to: Path, what: str, restitution: str | None, inputs: Path | None, as_json: bool) -> None:
+    """Write the results of a campaign into a file, and say so.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign.
+    to : Path
+        The file.
+    what : str
+        What of it.
+    restitution : str, optional
+        Which restitution's.
+    inputs : Path, optional
+        Where the files of the job are now.
+    as_json : bool
+        Whether to print JSON.
+    """
+    opened = JobFolder.open(folder, inputs)
+    total = opened.campaign.plan.count
+    with _bar(f"writing {to.name}", total, quiet=as_json) as tell:
+        done = 0
+
+        def step(count: int) -> None:
+            nonlocal done
+            done += count
+            tell(Progress(done, total, 0, 0, 0.0, None, 0.0, 0))
+
+        path = export(opened, to, what, restitution=restitution, progress=step)
+    with path.open("rb") as file:
+        told = {
+            "file": str(path),
+            "what": what,
+            "histories": total,
+            "bytes": path.stat().st_size,
+            "sha256": hashlib.file_digest(file, "sha256").hexdigest(),
+        }
+    print(
+        json.dumps(told, indent=1) if as_json else f"wrote {path} ({told['bytes']} bytes, {what} of {total} histories)"
+    )
+
+
+def _facts(folder: Path, name: str, kind: str, status: Status | None) -> dict[str, Any]:
+    """Return how far a campaign is, under keys that stay the same."""
+    return {
+        "campaign": name,
+        "kind": kind,
+        "folder": str(folder),
+        "complete": status is not None and status.complete,
+        "histories": None if status is None else status.histories,
+        "histories_done": 0 if status is None else status.histories_done,
+        "chunks": None if status is None else status.chunks,
+        "chunks_done": 0 if status is None else status.chunks_done,
+        "running": None if status is None else status.running,
+        "worker_seconds": 0.0 if status is None else status.seconds,
+        "retried": 0 if status is None else status.retries,
+        "damaged": [] if status is None else list(status.damaged),
+        "software": None if status is None else status.software,
+    }
+
+
+def _words(folder: Path, name: str, status: Status | None) -> str:
+    if status is None:
+        return f"{name}: nothing is computed yet; go on with: rocking campaign resume {folder}"
+    if status.complete:
+        return f"{name}: all {status.histories} histories ({status.chunks} chunks) are safe in {folder}"
+    now = f"{status.running} runs it" if status.running else f"go on with: rocking campaign resume {folder}"
+    share = f"{status.histories_done} of {status.histories} histories ({status.chunks_done} of {status.chunks} chunks)"
+    return f"{name}: {share} are safe in {folder}; {now}"
+
+
+@contextmanager
+def _bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], None]]:
+    """Show on a terminal how far it is, how fast, and how long it will take."""
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn("{task.description}"), BarColumn(bar_width=20), TextColumn("{task.percentage:.0f} %"),
+        TextColumn("{task.fields[rate]}"), TimeElapsedColumn(), TextColumn("{task.fields[left]}"),
+    )  # fmt: skip
+    hidden = quiet or not sys.stderr.isatty()
+    with Bar(*columns, console=Console(stderr=True), transient=True, disable=hidden) as bar:
+        task = bar.add_task(what.replace("[", "\\["), total=total, rate="", left="")
+
+        def tell(progress: Progress) -> None:
+            rate = f"{progress.rate:.0f} histories/s" if progress.rate else ""
+            left = "" if progress.seconds_left is None else f"{_span(progress.seconds_left)} left"
+            bar.update(task, completed=progress.done_histories, rate=rate, left=left)
+
+        yield tell
+
+
+def _span(seconds: float) -> str:
+    """Return a time in words, to two figures."""
+    for unit, size in (("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2.0 * size:
+            return f"{seconds / size:.1f} {unit}"
+    return f"{seconds:.1f} s"

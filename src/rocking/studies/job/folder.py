@@ -1,0 +1,181 @@
+"""The folder of a campaign that a job file describes: the job, the hashes of its inputs, and the results."""
+
+import json
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from rocking.errors import InvalidValueError
+from rocking.studies.campaign import Campaign, CampaignDamagedError, CampaignMismatchError, Status, disk
+from rocking.studies.campaign.identity import NAME
+from rocking.studies.job.inputs import Inputs, refuse_changes
+from rocking.studies.job.job import Job
+from rocking.studies.job.reading import document_of, located
+
+JOB, INPUTS, HISTORIES = "job.toml", "inputs.json", "histories"
+"""Files of the folder, and its folder of results."""
+
+
+_NOTHING_LOST = "nothing that was recorded before is lost"
+
+
+@dataclass(frozen=True)
+class JobFolder:
+    """A campaign on disk with the job that describes it.
+
+    Parameters
+    ----------
+    path : Path
+        The folder.
+    job : Job
+        The job, its inputs checked against their hashes.
+    """
+
+    path: Path
+    job: Job
+
+    @classmethod
+    def create(cls, folder: str | os.PathLike[str], job: Job) -> "JobFolder":
+        """Begin a campaign: the job is copied, with the hashes of its inputs.
+
+        Parameters
+        ----------
+        folder : path
+            A new folder, or an empty one.
+        job : Job
+            The job.
+
+        Returns
+        -------
+        JobFolder
+            Nothing is computed yet.
+        """
+        path = Path(folder)
+        content = {"job_file": job.name, "job_folder": str(job.folder), "files": job.inputs}
+        with disk.guarded(path, lambda: "nothing was written"):
+            _refuse_used(path)
+            disk.make_folder(path)
+            disk.write_new(path / INPUTS, (json.dumps(content, indent=1, sort_keys=True) + "\n").encode())
+            disk.write_new(path / JOB, job.text.encode())
+        made = cls(path, job)
+        _ = made.campaign
+        return made
+
+    @classmethod
+    def open(cls, folder: str | os.PathLike[str], inputs: str | os.PathLike[str] | None = None) -> "JobFolder":
+        """Go on with a campaign, if its inputs are what they were.
+
+        Parameters
+        ----------
+        folder : path
+            The folder.
+        inputs : path, optional
+            Where the files are now that the job names; where they were, if not given.
+
+        Returns
+        -------
+        JobFolder
+            With all that is finished.
+
+        Raises
+        ------
+        InvalidValueError
+            If a file that the job names is not what it was.
+        """
+        path = Path(folder)
+        text, content = _kept(path)
+        base = Path(content["job_folder"] if inputs is None else inputs)
+        if not base.is_dir() and content["files"]:
+            raise InvalidValueError(f"{path}: the folder of its inputs, {base}, is not there; give --inputs")
+        with located(str(path)):
+            found = Inputs(base)
+            for item in content["files"]:  # before they are read: what has changed may not be readable
+                found.file(item["path"])
+            refuse_changes(content["files"], found.told())
+        job = Job.of_text(text, content["job_file"], base)
+        with located(str(path)):
+            refuse_changes(content["files"], job.inputs)
+        return cls(path, job)
+
+    @cached_property
+    def campaign(self) -> Campaign:
+        """The campaign; it is begun where a killed process had not come that far."""
+        where, histories = self.path / HISTORIES, self.job.study.histories
+        if (where / NAME).exists():
+            return Campaign.open(where, histories)
+        return Campaign.create(where, histories, self.job.document.campaign.chunk)
+
+
+@dataclass(frozen=True)
+class JobStatus:
+    """How far a campaign is, and what it is.
+
+    Parameters
+    ----------
+    path : Path
+        The folder.
+    name, kind : str
+        Of the campaign, as the job says.
+    status : Status or None
+        How far it is; None if it was killed before it had begun.
+    """
+
+    path: Path
+    name: str
+    kind: str
+    status: Status | None
+
+
+def status_of(folder: str | os.PathLike[str]) -> JobStatus:
+    """Return how far a campaign is; nothing is written, and its inputs are not needed.
+
+    Parameters
+    ----------
+    folder : path
+        The folder.
+
+    Returns
+    -------
+    JobStatus
+        As recorded at this instant.
+    """
+    path = Path(folder)
+    text, content = _kept(path)
+    with located(content["job_file"]):
+        told = document_of(text).campaign
+    begun = (path / HISTORIES / NAME).exists()
+    return JobStatus(path, told.name, told.kind, Campaign.status_of(path / HISTORIES) if begun else None)
+
+
+def _kept(path: Path) -> tuple[str, dict[str, Any]]:
+    """Return the job as it was copied, and what was noted of its inputs."""
+    with disk.guarded(path, lambda: _NOTHING_LOST):
+        if not (path / JOB).is_file():
+            raise CampaignMismatchError(f"{path}: no campaign of a job file here ({JOB} is missing)")
+        text, noted = (path / JOB).read_bytes(), (path / INPUTS).read_bytes() if (path / INPUTS).exists() else b""
+    try:
+        content = json.loads(noted)
+        files = [(item["path"], item["sha256"], item["bytes"]) for item in content["files"]]
+        assert all(isinstance(name, str) and isinstance(sha, str) for name, sha, _ in files)
+        return text.decode(), {
+            **content,
+            "job_folder": str(content["job_folder"]),
+            "job_file": str(content["job_file"]),
+        }
+    except (ValueError, KeyError, TypeError, AssertionError) as error:
+        raise CampaignDamagedError(
+            f"{path / INPUTS} is missing or damaged ({error}); begin a new campaign of {path / JOB} in another folder"
+        ) from error
+
+
+def _refuse_used(path: Path) -> None:
+    if path.exists() and not path.is_dir():
+        raise CampaignMismatchError(f"{path}: a file, not a folder")
+    there = {entry.name for entry in path.iterdir() if not entry.name.startswith(".")} if path.is_dir() else set()
+    if JOB in there:
+        raise CampaignMismatchError(f"{path}: a campaign is here already; go on with: rocking campaign resume {path}")
+    odd = sorted(there - {INPUTS})
+    if odd:
+        raise CampaignMismatchError(f"{path}: not empty ({odd[0]} ...); a campaign takes a folder of its own")

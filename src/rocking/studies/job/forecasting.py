@@ -1,0 +1,114 @@
+"""What a job will take: time from a short trial, memory and disk."""
+
+import shutil
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rocking.studies.campaign.chunks import DEFAULT_CHUNK
+from rocking.studies.job.job import Job
+
+BYTES = 75
+"""Results of one history [bytes]."""
+
+_BASE = 150_000_000
+_PIECE = 128
+_TRIAL = 1.0
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """What a job will take.
+
+    Parameters
+    ----------
+    histories, chunks, chunk : int
+        How many, in how many chunks, and how many in each.
+    rate : float
+        Histories of one core in a second [1/s].
+    seconds : float
+        Time of the workers for all of them [s].
+    memory : int
+        Memory of all workers together, roughly [bytes].
+    disk : int
+        Room for the results [bytes].
+    free : int or None
+        Room that there is, where a folder is given [bytes].
+    """
+
+    histories: int
+    chunks: int
+    chunk: int
+    rate: float
+    seconds: float
+    memory: int
+    disk: int
+    free: int | None
+
+
+def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> Forecast:
+    """Return what a job will take, from histories that are computed for a second.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    workers : int
+        How many cores.
+    folder : Path, optional
+        Where it is to be kept; nothing is written there.
+
+    Returns
+    -------
+    Forecast
+        Estimates; a motion that takes longer than others makes them wrong.
+    """
+    histories = job.study.histories
+    chunk = min(job.document.campaign.chunk or DEFAULT_CHUNK, histories.count)
+    chunks = -(-histories.count // chunk)
+    rate = _trial(job)
+    return Forecast(
+        histories.count,
+        chunks,
+        chunk,
+        rate,
+        histories.count / rate / workers,
+        workers * (_BASE + 4 * BYTES * chunk + _motions(job)),
+        BYTES * histories.count + 5000 * chunks,
+        None if folder is None else shutil.disk_usage(_existing(folder)).free,
+    )
+
+
+def _trial(job: Job) -> float:
+    """Return how many histories one core computes in a second."""
+    histories = job.study.histories
+    # spread over all of them, in an order that soon has been everywhere
+    count = min(512, -(-histories.count // _PIECE))
+    starts = np.random.default_rng(0).permutation(np.linspace(0, max(0, histories.count - _PIECE), count).astype(int))
+    histories.run(0, 1, threads=1)  # motions are laid out once
+    begun, done = time.perf_counter(), 0
+    for start in starts:
+        last = min(int(start) + _PIECE, histories.count)
+        histories.run(int(start), last, threads=1)
+        done += last - int(start)
+        if time.perf_counter() - begun > _TRIAL:
+            break
+    return done / (time.perf_counter() - begun)
+
+
+def _motions(job: Job) -> int:
+    """Return the room that motions take which are held in memory [bytes]."""
+    motions = job.parts.motions
+    if not motions.in_memory:
+        return 4096 * 8 * 8192
+    samples = sum(np.size(getattr(motions[k], "acceleration", 0)) for k in range(len(motions)))
+    return 3 * 8 * int(samples)
+
+
+def _existing(folder: Path) -> Path:
+    path = folder.resolve()
+    while not path.exists():
+        path = path.parent
+    return path

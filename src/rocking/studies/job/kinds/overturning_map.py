@@ -1,0 +1,65 @@
+"""Overturning maps as campaigns."""
+
+from rocking.errors import InvalidValueError
+from rocking.studies.axes import axis_of
+from rocking.studies.axis import Axis
+from rocking.studies.job.kinds.map_histories import MapHistories
+from rocking.studies.job.kinds.words import along, of_words
+from rocking.studies.job.parts import Parts
+from rocking.studies.job.reading import located
+from rocking.studies.job.study import Study
+from rocking.studies.job.tables import AxisTable
+from rocking.studies.plane import Plane
+from rocking.studies.question import Question
+from rocking.studies.sensitivity.sampled import sampled
+
+
+def map_study(parts: Parts) -> Study:
+    """Return the study of an overturning map.
+
+    Parameters
+    ----------
+    parts : Parts
+        What the job puts together: one body, one motion, one or more restitutions.
+
+    Returns
+    -------
+    Study
+        Over y and x, and the restitution before them where there are several.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is more than one motion, or the axes do not fit the body, the motion or each other.
+    """
+    table = parts.document.map
+    assert table is not None  # the document refuses to be without
+    if len(parts.motions) != 1:
+        raise InvalidValueError(f"motions: a map is of one motion, got {len(parts.motions)}")
+    axes = [_axis(f"map.{name}", given) for name, given in (("x", table.x), ("y", table.y))]
+    engine = parts.document.settings.engine
+    with located("map"):
+        questions = [
+            Question(parts.bodies[0], parts.motions[0], choice, parts.settings, None, engine)
+            for choice in parts.choices.values()
+        ]
+        planes = [Plane(question, *axes) for question in questions]
+        histories = MapHistories.of(planes)
+    x, y = axes
+    several = {"restitution": len(planes)} if len(planes) > 1 else {}
+    coordinates = {axis.name: along(axis.name, axis.values, axis.unit, axis.words) for axis in (y, x)}
+    if several:
+        coordinates["restitution"] = of_words("restitution", parts.choices, "restitution")
+    attributes = {"body": repr(parts.bodies[0]), "motion": parts.motions[0].name}
+    return Study(
+        sampled(histories),
+        several | {y.name: y.values.size, x.name: x.values.size},
+        coordinates,
+        attributes,
+        rescale=histories.rescaled,
+    )
+
+
+def _axis(where: str, table: AxisTable) -> Axis:
+    with located(where):
+        return axis_of((table.axis, table.numbers()))

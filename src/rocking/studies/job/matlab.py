@@ -1,0 +1,51 @@
+"""Results as a MATLAB file (version 5)."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.errors import InvalidValueError
+from rocking.studies.job.results import Results
+from rocking.studies.job.study import VARIABLES, blocks
+
+MOST_BYTES = 2**31 - 1
+"""Largest variable of a MATLAB file of version 5 [bytes]."""
+
+
+def to_matlab(results: Results, path: Path) -> None:
+    """Write results as a structure ``campaign``; the last dimension of the study is the last one there.
+
+    Parameters
+    ----------
+    results : Results
+        What to write: all of it is in memory then.
+    path : Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If MATLAB's format does not take arrays of that size.
+    """
+    from scipy.io import savemat
+
+    study = results.study
+    if 8 * study.histories.count > MOST_BYTES:
+        raise InvalidValueError(
+            f"MATLAB files take arrays up to 2 GiB, these are {study.histories.count} histories; take .nc, "
+            "which MATLAB reads"
+        )
+    whole = {name: np.empty(study.shape, kind) for name, (kind, _, _) in VARIABLES.items()}
+    for first, last, arrays in results.pieces():
+        for name, values in arrays.items():
+            for place, part in blocks(first, last, study.shape):
+                whole[name][place] = values[part].reshape(whole[name][place].shape)
+    told: dict[str, Any] = {
+        "dimensions": np.array(list(study.dims), dtype=object),
+        "coordinates": {name: coordinate.values for name, coordinate in study.coordinates.items()},
+        "results": whole,
+        "units": {name: unit for name, (_, unit, _) in VARIABLES.items()},
+        "provenance": results.attributes["provenance"],
+    }
+    savemat(path, {"campaign": told}, oned_as="column", appendmat=False, long_field_names=True)

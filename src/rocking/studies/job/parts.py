@@ -1,0 +1,259 @@
+"""What a job puts together: bodies, motions, restitutions and settings, made from its tables."""
+
+import json
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rocking.bodies import Body
+from rocking.bodies.formats.body_file import body_from_toml
+from rocking.dynamics.impact_law import RandomRestitution
+from rocking.dynamics.response import Motion
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError, MissingExtraError, RockingError
+from rocking.motions.formats.reader import read_motion
+from rocking.motions.pulses import pulse
+from rocking.restitution import model
+from rocking.studies.job.inputs import Inputs
+from rocking.studies.job.reading import located
+from rocking.studies.motion_set import MotionList, MotionSet
+from rocking.studies.record_set import SyntheticSet
+from rocking.studies.sensitivity.sampled import SampledRestitution
+
+if TYPE_CHECKING:
+    from rocking.studies.job.tables import Document, MotionTable, RestitutionTable
+
+MOST_IN_MEMORY = 100_000
+"""Synthetic motions that may be put into a list with others; a set of one family alone is made piece by piece."""
+
+_INLINE = "table"
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What the histories of a job are made of.
+
+    Parameters
+    ----------
+    document : Document
+        The tables of the job.
+    bodies : list of Body
+        The bodies; none for spectra.
+    motions : MotionSet
+        The motions.
+    choices : dict of str to Any
+        Restitutions by label.
+    settings : Settings
+        How to integrate.
+    inputs : Inputs
+        The files that were read.
+    """
+
+    document: "Document"
+    bodies: list[Body]
+    motions: MotionSet
+    choices: dict[str, Any]
+    settings: Settings
+    inputs: Inputs
+
+    @classmethod
+    def of(cls, document: "Document", folder: Path) -> "Parts":
+        """Return the parts that tables describe.
+
+        Parameters
+        ----------
+        document : Document
+            The tables.
+        folder : Path
+            Folder of the job file, where the files are that it names.
+
+        Returns
+        -------
+        Parts
+            All files are read.
+        """
+        inputs = Inputs(folder)
+        with located("settings"):
+            told = document.settings.model_dump(exclude={"engine"}, exclude_none=True)
+            settings = Settings(**told)
+        return cls(
+            document,
+            _bodies(document.body or [], inputs),
+            motions_of(document.motions, inputs),
+            choices_of(document.restitution, document.campaign.seed),
+            settings,
+            inputs,
+        )
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Settings and engine, as the studies take them."""
+        return {**vars(self.settings), "engine": self.document.settings.engine}
+
+    @property
+    def only_choice(self) -> Any:
+        """The restitution, where there is one."""
+        return next(iter(self.choices.values()))
+
+
+def _bodies(tables: list[dict[str, Any]], inputs: Inputs) -> list[Body]:
+    many = len(tables) > 1
+    made = []
+    for k, table in enumerate(tables):
+        with located(f"body[{k}]" if many else "body"):
+            made.append(_body(table, inputs))
+    return made
+
+
+def _body(table: dict[str, Any], inputs: Inputs) -> Body:
+    if "file" in table:
+        odd = sorted(set(table) - {"file"})
+        if odd:
+            raise InvalidValueError(f"file stands alone, without {', '.join(odd)}")
+        if not isinstance(table["file"], str):
+            raise InvalidValueError(f"file must be text, got {table['file']!r:.60}")
+        path = inputs.file(table["file"])
+        text, name, folder = path.read_text(encoding="utf-8-sig", errors="replace"), table["file"], path.parent
+        _note_outlines(text, str(Path(table["file"]).parent), inputs)
+        return body_from_toml(text, name=name, folder=folder)
+    short = {"width", "height"} & set(table)
+    full = {"units": table.get("units"), "block": {k: v for k, v in table.items() if k != "units"}} if short else table
+    text = "\n".join(f"{json.dumps(key)} = {_as_toml(value)}" for key, value in full.items() if value is not None)
+    _note_outlines(text, ".", inputs)
+    try:
+        return body_from_toml(text, name=_INLINE, folder=inputs.folder)
+    except MissingExtraError:
+        raise
+    except RockingError as error:
+        raise InvalidValueError(str(error).removeprefix(f"{_INLINE}: ")) from error
+
+
+def _note_outlines(text: str, folder: str, inputs: Inputs) -> None:
+    """Note the files of outlines that a body file names; what is wrong with it is said when it is read."""
+    try:
+        regions = tomllib.loads(text).get("section", {}).get("region", [])
+        names = [region[key] for region in regions for key in ("geojson", "dxf") if key in region]
+    except (ValueError, AttributeError, TypeError):
+        return
+    for name in names:
+        if isinstance(name, str):
+            inputs.file((Path(folder) / name).as_posix())
+
+
+def _as_toml(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{json.dumps(k)} = {_as_toml(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(_as_toml(item) for item in value) + "]"
+    if isinstance(value, float):
+        return repr(value)
+    try:
+        return json.dumps(value)
+    except TypeError:
+        return str(value)  # dates: the body reader refuses them by name
+
+
+def motions_of(tables: "list[MotionTable]", inputs: Inputs) -> MotionSet:
+    """Return the motions that tables describe.
+
+    Parameters
+    ----------
+    tables : list of MotionTable
+        The tables.
+    inputs : Inputs
+        Takes note of the files.
+
+    Returns
+    -------
+    MotionSet
+        A `SyntheticSet` where there is one family and nothing else; otherwise a `MotionList`.
+
+    Raises
+    ------
+    InvalidValueError
+        If there are records and pulses, or a motion cannot be made.
+    """
+    sets: list[list[Motion] | SyntheticSet] = []
+    for k, table in enumerate(tables):
+        with located(f"motions[{k}]"):
+            sets.append(_some(table, inputs))
+    if len(sets) == 1 and isinstance(sets[0], SyntheticSet):
+        return sets[0]
+    count = sum(len(each) for each in sets)
+    if count > MOST_IN_MEMORY:
+        raise InvalidValueError(f"motions: a set of several sources may have up to {MOST_IN_MEMORY}, got {count}")
+    with located("motions"):
+        return MotionList([motion for each in sets for motion in _all(each)])
+
+
+def _all(motions: list[Motion] | SyntheticSet) -> Iterator[Motion]:
+    return (motions[k] for k in range(len(motions)))
+
+
+def _some(table: "MotionTable", inputs: Inputs) -> list[Motion] | SyntheticSet:
+    if table.synthetic is not None:
+        assert table.count is not None  # the table refuses to be without
+        levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
+        return SyntheticSet(table.synthetic, table.count, table.seed or 0, **levels)
+    made: list[Motion] = [pulse(word) for word in table.pulse] if table.pulse is not None else _records(table, inputs)
+    return made if table.scale == 1.0 else [motion.scaled(table.scale) for motion in made]
+
+
+def _records(table: "MotionTable", inputs: Inputs) -> list[Motion]:
+    names = [name for pattern in table.records or [] for name in inputs.named(pattern)]
+    twice = sorted({name for name in names if names.count(name) > 1}) if len(names) < 1000 else []
+    if twice:
+        raise InvalidValueError(f"records: {twice[0]} is named twice")
+    found: list[Motion] = []
+    for name in names:
+        path = inputs.file(name)
+        with located(f"records: {name}"):
+            found.append(read_motion(path, table.format, table.units, table.time_step, table.component, table.vertical))
+    return found
+
+
+def choices_of(table: "RestitutionTable", seed: int) -> dict[str, Any]:
+    """Return the restitutions that a table describes.
+
+    Parameters
+    ----------
+    table : RestitutionTable
+        The table.
+    seed : int
+        Seed of draws, where the table gives none.
+
+    Returns
+    -------
+    dict of str to Any
+        Models, coefficients, pairs by side or laws, as `simulate` takes them, by label.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such model, or two choices are the same.
+    """
+    with located("restitution"):
+        words = [*([table.model] if table.model else []), *(table.models or [])]
+        pairs: list[tuple[str, Any]] = [(model(word).label, model(word)) for word in words]
+        numbers = [*([] if table.value is None else [table.value]), *(table.values or [])]
+        pairs += [(f"{value!r}", value) for value in numbers]
+        if table.left is not None:
+            pairs.append((f"left {table.left!r}, right {table.right!r}", {"left": table.left, "right": table.right}))
+        if table.distribution is not None:
+            pairs.append(_drawn(table, seed))
+        labels = [label for label, _ in pairs]
+        twice = [label for label in labels if labels.count(label) > 1]
+        if twice:
+            raise InvalidValueError(f"{twice[0]} is given twice")
+        return dict(pairs)
+
+
+def _drawn(table: "RestitutionTable", seed: int) -> tuple[str, Any]:
+    spread = table.distribution
+    assert spread is not None  # asked before
+    times = model(spread.times) if isinstance(spread.times, str) else spread.times
+    law = SampledRestitution if spread.each == "history" else RandomRestitution
+    drawn = law.normal(spread.mean, spread.deviation, seed=seed if spread.seed is None else spread.seed, times=times)
+    return f"drawn per {spread.each}: {spread.mean:g} +- {spread.deviation:g}, seed {drawn.seed}", drawn

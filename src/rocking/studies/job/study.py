@@ -1,0 +1,171 @@
+"""A study as a campaign sees it: histories, what they are over, and what is read off their results."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from rocking.dynamics.engine import RESULTS, Arrays
+from rocking.errors import InvalidValueError
+from rocking.studies.histories import Histories
+from rocking.studies.overturning_map import VARIABLES as OF_MAPS
+from rocking.studies.question import modes_of, peak_ratio
+
+VARIABLES: dict[str, tuple[Any, str, str]] = {
+    name: (kind, *OF_MAPS[name]) for name, kind in RESULTS.items() if name in OF_MAPS
+} | {
+    "peak_time": (np.float64, "s", "time of the peak rotation; the end of the motion if it comes later"),
+    "peak_velocity": (np.float64, "rad/s", "largest angular velocity at samples and impacts"),
+    "first_uplift": (np.float64, "s", "first uplift"),
+    "uplifts": (np.int64, "1", "number of uplifts from rest"),
+    "mode": (np.int64, *OF_MAPS["mode"]),
+    "peak_ratio": (np.float64, *OF_MAPS["peak_ratio"]),
+}
+"""Type, unit and meaning of what is known of every history."""
+
+Block = tuple[tuple[slice, ...], slice]
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """Something that is known along one or more dimensions of a study.
+
+    Parameters
+    ----------
+    dims : tuple of str
+        The dimensions.
+    values : ndarray
+        The values: numbers, or words.
+    unit, words : str
+        Unit and meaning.
+    """
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    unit: str = "1"
+    words: str = ""
+
+    @property
+    def is_words(self) -> bool:
+        """Whether the values are words."""
+        return self.values.dtype.kind not in "iufb"
+
+
+@dataclass(frozen=True)
+class Study:
+    """Histories over dimensions.
+
+    Parameters
+    ----------
+    histories : Histories
+        What is computed; the last dimension changes fastest.
+    dims : dict of str to int
+        Length of every dimension, in order.
+    coordinates : dict of str to Coordinate
+        What is known along the dimensions.
+    attributes : dict
+        What the study is, as plain values.
+    finish : callable, optional
+        Takes the results of all histories and returns the fragility analysis of each restitution by label.
+    rescale : callable, optional
+        Takes first and last number of histories and their results, and changes those whose unit is not yet the user's.
+
+    Raises
+    ------
+    InvalidValueError
+        If the dimensions do not fit the histories.
+    """
+
+    histories: Histories
+    dims: dict[str, int]
+    coordinates: dict[str, Coordinate]
+    attributes: dict[str, Any] = field(default_factory=dict)
+    finish: Callable[[Arrays], dict[str, Any]] | None = None
+    rescale: Callable[[int, int, Arrays], Arrays] | None = None
+
+    def __post_init__(self) -> None:
+        """Check the dimensions."""
+        if int(np.prod(self.shape, dtype=np.int64)) != self.histories.count:
+            raise InvalidValueError(f"dimensions {self.dims} do not fit {self.histories.count} histories")
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Length of every dimension."""
+        return tuple(self.dims.values())
+
+    def derived(self, first: int, last: int, results: Arrays) -> Arrays:
+        """Return the results of some histories as users know them, with what follows from them.
+
+        Parameters
+        ----------
+        first, last : int
+            Numbers of histories.
+        results : dict of str to ndarray
+            The keys of `rocking.dynamics.engine.RESULTS`.
+
+        Returns
+        -------
+        dict of str to ndarray
+            The keys of `VARIABLES`.
+        """
+        found = results if self.rescale is None else self.rescale(first, last, dict(results))
+        sides = self.histories.rows(first, last).values
+        ratio = peak_ratio(found["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
+        whole = {**found, "mode": modes_of(found), "peak_ratio": ratio}
+        return {name: whole[name] for name in VARIABLES}
+
+    def places(self, first: int, last: int) -> dict[str, np.ndarray]:
+        """Return where some histories are along every dimension.
+
+        Parameters
+        ----------
+        first, last : int
+            Numbers of histories.
+
+        Returns
+        -------
+        dict of str to ndarray of int
+            By dimension.
+        """
+        found = np.unravel_index(np.arange(first, last, dtype=np.int64), self.shape)
+        return dict(zip(self.dims, found, strict=True))
+
+
+def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
+    """Return the rectangular blocks of an array that some of its entries, numbered row by row, fill.
+
+    Parameters
+    ----------
+    first, last : int
+        Numbers of entries: from the first up to but not including the last.
+    shape : tuple of int
+        Shape of the array.
+
+    Yields
+    ------
+    tuple
+        Where a block is in the array, and where its entries are among those from first to last.
+
+    Examples
+    --------
+    >>> for place, part in blocks(1, 8, (3, 3)):
+    ...     print([(p.start, p.stop) for p in place], part.start, part.stop)
+    [(0, 1), (1, 3)] 0 2
+    [(1, 2), (0, 3)] 2 5
+    [(2, 3), (0, 2)] 5 7
+    """
+    at = first
+    while at < last:
+        place = [int(i) for i in np.unravel_index(at, shape)]
+        # the longest run that starts here: whole rows of the innermost dimensions, as far as they are at their start
+        axis, width = len(shape) - 1, 1
+        while axis > 0 and place[axis] == 0 and at + width * shape[axis] <= last:
+            width *= shape[axis]
+            axis -= 1
+        run = max(1, min(shape[axis] - place[axis], (last - at) // width))
+        where = [slice(i, i + 1) for i in place]
+        where[axis] = slice(place[axis], place[axis] + run)
+        where[axis + 1 :] = [slice(0, n) for n in shape[axis + 1 :]]
+        yield tuple(where), slice(at - first, at - first + run * width)
+        at += run * width

@@ -1,0 +1,191 @@
+"""What may stand in a job file. Imported only when one is read: it loads pydantic."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from rocking.studies.campaign.chunks import LARGEST_CHUNK
+from rocking.studies.job.table import JobTable, Names, Numbers, Positive, Seed, Values, Words, in_list, refused
+
+Kind = Literal["overturning-map", "rocking-spectrum", "stripes", "incremental", "cloud", "histories"]
+
+NEEDS: dict[str, str] = {
+    "overturning-map": "map",
+    "rocking-spectrum": "spectrum",
+    "stripes": "fragility",
+    "incremental": "fragility",
+    "cloud": "fragility",
+    "histories": "histories",
+}
+"""The table that a kind of campaign has of its own."""
+
+_ANALYSES = [kind for kind, table in NEEDS.items() if table == "fragility"]
+
+
+class CampaignTable(JobTable):
+    """What the campaign is called and what it computes."""
+
+    name: Words
+    kind: Kind
+    note: str | None = None
+    chunk: Annotated[int, Field(ge=1, le=LARGEST_CHUNK)] | None = None
+    seed: Seed = 0
+
+
+class MotionTable(JobTable):
+    """Records, pulses, or a family of synthetic motions."""
+
+    records: Names | None = None
+    pulse: Names | None = None
+    synthetic: Words | None = None
+    format: Words | None = None
+    units: Words | None = None
+    time_step: Positive | None = None
+    component: Words | None = None
+    vertical: Words | None = None
+    scale: float = 1.0
+    count: Annotated[int, Field(ge=1, le=10_000_000)] | None = None
+    seed: Seed | None = None
+    pga: Positive | None = None
+    pgv: Positive | None = None
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "MotionTable":
+        source = self.chosen("records", "pulse", "synthetic")
+        own = {
+            "records": {"format", "units", "time_step", "component", "vertical", "scale"},
+            "pulse": {"scale"},
+            "synthetic": {"count", "seed", "pga", "pgv", "time_step"},
+        }[source]
+        odd = sorted(self.model_fields_set - own - {source})
+        if odd:
+            raise refused(f"{source} takes no {', '.join(odd)}; allowed beside it: {', '.join(sorted(own))}")
+        if source == "synthetic" and self.count is None:
+            raise refused("count is missing: how many synthetic motions?")
+        if self.scale == 0.0:
+            raise refused("scale must not be 0: nothing would move")
+        return self
+
+
+class RandomTable(JobTable):
+    """A coefficient that is drawn."""
+
+    mean: Annotated[float, Field(ge=0.0, le=1.0)]
+    deviation: Annotated[float, Field(gt=0.0, le=1.0)]
+    each: Literal["impact", "history"] = "impact"
+    times: str | float = 1.0
+    seed: Seed | None = None
+
+
+class RestitutionTable(JobTable):
+    """What an impact costs."""
+
+    model: Words | None = None
+    models: Annotated[list[Words], Field(min_length=1)] | None = None
+    value: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
+    values: Annotated[list[Annotated[float, Field(ge=0.0, le=10.0)]], Field(min_length=1)] | None = None
+    left: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
+    right: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
+    distribution: RandomTable | None = None
+
+    @model_validator(mode="after")
+    def _one_choice(self) -> "RestitutionTable":
+        if (self.left is None) != (self.right is None):
+            raise refused("left and right go together: one coefficient for each foot")
+        choices = {"model": "model", "value": "value", "distribution": "distribution", "left": "left"}
+        if not {"models", "values"} & self.model_fields_set:
+            self.chosen(*choices)
+        elif any(getattr(self, name) is not None for name in choices):
+            raise refused("models and values stand alone, without model, value, distribution, left and right")
+        return self
+
+
+class AxisTable(Values):
+    """An axis of a map."""
+
+    axis: Words
+
+
+class MapTable(JobTable):
+    """The two axes of a map."""
+
+    x: AxisTable
+    y: AxisTable
+
+
+class SpectrumTable(JobTable):
+    """The blocks of rocking spectra: slenderness angles [rad] and periods 2 pi/p [s]."""
+
+    slenderness_angles: Numbers
+    periods: Numbers
+    scale: float = 1.0
+
+
+class HistoriesTable(JobTable):
+    """Factors on the motions [-]."""
+
+    scales: Numbers = Values(values=[1.0])
+
+
+class FragilityTable(JobTable):
+    """Measure, levels [its unit] and states of a fragility analysis."""
+
+    measure: Words = "pga"
+    levels: Numbers | None = None
+    states: list[Positive] = Field(default=[0.5])
+    tolerance: Annotated[float, Field(ge=0.0, le=0.1)] | None = None
+    factor: Positive | None = None
+
+
+class SettingsTable(JobTable):
+    """How to integrate: what is left out has its usual value."""
+
+    gravity: Positive | None = None
+    linear: bool | None = None
+    rest_speed: float | None = None
+    most_impacts: int | None = None
+    longest_step: float | None = None
+    order: int | None = None
+    tolerance: float | None = None
+    engine: Literal["auto", "fast", "reference"] = "auto"
+
+
+class Document(JobTable):
+    """A job file."""
+
+    campaign: CampaignTable
+    body: Annotated[list[dict[str, Any]], Field(min_length=1), BeforeValidator(in_list)] | None = None
+    motions: Annotated[list[MotionTable], Field(min_length=1), BeforeValidator(in_list)]
+    restitution: RestitutionTable = RestitutionTable(model="ked")
+    map: MapTable | None = None
+    spectrum: SpectrumTable | None = None
+    histories: HistoriesTable | None = None
+    fragility: FragilityTable | None = None
+    settings: SettingsTable = SettingsTable()
+
+    @model_validator(mode="after")
+    def _fits_its_kind(self) -> "Document":
+        kind, wanted = self.campaign.kind, NEEDS[self.campaign.kind]
+        for table in dict.fromkeys(NEEDS.values()):
+            if table != wanted and getattr(self, table) is not None:
+                raise refused(f'[{table}] does not go with kind = "{kind}", which takes [{wanted}]')
+        if getattr(self, wanted) is None and kind not in {"histories", "cloud"}:
+            raise refused(f'[{wanted}] is missing, which kind = "{kind}" needs')
+        if (self.body is None) != (kind == "rocking-spectrum"):
+            needed = "is missing" if self.body is None else "makes no sense: a spectrum makes its own blocks"
+            raise refused(f"[body] {needed}")
+        if kind not in {"histories", "rocking-spectrum"} and len(self.body or ()) > 1:
+            raise refused(f'[[body]] can be given once only with kind = "{kind}", got {len(self.body or ())}')
+        if kind in _ANALYSES:
+            self._analysis_fits(kind, self.fragility or FragilityTable())
+        return self
+
+    @staticmethod
+    def _analysis_fits(kind: str, table: FragilityTable) -> None:
+        if (table.levels is None) != (kind == "cloud"):
+            what = "is missing" if table.levels is None else "makes no sense: a cloud takes the motions as they are"
+            raise refused(f"fragility.levels {what}")
+        if table.factor is not None and kind != "cloud":
+            raise refused(f'fragility.factor goes with kind = "cloud" only, this is "{kind}"')
+        if table.tolerance is not None and kind != "incremental":
+            raise refused(f'fragility.tolerance goes with kind = "incremental" only, this is "{kind}"')

@@ -1,0 +1,373 @@
+"""`rocking campaign`: what it prints and writes, its exit codes, and what a kill leaves behind."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from rocking.cli import application, main
+from rocking.cli.campaign import campaign
+from rocking.studies.campaign.lock import FolderLock
+from rocking.studies.job import status_of
+
+JOB = """
+[campaign]
+name = "sines"
+kind = "overturning-map"
+chunk = {chunk}
+[body]
+units = "m"
+width = 0.5
+height = 2.0
+[motions]
+pulse = "sine:amplitude=3,period=0.6"
+[map]
+x = {{ axis = "frequency_ratio", from = 0.5, to = 7, count = {columns} }}
+y = {{ axis = "amplitude_ratio", from = 1, to = 9, count = 20 }}
+"""
+
+PROGRAM = """
+import sys
+from rocking.cli import application, main
+from rocking.cli.campaign import campaign
+made = application.application
+def with_campaign():
+    app = made()
+    if all(group.name != "campaign" for group in app.registered_groups):
+        app.add_typer(campaign, name="campaign")
+    return app
+application.application = with_campaign
+if __name__ == "__main__":
+    main(["campaign", *sys.argv[1:]])
+"""
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Run the command as the shell does: exit code, what it printed, what it complained of."""
+    made = application.application
+
+    def with_campaign():
+        app = made()
+        if all(group.name != "campaign" for group in app.registered_groups):
+            app.add_typer(campaign, name="campaign")
+        return app
+
+    monkeypatch.setattr(application, "application", with_campaign)
+
+    def call(*words):
+        with pytest.raises(SystemExit) as left:
+            main(["campaign", *(str(word) for word in words)])
+        out, err = capsys.readouterr()
+        return left.value.code, out, err
+
+    return call
+
+
+@pytest.fixture
+def job(tmp_path):
+    """Write a job file: 20 rows of as many columns as wanted."""
+
+    def write(columns=30, chunk=100, more=""):
+        path = tmp_path / "job.toml"
+        path.write_text(JOB.format(columns=columns, chunk=chunk) + more, encoding="utf-8")
+        return path
+
+    return write
+
+
+def test_check(run, job, tmp_path):
+    """A job without a mistake: how many histories, chunks, time, memory, disk; nothing is written."""
+    path = job()
+    code, out, err = run("check", path, "--out", tmp_path / "c")
+    assert (code, err) == (0, "")
+    assert "600 = 20 amplitude_ratio x 30 frequency_ratio, in 6 chunks of 100" in out
+    for word in ("time", "memory", "disk", "free"):
+        assert word in out
+    assert not (tmp_path / "c").exists()
+
+
+def test_check_as_json(run, job):
+    """The keys are these, and stay these."""
+    code, out, _ = run("check", job(), "--json", "--workers", 2)
+    assert code == 0
+    assert list(json.loads(out)) == [
+        "job", "campaign", "kind", "dimensions", "inputs", "histories", "chunks", "chunk", "rate", "seconds", "memory",
+        "disk", "free",
+    ]  # fmt: skip
+    assert json.loads(out)["histories"] == 600
+
+
+STATUS = [
+    "campaign", "kind", "folder", "complete", "histories", "histories_done", "chunks", "chunks_done", "running",
+    "worker_seconds", "retried", "damaged", "software",
+]  # fmt: skip
+RUN = ["computed_chunks", "resumed_chunks", "adopted_chunks", "set_aside", "retries", "run_seconds"]
+
+
+def test_run_status_resume_export(run, job, tmp_path):
+    """The whole way in words, and again in JSON with keys that stay these."""
+    folder = tmp_path / "c"
+    code, out, err = run("run", job(), "--out", folder)
+    assert (code, err) == (0, "")
+    assert f"sines: all 600 histories (6 chunks) are safe in {folder}" in out
+    assert "next: rocking campaign export" in out
+    code, out, _ = run("status", folder)
+    assert (code, "all 600 histories" in out) == (0, True)
+    code, out, _ = run("resume", folder, "--json", "--executor", "serial", "--workers", 1)
+    told = json.loads(out)
+    assert (code, list(told)) == (0, STATUS + RUN)
+    assert (told["complete"], told["computed_chunks"], told["resumed_chunks"]) == (True, 0, 6)
+    code, out, _ = run("status", folder, "--json")
+    assert (code, list(json.loads(out))) == (0, STATUS)
+    code, out, _ = run("export", folder, "--to", tmp_path / "r.csv", "--json")
+    assert (code, list(json.loads(out))) == (0, ["file", "what", "histories", "bytes", "sha256"])
+    assert len((tmp_path / "r.csv").read_text().splitlines()) == 601
+    code, out, _ = run("export", folder, "--to", tmp_path / "r.mat")
+    assert (code, "wrote" in out) == (0, True)
+
+
+def test_processes(run, job, tmp_path):
+    """Two processes: the same results as one."""
+    assert run("run", job(), "--out", tmp_path / "a", "--executor", "processes", "--workers", 2)[0] == 0
+    assert run("run", job(), "--out", tmp_path / "b")[0] == 0
+    for name in "ab":
+        assert run("export", tmp_path / name, "--to", tmp_path / f"{name}.csv")[0] == 0
+    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        (("check", "none.toml"), "there is no such job file"),
+        (("run", "{job}", "--out", "{used}"), "not empty"),
+        (("run", "{job}", "--out", "{new}", "--executor", "cloud"), "--executor must be serial, processes or dask"),
+        (("run", "{job}", "--out", "{new}", "--executor", "dask"), "--address goes with --executor dask"),
+        (("run", "{job}", "--out", "{new}", "--address", "tcp://a:1"), "--address goes with --executor dask"),
+        (
+            ("run", "{job}", "--out", "{new}", "--executor", "dask", "--address", "tcp://a:1", "--workers", "2"),
+            "cluster",
+        ),
+        (("run", "{job}", "--out", "{new}", "--workers", "0"), "workers"),
+        (("run", "{job}"), "out"),
+        (("status", "{used}"), "no campaign of a job file here"),
+        (("resume", "{used}"), "no campaign of a job file here"),
+        (("export", "{used}", "--to", "r.nc"), "no campaign of a job file here"),
+        (("stop",), "stop"),
+    ],
+)
+def test_refusals(run, job, tmp_path, words, wanted):
+    """Bad input: exit code 2, one sentence, no traceback, nothing written."""
+    used = tmp_path / "used"
+    used.mkdir()
+    (used / "thesis.tex").touch()
+    given = [word.format(job=job(), used=used, new=tmp_path / "new") for word in words]
+    code, out, err = run(*given)
+    assert (code, out) == (2, "")
+    assert err.startswith("rocking: ")
+    assert len(err.strip().splitlines()) == 1
+    assert wanted in err
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("more", ["[restitution]\nmodel = 'kedd'\n", "[map.z]\n", "[settings]\norder = 5\n", "[["])
+def test_mistakes_in_the_job(run, job, tmp_path, more):
+    """A mistake in the job: check and run say the same sentence and leave with 2."""
+    path = job(more=more)
+    said = [run("check", path), run("run", path, "--out", tmp_path / "new")]
+    assert said[0] == said[1]
+    assert said[0][0] == 2
+    assert said[0][2].startswith("rocking: job.toml: ")
+    assert len(said[0][2].splitlines()) == 1
+    assert not (tmp_path / "new").exists()
+
+
+def begun(tmp_path, path):
+    """A campaign that was stopped after one chunk of six, by Ctrl-C in its progress."""
+    from rocking.studies.campaign import CampaignInterrupted
+    from rocking.studies.job import Job, JobFolder
+
+    folder = JobFolder.create(tmp_path / "c", Job.read(path))
+
+    def stop(progress):
+        if progress.chunks_done == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(CampaignInterrupted):
+        folder.campaign.run(workers=1, progress=stop)
+    return tmp_path / "c"
+
+
+def test_half_done(run, job, tmp_path):
+    """A campaign that stopped says how to go on, exports nothing, and goes on."""
+    folder = begun(tmp_path, job())
+    code, out, _ = run("status", folder)
+    assert code == 0
+    assert "100 of 600 histories (1 of 6 chunks)" in out
+    assert "rocking campaign resume" in out
+    code, _, err = run("export", folder, "--to", tmp_path / "r.nc")
+    assert code == 2
+    assert err.startswith("rocking: nothing to export because 1 of 6 chunks")
+    code, out, _ = run("resume", folder, "--json")
+    assert (code, json.loads(out)["computed_chunks"]) == (0, 5)
+
+
+def test_busy(run, job, tmp_path):
+    """Another process runs it: exit code 5, and the status names it."""
+    folder = begun(tmp_path, job())
+    with FolderLock(folder / "histories"):
+        code, _, err = run("resume", folder)
+        assert (code, len(err.splitlines())) == (5, 1)
+        assert str(os.getpid()) in err
+        assert str(os.getpid()) in run("status", folder)[1]
+
+
+def test_disk_full(run, job, tmp_path, monkeypatch):
+    """A full disk: exit code 4, and a sentence that says what is safe."""
+    folder = begun(tmp_path, job())
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("rocking.studies.campaign.disk.write_new", full)
+    code, _, err = run("resume", folder)
+    assert (code, len(err.splitlines())) == (4, 1)
+    assert "No space left on device; 1 of 6 chunks are safe" in err
+
+
+def test_damage_is_told(run, job, tmp_path):
+    """A shard that changed on disk is computed again, and the status goes on saying so."""
+    folder = begun(tmp_path, job())
+    (shard,) = (folder / "histories" / "shards").glob("*.shard")
+    shard.write_bytes(shard.read_bytes()[:-40])
+    code, out, _ = run("resume", folder)
+    assert code == 0
+    assert [line[:6] for line in out.splitlines()].count("note: ") == 1
+    assert "note: " in run("status", folder)[1]
+    assert json.loads(run("status", folder, "--json")[1])["damaged"]
+
+
+def test_killed_before_it_began(run, job, tmp_path):
+    """A folder with a job and nothing else: nothing is computed yet, and how to go on."""
+    folder = tmp_path / "c"
+    folder.mkdir()
+    (folder / "job.toml").write_bytes(job().read_bytes())
+    (folder / "inputs.json").write_text(json.dumps({"job_file": "a", "job_folder": str(tmp_path), "files": []}))
+    code, out, _ = run("status", folder)
+    assert (code, "nothing is computed yet; go on with: rocking campaign resume" in out) == (0, True)
+    told = json.loads(run("status", folder, "--json")[1])
+    assert (list(told), told["chunks"], told["complete"]) == (STATUS, None, False)
+    assert run("resume", folder)[0] == 0
+
+
+def test_check_of_a_small_disk(run, job, tmp_path, monkeypatch):
+    """A disk without room: what it would take, then exit code 4."""
+    usage = type("Usage", (), {"free": 1000})
+    monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
+    code, out, err = run("check", job(), "--out", tmp_path / "c")
+    assert (code, "0 MB are free" in out) == (4, True)
+    assert err.startswith(f"rocking: {tmp_path / 'c'}: 0 MB are needed")
+
+
+def test_cluster_by_address():
+    """--executor dask makes the executor of that address; nothing is asked of the network yet."""
+    from rocking.cli.campaign_output import executor_of
+
+    executor, workers = executor_of("dask", None, "tcp://127.0.0.1:1")
+    assert (executor.address, workers) == ("tcp://127.0.0.1:1", None)
+
+
+def test_run_on_a_cluster(run, job, tmp_path):
+    """A cluster that is there already computes the same file."""
+    distributed = pytest.importorskip("distributed")
+    path = job()
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        there = ("--executor", "dask", "--address", cluster.scheduler_address)
+        assert run("run", path, "--out", tmp_path / "a", *there)[0] == 0
+    assert run("run", path, "--out", tmp_path / "b")[0] == 0
+    for name in "ab":
+        assert run("export", tmp_path / name, "--to", tmp_path / f"{name}.csv")[0] == 0
+    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(0.04, "0.0 s"), (119.0, "119.0 s"), (150.0, "2.5 min"), (9000.0, "2.5 h")]
+)
+def test_times_in_words(seconds, words):
+    """Times in the unit that people would take."""
+    from rocking.cli.campaign_output import _span
+
+    assert _span(seconds) == words
+
+
+def test_ctrl_c_before_anything(run, job, tmp_path, monkeypatch):
+    """Ctrl-C while files are read: exit code 3 as well, and no traceback."""
+
+    def pressed(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("rocking.studies.job.Job.read", pressed)
+    code, out, err = run("run", job(), "--out", tmp_path / "c")
+    assert (code, out) == (3, "")
+    assert err == "rocking: stopped; what was recorded before is safe\n"
+
+
+def started(tmp_path, *words):
+    """The command in a process of its own."""
+    program = tmp_path / "program.py"
+    program.write_text(PROGRAM, encoding="utf-8")
+    return subprocess.Popen(
+        [sys.executable, str(program), *(str(word) for word in words)],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+
+
+def wait_for(folder, chunks):
+    """Wait until some chunks are recorded."""
+    until = time.monotonic() + 30.0
+    while time.monotonic() < until:
+        if (folder / "histories" / "campaign.json").exists():
+            done = status_of(folder).status.chunks_done
+            if done >= chunks:
+                return done
+        time.sleep(0.01)
+    raise AssertionError("it never started")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_kill_resume_export(run, job, tmp_path):
+    """SIGKILL in the middle, resume, then SIGINT, resume: the file is byte for byte that of an undisturbed run."""
+    path = job(columns=6000, chunk=500)
+    assert run("run", path, "--out", tmp_path / "whole")[0] == 0
+    assert run("export", tmp_path / "whole", "--to", tmp_path / "whole.nc")[0] == 0
+    folder = tmp_path / "c"
+    process = started(tmp_path, "run", path, "--out", folder, "--workers", 1)
+    wait_for(folder, 3)
+    os.killpg(process.pid, signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL
+    process.communicate()
+    before = status_of(folder).status.chunks_done
+    assert 3 <= before < 240
+    process = started(tmp_path, "resume", folder, "--executor", "processes", "--workers", 1)
+    wait_for(folder, before + 3)
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    assert (process.returncode, out) == (3, "")
+    assert err.startswith("rocking: stopped: ")
+    assert len(err.splitlines()) == 1
+    code, out, _ = run("resume", folder, "--json")
+    assert (code, json.loads(out)["resumed_chunks"] >= before + 3) == (0, True)
+    assert run("export", folder, "--to", tmp_path / "r.nc")[0] == 0
+    assert (tmp_path / "r.nc").read_bytes() == (tmp_path / "whole.nc").read_bytes()
+
+
+def test_help_says_the_exit_codes(run):
+    """The codes are in the help of every command."""
+    for words in ((), ("check",), ("run",), ("status",), ("resume",), ("export",)):
+        code, out, _ = run(*words, "--help")
+        assert code == 0
+        assert all(word in out for word in ("Exit codes", "0 done", "2 bad input", "3 interrupted"))
