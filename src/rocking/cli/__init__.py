@@ -1,4 +1,4 @@
-"""The command line: `rocking cor`, `simulate`, `motion`, `formats`, `inventory`, `paper`, `models`."""
+"""The command line: what `rocking --help` lists."""
 
 import sys
 import warnings

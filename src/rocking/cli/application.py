@@ -6,10 +6,13 @@ from rocking.cli.campaign import campaign
 from rocking.cli.cor import cor
 from rocking.cli.formats import formats
 from rocking.cli.inventory import inventory
+from rocking.cli.map import map
+from rocking.cli.minimum import minimum
 from rocking.cli.models import models
 from rocking.cli.motion import motion
 from rocking.cli.paper import paper
 from rocking.cli.simulate import simulate
+from rocking.cli.spectrum import spectrum
 
 
 def application() -> typer.Typer:
@@ -29,7 +32,7 @@ def application() -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    for command in (cor, simulate, paper, models, motion, formats, inventory):
+    for command in (cor, simulate, map, minimum, spectrum, inventory, paper, models, motion, formats):
         app.command()(command)
     app.add_typer(campaign, name="campaign")
     return app

@@ -1,14 +1,17 @@
-"""Pictures: the paper's figures, bodies, models against measurements, ground motions, responses, animations."""
+"""Pictures: the paper's figures, bodies, models against measurements, motions, responses, animations, studies."""
 
 from rocking.plots.animation import animate_gif, animate_html
 from rocking.plots.body_picture import body_picture, coefficient_picture
+from rocking.plots.crossings import crossings_picture
 from rocking.plots.figure_1 import figure_1
 from rocking.plots.figure_2 import figure_2
 from rocking.plots.ground_motion import ground_motion_picture
 from rocking.plots.hero import hero
+from rocking.plots.overturning_map import overturning_map_picture
 from rocking.plots.overview import calibration_figure, league_figure, models_and_measurements
 from rocking.plots.paper_figures import figure_3, figure_5, figure_6, figure_7, figure_8, figure_9
 from rocking.plots.response import response_picture
+from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 from rocking.plots.style import save, write
 
 __all__ = [
@@ -17,6 +20,7 @@ __all__ = [
     "body_picture",
     "calibration_figure",
     "coefficient_picture",
+    "crossings_picture",
     "figure_1",
     "figure_2",
     "figure_3",
@@ -29,7 +33,9 @@ __all__ = [
     "hero",
     "league_figure",
     "models_and_measurements",
+    "overturning_map_picture",
     "response_picture",
+    "rocking_spectrum_picture",
     "save",
     "write",
 ]

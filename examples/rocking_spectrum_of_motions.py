@@ -1,0 +1,33 @@
+"""Rocking spectra of synthetic motions: peak rotation over the size of the block, median and spread."""
+
+from pathlib import Path
+
+import numpy as np
+
+import rocking as rk
+from rocking.plots import write
+from rocking.plots.rocking_spectrum import rocking_spectrum_picture
+from rocking.studies import SyntheticSet, rocking_spectrum
+
+motions = SyntheticSet("point-source", count=40, seed=1, pga=0.3 * rk.conventions.g)
+angles, periods = np.arctan([1 / 4, 1 / 6, 1 / 8]), np.geomspace(0.8, 16.0, 60)
+found = rocking_spectrum([motions[k] for k in range(len(motions))], angles, periods)
+
+share = (found["mode"] >= 0).mean("motion")
+for place, slenderness in enumerate((4, 6, 8)):
+    one = share[place]
+    most = periods[np.flatnonzero(one.values > 0.0).max(initial=0)]
+    print(f"h/b = {slenderness}: up to {float(one.max()):.0%} of the motions overturn a block, none above {most:.2f} s")
+# of equal slenderness the large block stands where the small one falls
+assert (share.isel(period=-1) < 0.1).all()
+assert float(share.isel(slenderness_angle=2, period=0)) > 0.9
+# every motion exceeds g b / h, so every block is lifted
+assert (found["mode"] != -2).all()
+
+one = found.isel(motion=3, slenderness_angle=1, period=20)
+block = rk.Block.from_angle(angles[1], float(one["semi_diagonal"]))
+assert rk.simulate(block, motions[3], "ked").peak_rotation == abs(float(one["peak_rotation"]))
+
+folder = Path("gallery-output")
+folder.mkdir(exist_ok=True)
+write(rocking_spectrum_picture(found), folder / "rocking_spectrum_of_motions.png")

@@ -1,0 +1,91 @@
+"""Files that the commands of studies write, and their numbers as JSON."""
+
+from pathlib import Path
+from typing import Any
+
+from rocking.errors import InvalidValueError
+
+
+def check_files(picture: Path | None, *others: Path | None) -> None:
+    """Refuse, before anything is computed, files that could not be written.
+
+    Parameters
+    ----------
+    picture : Path, optional
+        A picture.
+    *others : Path, optional
+        Files of any name.
+
+    Raises
+    ------
+    InvalidValueError
+        If the suffix of the picture is unknown, or a folder is not there.
+    """
+    if picture is not None and picture.suffix not in {".png", ".svg", ".pdf"}:
+        raise InvalidValueError(f"a picture is .png, .svg or .pdf, got {picture.name!r}")
+    for path in (picture, *others):
+        if path is not None and not path.parent.is_dir():
+            raise InvalidValueError(f"no folder {str(path.parent)!r} to write {path.name!r} into")
+
+
+def write_csv(path: Path, head: list[str], columns: list[Any]) -> None:
+    """Write columns as comma-separated values, all digits kept.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    head : list of str
+        Names, with units in brackets.
+    columns : list of ndarray
+        The values.
+    """
+    import csv
+
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        # floats are written with all their digits
+        writer.writerows(zip(*(values.tolist() for values in columns), strict=True))
+
+
+def write_netcdf(path: Path, dataset: Any) -> None:
+    """Write a dataset as netCDF.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    dataset : xarray.Dataset
+        The dataset.
+    """
+    from rocking.dynamics.export import extra
+
+    extra("h5netcdf", "a netCDF file")
+    dataset.to_netcdf(path, engine="h5netcdf")
+
+
+def plain(values: Any) -> Any:
+    """Return an array as nested lists for JSON, with null where there is no number.
+
+    Parameters
+    ----------
+    values : array_like
+        Numbers.
+
+    Returns
+    -------
+    list or float or int or None
+        The numbers.
+
+    Examples
+    --------
+    >>> plain([[1.0, float("nan")]])
+    [[1.0, None]]
+    """
+    import numpy as np
+
+    array = np.asarray(values)
+    made = array.astype(object)
+    made[~np.isfinite(array)] = None
+    return made.tolist()

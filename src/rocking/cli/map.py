@@ -1,0 +1,92 @@
+"""`rocking map`: how a body ends over two parameters of it and its motion."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rocking.cli import shared_options as shared
+
+_HOW = "How it is computed"
+_OUTPUT = "Output"
+_AXIS = (
+    "NAME=FIRST:LAST:COUNT, with :log for equal ratios, or NAME=A,B,C; with units where the axis has one: "
+    "pga=0.1g:1g:50, slenderness_angle=5deg:20deg:16."
+)
+
+
+def map(
+    body: Annotated[
+        str | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit; left out with --width.")
+    ] = None,
+    record: Annotated[
+        str | None, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")
+    ] = None,
+    motion: Annotated[str | None, typer.Option(help="The same, as an option.")] = None,
+    x: Annotated[str, typer.Option(help=_AXIS)] = "frequency_ratio=0.5:10:100",
+    y: Annotated[str, typer.Option(help="The same for the upright axis.")] = "amplitude_ratio=1:12:100",
+    restitution: Annotated[
+        list[str] | None,
+        typer.Option(help="Model as in rocking models, or a coefficient; again for more, to compare; ked if none."),
+    ] = None,
+    refine: Annotated[
+        int | None, typer.Option(help="Levels of refinement along boundaries, each of half the spacing.")
+    ] = None,
+    width: shared.Width = None,
+    height: shared.Height = None,
+    depth: shared.Depth = None,
+    density: shared.Density = None,
+    angle: shared.Angle = None,
+    semi_diagonal: shared.SemiDiagonal = None,
+    unit: shared.Unit = None,
+    format: shared.Format = None,
+    units: shared.Units = None,
+    time_step: shared.TimeStep = None,
+    component: shared.Component = None,
+    vertical: shared.Vertical = None,
+    vertical_file: shared.VerticalFile = None,
+    linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
+    engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
+    gravity: Annotated[
+        float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=_HOW)
+    ] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="Draw the first map (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
+    ] = None,
+    csv: Annotated[Path | None, typer.Option(help="Write a line for every cell.", rich_help_panel=_OUTPUT)] = None,
+    netcdf: Annotated[
+        Path | None, typer.Option(help="Write everything, refined points too, as netCDF.", rich_help_panel=_OUTPUT)
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+) -> None:
+    """Print how a body ends over two parameters: shares of each way to overturn, safe islands, and where it begins."""
+    from rocking.cli import map_output, map_page_output
+    from rocking.cli.files_output import check_files
+    from rocking.cli.study_output import body_and_motion_of, settings_from
+
+    check_files(picture, csv, netcdf)
+    size = {"width": width, "height": height, "depth": depth, "density": density}
+    told = {"format": format, "units": units, "time_step": time_step, "component": component}
+    question = map_output.MapQuestion.of(
+        *body_and_motion_of(
+            (body, record, motion),
+            {**size, "angle": angle, "semi_diagonal": semi_diagonal, "unit": unit},
+            {**told, "vertical": vertical, "vertical_file": vertical_file},
+        ),
+        (x, y),
+        restitution,
+        refine,
+        settings_from(gravity, engine, linear, threads),
+        drawn=picture is not None,
+    )
+    answer = question.answered(quiet=as_json)
+    written = map_output.write(answer, picture, csv, netcdf)
+    if as_json:
+        print(map_page_output.as_json(answer))
+        return
+    map_page_output.show(answer)
+    for path in written:
+        print(f"wrote {path}")

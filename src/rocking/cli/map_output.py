@@ -1,0 +1,275 @@
+"""What `rocking map` computes, writes and draws."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rocking.bodies import Body
+from rocking.cli import study_output as shared
+from rocking.cli.files_output import write_csv, write_netcdf
+from rocking.cli.simulate_question import restitution_from
+from rocking.dynamics.response import Motion
+from rocking.errors import InvalidValueError
+from rocking.studies.axis import Axis
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from rocking.studies.islands import Islands
+    from rocking.studies.sensitivity import Sensitivity
+
+MOST_CELLS = 10_000_000
+"""A larger map is a campaign."""
+
+_LINE = 1e-4
+"""How closely the boundary of a picture is bisected: finer than a pixel."""
+
+
+@dataclass(frozen=True)
+class MapQuestion:
+    """A map that has been asked for.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    motion : GroundMotion or Pulse
+        The motion.
+    x, y : Axis
+        The axes.
+    choices : dict of str to restitution
+        By the word that was given; the first is the map that is printed.
+    refine : int, optional
+        Levels of refinement.
+    settings : dict
+        As of `rocking.cli.study_output.settings_from`.
+    """
+
+    body: Body
+    motion: Motion
+    x: Axis
+    y: Axis
+    choices: dict[str, Any]
+    refine: int | None
+    settings: dict[str, Any]
+
+    @classmethod
+    def of(
+        cls,
+        body: Body,
+        motion: Motion,
+        axes: tuple[str, str],
+        restitution: Sequence[str] | None,
+        refine: int | None,
+        settings: dict[str, Any],
+        *,
+        drawn: bool = False,
+    ) -> "MapQuestion":
+        """Put the question together.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+        motion : GroundMotion or Pulse
+            The motion.
+        axes : tuple of (str, str)
+            The axes as they were written, x first.
+        restitution : sequence of str, optional
+            Models or coefficients.
+        refine : int, optional
+            Levels of refinement.
+        settings : dict
+            As of `rocking.cli.study_output.settings_from`.
+        drawn : bool
+            Whether there will be a picture.
+
+        Returns
+        -------
+        MapQuestion
+            Checked as far as the study does not check it.
+
+        Raises
+        ------
+        InvalidValueError
+            If the axes cannot be read, the map is too large, or options contradict one another.
+        """
+        x, y = (axis_from(name, word) for name, word in zip(("--x", "--y"), axes, strict=True))
+        _check_size(x, y, drawn=drawn)
+        words = list(restitution or ["ked"])
+        twice = next((word for word in words if words.count(word) > 1), None)
+        if twice is not None:
+            raise InvalidValueError(f"--restitution {twice[:60]} is given twice")
+        if restitution and "restitution" in {x.name, y.name}:
+            raise InvalidValueError("--restitution is an axis of this map: leave the option out")
+        if refine is not None and not 1 <= refine <= 12:
+            raise InvalidValueError(f"--refine must be in [1, 12], got {refine}")
+        if refine is not None and len(words) > 1:
+            raise InvalidValueError("--refine is for one --restitution: several are compared cell by cell")
+        return cls(body, motion, x, y, {word: restitution_from(word) for word in words}, refine, settings)
+
+    def answered(self, *, quiet: bool = False) -> "MapAnswer":
+        """Compute the map, with every restitution.
+
+        Parameters
+        ----------
+        quiet : bool
+            Whether to show no bar.
+
+        Returns
+        -------
+        MapAnswer
+            What is printed.
+        """
+        from rocking.studies.islands import safe_islands
+        from rocking.studies.overturning_map import overturning_map
+        from rocking.studies.sensitivity import map_sensitivity
+
+        first, several = next(iter(self.choices)), len(self.choices) > 1
+        total = None if self.refine else self.x.values.size * self.y.values.size * len(self.choices)
+        compared = None
+        with shared.bar("histories", total, quiet=quiet) as tell:
+            options = {**self.settings, "progress": tell}
+            given = (self.body, self.motion, self.x, self.y)
+            if several:
+                compared = map_sensitivity(*given, self.choices, **options)
+                found = compared.datasets[first]
+            else:
+                found = overturning_map(*given, self.choices[first], refine=self.refine, **options)
+        return MapAnswer(self, found, safe_islands(found), compared)
+
+
+@dataclass(frozen=True, eq=False)
+class MapAnswer:
+    """A map, its islands, and how the restitution changes it.
+
+    Parameters
+    ----------
+    question : MapQuestion
+        What was asked.
+    found : xarray.Dataset
+        The map with the first restitution, as of `overturning_map`.
+    islands : Islands
+        Its safe islands.
+    compared : Sensitivity, optional
+        Maps with all restitutions, where there are several.
+    """
+
+    question: MapQuestion
+    found: "xr.Dataset"
+    islands: "Islands"
+    compared: "Sensitivity | None"
+
+    @property
+    def whole(self) -> "xr.Dataset":
+        """Everything as one dataset, over ``restitution`` too where there are several."""
+        if self.compared is None:
+            return self.found
+        from rocking.dynamics.export import extra
+
+        xarray = extra("xarray", "several maps")
+        maps = self.compared.datasets
+        over = xarray.DataArray(list(maps), dims="restitution", name="restitution")
+        made: xr.Dataset = xarray.concat(list(maps.values()), over, combine_attrs="drop_conflicts")
+        return made
+
+
+def axis_from(option: str, word: str) -> Axis:
+    """Return an axis from one word.
+
+    Parameters
+    ----------
+    option : str
+        Where it was given, for messages.
+    word : str
+        Such as ``pga=0.1g:1g:50``.
+
+    Returns
+    -------
+    Axis
+        The axis.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such axis, or its values cannot be read or are not allowed.
+
+    Examples
+    --------
+    >>> axis_from("--x", "semi_diagonal=40cm,80cm").values.tolist()
+    [0.4, 0.8]
+    """
+    from rocking.studies.axes import axes
+
+    name, equals, values = word.partition("=")
+    known = axes()
+    if name.strip() not in known:
+        raise InvalidValueError(f"{option}: no axis named {name.strip()!r:.60}; there are {', '.join(sorted(known))}")
+    if not equals or not values.strip():
+        raise InvalidValueError(
+            f"{option} must be {name.strip()}=FIRST:LAST:COUNT or {name.strip()}=A,B,C, got no values"
+        )
+    kind = known[name.strip()]
+    return kind(shared.row(kind.name, values, kind.unit)[0])
+
+
+def _check_size(x: Axis, y: Axis, *, drawn: bool) -> None:
+    if x.values.size * y.values.size > MOST_CELLS:
+        raise InvalidValueError(
+            f"a map must have at most {MOST_CELLS} cells, got {x.values.size} x {y.values.size}; "
+            "rocking campaign computes more"
+        )
+    if drawn and min(x.values.size, y.values.size) < 2:
+        raise InvalidValueError("a picture needs at least two values along --x and along --y, got one")
+
+
+def write(answer: MapAnswer, picture: Path | None, csv: Path | None, netcdf: Path | None) -> list[Path]:
+    """Write what was asked for.
+
+    Parameters
+    ----------
+    answer : MapAnswer
+        The map.
+    picture, csv, netcdf : Path, optional
+        Where each goes.
+
+    Returns
+    -------
+    list of Path
+        The files.
+    """
+    if picture is not None:
+        _draw(answer, picture)
+    if csv is not None:
+        _write_csv(answer.whole, csv)
+    if netcdf is not None:
+        write_netcdf(netcdf, answer.whole)
+    return [path for path in (picture, csv, netcdf) if path is not None]
+
+
+def _draw(answer: MapAnswer, path: Path) -> None:
+    from rocking.plots.overturning_map import overturning_map_picture
+    from rocking.plots.style import write as write_picture
+    from rocking.studies.boundary import boundary
+
+    asked = answer.question
+    lines = boundary(
+        asked.body, asked.motion, asked.x, asked.y, next(iter(asked.choices.values())),
+        levels=asked.refine or 0, tolerance=_LINE, **asked.settings,
+    ) if str(answer.found.attrs["engine"]).startswith("fast") else []  # fmt: skip
+    write_picture(overturning_map_picture(answer.found, lines), path)
+
+
+def _write_csv(found: "xr.Dataset", path: Path) -> None:
+    import numpy as np
+
+    cells = found.drop_dims("point", errors="ignore")
+    dims = cells["mode"].dims
+    grids = np.meshgrid(*(np.asarray(cells[name].values) for name in dims), indexing="ij")
+    # names of restitutions have no unit
+    units = {name: cells[name].attrs.get("units") for name in (*dims, *cells.data_vars)}
+    head = [f"{name} [{unit}]" if unit else str(name) for name, unit in units.items()]
+    columns = [part.ravel() for part in grids]
+    columns += [np.asarray(cells[name].transpose(*dims).values).ravel() for name in cells.data_vars]
+    write_csv(path, head, columns)

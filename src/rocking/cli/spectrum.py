@@ -1,0 +1,73 @@
+"""`rocking spectrum`: peak rotation of blocks of many sizes under motions."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rocking.cli import shared_options as shared
+
+_HOW = "How it is computed"
+_OUTPUT = "Output"
+
+
+def spectrum(
+    motions: Annotated[
+        list[str] | None, typer.Argument(help="Record files, or pulses such as sine:amplitude=3,period=0.8.")
+    ] = None,
+    motion: Annotated[list[str] | None, typer.Option(help="The same, as an option; again for more.")] = None,
+    slenderness: Annotated[
+        str, typer.Option(help="h/b: 4,6,8 or 4:8:5; with deg or rad the angle alpha: 10deg,15deg.")
+    ] = "4,6,8",
+    periods: Annotated[
+        str, typer.Option(help="2 pi / p in s: FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C.")
+    ] = "1:10:100",
+    restitution: Annotated[
+        str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")
+    ] = "ked",
+    scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
+    format: shared.Format = None,
+    units: shared.Units = None,
+    time_step: shared.TimeStep = None,
+    component: shared.Component = None,
+    vertical: shared.Vertical = None,
+    vertical_file: shared.VerticalFile = None,
+    linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
+    engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
+    gravity: Annotated[
+        float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)
+    ] = None,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=_HOW)
+    ] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="Draw the spectra (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
+    ] = None,
+    csv: Annotated[Path | None, typer.Option(help="Write a line for every block.", rich_help_panel=_OUTPUT)] = None,
+    netcdf: Annotated[Path | None, typer.Option(help="Write everything as netCDF.", rich_help_panel=_OUTPUT)] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+) -> None:
+    """Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."""
+    from rocking.cli import spectrum_output
+    from rocking.cli.files_output import check_files
+    from rocking.cli.study_output import settings_from
+
+    check_files(picture, csv, netcdf)
+    told = {"format": format, "units": units, "time_step": time_step, "component": component}
+    answer = spectrum_output.answer(
+        spectrum_output.motions_from([*(motions or ()), *(motion or ())], {
+            **told, "vertical": vertical, "vertical_file": vertical_file,
+        }),
+        spectrum_output.angles_from(slenderness),
+        spectrum_output.periods_from(periods),
+        restitution,
+        {**settings_from(gravity, engine, linear, threads), "scale": scale},
+        quiet=as_json,
+    )  # fmt: skip
+    written = spectrum_output.write(answer, picture, csv, netcdf)
+    if as_json:
+        print(spectrum_output.as_json(answer))
+        return
+    spectrum_output.show(answer)
+    for path in written:
+        print(f"wrote {path}")

@@ -1,0 +1,189 @@
+"""Peak rotation over the amplitude of a motion, with every stretch of amplitudes that overturns the body."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import Body
+from rocking.conventions import FloatArray, IntArray, g
+from rocking.dynamics.histories import settings_of
+from rocking.dynamics.response import Motion
+from rocking.errors import InvalidValueError
+from rocking.plots.overturning_map import CLASSES, FIRST, LATER, SECOND
+from rocking.plots.study_words import PEAK, note, plain, plain_log
+from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
+from rocking.studies.crossings import Crossings
+from rocking.studies.question import Question, sides_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_HEIGHT = 2.9
+_ROOM, _LEAST = 1.35, 0.045
+"""How far beyond the last crossing is shown, and the share of the width below which a stretch is not named."""
+
+_MOST_POINTS = 100_000
+
+
+@dataclass(frozen=True)
+class _Run:
+    """A stretch of amplitudes that overturn in one class, with the modes of its samples [m/s2, -]."""
+
+    low: float
+    high: float
+    kind: int
+    modes: IntArray
+
+    @property
+    def words(self) -> str:
+        if self.kind == LATER and np.unique(self.modes).size == 1:
+            return f"overturns after {self.modes[0]} impacts"
+        return CLASSES[self.kind][0]
+
+
+@in_journal_style
+def crossings_picture(
+    found: Crossings,
+    body: Body,
+    motion: Motion,
+    restitution: Any = "ked",
+    *,
+    points: int = 800,
+    gravity: float = conventions.g,
+    **settings: Any,
+) -> "Figure":
+    """Draw the peak rotation over the amplitude, and shade what overturns.
+
+    Parameters
+    ----------
+    found : Crossings
+        As of `minimum_overturning_acceleration` with the same body, motion, restitution and settings.
+    body : Body
+        The body.
+    motion : GroundMotion or Pulse
+        The motion.
+    restitution : as for `simulate`
+        The restitution.
+    points : int
+        Amplitudes of the curve, in equal ratios [-].
+    gravity : float
+        Acceleration of gravity [m/s2].
+    **settings
+        ``threads``, ``engine`` and fields of `Settings`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel, one column wide; what lies above the last crossing is cut short.
+
+    Raises
+    ------
+    InvalidValueError
+        If `found` is of something else, or a value is outside its range.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
+    >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)
+    >>> found = minimum_overturning_acceleration(block, pulse, 0.85)
+    >>> crossings_picture(found, block, pulse, 0.85).axes[0].get_xlabel()
+    'peak ground acceleration [g]'
+    """
+    if not isinstance(found, Crossings):
+        raise InvalidValueError(f"found must be of minimum_overturning_acceleration, got {type(found).__name__}")
+    count = int(checks.within("points", points, 2, _MOST_POINTS))
+    threads, engine = settings.pop("threads", None), settings.pop("engine", "auto")
+    question = Question(body, motion, restitution, settings_of(gravity, settings), threads, engine)
+    place = _places(found, count)
+    peaks, modes = _curve(question, place)
+    figure, (axes,) = new_figure(SINGLE, _HEIGHT)
+    _shade(axes, found, place, modes)
+    standing = np.isin(modes, (-2, -1))
+    axes.plot(place / g, np.where(standing, peaks, np.nan), color=INK, linewidth=0.9, zorder=4)
+    axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), zorder=1)
+    _finish(axes, found, place, peaks[standing])
+    note(axes, f"{plain(motion.name)}, scaled; restitution {plain(question.rocker.label)}")
+    return figure
+
+
+def _shown_until(found: Crossings) -> float:
+    """Return the largest amplitude worth showing [m/s2]."""
+    if not len(found):
+        return found.highest
+    return min(found.highest, _ROOM * float(found.acceleration[-1]))
+
+
+def _places(found: Crossings, count: int) -> FloatArray:
+    """Return amplitudes, closer together towards crossings, where the curve rises steeply [m/s2]."""
+    last = _shown_until(found)
+    near = np.concatenate([-np.geomspace(1e-7, 0.03, 25), np.geomspace(1e-7, 0.03, 25)])
+    around = (found.acceleration[:, None] * (1.0 + near)).ravel()
+    both = np.concatenate([np.geomspace(found.lowest, last, count), around])
+    return np.unique(both[(both >= found.lowest) & (both <= last)])
+
+
+def _curve(question: Question, place: FloatArray) -> tuple[FloatArray, IntArray]:
+    sides = {name: np.repeat(value, place.size) for name, value in sides_of([question.rocker]).items()}
+    # the same random numbers at every amplitude, as in the search
+    keys = np.zeros(place.size, dtype=np.int64)
+    made, _ = question.run({**sides, "scale": place / question.motion.peak}, np.ones(place.size), keys)
+    return made["peak_ratio"], made["mode"]
+
+
+def _shade(axes: "Axes", found: Crossings, place: FloatArray, modes: IntArray) -> None:
+    """Shade every overturning interval, in the colours of maps, and say how it overturns."""
+    from matplotlib.patches import Patch
+
+    last = _shown_until(found)
+    widest: dict[str, _Run] = {}
+    runs = [run for low, high in found.overturning_intervals for run in _runs(place, modes, low, min(high, last))]
+    for run in sorted(runs, key=lambda run: run.high / run.low):
+        # above the dashed line of alpha, which says nothing of what overturns
+        axes.axvspan(run.low / g, run.high / g, color=CLASSES[run.kind][1], linewidth=0.0, zorder=2)
+        if np.log(run.high / run.low) > _LEAST * np.log(last / found.lowest):
+            widest[run.words] = run
+    for run in widest.values():
+        _name(axes, run)
+    unnamed = {run.kind for run in runs} - {run.kind for run in widest.values()}
+    small = [Patch(facecolor=CLASSES[kind][1], label=CLASSES[kind][0]) for kind in sorted(unnamed)]
+    if small:
+        axes.figure.legend(handles=small, loc="outside lower center", ncols=2, fontsize=6.5, handlelength=1.2)
+
+
+def _runs(place: FloatArray, modes: IntArray, low: float, high: float) -> list[_Run]:
+    """Return the stretches of one class within an interval; between two samples the change is drawn halfway."""
+    inside = (place > low) & (place < high) & (modes >= 0)
+    if not inside.any():
+        return []
+    place, modes = place[inside], modes[inside]
+    kinds = np.select([modes == 0, modes == 1], [FIRST, SECOND], default=LATER)
+    changes = np.flatnonzero(np.diff(kinds))
+    ends = [low, *(0.5 * (place[changes] + place[changes + 1])).tolist(), high]
+    parts = np.split(modes, changes + 1)
+    firsts = kinds[np.append(0, changes + 1)].tolist()
+    return [_Run(ends[k], ends[k + 1], kind, parts[k]) for k, kind in enumerate(firsts)]
+
+
+def _name(axes: "Axes", run: _Run) -> None:
+    axes.text(
+        np.sqrt(run.low * run.high) / g, 0.5, run.words, transform=axes.get_xaxis_transform(), rotation=90, ha="center",
+        va="center", fontsize=7, color="white" if run.kind == FIRST else INK, zorder=5,
+    )  # fmt: skip
+
+
+def _finish(axes: "Axes", found: Crossings, place: FloatArray, peaks: FloatArray) -> None:
+    from matplotlib.ticker import LogLocator
+
+    most = float(np.nanmax(peaks, initial=1.0))
+    axes.set_ylim(0.0, 1.06 * min(most, 2.0))
+    axes.set_xlim(found.lowest / g, float(place[-1]) / g)
+    plain_log(axes, "x")
+    if place[-1] < 20.0 * found.lowest:
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 4.0, 6.0, 8.0)))
+    axes.set_xlabel("peak ground acceleration [g]")
+    axes.set_ylabel(PEAK)
+    axes.spines[["top", "right"]].set_visible(True)

@@ -1,0 +1,240 @@
+"""Words, symbols, colours and scales that the pictures of studies share."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.plots.style import INK
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SYMBOLS = {
+    "frequency_ratio": r"$\omega_p\,/\,p$ [-]",
+    "amplitude_ratio": r"$a_p\,/\,(g\,\tan\,\alpha)$ [-]",
+    "scale": "factor on the motion [-]",
+    "pga": "peak ground acceleration [m/s$^2$]",
+    "pgv": "peak ground velocity [m/s]",
+    "period": "period of the pulse [s]",
+    "duration": "duration of the motion [s]",
+    "semi_diagonal": "semi-diagonal R [m]",
+    "slenderness_ratio": "slenderness h/b [-]",
+    "slenderness_angle": r"slenderness angle $\alpha$ [rad]",
+    "width": "width [m]",
+    "height": "height [m]",
+    "restitution": "coefficient of restitution r [-]",
+    "pga/(g tan alpha)": r"PGA$\,/\,(g\,\tan\,\alpha)$ [-]",
+    "p pgv/(g tan alpha)": r"p PGV$\,/\,(g\,\tan\,\alpha)$ [-]",
+    "pgv/pga": "PGV / PGA [s]",
+    "arias": "Arias intensity [m/s]",
+    "cav": "cumulative absolute velocity [m/s]",
+    "housner": "Housner intensity [m]",
+}
+"""Labels of axes and of measures of intensity, by name."""
+
+SHORT = {
+    "pga": "PGA",
+    "pgv": "PGV",
+    "pgd": "PGD",
+    "pgv/pga": "PGV / PGA",
+    "pga/(g tan alpha)": r"PGA$\,/\,(g\,\tan\,\alpha)$",
+    "p pgv/(g tan alpha)": r"p PGV$\,/\,(g\,\tan\,\alpha)$",
+    "p pgv/pga": "p PGV / PGA",
+    "arias": "Arias",
+    "cav": "CAV",
+    "housner": "Housner",
+    "d5_95": r"$D_{5-95}$",
+}
+"""Short names of measures."""
+
+PEAK = r"peak rotation $\theta\,/\,\alpha$ [-]"
+
+STATES = ("#E3EDF5", "#7FB2D6", "#E69F00", "#CC79A7", "#7A2E00")
+"""From no rocking, light, to overturned, dark: apart in grey too."""
+
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
+"""Okabe and Ito's colours, and a line for each so that grey print keeps them apart."""
+
+
+def look(place: int) -> dict[str, Any]:
+    """Return colour and line of a curve.
+
+    Parameters
+    ----------
+    place : int
+        Its number, from 0.
+
+    Returns
+    -------
+    dict
+        For ``Axes.plot``.
+
+    Examples
+    --------
+    >>> look(0)["color"], look(6)["color"] == look(0)["color"]
+    ('#0072B2', True)
+    """
+    return {"color": COLORS[place % len(COLORS)], "linestyle": LINES[place % len(LINES)]}
+
+
+def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
+    """Return the label of an axis or a measure, with symbol and unit.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    unit : str
+        Its unit, for names that have no symbol here.
+    linear : bool
+        Whether the equations are the slender-linear ones, whose threshold is g alpha.
+
+    Returns
+    -------
+    str
+        The label.
+
+    Examples
+    --------
+    >>> axis_label("pgv"), axis_label("sa(0.5)", "m/s2")
+    ('peak ground velocity [m/s]', 'Sa(0.5 s) [m/s$^2$]')
+    """
+    if name in SYMBOLS:
+        return SYMBOLS[name].replace(r"\tan\,\alpha", r"\alpha") if linear else SYMBOLS[name]
+    shown = {"1": "-", "m/s2": "m/s$^2$", "": "-"}.get(unit, unit)
+    return f"{short_name(name)} [{shown}]"
+
+
+def short_name(name: str) -> str:
+    """Return the short name of a measure.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+
+    Returns
+    -------
+    str
+        As it stands in a picture.
+
+    Examples
+    --------
+    >>> short_name("sa(1.0)"), short_name("pga")
+    ('Sa(1.0 s)', 'PGA')
+    """
+    if name in SHORT:
+        return SHORT[name]
+    return f"Sa({name[3:-1]} s)" if name.startswith("sa(") else plain(name)
+
+
+def plain(words: object) -> str:
+    r"""Return words that are drawn as they are, on one line, whatever signs they hold.
+
+    Parameters
+    ----------
+    words : object
+        Anything.
+
+    Returns
+    -------
+    str
+        With dollar signs that start no formula.
+
+    Examples
+    --------
+    >>> plain("a $5  vase")
+    'a \\$5 vase'
+    """
+    return " ".join(str(words).split()).replace("$", r"\$")
+
+
+def wrapped(words: str, width: int, most: int = 4) -> str:
+    r"""Return words in lines, cut off after the last.
+
+    Parameters
+    ----------
+    words : str
+        One or more sentences.
+    width : int
+        Characters in a line.
+    most : int
+        Lines at most.
+
+    Returns
+    -------
+    str
+        Lines with breaks between.
+
+    Examples
+    --------
+    >>> wrapped("one two three four", 9, 2)
+    'one two\nthree ...'
+    """
+    from textwrap import wrap
+
+    return "\n".join(wrap(words, width, max_lines=most, placeholder=" ..."))
+
+
+def geometric(values: FloatArray) -> bool:
+    """Return whether numbers grow by equal ratios rather than by equal steps: they are drawn on a log axis.
+
+    Parameters
+    ----------
+    values : ndarray
+        Increasing numbers.
+
+    Returns
+    -------
+    bool
+        False for fewer than three.
+
+    Examples
+    --------
+    >>> geometric(np.array([1.0, 2.0, 4.0])), geometric(np.array([1.0, 2.0, 3.0]))
+    (True, False)
+    """
+    if values.size < 3 or values[0] <= 0.0:
+        return False
+    ratios, steps = np.diff(np.log(values)), np.diff(values)
+    return bool(np.ptp(ratios) / ratios.mean() < np.ptp(steps) / steps.mean())
+
+
+def plain_log(axes: "Axes", which: str) -> None:
+    """Make an axis logarithmic, with plain numbers at a few ticks.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where; its limits are set already.
+    which : {"x", "y"}
+        Which axis.
+    """
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    getattr(axes, f"set_{which}scale")("log")
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    low, high = axis.get_view_interval()
+    steps: tuple[float, ...] = (1.0, 2.0, 5.0) if high / low < 300.0 else (1.0,)
+    if high / low < 4.0:
+        steps = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)
+    axis.set_major_locator(LogLocator(subs=steps))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def note(axes: "Axes", words: str, width: int = 62) -> None:
+    """Write a small line or two above a panel.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where.
+    words : str
+        What.
+    width : int
+        Characters in a line.
+    """
+    axes.set_title(wrapped(words, width), loc="left", fontsize=7, color=INK)

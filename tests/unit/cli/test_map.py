@@ -1,0 +1,259 @@
+"""`rocking map`: what it prints and writes equals the study, axes with units, refusals in one sentence with code 2."""
+
+import csv
+import io
+import json
+import math
+import sys
+
+import numpy as np
+import pytest
+import typer
+
+import rocking as rk
+from rocking.cli import application, main, study_output
+from rocking.cli.map import map as map_command
+from rocking.cli.map_output import axis_from
+from rocking.studies.islands import safe_islands
+from rocking.studies.overturning_map import overturning_map
+from rocking.studies.sensitivity import map_sensitivity
+
+G = 9.80665
+SIZE = ("--width", "0.5", "--height", "2")
+PULSE = "sine:amplitude=3,period=0.6"
+AXES = ("--x", "frequency_ratio=1:7:13", "--y", "amplitude_ratio=1:10:19")
+BLOCK = rk.Block(width=0.5, height=2.0)
+SINE = rk.pulses.sine(amplitude=3.0, period=0.6)
+RATIOS = (("frequency_ratio", np.linspace(1, 7, 13)), ("amplitude_ratio", np.linspace(1, 10, 19)))
+
+
+@pytest.fixture(autouse=True)
+def _alone(monkeypatch):
+    """Let `main` have this command alone."""
+    app = typer.Typer(pretty_exceptions_enable=False)
+    app.callback()(lambda: None)
+    app.command("map")(map_command)
+    monkeypatch.setattr(application, "application", lambda: app)
+
+
+def run(capsys, *words):
+    """Exit code, standard output and standard error of `rocking map WORDS`."""
+    with pytest.raises(SystemExit) as stop:
+        main(["map", *(str(word) for word in words)])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+def test_json_is_the_python_call(capsys):
+    """Modes, peaks, shares and islands are those of the study, bit by bit."""
+    code, out, err = run(capsys, *SIZE, "--motion", PULSE, *AXES, "--restitution", "0.9", "--json")
+    assert (code, err) == (0, "")
+    told, found = json.loads(out), overturning_map(BLOCK, SINE, *RATIOS, 0.9)
+    assert told["mode"] == found["mode"].values.tolist()
+    assert told["peak_ratio"] == found["peak_ratio"].values.tolist()
+    assert told["x"]["values"] == found["frequency_ratio"].values.tolist()
+    assert sum(one["count"] for one in told["modes"]) == told["cells"] == 13 * 19
+    assert told["islands"]["count"] == len(safe_islands(found))
+    y, x = np.nonzero(found["mode"].values >= 0)
+    assert told["overturning"]["first"]["y"] == told["y"]["values"][y.min()]
+    assert told["overturning"]["x"] == [told["x"]["values"][x.min()], told["x"]["values"][x.max()]]
+    assert (told["refined_points"], told["sensitivity"]) == (None, None)
+
+
+def test_overturning_begins_at_the_closed_form(capsys):
+    """Under a constant acceleration the linear block falls from g alpha / (1 - exp(-pT)); refined, it begins there."""
+    block = rk.Block.from_angle(0.2, 1.0)
+    p, time = block.frequency_parameter, 0.5
+    exact = 1.0 / (1.0 - math.exp(-p * time))
+    words = ("--angle", 0.2, "--semi-diagonal", 1, f"rectangular:amplitude=2,duration={time}", "--linear")
+    axes = ("--x", "restitution=0.5,0.9", "--y", "amplitude_ratio=1:3:41")
+    found = {}
+    for levels in ((), ("--refine", 6)):
+        code, out, _ = run(capsys, *words, *axes, *levels, "--json")
+        assert code == 0
+        found[bool(levels)] = json.loads(out)["overturning"]["first"]["y"]
+    # the first point above it on a grid of 0.05, and of 0.05 / 64
+    assert 0.0 <= found[False] - exact <= 0.05
+    assert 0.0 <= found[True] - exact <= 0.05 / 64
+    wrong = math.tan(0.2) / 0.2 * exact
+    assert not 0.0 <= found[True] - wrong <= 0.05 / 64
+
+
+def test_page(capsys):
+    """The table has a line for each way to end, with shares that are counts over cells, and sentences below."""
+    code, out, _ = run(capsys, *SIZE, PULSE, *AXES, "--restitution", "0.9")
+    mode = overturning_map(BLOCK, SINE, *RATIOS, 0.9)["mode"].values
+    count = int((mode == 0).sum())
+    row = next(line for line in out.splitlines() if line.startswith("overturns without impact"))
+    assert row.split()[-3:] == [str(count), f"{100 * count / mode.size:.2f}", "%"]
+    assert code == 0
+    assert "Overturning begins at amplitude_ratio = " in out
+    assert "afe islands" in out
+
+
+def test_late_modes_are_one_line(capsys, tmp_path):
+    """Under a long record all that overturns after more than 3 impacts is one line; JSON parts it."""
+    time = np.arange(1500) * 0.01
+    row = 2.0 * np.sin(6.0 * time) * np.exp(-(((time - 6.0) / 3.0) ** 2))
+    np.savetxt(tmp_path / "record.txt", np.stack([time, row], axis=1))
+    axes = ("--x", "pga=0.3g:1g:15", "--y", "semi_diagonal=0.5:2:10")
+    words = (*SIZE, tmp_path / "record.txt", "--units", "m/s2", *axes)
+    told = json.loads(run(capsys, *words, "--json")[1])
+    late = [one["count"] for one in told["modes"] if one["mode"] > 3]
+    assert len(late) > 1
+    row = next(line for line in run(capsys, *words)[1].splitlines() if "4 or more impacts" in line)
+    assert int(row.split()[-3]) == sum(late)
+
+
+def test_nothing_overturns(capsys):
+    """At or below g tan alpha nothing is lifted: the page says so, and JSON has no overturning."""
+    axes = ("--x", "frequency_ratio=1,2,3", "--y", "amplitude_ratio=0.2:1:5")
+    _, out, _ = run(capsys, *SIZE, PULSE, *axes)
+    assert "Nothing on this map overturns." in out
+    told = json.loads(run(capsys, *SIZE, PULSE, *axes, "--json")[1])
+    assert told["overturning"] is None
+    assert [(one["mode"], one["share"]) for one in told["modes"]] == [(-2, 1.0)]
+
+
+def test_several_restitutions(capsys, tmp_path):
+    """Flips between every two are those of `map_sensitivity`; files hold every map."""
+    models = ("--restitution", "ked", "--restitution", "housner", "--restitution", "0.8")
+    words = (*SIZE, PULSE, *AXES, *models)
+    told = json.loads(run(capsys, *words, "--json")[1])["sensitivity"]
+    found = map_sensitivity(BLOCK, SINE, *RATIOS, {"ked": "ked", "housner": "housner", "0.8": 0.8})
+    assert told["baseline"] == "ked"
+    pairs = {(one["first"], one["second"]): one for one in told["pairs"]}
+    assert set(pairs) == {("ked", "housner"), ("ked", "0.8"), ("housner", "0.8")}
+    for (a, b), one in pairs.items():
+        falls = [found.datasets[label]["mode"].values >= 0 for label in (a, b)]
+        assert one["count"] == int((falls[0] != falls[1]).sum())
+        assert one["share"] == one["count"] / (13 * 19)
+    assert pairs["ked", "0.8"]["count"] > 0
+    code, out, _ = run(capsys, *words, "--csv", tmp_path / "a.csv", "--netcdf", tmp_path / "a.nc")
+    assert code == 0
+    assert "The choice between ked and housner changes the verdict" in out
+    with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 3 * 13 * 19
+    assert {row["restitution"] for row in rows} == {"ked", "housner", "0.8"}
+    import xarray
+
+    with xarray.open_dataset(tmp_path / "a.nc") as kept:
+        assert (kept["mode"].sel(restitution="0.8") == found.datasets["0.8"]["mode"]).all()
+
+
+def test_files(capsys, tmp_path):
+    """Picture, table and netCDF are written and named; the table holds all digits."""
+    files = [tmp_path / name for name in ("a.png", "a.csv", "a.nc")]
+    options = [word for name, path in zip(("--picture", "--csv", "--netcdf"), files, strict=True)
+               for word in (name, path)]  # fmt: skip
+    code, out, _ = run(capsys, *SIZE, PULSE, *AXES, "--refine", 2, *options)
+    assert code == 0
+    assert all(f"wrote {path}" in out and path.stat().st_size > 2000 for path in files)
+    found = overturning_map(BLOCK, SINE, *RATIOS, refine=2)
+    with files[1].open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["peak_rotation [rad]"]) for row in rows] == found["peak_rotation"].values.ravel().tolist()
+    import xarray
+
+    with xarray.open_dataset(files[2]) as kept:
+        assert kept.sizes["point"] == found.sizes["point"]
+
+
+@pytest.mark.parametrize(
+    ("word", "values"),
+    [
+        ("pga=0.1g:0.3g:3", [0.1 * G, 0.2 * G, 0.3 * G]),
+        ("pga=1:3:3", [1.0, 2.0, 3.0]),
+        ("pgv=10cm/s,0.5m/s", [0.1, 0.5]),
+        ("semi_diagonal=40cm,80cm", [0.4, 0.8]),
+        ("slenderness_angle=5deg:20deg:4", [math.radians(a) for a in (5, 10, 15, 20)]),
+        ("scale=1:100:3:log", [1.0, 10.0, 100.0]),
+        ("period=200ms,.4s", [0.2, 0.4]),
+        ("scale=-1,1e0", [-1.0, 1.0]),
+    ],
+)
+def test_axis_words(word, values):
+    """Ranges, lists, equal ratios and units give the values that they say."""
+    assert axis_from("--x", word).values == pytest.approx(values, rel=1e-14)
+
+
+REFUSALS = [
+    (("--x", "size=1:2:3"), "no axis named 'size'; there are amplitude_ratio"),
+    (("--x", "frequency_ratio"), "got no values"),
+    (("--x", "frequency_ratio=1:2"), "FIRST:LAST:COUNT"),
+    (("--x", "frequency_ratio=1:2:1"), "COUNT from 2"),
+    (("--x", "frequency_ratio=1:2:3.5"), "COUNT from 2"),
+    (("--x", "frequency_ratio=1:2:3:cubic"), "FIRST:LAST:COUNT"),
+    (("--x", "frequency_ratio=1g:2g:3"), "without a unit"),
+    (("--x", "frequency_ratio=2:1:3"), "must increase"),
+    (("--x", "frequency_ratio=nan,1"), "must be a number"),
+    (("--x", "frequency_ratio=1e999,2"), "finite"),
+    (("--y", "pga=0.1:1g:5"), "a unit at every number or at none"),
+    (("--y", "pga=1cm:2cm:5"), "m/s2"),
+    (("--y", "scale=0:1:5:log"), "above 0"),
+    (("--y", "slenderness_angle=5:20:4"), "wrong unit"),
+    (("--y", "pga=1:2:100000", "--x", "frequency_ratio=1:2:1000"), "rocking campaign"),
+    (("--x", "pga=1,2", "--y", "scale=1,2"), "both set the amplitude"),
+    (("--restitution", "no-such"), "no-such"),
+    (("--restitution", "1.5"), "restitution"),
+    (("--restitution", "ked", "--restitution", "ked"), "twice"),
+    (("--restitution", "ked", "--y", "restitution=0.5,0.9"), "leave the option out"),
+    (("--refine", "0"), "--refine must be in"),
+    (("--refine", "2", "--restitution", "ked", "--restitution", "0.9"), "--refine is for one"),
+    (("--picture", "a.gif"), "a picture is .png"),
+    (("--picture", "a.png", "--x", "frequency_ratio=2"), "at least two values"),
+    (("--csv", "no-such-folder/a.csv"), "no folder"),
+    (("--engine", "warp"), "--engine must be"),
+    (("--threads", "0"), "--threads must be"),
+    (("--gravity", "-1"), "--gravity must be"),
+    (("--density", "-5"), "density"),
+    (("--units", "g"), "a pulse takes no --units"),
+    (("--no-such-option",), "No such option"),
+]
+
+
+@pytest.mark.parametrize(("words", "sentence"), REFUSALS, ids=[" ".join(words) for words, _ in REFUSALS])
+def test_refusals(capsys, words, sentence):
+    """Bad input is one sentence on standard error, exit code 2, and nothing on standard output."""
+    code, out, err = run(capsys, *SIZE, PULSE, *words)
+    assert (code, out) == (2, "")
+    assert err.startswith("rocking: ")
+    assert sentence in err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (SIZE, "what moves the ground?"),
+        ((PULSE,), "what moves the ground?"),
+        (("--width", "0.5", PULSE), "--width and --height"),
+        ((*SIZE, PULSE, "--motion", PULSE), "one motion and one body"),
+        ((*SIZE, "no-such-file.txt"), "no such file"),
+        (("no-such-body.toml", PULSE), "no-such-body.toml"),
+        ((*SIZE, "sine:amplitude=3"), "period"),
+    ],
+)
+def test_body_and_motion_are_needed(capsys, words, sentence):
+    """A body or motion that is missing, given twice or not there is refused."""
+    code, out, err = run(capsys, *words)
+    assert (code, out) == (2, "")
+    assert sentence in err
+    assert err.count("\n") == 1
+
+
+def test_bar_on_a_terminal_only(monkeypatch):
+    """A terminal sees how many of how many are done; a file sees nothing."""
+
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    for kind, shown in ((Terminal, True), (io.StringIO, False)):
+        stream = kind()
+        monkeypatch.setattr(sys, "stderr", stream)
+        with study_output.bar("histories", 40) as tell:
+            tell(10)
+            tell(30)
+        assert ("40/40" in stream.getvalue()) == shown

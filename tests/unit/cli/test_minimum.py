@@ -1,0 +1,156 @@
+"""`rocking minimum`: crossings equal the study and a closed form, sentences, files, refusals."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+import typer
+
+import rocking as rk
+from rocking.cli import application, main
+from rocking.cli.minimum import minimum
+from rocking.cli.minimum_output import sentence
+from rocking.studies.crossings import Crossings
+from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
+
+G = 9.80665
+SIZE = ("--width", "0.5", "--height", "2")
+PULSE = "sine:amplitude=3,period=0.8"
+
+
+@pytest.fixture(autouse=True)
+def _alone(monkeypatch):
+    """Let `main` have this command alone."""
+    app = typer.Typer(pretty_exceptions_enable=False)
+    app.callback()(lambda: None)
+    app.command()(minimum)
+    monkeypatch.setattr(application, "application", lambda: app)
+
+
+def run(capsys, *words):
+    """Exit code, standard output and standard error of `rocking minimum WORDS`."""
+    with pytest.raises(SystemExit) as stop:
+        main(["minimum", *(str(word) for word in words)])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+def made(modes, accelerations, *, starts=False):
+    """Crossings by hand, between 1 g and 9 g, accelerations in g."""
+    a = G * np.array(accelerations)
+    return Crossings(a, a, a, np.array(modes).reshape(-1, 2), 0.0 * a, G, 9.0 * G, G, 0.004, starts, 1, 0)
+
+
+def test_json_is_the_python_call(capsys):
+    """Every crossing is that of the study, bit by bit, in g and in m/s2."""
+    code, out, err = run(capsys, *SIZE, PULSE, "--restitution", "0.85", "--highest", "5g", "--json")
+    assert (code, err) == (0, "")
+    told = json.loads(out)
+    block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.8)
+    found = minimum_overturning_acceleration(block, pulse, 0.85, highest=5.0 * G)
+    assert [one["acceleration_m_s2"] for one in told["crossings"]] == found.acceleration.tolist()
+    assert [[one["mode_below"], one["mode_above"]] for one in told["crossings"]] == found.modes.tolist()
+    assert [one["acceleration_g"] * G for one in told["crossings"]] == pytest.approx(found.acceleration, rel=1e-14)
+    assert told["minimum_m_s2"] == found.minimum
+    assert told["certain_m_s2"] == found.certain
+    assert [tuple(pair) for pair in told["overturning_intervals_m_s2"]] == list(found.overturning_intervals)
+    # g b / h is 0.25 g
+    assert told["uplift_acceleration_m_s2"] == pytest.approx(0.25 * G, rel=1e-14)
+
+
+def test_minimum_is_the_closed_form(capsys):
+    """Under a constant acceleration the linear block overturns above g alpha / (1 - exp(-pT)), to 1e-10."""
+    alpha, time = 0.2, 0.5
+    p = math.sqrt(0.75 * G)
+    words = ("--angle", alpha, "--semi-diagonal", 1, f"rectangular:amplitude=1,duration={time}", "--linear", "--json")
+    (crossing,) = json.loads(run(capsys, *words)[1])["crossings"]
+    exact = G * alpha / (1.0 - math.exp(-p * time))
+    assert crossing["acceleration_m_s2"] == pytest.approx(exact, rel=1e-10)
+    assert (crossing["mode_below"], crossing["mode_above"]) == (-1, 0)
+    # the full equations have another threshold
+    full = json.loads(run(capsys, *[word for word in words if word != "--linear"])[1])["crossings"][0]
+    assert full["acceleration_m_s2"] != pytest.approx(exact, rel=1e-4)
+
+
+def test_page_and_files(capsys, tmp_path):
+    """The sentence, a line for each crossing with the modes on both sides, and files with all digits."""
+    files = ("--picture", tmp_path / "a.png", "--csv", tmp_path / "a.csv")
+    code, out, _ = run(capsys, *SIZE, PULSE, "--restitution", "0.85", *files)
+    assert code == 0
+    with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["mode below [1]"], row["mode above [1]"]) for row in rows] == [("-1", "1"), ("1", "-1"), ("-1", "0")]
+    a, b, c = (f"{float(row['acceleration [g]']):.4g}" for row in rows)
+    assert f"Overturns from {a} g to {b} g, survives to {c} g, overturns above; scanned from 0.25 g" in out
+    assert "stays standing  falls, no impact" in out
+    assert (tmp_path / "a.png").stat().st_size > 5000
+
+
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        (made([], []), "survives everything"),
+        (made([], [], starts=True), "overturns at every acceleration"),
+        (made([[-1, 0]], [2.0]), "overturns above 2 g"),
+        (made([[-1, 1], [1, -1]], [2.0, 3.0]), "overturns from 2 g to 3 g, survives above"),
+        (
+            made([[-1, 1], [1, -1], [-1, 0]], [2.0, 3.0, 4.0]),
+            "overturns from 2 g to 3 g, survives to 4 g, overturns above",
+        ),
+        (
+            made([[0, -1], [-1, 0]], [2.0, 3.0], starts=True),
+            "overturns from 1 g to 2 g, survives to 3 g, overturns above",
+        ),
+        (
+            made([[-1, 1], [1, -1]] * 5 + [[-1, 1]], [1.0 + 0.5 * k for k in range(1, 12)]),
+            "overturns from 1.5 g to 2 g, survives to 2.5 g, overturns from 2.5 g to 3 g, survives to 3.5 g, "
+            "overturns from 3.5 g to 4 g, survives to 4.5 g, 2 more such stretches follow, overturns above 6.5 g",
+        ),
+    ],
+)  # fmt: skip
+def test_sentences(found, words):
+    """Every kind of answer is one sentence, with the range and the resolution of the search."""
+    assert sentence(found) == f"{words}; scanned from 1 g to 9 g, resolution 0.4 %"
+
+
+def test_range_with_units(capsys):
+    """A range in g is the same as in m/s2; a body that survives it all is told so."""
+    for low, high in (("0.3g", "0.34g"), (str(0.3 * G), str(0.34 * G))):
+        _, out, _ = run(capsys, *SIZE, PULSE, "--restitution", "0.85", "--lowest", low, "--highest", high, "--json")
+        told = json.loads(out)
+        assert (told["lowest_m_s2"], told["highest_m_s2"]) == pytest.approx((0.3 * G, 0.34 * G), rel=1e-14)
+        assert told["sentence"].startswith("survives everything; scanned from 0.3 g to 0.34 g")
+        assert (told["minimum_m_s2"], told["crossings"]) == (None, [])
+
+
+REFUSALS = [
+    (SIZE, "what moves the ground?"),
+    ((*SIZE, "no-such.txt"), "no such file"),
+    ((*SIZE, PULSE, "--lowest", "1x"), "--lowest must be a number"),
+    ((*SIZE, PULSE, "--lowest", "nan"), "--lowest must be a number"),
+    ((*SIZE, PULSE, "--lowest", "0"), "lowest must be"),
+    ((*SIZE, PULSE, "--lowest", "2g", "--highest", "1g"), "lowest must be below highest"),
+    ((*SIZE, PULSE, "--highest", "1e999"), "finite"),
+    ((*SIZE, PULSE, "--points", "1"), "points must be"),
+    ((*SIZE, PULSE, "--points", "many"), "--points"),
+    ((*SIZE, PULSE, "--levels", "13"), "levels must be"),
+    ((*SIZE, PULSE, "--restitution", "no-such"), "no-such"),
+    ((*SIZE, PULSE, "--restitution", "-0.5"), "restitution"),
+    ((*SIZE, PULSE, "--picture", "a.txt"), "a picture is .png"),
+    ((*SIZE, PULSE, "--csv", "no-such-folder/a.csv"), "no folder"),
+    ((*SIZE, PULSE, "--engine", "warp"), "--engine must be"),
+    ((*SIZE, "sine:amplitude=0,period=1"), "peak above zero"),
+    (("--width", "-1", "--height", "2", PULSE), "width"),
+]
+
+
+@pytest.mark.parametrize(("words", "message"), REFUSALS, ids=[" ".join(words) for words, _ in REFUSALS])
+def test_refusals(capsys, words, message):
+    """Bad input is one sentence on standard error, exit code 2, and nothing on standard output."""
+    code, out, err = run(capsys, *words)
+    assert (code, out) == (2, "")
+    assert err.startswith("rocking: ")
+    assert message in err
+    assert err.count("\n") == 1

@@ -1,0 +1,132 @@
+"""`rocking spectrum`: numbers equal the study and a closed form, slenderness and periods in words, refusals."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+import typer
+
+import rocking as rk
+from rocking.cli import application, main
+from rocking.cli.spectrum import spectrum
+from rocking.cli.spectrum_output import angles_from, periods_from
+from rocking.studies.rocking_spectrum import rocking_spectrum
+
+G = 9.80665
+SINE, COSINE = "sine:amplitude=3,period=0.8", "cosine:amplitude=3,period=0.8"
+FEW = ("--slenderness", "4,6", "--periods", "1:8:9")
+
+
+@pytest.fixture(autouse=True)
+def _alone(monkeypatch):
+    """Let `main` have this command alone."""
+    app = typer.Typer(pretty_exceptions_enable=False)
+    app.callback()(lambda: None)
+    app.command()(spectrum)
+    monkeypatch.setattr(application, "application", lambda: app)
+
+
+def run(capsys, *words):
+    """Exit code, standard output and standard error of `rocking spectrum WORDS`."""
+    with pytest.raises(SystemExit) as stop:
+        main(["spectrum", *(str(word) for word in words)])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+def test_json_is_the_python_call(capsys):
+    """Modes and peaks of both motions are those of the study, bit by bit; counts add up to the blocks."""
+    code, out, err = run(capsys, SINE, "--motion", COSINE, *FEW, "--scale", "1.5", "--json")
+    assert (code, err) == (0, "")
+    told = json.loads(out)
+    motions = [rk.pulses.sine(3.0, 0.8), rk.pulses.cosine(3.0, 0.8)]
+    found = rocking_spectrum(motions, np.arctan([1 / 4, 1 / 6]), np.geomspace(1, 8, 9), scale=1.5)
+    assert told["mode"] == found["mode"].values.tolist()
+    assert told["peak_ratio"] == found["peak_ratio"].values.tolist()
+    assert told["motions"] == [motion.name for motion in motions]
+    assert told["semi_diagonal_m"] == pytest.approx(0.75 * G * (np.geomspace(1, 8, 9) / (2 * math.pi)) ** 2, rel=1e-12)
+    assert len(told["curves"]) == 4
+    for one in told["curves"]:
+        assert one["not_lifted"] + one["rocked"] + one["overturned"] + one["failed"] == 9
+
+
+def test_largest_block_that_falls_is_the_closed_form(capsys):
+    """Under a constant acceleration the linear block falls if a > g alpha / (1 - exp(-2 pi T / period))."""
+    alpha, a, time = 0.2, 3.0, 0.5
+    exact = 2.0 * math.pi * time / -math.log(1.0 - G * alpha / a)
+    words = ("--slenderness", f"{alpha}rad", "--periods", "1:10:2000", "--restitution", "0.9", "--linear", "--json")
+    _, out, _ = run(capsys, f"rectangular:amplitude={a},duration={time}", *words)
+    (curve,) = json.loads(out)["curves"]
+    step = 10.0 ** (1.0 / 1999.0)
+    assert 1.0 <= exact / curve["largest_overturned_period_s"] < step
+    assert curve["overturned"] == math.floor(math.log(exact) / math.log(step)) + 1
+    # the threshold of the full equations, tan alpha in place of alpha, would be told apart
+    wrong = 2.0 * math.pi * time / -math.log(1.0 - G * math.tan(alpha) / a)
+    assert not 1.0 <= wrong / curve["largest_overturned_period_s"] < step
+
+
+def test_page_and_files(capsys, tmp_path):
+    """A heading for every motion, a line for every slenderness; files are named and hold all digits."""
+    files = [tmp_path / name for name in ("a.svg", "a.csv", "a.nc")]
+    options = [word for pair in zip(("--picture", "--csv", "--netcdf"), files, strict=True) for word in pair]
+    code, out, _ = run(capsys, SINE, COSINE, *FEW, *options)
+    assert code == 0
+    lines = out.splitlines()
+    for name in ("sine pulse, 3 m/s2, 0.8 s", "cosine pulse, 3 m/s2, 0.8 s"):
+        place = lines.index(name)
+        assert [line.split()[0] for line in lines[place + 2 : place + 4]] == ["4", "6"]
+    assert all(f"wrote {path}" in out and path.stat().st_size > 1000 for path in files)
+    with files[1].open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    motions = [rk.pulses.sine(3.0, 0.8), rk.pulses.cosine(3.0, 0.8)]
+    found = rocking_spectrum(motions, np.arctan([1 / 4, 1 / 6]), np.geomspace(1, 8, 9))
+    assert [float(row["peak_rotation [rad]"]) for row in rows] == found["peak_rotation"].values.ravel().tolist()
+
+
+@pytest.mark.parametrize(
+    ("word", "degrees"),
+    [("1", [45.0]), ("10deg,15deg", [10.0, 15.0]), ("5deg:20deg:4", [5.0, 10.0, 15.0, 20.0]), ("0.2rad", [11.4591559])],
+)
+def test_slenderness_words(word, degrees):
+    """Without a unit it is h/b = 1 / tan alpha, with one the angle."""
+    assert np.degrees(angles_from(word)) == pytest.approx(degrees, rel=1e-8)
+
+
+def test_period_words():
+    """A range goes by equal ratios unless it says otherwise."""
+    assert periods_from("1:16:5") == pytest.approx([1, 2, 4, 8, 16], rel=1e-13)
+    assert periods_from("1:5:5:linear") == pytest.approx([1, 2, 3, 4, 5], rel=1e-13)
+    assert periods_from("1,3,4").tolist() == [1.0, 3.0, 4.0]
+
+
+REFUSALS = [
+    ((), "what moves the ground?"),
+    (("no-such.txt",), "no such file"),
+    ((SINE, "--slenderness", "95deg"), "in (0, 90) deg"),
+    ((SINE, "--slenderness", "0,4"), "h/b, above 0"),
+    ((SINE, "--slenderness", "4,10deg"), "at every number or at none"),
+    ((SINE, "--slenderness", "4m"), "must be a number"),
+    ((SINE, "--slenderness", "slim"), "must be a number"),
+    ((SINE, "--periods", "0:5:10"), "above 0"),
+    ((SINE, "--periods", "5:1:10"), "increase"),
+    ((SINE, "--periods", "1:5:10:log:log"), "FIRST:LAST:COUNT"),
+    ((SINE, "--periods", "1:5:many"), "COUNT from 2"),
+    ((SINE, "--periods", "1:5:99999", "--slenderness", "4:8:200"), "rocking campaign"),
+    ((SINE, "--restitution", "no-such"), "no-such"),
+    ((SINE, "--scale", "nan"), "scale"),
+    ((SINE, "--picture", "a.bmp"), "a picture is .png"),
+    ((SINE, "--netcdf", "no-such-folder/a.nc"), "no folder"),
+    ((SINE, "--gravity", "0"), "--gravity must be"),
+]
+
+
+@pytest.mark.parametrize(("words", "sentence"), REFUSALS, ids=[" ".join(words) or "-" for words, _ in REFUSALS])
+def test_refusals(capsys, words, sentence):
+    """Bad input is one sentence on standard error, exit code 2, and nothing on standard output."""
+    code, out, err = run(capsys, *words)
+    assert (code, out) == (2, "")
+    assert err.startswith("rocking: ")
+    assert sentence in err
+    assert err.count("\n") == 1

@@ -1,0 +1,217 @@
+"""Pictures of fragility: points, intervals, curves, bands and words against the analyses and closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
+from scipy import stats
+
+import rocking as rk
+from rocking.errors import InvalidValueError
+from rocking.plots.fragility import caption, fragility_picture, gathered, state_colors, symbol
+from rocking.plots.incremental import incremental_picture
+from rocking.plots.measures import measures_picture
+from rocking.studies.fragility.cloud import cloud
+from rocking.studies.fragility.comparison import compare_measures
+from rocking.studies.fragility.incremental import incremental
+from rocking.studies.fragility.stripes import multiple_stripes
+
+G = 9.80665
+BLOCK = rk.Block(width=0.4, height=1.6)
+PULSES = [rk.pulses.sine(1.0, period) for period in np.linspace(0.3, 1.4, 24)]
+LEVELS = np.arange(1.5, 9.1, 1.5)
+
+
+@pytest.fixture(scope="module")
+def stripes():
+    """24 pulses at six levels."""
+    return multiple_stripes(BLOCK, PULSES, LEVELS, 0.9)
+
+
+@pytest.fixture(scope="module")
+def raised():
+    """The same pulses, raised level by level."""
+    return incremental(BLOCK, PULSES, np.arange(2.0, 12.1, 0.5), 0.9)
+
+
+@pytest.fixture(scope="module")
+def clouded():
+    """Pulses of many amplitudes and periods, each at its own level."""
+    draw = np.random.default_rng(5)
+    pulses = [rk.pulses.sine(a, t) for a, t in zip(draw.uniform(2.0, 8.0, 80), draw.uniform(0.3, 1.2, 80), strict=True)]
+    return cloud(BLOCK, pulses, 0.9)
+
+
+def _bars(axes):
+    """Points of each state with the ends of their intervals."""
+    found = []
+    for bar in axes.containers:
+        points, _, (segments,) = bar.lines
+        found.append((np.asarray(points.get_data()), np.array([s[:, 1] for s in segments.get_segments()])))
+    return found
+
+
+def test_points_and_intervals(stripes):
+    """Points are counts over trials; intervals are those of Clopper and Pearson, from the beta distribution."""
+    figure = fragility_picture(stripes)
+    upper, lower = figure.axes
+    assert lower.get_xlabel() == "peak ground acceleration [m/s$^2$]"
+    assert upper.get_ylabel() == "probability [-]"
+    for (points, ends), counts in zip(_bars(upper), stripes.counts.values(), strict=True):
+        np.testing.assert_allclose(points, [LEVELS, counts / 24.0], rtol=1e-12)
+        low = [stats.beta.ppf(0.025, k, 25 - k) if k else 0.0 for k in counts]
+        high = [stats.beta.ppf(0.975, k + 1, 24 - k) if k < 24 else 1.0 for k in counts]
+        np.testing.assert_allclose(ends, np.transpose([low, high]), atol=1e-9)
+        # negative control: the interval from the normal distribution is another
+        wald = counts / 24.0 - 1.96 * np.sqrt(counts / 24.0 * (1.0 - counts / 24.0) / 24.0)
+        assert np.abs(ends[:, 0] - wald).max() > 0.01
+
+
+def test_curves_and_bands(stripes):
+    """The drawn curve is the lognormal distribution of the fit, and lies within its band."""
+    upper = fragility_picture(stripes).axes[0]
+    drawn = [line for line in upper.lines if len(line.get_xdata()) > 50]
+    bands = [part for part in upper.collections if isinstance(part, PolyCollection)]
+    assert len(drawn) == len(bands) == len(stripes.fits) == 2
+    for line, band, fit in zip(drawn, bands, stripes.fits.values(), strict=True):
+        at, probability = line.get_data()
+        np.testing.assert_allclose(
+            probability, stats.lognorm.cdf(at, fit.dispersion, scale=fit.median), rtol=1e-6, atol=1e-12
+        )
+        corners = band.get_paths()[0].vertices
+        for level, value in zip(at[20:100:10], probability[20:100:10], strict=True):
+            heights = corners[np.isclose(corners[:, 0], level, rtol=1e-12), 1]
+            assert heights.min() <= value <= heights.max()
+
+
+def test_uplift_is_a_step(stripes):
+    """Where PGA decides rocking there is no curve but a line at g tan(alpha) = g / 4."""
+    upper = fragility_picture(stripes).axes[0]
+    (step,) = (line for line in upper.lines if len(set(line.get_xdata())) == 1 and list(line.get_ydata()) == [0, 1])
+    assert step.get_xdata()[0] == pytest.approx(0.25 * G, rel=1e-12)
+
+
+def test_states_add_up(stripes):
+    """The bars of every level go from 0 to 1, and those of overturning are the counts."""
+    lower = fragility_picture(stripes).axes[1]
+    heights = np.array([[bar.get_height() for bar in group] for group in lower.containers])
+    np.testing.assert_allclose(heights.sum(axis=0), 1.0, rtol=1e-12)
+    np.testing.assert_allclose(heights[-1], stripes.counts["overturned"] / 24.0, atol=1e-12)
+    words = [text.get_text() for text in lower.get_legend().get_texts()]
+    assert words[0] == "no rocking"
+    assert words[-1] == "overturned"
+
+
+def test_words_do_not_overlap(stripes):
+    """Legends lie beside the panels, not over one another, and nothing is cut off at 90 mm."""
+    figure = fragility_picture(stripes)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    upper, lower = (axes.get_legend().get_window_extent(canvas.get_renderer()) for axes in figure.axes)
+    assert not upper.overlaps(lower)
+    assert max(upper.x1, lower.x1) <= figure.bbox.x1
+    assert figure.get_figwidth() * 25.4 == pytest.approx(90.0)
+
+
+def test_separation_is_said():
+    """Outcomes that form a step get no band, and the caption says that there is no likeliest curve."""
+    found = multiple_stripes(BLOCK, PULSES[8], [2.0, 3.0, 4.0, 8.0], 0.9)
+    figure = fragility_picture(found)
+    told = figure.get_supxlabel()
+    assert "separation" in told
+    assert "no likeliest curve" in told.replace("\n", " ")
+    assert told == "" or len(max(told.split("\n"), key=len)) <= 84
+    # negative control: outcomes that overlap have no caption
+    assert caption(multiple_stripes(BLOCK, PULSES, LEVELS, 0.9, states=())) == ""
+
+
+def test_cloud_is_gathered(clouded):
+    """Outcomes of many levels are gathered: groups hold all of them, none twice."""
+    counts = [np.asarray(v, dtype=float) for v in (clouded.counts["overturned"], clouded.trials)]
+    at, reached, trials = gathered(np.asarray(clouded.levels), *counts)
+    assert (reached.sum(), trials.sum(), at.size) == (counts[0].sum(), 80.0, 10)
+    assert np.all(np.diff(at) > 0.0)
+    assert fragility_picture(clouded).axes[1].get_xlabel() == "peak ground acceleration [m/s$^2$]"
+
+
+def test_weighted_mean_of_a_group():
+    """Sixteen levels of one trial each make two groups, at their geometric means."""
+    levels = np.geomspace(1.0, 16.0, 16)
+    at, reached, trials = gathered(levels, (levels > 4.0).astype(float), np.ones(16))
+    np.testing.assert_allclose(at, [math.sqrt(levels[0] * levels[7]), math.sqrt(levels[8] * levels[15])])
+    assert (reached.tolist(), trials.tolist()) == ([0.0, 8.0], [8.0, 8.0])
+
+
+def test_names_of_states():
+    """States have symbols, and as many colours as there are parts."""
+    assert symbol("rotation > 0.2 alpha") == r"$\theta > 0.2\,\alpha$"
+    assert symbol("rocking") == "rocks"
+    assert len(set(state_colors(4))) == 5
+
+
+def test_incremental_curves(raised):
+    """Grey curves end where overturning starts; crosses are the first crossings; blue points lie above one."""
+    figure = incremental_picture(raised)
+    left, right = figure.axes
+    assert left.get_ylabel() == "peak ground acceleration [m/s$^2$]"
+    assert left.get_xlabel() == r"peak rotation $\theta\,/\,\alpha$ [-]"
+    (crosses,) = (line for line in left.lines if line.get_marker() == "x")
+    wanted = raised.first_crossings[np.isfinite(raised.first_crossings)]
+    np.testing.assert_array_equal(np.sort(crosses.get_ydata()), np.sort(wanted))
+    blue = [line for line in left.lines if line.get_marker() == "o"]
+    again = sum(np.isfinite(c[np.argmax(np.isinf(c)) :]).any() and np.isinf(c).any() for c in raised.curves)
+    assert len(blue) == again > 0
+    (fraction,) = (line for line in right.lines if line.get_linestyle() == "-")
+    np.testing.assert_allclose(fraction.get_xdata(), raised.counts["overturned"] / 24.0)
+    (passed,) = (line for line in right.lines if line.get_linestyle() == "--")
+    np.testing.assert_allclose(passed.get_xdata(), [(wanted <= level).sum() / 24.0 for level in raised.levels])
+    assert np.all(passed.get_xdata() >= fraction.get_xdata())
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert f"stands again: {len(raised.resurrected(0.01))} motions" in words
+
+
+def test_incremental_without_overturning():
+    """Levels that overturn nothing give a picture without crosses and without warnings."""
+    figure = incremental_picture(incremental(BLOCK, PULSES[:3], [2.0, 2.2, 2.4], 0.9))
+    FigureCanvasAgg(figure).draw()
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert not any("stands again" in word for word in words)
+
+
+def test_measures(clouded):
+    """Dots are the scores in their order; p-values stand on a log axis beside the line of 0.05."""
+    draw = np.random.default_rng(1)
+    found = compare_measures(
+        clouded, ["pga", "pgv", "pgv/pga", "p pgv/(g tan alpha)"], metadata={"magnitude": draw.uniform(5.0, 7.0, 80)}
+    )
+    figure = measures_picture(found)
+    left, right = figure.axes
+    np.testing.assert_array_equal(left.lines[len(found.scores)].get_xdata(), [s.efficiency for s in found.scores])
+    assert np.all(np.diff([s.efficiency for s in found.scores]) >= 0.0)
+    assert left.get_xlabel() == "dispersion [-]"
+    assert len(left.get_yticklabels()) == len(found.scores) == 4
+    (dots,) = (line for line in right.lines if line.get_label() == "magnitude")
+    np.testing.assert_allclose(dots.get_xdata(), [max(s.sufficiency["magnitude"], 1e-4) for s in found.scores])
+    assert right.get_xscale() == "log"
+    assert any(list(line.get_xdata()) == [0.05, 0.05] for line in right.lines)
+    FigureCanvasAgg(figure).draw()
+
+
+def test_measures_without_metadata(clouded):
+    """Without metadata there is one panel."""
+    assert len(measures_picture(compare_measures(clouded, ["pga", "pgv"])).axes) == 1
+
+
+@pytest.mark.parametrize("draw", [fragility_picture, incremental_picture, measures_picture])
+def test_refusals(draw):
+    """What is no analysis is refused in words."""
+    with pytest.raises(InvalidValueError, match="got 'no analysis'"):
+        draw("no analysis")
+
+
+def test_level_out_of_range(stripes):
+    """A confidence that is no share is refused."""
+    with pytest.raises(InvalidValueError, match="level"):
+        fragility_picture(stripes, level=95.0)
