@@ -3,7 +3,7 @@
 from rocking.conventions import g
 from rocking.report.document import Cell, Document, Paragraph, Section, Table, cell
 from rocking.report.provenance import made_with
-from rocking.studies.inventory.lights import Light
+from rocking.studies.inventory.lights import Light, percent, share_interval
 from rocking.studies.inventory.verdict import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.words import LIMITS, SLIDING, advice, model_note, rotation_words, rounded_down, sentence
 
@@ -110,7 +110,7 @@ def _numbers(assessment: Assessment) -> Section:
         "object", "along", "light", "stays still up to [g]", "lifted [%]", "overturned", "95 % interval [%]",
         "median", "84 %", f"light by {assessment.comparison}",
     ]  # fmt: skip
-    header[6] = f"{assessment.thresholds.level:.0%} interval [%]"
+    header[6] = f"{percent(assessment.thresholds.level)} interval [%]"
     pairs = [
         (each, one, two) for each in assessment.verdicts for one, two in zip(each.results, each.compared, strict=True)
     ]
@@ -126,8 +126,6 @@ def _numbers(assessment: Assessment) -> Section:
 
 
 def _numbered(verdict: Verdict, one: DirectionResult, two: DirectionResult, assessment: Assessment) -> list[Cell]:
-    from rocking.studies.inventory.lights import share_interval
-
     low, high = share_interval(one.overturned, one.count, assessment.thresholds.level)
     worse = " (worse)" if one is verdict.worse else ""
     return [

@@ -38,6 +38,8 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
     lights = [[f"{light.value} {light.word}", words] for light, words in assessment.thresholds.sentences().items()]
     hazard = assessment.hazard
     facts = [["shaking", f"{hazard.words()}; {hazard.source}"], ["impacts", assessment.restitution]]
+    if assessment.ignored:
+        facts.append(["not read", f"columns of the list: {', '.join(assessment.ignored)}"])
     _fill(about, [*lights, *facts, *(["not covered", each] for each in LIMITS)])
     about.column_dimensions["A"].width, about.column_dimensions["B"].width = 14, 110
     book.save(path)

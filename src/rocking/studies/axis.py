@@ -114,6 +114,20 @@ class Axis(ABC):
         """
         self._fits(question)
 
+    def check_beside(self, other: "Axis") -> None:  # noqa: B027 - most axes fit any other
+        """Refuse another axis whose values this one cannot go with.
+
+        Parameters
+        ----------
+        other : Axis
+            The other axis of the plane.
+
+        Raises
+        ------
+        InvalidValueError
+            If there is such a value.
+        """
+
     @property
     def attributes(self) -> dict[str, str]:
         """Unit and meaning, for a coordinate of a dataset."""

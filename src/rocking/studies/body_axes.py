@@ -6,6 +6,7 @@ import numpy as np
 
 from rocking.bodies import Block
 from rocking.conventions import FEET, FloatArray
+from rocking.dynamics.impact_law import ConstantRestitution
 from rocking.errors import InvalidValueError
 from rocking.studies.axis import BODY, RESTITUTION, Axis
 from rocking.studies.case import Case
@@ -72,10 +73,17 @@ class Restitution(Axis):
     name, unit, words = "restitution", "1", "coefficient of restitution, ratio of velocities"
     sets, stage, high, low_is_allowed = "restitution", RESTITUTION, 1.0, True
 
+    def _fits(self, question: Question) -> None:
+        """Refuse a law of impact, whose factors would multiply the axis."""
+        if not isinstance(question.law, ConstantRestitution):
+            raise InvalidValueError(
+                f"restitution is an axis: leave the law of impact out, got {type(question.law).__name__}"
+            )
+
     def _changed(self, case: Case, values: FloatArray) -> Case:
         """Return the case with the coefficient; NaN, which the engine refuses, where it would create energy."""
-        body, law = case.question.body, case.question.law
+        body = case.question.body
         inertia = [body.side(foot).moment_of_inertia for foot in FEET]
         most = np.sqrt(min(inertia) / max(inertia)) * (1.0 + 1e-9)
-        allowed = np.where(values * law.largest <= most, values, np.nan)
+        allowed = np.where(values <= most, values, np.nan)
         return replace(case, sides={**case.sides, "r_right": allowed, "r_left": allowed})

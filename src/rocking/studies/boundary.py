@@ -89,7 +89,8 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
 
     The grid of the axes, refined where asked, is marched cell by cell; the boundary crosses every edge whose ends
     differ, once, at a point found by bisection along the edge, and is followed from cell to cell. An edge that it
-    crosses twice is not seen: what is narrower than a cell may be missed. In a cell with opposite corners
+    crosses twice is not seen: what is narrower than a cell may be missed, and of a thin strip of survival between two
+    ways of overturning only pieces may be outlined. In a cell with opposite corners
     overturned (a saddle) the centre is computed: if it overturns too the overturned corners are joined, else they are
     parted.
 
@@ -143,12 +144,13 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
         if axis.values.size < 2:
             raise InvalidValueError(f"{axis.name} must have at least 2 values to have a boundary between, got 1")
     lattice = Lattice(plane, levels, progress)
+    # refined by mode whatever is asked: a sliver of survival lies between two modes, long before its corners tell
+    seeds = lattice.finest(lambda modes: modes)
     if by == "verdict":
-        return _outlined(lattice, verdicts, "overturned", tolerance)
-    lattice.finest(lambda modes: modes)
+        return _outlined(lattice, verdicts, "overturned", tolerance, seeds)
     made: list[Polyline] = []
     for n in np.unique(lattice.modes[lattice.modes >= 0]).tolist():
-        made += _outlined(lattice, _exactly(n), f"overturned after {n} impacts", tolerance)
+        made += _outlined(lattice, _exactly(n), f"overturned after {n} impacts", tolerance, seeds)
     return made
 
 
@@ -156,9 +158,11 @@ def _exactly(mode: int) -> Inside:
     return lambda modes: np.asarray(modes == mode)
 
 
-def _outlined(lattice: Lattice, inside: Inside, region: str, tolerance: float) -> list[Polyline]:
-    """Return the outline of a region."""
-    i, j = _followed(lattice, inside)
+def _outlined(
+    lattice: Lattice, inside: Inside, region: str, tolerance: float, seeds: tuple[IntArray, IntArray]
+) -> list[Polyline]:
+    """Return the outline of a region, followed from some cells."""
+    i, j = _followed(lattice, inside, seeds)
     if not i.size:
         return []
     corners = inside(lattice.corners(i, j, 1))
@@ -173,20 +177,23 @@ def _outlined(lattice: Lattice, inside: Inside, region: str, tolerance: float) -
     return made
 
 
-def _followed(lattice: Lattice, inside: Inside) -> tuple[IntArray, IntArray]:
+def _followed(lattice: Lattice, inside: Inside, seeds: tuple[IntArray, IntArray]) -> tuple[IntArray, IntArray]:
     """Return all finest cells that the boundary passes, also those that refinement alone would not have reached."""
-    i, j = lattice.finest(inside)
-    known = np.empty(0, np.int64)
+    i, j = seeds
+    known, seen = np.empty(0, np.int64), np.empty(0, np.int64)
     new = np.unique(j * lattice.columns + i)
     while new.size:
         i, j = new % lattice.columns, new // lattice.columns
         corners = lattice.corners(i, j, 1)
         good = (corners != FAILED).all(axis=1)
         i, j, crossed = i[good], j[good], crossed_edges(inside(corners[good]))
+        seen = np.union1d(seen, new)
+        passed = crossed.any(axis=1)
+        i, j, crossed = i[passed], j[passed], crossed[passed]
         known = np.union1d(known, j * lattice.columns + i)
         steps = ((0, -1), (1, 0), (0, 1), (-1, 0))  # below, right, above, left
         beside = [_cells(lattice, i[crossed[:, k]] + a, j[crossed[:, k]] + b) for k, (a, b) in enumerate(steps)]
-        new = np.setdiff1d(np.concatenate(beside), np.union1d(known, new))
+        new = np.setdiff1d(np.concatenate(beside), seen)
     return known % lattice.columns, known // lattice.columns
 
 

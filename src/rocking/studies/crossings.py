@@ -1,5 +1,6 @@
 """All accelerations at which the verdict changes, in order: stronger is not always worse."""
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -14,7 +15,8 @@ class Crossings:
 
     Every stretch of amplitudes, overturning or surviving, that is wider than `resolution` has been sampled. Narrower
     ones have been looked for where the peak rotation comes close to the top, has a maximum, overturning takes
-    longest, or the way of overturning changes; that is a search, not a proof.
+    longest, or the way of overturning changes; that is a search, not a proof. Under a record thinner stretches may lie
+    anywhere: below the minimum it has been searched again and again, to `resolution_below`.
 
     Parameters
     ----------
@@ -38,6 +40,8 @@ class Crossings:
         Whether the lowest acceleration overturns already.
     samples, failed : int
         Histories that were computed, and those that have no result; a bracket stays wide where one failed.
+    resolution_below : float
+        Widest relative gap between samples below the minimum; NaN if there is no minimum [-].
     """
 
     acceleration: FloatArray
@@ -52,6 +56,7 @@ class Crossings:
     starts_overturned: bool
     samples: int
     failed: int
+    resolution_below: float = math.nan
 
     def __len__(self) -> int:
         """Return the number of crossings."""
@@ -59,12 +64,18 @@ class Crossings:
 
     @property
     def minimum(self) -> float | None:
-        """Least acceleration that overturns; None if none in the range does, or its lowest does already [m/s2]."""
+        """Least acceleration that overturns, of those sampled; under a record thinner stretches may lie below [m/s2].
+
+        None if none in the range overturns, or its lowest does already.
+        """
         return None if self.starts_overturned or not len(self) else float(self.acceleration[0])
 
     @property
     def certain(self) -> float | None:
-        """Acceleration above which every sample overturns; None if the highest survives [m/s2]."""
+        """Acceleration above which all that were sampled overturn; under a record thinner gaps may lie above [m/s2].
+
+        None if the highest survives.
+        """
         if not len(self):
             return self.lowest if self.starts_overturned else None
         return float(self.acceleration[-1]) if self.modes[-1, 1] >= 0 else None

@@ -28,7 +28,9 @@ class Island:
     x, y : tuple of (float, float)
         Least and greatest coordinates.
     enclosed : bool
-        Whether overturning surrounds it; otherwise it reaches the edge of the map, or a point that failed.
+        Whether overturning in one and the same way surrounds it; otherwise it reaches the edge of the map or a point
+        that failed, or lies between two ways of overturning, where survival may lead on as a strip too thin for the
+        grid.
     """
 
     label: int
@@ -76,7 +78,9 @@ def safe_islands(overturning: "xr.Dataset", *, enclosed: bool = True) -> Islands
     overturning : xarray.Dataset
         As of `overturning_map`.
     enclosed : bool
-        Whether to return only those that overturning surrounds within the map.
+        Whether to return only those that overturning after one and the same number of impacts surrounds within the
+        map. Two ways of overturning are parted by survival, thinner than the grid may be: what lies between them is
+        as a rule a piece of that strip, which the grid has cut, and no island.
 
     Returns
     -------
@@ -110,7 +114,7 @@ def safe_islands(overturning: "xr.Dataset", *, enclosed: bool = True) -> Islands
     found = []
     for label in range(1, count + 1):
         mask = labels == label
-        free = not bool((mask & near).any())
+        free = not bool((mask & near).any()) and _surrounded_by_one(mask, modes)
         if label not in main and (free or not enclosed):
             rows, columns = np.nonzero(mask)
             spans = (float(x[columns.min()]), float(x[columns.max()])), (float(y[rows.min()]), float(y[rows.max()]))
@@ -163,6 +167,17 @@ def _near_edge(modes: IntArray) -> BoolArray:
     from scipy import ndimage
 
     return np.asarray(ndimage.binary_dilation(modes == FAILED, np.ones((3, 3), dtype=np.bool_), border_value=1))
+
+
+def _surrounded_by_one(mask: BoolArray, modes: IntArray) -> bool:
+    """Return whether all points beside a region, diagonally too, end in one mode."""
+    from scipy import ndimage
+
+    (place,) = ndimage.find_objects(mask, 1)
+    near = tuple(slice(max(s.start - 1, 0), s.stop + 1) for s in place)
+    inner = mask[near]
+    ring = ndimage.binary_dilation(inner, np.ones((3, 3), dtype=np.bool_)) & ~inner
+    return bool(np.unique(modes[near][ring]).size == 1)
 
 
 def _shares(values: FloatArray) -> FloatArray:

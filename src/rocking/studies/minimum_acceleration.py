@@ -1,5 +1,6 @@
 """Minimum overturning acceleration: every amplitude at which a body begins or ceases to overturn under a motion."""
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -12,6 +13,7 @@ from rocking.dynamics.histories import settings_of
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
+from rocking.studies.below import below, search_below
 from rocking.studies.crossings import Crossings
 from rocking.studies.question import FAILED, Question, sides_of
 from rocking.studies.scan import Scan
@@ -36,7 +38,9 @@ def minimum_overturning_acceleration(
 
     The motion is scaled over a range of amplitudes in equal ratios; intervals in which a thin stretch may hide are
     halved several times; then all changes are bisected together. Under long records overturning and survival may be
-    interleaved at all scales: then only what the samples show is listed.
+    interleaved at all scales: then only what the samples show is listed. Below the least amplitude that overturns
+    a record is sampled in further rounds, of as many points each, until the minimum has held for two of them or four
+    are done.
 
     Parameters
     ----------
@@ -50,7 +54,8 @@ def minimum_overturning_acceleration(
         Peak accelerations between which to look [m/s2]; if not given 1 (0.1 with a vertical part) and 50 times
         the one that lifts the body.
     points : int
-        First samples, in equal ratios; nothing wider than their spacing is missed [-].
+        First samples, in equal ratios, and those of each round below the minimum; nothing wider than their spacing is
+        missed [-].
     tolerance : float
         Width of the last brackets over the acceleration; 0 for neighbouring doubles [-].
     **options
@@ -153,6 +158,8 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     uplift, ends = _range(question, sides, lowest, highest)
     grid = np.geomspace(ends[0], ends[1], points, axis=1) / motion.peak
     scan = Scan(question, sides, grid, progress)
+    if isinstance(motion, GroundMotion):
+        search_below(scan, points)
     for _ in range(levels):
         scan.zoom()
     scan.hunt()
@@ -192,6 +199,7 @@ def _crossings(
     scan: Scan, tolerance: float, uplift: FloatArray, ends: tuple[FloatArray, FloatArray], points: int
 ) -> tuple[Crossings, ...]:
     found, peak = scan.brackets(tolerance), scan.question.motion.peak
+    gaps = {k: each.gap for k, each in below(scan.samples.good).items()}
     made = []
     for k in range(uplift.size):
         own, mine = found.body == k, scan.samples.body == k
@@ -206,7 +214,7 @@ def _crossings(
             Crossings(
                 scale * peak, scale * peak / uplift[k], scale, found.modes[own], np.diff(found.ends[own])[:, 0] * peak,
                 low, high, float(uplift[k]), (high / low) ** (1.0 / (points - 1)) - 1.0, bool(good[0] >= 0),
-                int(modes.size), int(np.sum(modes == FAILED)),
+                int(modes.size), int(np.sum(modes == FAILED)), gaps.get(k, math.nan),
             )
         )  # fmt: skip
     return tuple(made)

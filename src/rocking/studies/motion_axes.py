@@ -105,9 +105,33 @@ class PeakVelocity(_AmplitudeAxis):
     name, unit, sets, stage, high = "pgv", "m/s", "the velocity of the motion", VELOCITY, 1e6
     words = "peak ground velocity, by scaling the motion, or by stretching its time where the other axis scales it"
 
+    def check_beside(self, other: Axis) -> None:
+        """Refuse a scale of zero, at which no stretching gives a velocity.
+
+        Parameters
+        ----------
+        other : Axis
+            The other axis.
+
+        Raises
+        ------
+        InvalidValueError
+            If a value of it is 0.
+        """
+        if isinstance(other, Scale):
+            _refuse_zero(other.values)
+
     def _changed(self, case: Case, values: FloatArray) -> Case:
         """Return the case with the velocity of the ground: acceleration times time."""
         now = peak_velocity(case.question.motion)
         if case.amplitude_is_set:
+            _refuse_zero(case.scale)
             return replace(case, stretch=values / (np.abs(case.scale) * now))
         return super()._changed(case, values / (now * case.stretch))
+
+
+def _refuse_zero(scales: FloatArray) -> None:
+    if not np.all(scales):
+        raise InvalidValueError(
+            "pgv cannot be set where the scale is 0: a motion scaled to nothing has no velocity; leave 0 out"
+        )

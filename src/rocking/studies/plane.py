@@ -43,8 +43,9 @@ class Plane:
             raise InvalidValueError(
                 f"x and y must set different things, got {self.x.name} and {self.y.name}: both set {self.x.sets}"
             )
-        for axis in (self.x, self.y):
+        for axis, other in ((self.x, self.y), (self.y, self.x)):
             axis.check(self.question)
+            axis.check_beside(other)
 
     @classmethod
     def of(cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any, **options: Any) -> "Plane":

@@ -12,6 +12,7 @@ from rocking.dynamics.batch import PIECE
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.export import extra
 from rocking.dynamics.histories import settings_of
+from rocking.dynamics.impact_law import ConstantRestitution
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
@@ -62,8 +63,8 @@ def rocking_spectrum(
     -------
     xarray.Dataset
         Over ``motion, slenderness_angle, period``: outcome, mode, peak_rotation, peak_ratio and more, with units;
-        coordinates ``semi_diagonal`` [m] and ``coefficient`` of restitution [-]. Where a block overturned the
-        peak is a quarter turn.
+        coordinates ``semi_diagonal`` [m] and ``coefficient`` of restitution [-], which is missing where a law changes
+        it from impact to impact. Where a block overturned the peak is a quarter turn.
 
     Raises
     ------
@@ -99,7 +100,8 @@ def rocking_spectrum(
     alpha = np.tile(sides["alpha_right"], len(given))
     results |= {"mode": modes_of(results), "peak_ratio": peak_ratio(results["peak_rotation"], alpha, alpha)}
     data = {name: (_DIMENSIONS, results[name].reshape(shape), _about(name)) for name in VARIABLES}
-    coefficient = sides["r_right"].reshape(shape[1:])
+    constant = isinstance(question.law, ConstantRestitution)
+    coefficient = np.where(constant, sides["r_right"], np.nan).reshape(shape[1:])
     made: xr.Dataset = xarray.Dataset(
         data,
         coords={
@@ -141,6 +143,5 @@ def _computed(histories: Histories, threads: int | None, progress: Callable[[int
 def _attributes(question: Question, settings: Settings, scale: float, motions: MotionList) -> dict[str, Any]:
     kept = question.attributes({})
     told = {k: v for k, v in kept.items() if k in {"software", "seed"} or k.startswith("setting_")}
-    restitution = getattr(question.restitution, "label", None) or str(question.restitution)
     hashes = "; ".join(item["sha256"] for item in motions.description()["motions"])
-    return {**told, "restitution": restitution, "scale": scale, "motion_sha256": hashes}
+    return {**told, "restitution": question.rocker.label, "scale": scale, "motion_sha256": hashes}

@@ -120,3 +120,16 @@ def test_file_that_is_not_there(tmp_path):
     """A list that does not exist is the operating system's error, which `main` prints."""
     with pytest.raises(FileNotFoundError):
         run(tmp_path / "none.csv", "--pga", "0.3g")
+
+
+def test_a_column_that_looks_like_a_measure_is_not_dropped(objects):
+    """A narrow foot under a name that is not known refuses the list in one sentence: no confident green without it."""
+    objects.write_text("name,width_cm,depth_cm,height_cm,foot_diameter_cm\nurn,40,40,90,8\n", encoding="utf-8")
+    with pytest.raises(InvalidValueError, match=r"column 'foot_diameter_cm' is not known but looks like a measure"):
+        run(objects, "--pga", "0.1g", *FEW)
+
+
+def test_level_without_a_leading_zero(capsys, objects):
+    """A level may be typed as .3g."""
+    run(objects, "--pga", ".3g", *FEW, "--json")
+    assert json.loads(capsys.readouterr().out)["hazard"]["level"] == "PGA 0.3 g"

@@ -13,7 +13,9 @@ from rocking.report.inventory_folder import write_inventory
 from rocking.report.inventory_spreadsheet import write_spreadsheet
 from rocking.studies.inventory.assessment import assess
 from rocking.studies.inventory.hazard import Hazard, Level
+from rocking.studies.inventory.lights import Thresholds
 from rocking.studies.inventory.reading import parse_inventory
+from rocking.studies.inventory.table import as_csv
 
 HOSTILE = '<script>alert(1)</script> #strong[x] $x$ \\ & *b* @cite ""'
 TEXT = f"""name;width_cm;depth_cm;height_cm;note;room
@@ -112,3 +114,31 @@ def test_spreadsheet_holds_numbers_and_no_formula(assessment, tmp_path):
     assert isinstance(rows[1][6].value, float)
     assert "'=cmd()" in {row[2].value for row in rows}
     assert "Sliding is not assessed" in " ".join(str(row[1].value) for row in book["What it means"].iter_rows())
+
+
+def test_spreadsheet_and_csv_name_the_columns_that_were_not_read(assessment, tmp_path):
+    """Who opens the table alone learns which columns had no say; without such columns nothing is said."""
+    openpyxl = pytest.importorskip("openpyxl")
+    whole = assess(parse_inventory(TEXT.replace(";room", ";note 2").replace(";note;", ";room;")), assessment.hazard)
+    complete = assess(parse_inventory("name,width_cm,depth_cm,height_cm\nvase,12,12,95"), assessment.hazard)
+    for given, named in ((assessment, "room"), (whole, "room, note 2"), (complete, None)):
+        write_spreadsheet(given, tmp_path / "list.xlsx")
+        sheet = openpyxl.load_workbook(tmp_path / "list.xlsx")["What it means"]
+        facts = {row[0]: row[1] for row in sheet.iter_rows(values_only=True)}
+        last = as_csv(given).splitlines()[-1]
+        if named is None:
+            assert "not read" not in facts
+            assert "not read" not in last
+        else:
+            assert facts["not read"] == f"columns of the list: {named}"
+            assert f"columns of the list that were not read: {named}" in last
+
+
+def test_the_level_of_the_interval_is_not_rounded(assessment, tmp_path):
+    """A level of 99.9 % is printed as such above the intervals, not as 100 %."""
+    own = assess(
+        [verdict.item for verdict in assessment.verdicts], assessment.hazard, thresholds=Thresholds(level=0.999)
+    )
+    html = page(own, tmp_path)
+    assert "99.9% interval [%]" in html
+    assert "100% interval" not in html

@@ -11,6 +11,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.boundary import boundary
 from rocking.studies.contours import chains, crossed_edges, edge_numbers, segments
 from rocking.studies.lattice import Lattice
+from rocking.studies.overturning_map import overturning_map
 from rocking.studies.plane import Plane
 
 BLOCK = rk.Block.from_angle(0.15, 1.0)
@@ -158,3 +159,17 @@ def test_bad_values_are_refused_by_name(change, words):
     given = {"x": GRID[0], "y": GRID[1], "restitution": 0.9} | change
     with pytest.raises(InvalidValueError, match=words):
         boundary(BLOCK, HALF_SINE, **given)
+
+
+def test_slivers_are_outlined_as_in_a_map_of_all_points():
+    """Refining finds the lines that marching every point of the finest grid gives, thin gaps between modes included."""
+    pulse, finest = rk.pulses.sine(1.0, 0.5), 10 * 2**3 + 1
+    ends = {"frequency_ratio": (1.0, 9.0), "amplitude_ratio": (1.05, 12.05)}
+    coarse, fine = ([(name, np.linspace(*end, n)) for name, end in ends.items()] for n in (11, finest))
+    lines = boundary(BLOCK, pulse, *coarse, 0.9, levels=3, linear=True, threads=1)
+    whole = overturning_map(BLOCK, pulse, *fine, 0.9, linear=True, threads=1)["mode"].values
+    assert sorted(len(line.points) for line in lines) == sorted(len(chain) for chain in outline(whole >= 0))
+    assert len(lines) > 1  # negative control: cells whose verdicts differ lead along a single line
+    for line in lines:
+        assert (line.modes[:, 0] < 0).all()
+        assert (line.modes[:, 1] >= 0).all()

@@ -12,7 +12,7 @@ from rocking.studies.overturning_map import overturning_map
 
 def drawn(*rows):
     """A map from characters, the top row last: . not lifted, s survived, # overturned, x failed."""
-    codes = {".": -2, "s": -1, "#": 0, "x": -3}
+    codes = {".": -2, "s": -1, "#": 0, "1": 1, "x": -3}
     modes = np.array([[codes[c] for c in row] for row in reversed(rows)])
     y, x = (np.arange(n, dtype=float) for n in modes.shape)
     return xr.Dataset({"mode": (("y", "x"), modes)}, coords={"x": 10.0 * x, "y": y})
@@ -46,6 +46,29 @@ def test_the_largest_comes_first_and_diagonals_hold():
     assert [island.cells for island in found.islands] == [4, 1]
     assert found.labels.max() == 2
     assert (found.labels == 1).sum() == 4
+
+
+def test_between_two_ways_of_overturning_nothing_is_enclosed():
+    """Pieces of a strip between two modes are none; a hole in either mode is one, also beside the other mode."""
+    strip = drawn("#######", "#s##s##", "11s111s", "1111111", ".......")
+    assert len(safe_islands(strip)) == 0
+    assert len(safe_islands(strip, enclosed=False)) == 3
+    holes = drawn("#######", "#s#####", "#######", "1111111", "1111s11", "1111111", ".......")
+    assert [island.cells for island in safe_islands(holes).islands] == [1, 1]
+    touching = drawn("#######", "#s#####", "1111111", "1111111", ".......")
+    assert len(safe_islands(touching)) == 0
+
+
+@pytest.mark.parametrize("points", [100, 200])
+def test_a_grid_does_not_cut_islands_out_of_a_strip(points):
+    """The gap between modes I and II of the full sine is one strip: no grid makes enclosed islands of it."""
+    block, pulse = rk.Block.from_angle(0.15, 1.0), rk.pulses.sine(1.0, 0.5)
+    axes = ("frequency_ratio", np.linspace(1.0, 9.0, points)), ("amplitude_ratio", np.linspace(0.5, 12.0, points))
+    found = overturning_map(block, pulse, *axes, 0.9, linear=True, threads=1)
+    assert len(safe_islands(found)) == 0
+    # negative control: the grid does cut it into pieces that overturning surrounds
+    pieces = safe_islands(found, enclosed=False).islands
+    assert sum(piece.x[0] > 1.0 and piece.x[1] < 9.0 and piece.y[1] < 12.0 for piece in pieces) >= 2
 
 
 def test_safe_beyond_overturning():

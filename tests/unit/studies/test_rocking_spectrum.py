@@ -84,6 +84,23 @@ def test_what_a_spectrum_says_of_itself():
     assert found.attrs["restitution"] == "ked"
 
 
+def test_a_law_has_no_single_coefficient():
+    """With a law of impact the coordinate is missing and the attribute names the law; with models it is the model's."""
+    laws = {
+        "of the speed: 0.7 to 0.9 times ked": rk.SpeedRestitution([0.0, 1.0], [0.9, 0.7], times="ked"),
+        "at random: 0.8 to 0.9 times 1": rk.RandomRestitution([0.8, 0.9], 1),
+    }
+    for words, law in laws.items():
+        found = rocking_spectrum(PULSES[0], ANGLES, PERIODS, law, threads=1)
+        assert np.isnan(found["coefficient"].values).all()
+        assert found.attrs["restitution"] == words
+    sided = rocking_spectrum(PULSES[0], ANGLES, PERIODS, {"left": 0.8, "right": 0.9}, threads=1)
+    assert sided.attrs["restitution"] == "left 0.8, right 0.9"
+    housner = rocking_spectrum(PULSES[0], ANGLES, PERIODS, "housner", threads=1)
+    expected = 1.0 - 1.5 * np.sin(np.asarray(ANGLES)) ** 2
+    np.testing.assert_allclose(housner["coefficient"].values, expected[:, None] * np.ones(len(PERIODS)), rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [({"slenderness_angles": [0.1, 2.0]}, "slenderness_angle"), ({"slenderness_angles": [-0.1]}, "slenderness_angles"),

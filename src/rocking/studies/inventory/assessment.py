@@ -1,6 +1,6 @@
 """The assessment: every object in both directions under every motion, the worse direction counts."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FEET, FloatArray, g
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.engine import RESULTS
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.rocker import Rocker
@@ -22,7 +22,10 @@ from rocking.studies.inventory.verdict import Assessment, DirectionResult, Verdi
 from rocking.studies.motion_set import MotionList
 
 PIECE = 1 << 18
-"""Histories between two calls of the progress."""
+"""Histories between two calls of the progress, and held in memory at once unless one object has more."""
+
+# the one asked for and the one beside it
+_MODELS = 2
 
 
 @dataclass
@@ -87,21 +90,29 @@ def assess(
     gravity, limits = checks.positive("gravity", gravity, "m/s2"), thresholds or Thresholds()
     other = "ked" if _is_housner(restitution) else "housner"
     labels = _labels(restitution, other, gravity)
-    bodies = _bodies(given.objects, restitution, other, gravity)
-    tables = _run(bodies, hazard, threads, progress) if bodies.items else {}
-    verdicts, refused = [], [*given.not_assessed, *bodies.refused]
-    for k, item in enumerate(bodies.items):
-        found = _verdict(item, {name: values[:, 2 * k : 2 * k + 2] for name, values in tables.items()}, limits, gravity)
-        if isinstance(found, Verdict):
-            verdicts.append(found)
-        else:
-            refused.append(found)
+    verdicts: list[Verdict] = []
+    refused = list(given.not_assessed)
+    for block in _blocks(given.objects, len(hazard.motions)):
+        bodies = _bodies(block, restitution, other, gravity)
+        refused += bodies.refused
+        for found in _verdicts(bodies, hazard, limits, gravity, threads, progress):
+            if isinstance(found, Verdict):
+                verdicts.append(found)
+            else:
+                refused.append(found)
     verdicts.sort(key=lambda each: (each.worse.severity, -each.item.row), reverse=True)
     refused.sort(key=lambda each: each.row)
     return Assessment(
         tuple(verdicts), tuple(refused), hazard, limits, *labels,
         source=given.source, ignored=given.ignored, gravity=gravity,
     )  # fmt: skip
+
+
+def _blocks(objects: Sequence[InventoryObject], motions: int) -> Iterator[Sequence[InventoryObject]]:
+    """Yield objects in blocks whose histories fit into a piece: an inventory of any length takes no more memory."""
+    many = max(1, PIECE // (motions * len(DIRECTIONS) * _MODELS))
+    for first in range(0, len(objects), many):
+        yield objects[first : first + many]
 
 
 def _is_housner(restitution: Any) -> bool:
@@ -129,22 +140,37 @@ def _bodies(objects: Sequence[InventoryObject], restitution: Any, other: str, gr
     return bodies
 
 
+def _verdicts(
+    bodies: _Bodies,
+    hazard: Hazard,
+    limits: Thresholds,
+    gravity: float,
+    threads: int | None,
+    progress: Callable[[int], None] | None,
+) -> Iterator[Verdict | NotAssessed]:
+    """Yield what is said of each object of a block."""
+    if not bodies.items:
+        return
+    tables = _run(bodies, hazard, threads, progress)
+    for k, item in enumerate(bodies.items):
+        yield _verdict(item, {name: values[:, 2 * k : 2 * k + 2] for name, values in tables.items()}, limits, gravity)
+
+
 def _run(
     bodies: _Bodies, hazard: Hazard, threads: int | None, progress: Callable[[int], None] | None
 ) -> Mapping[str, np.ndarray]:
     """Return outcome and peak rotation over the slenderness angle, each by motion, body and model."""
     product = Product(MotionList(hazard.motions), _sides(bodies.pairs), np.ones(1))
-    pieces: list[Arrays] = []
+    kept = {name: np.empty(product.count, RESULTS[name]) for name in ("outcome", "peak_rotation")}
     for first in range(0, product.count, PIECE):
         last = min(first + PIECE, product.count)
-        pieces.append(product.run(first, last, threads=threads))
+        found = product.run(first, last, threads=threads)
+        for name, values in kept.items():
+            values[first:last] = found[name]
         if progress is not None:
             progress(last - first)
     motions, count, _, choices = product.shape
-    shape = motions, count, choices
-    joined = {
-        name: np.concatenate([piece[name] for piece in pieces]).reshape(shape) for name in ("outcome", "peak_rotation")
-    }
+    joined = {name: values.reshape(motions, count, choices) for name, values in kept.items()}
     angle = np.array([[rocker.right.slenderness_angle for rocker in pair] for pair in bodies.pairs])
     return {"outcome": joined["outcome"], "ratio": np.abs(joined["peak_rotation"]) / angle}
 
@@ -169,7 +195,7 @@ def _verdict(
             _direction(item, way, table["outcome"][:, k, choice], table["ratio"][:, k, choice], limits, gravity)
             for k, way in enumerate(DIRECTIONS)
         )
-        for choice in range(2)
+        for choice in range(_MODELS)
     ]
     worse = max(found[0], key=lambda each: each.severity)
     return Verdict(item, found[0], found[1], share_interval(worse.overturned, worse.count, limits.level))

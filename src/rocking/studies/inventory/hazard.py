@@ -23,7 +23,7 @@ MOST_MOTIONS = 5000
 FAMILY, COUNT, SEED = "firm-ground", 200, 1
 """What serves where nobody says otherwise."""
 
-_LEVEL = re.compile(r"([0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)\s*([a-z].*)")
+_LEVEL = re.compile(r"((?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*([a-z].*)")
 
 
 @dataclass(frozen=True)

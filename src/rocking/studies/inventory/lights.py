@@ -7,6 +7,9 @@ from enum import Enum
 from rocking import checks
 from rocking.errors import InvalidValueError
 
+# 0.07 * 100 is 7.000000000000001: seven of a hundred must reach it
+_ROUNDING = 1e-9
+
 
 class Light(Enum):
     """What a light says; the value is the letter that stands beside the colour."""
@@ -88,7 +91,7 @@ class Thresholds:
         Light
             The light.
         """
-        if overturned >= self.overturning_red * count:
+        if overturned >= self.overturning_red * count - _ROUNDING:
             return Light.RED
         if lifted == 0 and failed == 0:
             return Light.GREEN
@@ -105,14 +108,36 @@ class Thresholds:
             One sentence each, with the numbers.
         """
         needed = math.ceil(math.log(0.5 * (1.0 - self.level)) / math.log(1.0 - self.overturning_green))
+        level, most = percent(self.level), percent(self.overturning_green)
         return {
-            Light.RED: f"At least {self.overturning_red:.0%} of the motions overturn the object.",
+            Light.RED: f"At least {percent(self.overturning_red)} of the motions overturn the object.",
             Light.AMBER: "Neither red nor green: it rocks notably, overturns now and then, or there are too few "
             "motions to rule overturning out.",
-            Light.GREEN: f"No motion lifts it; or none overturns it, the upper end of the {self.level:.0%} interval of "
-            f"the overturning share is at most {self.overturning_green:.0%} (which takes at least {needed} motions), "
+            Light.GREEN: f"No motion lifts it; or none overturns it, the upper end of the {level} interval of "
+            f"the overturning share is at most {most} (which takes at least {needed} motions), "
             f"and 84 % of the motions turn it by less than {self.rocking:g} of its slenderness angle.",
         }
+
+
+def percent(share: float) -> str:
+    """Return a share in percent, unrounded: a threshold of 0.5 % is not one of 0 %, nor 99.999 % all.
+
+    Parameters
+    ----------
+    share : float
+        The share [-].
+
+    Returns
+    -------
+    str
+        As many digits as it has, at most ten.
+
+    Examples
+    --------
+    >>> percent(0.005), percent(0.95), percent(0.07)
+    ('0.5%', '95%', '7%')
+    """
+    return f"{100.0 * share:.10g}%"
 
 
 def share_interval(hits: int, count: int, level: float = 0.95) -> tuple[float, float]:

@@ -14,13 +14,16 @@ _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}[.,][0-9]{3}")
 class DecimalMark:
     """What separates the decimals in a table, found in all of its numbers together.
 
-    ``12,5`` can only be a decimal comma; ``1,234`` could be a thousand. The second is taken only where the first
-    stands elsewhere in the table and no decimal point does; ``1.234`` only where no decimal comma stands.
+    ``12,5`` can only be a decimal comma; ``1,234`` could be a thousand, and so could ``1.234``. Either is taken only
+    where the same mark stands for decimals elsewhere in the table and the other does not. Where commas part the
+    fields, decimals have points, and ``1.234`` is taken unless a decimal comma contradicts it.
 
     Parameters
     ----------
     cells : iterable of str
         Every cell that should be a number; others among them say nothing.
+    comma_delimited : bool
+        Whether commas part the fields of the table.
 
     Examples
     --------
@@ -29,13 +32,13 @@ class DecimalMark:
     1.234
     """
 
-    def __init__(self, cells: Iterable[str]) -> None:
+    def __init__(self, cells: Iterable[str], *, comma_delimited: bool = False) -> None:
         found = set()
         for cell in cells:
             match = _NUMBER.fullmatch(cell.strip())
             if match and match[1] and not _THOUSANDS.fullmatch(cell.strip()):
                 found.add(match[1])
-        self.commas, self.points = "," in found, "." in found
+        self.commas, self.points, self.comma_delimited = "," in found, "." in found, comma_delimited
 
     def number(self, name: str, cell: str) -> float:
         """Return the number in a cell.
@@ -73,4 +76,6 @@ class DecimalMark:
         return checks.number(name, float(text.replace(",", ".")))
 
     def _settled(self, mark: str) -> bool:
-        return self.commas and not self.points if mark == "," else not self.commas
+        if mark == ",":
+            return self.commas and not self.points
+        return not self.commas and (self.points or self.comma_delimited)

@@ -1,31 +1,25 @@
 """Inventories from CSV files: columns by name with the unit in it, each row checked by itself."""
 
 import csv
-import difflib
 import io
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from rocking.conventions import LENGTH_UNITS
 from rocking.errors import InvalidValueError
+from rocking.studies.inventory.columns import REQUIRED, Column, columns_of, has_required
 from rocking.studies.inventory.numerals import DecimalMark
 from rocking.studies.inventory.objects import InventoryObject, NotAssessed
-
-LENGTHS = ("width", "depth", "height", "base_width", "base_depth", "centre_of_mass_height")
-"""Columns that are lengths; the name of the column ends with the unit, as in ``width_cm``."""
-
-REQUIRED = ("name", "width", "depth", "height")
-"""Columns that an inventory must have."""
-
-WEIGHTS = {"kg": 1.0, "g": 0.001, "t": 1000.0, "lb": 0.45359237}
-"""Units of the column of weights [kg]."""
 
 MOST_ROWS, MOST_BYTES = 100_000, 64 << 20
 """No inventory is longer, no file larger: it is something else."""
 
-_DELIMITERS = {",": "commas", ";": "semicolons", "\t": "tabs"}
-_PLAIN = ("name", "count", "note")
+_LONGEST_HEADER = 10_000
+_TEXTS = ("name", "note")
+_DELIMITERS = (",", ";", "\t")
+# the line by which Excel is told, and tells, what separates the fields
+_SEPARATOR = re.compile(r'"?sep=(.)"?[ \t]*(?=\r?\n|$)', re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -48,13 +42,6 @@ class Inventory:
     not_assessed: tuple[NotAssessed, ...] = ()
     ignored: tuple[str, ...] = ()
     source: str = "objects"
-
-
-@dataclass(frozen=True)
-class _Column:
-    field: str
-    factor: float
-    title: str
 
 
 def read_inventory(path: str | Path, encoding: str = "utf-8-sig") -> Inventory:
@@ -97,7 +84,8 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     Parameters
     ----------
     text : str
-        Lines of CSV with commas, semicolons or tabs between the fields; the first names the columns.
+        Lines of CSV with commas, semicolons or tabs between the fields; the first names the columns. Before it may
+        stand Excel's own, such as ``sep=;``.
     source : str
         What to call it.
 
@@ -109,7 +97,8 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     Raises
     ------
     InvalidValueError
-        If there is no header with the columns needed, or a column is named twice or without its unit.
+        If there is no header with the columns needed, or a column is named twice, without its unit, or is unknown
+        and looks like a measure.
 
     Examples
     --------
@@ -117,13 +106,14 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     >>> found.objects[0].width, found.not_assessed[0].row
     (0.125, 3)
     """
-    lines = text.removeprefix("\ufeff")
-    delimiter = _delimiter(lines, source)
+    lines, allowed = _separator(text.removeprefix("\ufeff"))
+    delimiter = _delimiter(lines, allowed, source)
     rows = _rows(lines, delimiter, source)
-    columns, ignored = _columns(rows[0][1], source)
+    columns, ignored = columns_of(rows[0][1], source)
     body = [(line, cells) for line, cells in rows[1:] if any(cell.strip() for cell in cells)]
-    numeric = [k for k, column in enumerate(columns) if column and column.field not in {"name", "note"}]
-    mark = DecimalMark(cells[k] for _, cells in body for k in numeric if k < len(cells))
+    numeric = [k for k, column in enumerate(columns) if column and column.fields[0] not in _TEXTS]
+    found = (cells[k] for _, cells in body for k in numeric if k < len(cells))
+    mark = DecimalMark(found, comma_delimited=delimiter == ",")
     objects, refused = [], []
     for line, cells in body:
         try:
@@ -135,30 +125,21 @@ def parse_inventory(text: str, source: str = "objects") -> Inventory:
     return Inventory(tuple(objects), tuple(refused), ignored, source)
 
 
-def _delimiter(text: str, source: str) -> str:
-    first = next((line for line in text.splitlines() if line.strip()), "")
-    fits = [mark for mark in _DELIMITERS if _has_required(next(csv.reader([first], delimiter=mark), []))]
+def _separator(text: str) -> tuple[str, tuple[str, ...]]:
+    """Return a text with Excel's line about the separator emptied, and what may separate the fields."""
+    given = _SEPARATOR.match(text)
+    return (text[given.end() :], (given[1],)) if given else (text, _DELIMITERS)
+
+
+def _delimiter(text: str, allowed: tuple[str, ...], source: str) -> str:
+    first = next((line for line in text.splitlines() if line.strip()), "")[:_LONGEST_HEADER]
+    fits = [mark for mark in allowed if mark in _DELIMITERS and has_required(next(csv.reader([first], delimiter=mark)))]
     if len(fits) == 1:
         return fits[0]
     raise InvalidValueError(
         f"{source}: the first line must name the columns name, width_cm, depth_cm, height_cm (or _mm, _m, _in, _ft) "
         f"with commas, semicolons or tabs between, got {first[:100]!r}"
     )
-
-
-def _has_required(titles: Sequence[str]) -> bool:
-    stems = {_split(title)[0] for title in titles}
-    return all(each in stems for each in REQUIRED)
-
-
-def _split(title: str) -> tuple[str, str]:
-    """Return what a column holds, and its unit."""
-    plain = title.strip().casefold().replace("center", "centre")
-    for mark in "()[]":
-        plain = plain.replace(mark, " ")
-    words = "_".join(plain.replace("_", " ").replace("-", " ").split())
-    stem, _, unit = words.rpartition("_")
-    return (stem, unit) if stem in LENGTHS or stem == "weight" else (words, "")
 
 
 def _rows(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]:
@@ -177,34 +158,7 @@ def _rows(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]
     return found
 
 
-def _columns(titles: Sequence[str], source: str) -> tuple[list[_Column | None], tuple[str, ...]]:
-    columns = [_column(title, source) for title in titles]
-    fields = [column.field for column in columns if column]
-    for each in fields:
-        if fields.count(each) > 1:
-            raise InvalidValueError(f"{source}: two columns give the {each.replace('_', ' ')}; leave one")
-    pairs = zip(titles, columns, strict=True)
-    return columns, tuple(title.strip() for title, column in pairs if column is None and title.strip())
-
-
-def _column(title: str, source: str) -> _Column | None:
-    stem, unit = _split(title)
-    if stem in LENGTHS or stem == "weight":
-        units = WEIGHTS if stem == "weight" else LENGTH_UNITS
-        if unit not in units:
-            known = ", ".join(f"{stem}_{each}" for each in units)
-            raise InvalidValueError(f"{source}: column {title.strip()!r} must name its unit: {known}")
-        return _Column("mass" if stem == "weight" else stem, units[unit], title.strip())
-    if stem in _PLAIN:
-        return _Column(stem, 1.0, title.strip())
-    close = difflib.get_close_matches(stem.rpartition("_")[0] or stem, [*LENGTHS, "weight"], n=1, cutoff=0.8)
-    if close:
-        unit = "kg" if close[0] == "weight" else "cm"
-        raise InvalidValueError(f"{source}: column {title.strip()!r} is not known; {close[0]}_{unit}?")
-    return None
-
-
-def _object(line: int, cells: Sequence[str], columns: Sequence[_Column | None], mark: DecimalMark) -> InventoryObject:
+def _object(line: int, cells: Sequence[str], columns: Sequence[Column | None], mark: DecimalMark) -> InventoryObject:
     if len(cells) != len(columns):
         hint = "a decimal comma between commas?" if len(cells) > len(columns) else "a separator missing?"
         raise InvalidValueError(f"it has {len(cells)} fields, the header {len(columns)}; {hint}")
@@ -212,25 +166,25 @@ def _object(line: int, cells: Sequence[str], columns: Sequence[_Column | None], 
     for column, cell in zip(columns, cells, strict=True):
         if column is None or not cell.strip():
             continue
-        values[column.field] = _value(column, cell, mark)
-    titles = {column.field: column.title for column in columns if column}
+        values |= dict.fromkeys(column.fields, _value(column, cell, mark))
+    titles = {field: column.title for column in columns if column for field in column.fields}
     for each in REQUIRED:
         if each not in values:
             raise InvalidValueError(f"{titles[each]} is empty")
     return InventoryObject(**values)  # type: ignore[arg-type]
 
 
-def _value(column: _Column, cell: str, mark: DecimalMark) -> object:
-    if column.field in {"name", "note"}:
+def _value(column: Column, cell: str, mark: DecimalMark) -> object:
+    if column.fields[0] in _TEXTS:
         return cell.strip()
     number = mark.number(column.title, cell) * column.factor
-    if column.field != "count":
+    if column.fields != ("count",):
         return number
     if number != int(number):
         raise InvalidValueError(f"count must be a whole number, got {cell.strip()!r:.40}")
     return int(number)
 
 
-def _name(cells: Sequence[str], columns: Sequence[_Column | None]) -> str:
-    place = next(k for k, column in enumerate(columns) if column and column.field == "name")
+def _name(cells: Sequence[str], columns: Sequence[Column | None]) -> str:
+    place = next(k for k, column in enumerate(columns) if column and column.fields == ("name",))
     return cells[place].strip() if place < len(cells) else ""

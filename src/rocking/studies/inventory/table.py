@@ -61,12 +61,19 @@ def as_csv(assessment: Assessment) -> str:
     Returns
     -------
     str
-        Commas, points before decimals, one line an object.
+        Commas, points before decimals, one line an object; a last line if columns of the list were not read.
     """
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(HEADER)
     writer.writerows(rows(assessment))
+    if assessment.ignored:
+        writer.writerow(
+            [
+                f"columns of the list that were not read: {', '.join(assessment.ignored)}" * (title == "in words")
+                for title in HEADER
+            ]
+        )
     return text.getvalue()
 
 
@@ -88,11 +95,12 @@ def as_plain(assessment: Assessment) -> dict[str, Any]:
     return {
         "inventory": assessment.source,
         "hazard": {
+            # the description comes first: its pgv_m_s is the level asked for, not the range that came out
+            **hazard.description,
             "level": hazard.words(),
             "motions": hazard.source,
             "number_of_motions": len(hazard.motions),
-            "pgv_m_s": [low, high],
-            **hazard.description,
+            "pgv_range_m_s": [low, high],
         },
         "restitution": assessment.restitution,
         "comparison": assessment.comparison,

@@ -144,7 +144,9 @@ def _base(verdict: Verdict, assessment: Assessment) -> str:
     way, peak = verdict.worse.direction, assessment.hazard.peak()
     now = verdict.item.base(way)
     needed = math.ceil(100.0 * now * peak / verdict.worse.uplift_acceleration - 1e-9)
-    words = f"its {way} is {100.0 * now:.3g} cm"
+    own = verdict.item.width if way == "width" else verdict.item.depth
+    size = f"{100.0 * now:.3g} cm"
+    words = f"its {way} is {size}" if now == own else f"its base is {size} along the {way}"
     return words if assessment.hazard.vertical else f"{words}, and {needed} cm would not be lifted"
 
 

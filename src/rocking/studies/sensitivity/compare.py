@@ -5,14 +5,19 @@ from functools import partial
 from typing import Any
 
 from rocking.bodies import Body
+from rocking.dynamics.impact_law import ImpactLaw, RandomRestitution
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
+from rocking.studies.axes import axis_of
+from rocking.studies.body_axes import Restitution
 from rocking.studies.motion_set import MotionSet
 from rocking.studies.sensitivity.choices import named_choices
 from rocking.studies.sensitivity.comparison import Sensitivity
 from rocking.studies.sensitivity.sampled import sampled
+
+_RANDOM = RandomRestitution.kind
 
 
 def sensitivity(
@@ -63,7 +68,8 @@ def sensitivity(
     if first not in choices:
         raise InvalidValueError(f"baseline must be one of {', '.join(choices)}, got {baseline!r:.60}")
     results = {label: study(restitution=choice) for label, choice in choices.items()}
-    return Sensitivity(results, baseline=first, repetitions=repetitions, seed=seed)
+    drawn = [label for label, choice in choices.items() if isinstance(choice, ImpactLaw) and choice.kind == _RANDOM]
+    return Sensitivity(results, baseline=first, repetitions=repetitions, seed=seed, drawn=drawn)
 
 
 def map_sensitivity(
@@ -91,6 +97,11 @@ def map_sensitivity(
     Sensitivity
         Flips and differences, cell by cell.
 
+    Raises
+    ------
+    InvalidValueError
+        If an axis is the restitution, a choice is none, or a value is outside its range.
+
     Examples
     --------
     >>> import rocking as rk
@@ -103,7 +114,10 @@ def map_sensitivity(
     """
     from rocking.studies.overturning_map import overturning_map
 
-    return sensitivity(partial(overturning_map, body, motion, x, y, **options), restitutions, baseline)
+    along = axis_of(x), axis_of(y)
+    if any(isinstance(axis, Restitution) for axis in along):
+        raise InvalidValueError("restitution cannot be an axis where it is what is compared")
+    return sensitivity(partial(overturning_map, body, motion, *along, **options), restitutions, baseline)
 
 
 def spectrum_sensitivity(

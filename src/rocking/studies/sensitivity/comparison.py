@@ -1,5 +1,6 @@
 """Results of one study with several choices of restitution, compared in numbers and words."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
@@ -33,6 +34,8 @@ class Sensitivity:
         Sets of motions that are drawn for the intervals of fragility curves.
     seed : int
         Seed of these draws.
+    drawn : collection of str
+        Names of the choices whose coefficients are drawn, so that other draws might flip other verdicts.
 
     Raises
     ------
@@ -44,6 +47,7 @@ class Sensitivity:
     baseline: str = field(kw_only=True)
     repetitions: int = field(default=1000, kw_only=True)
     seed: int = field(default=0, kw_only=True)
+    drawn: Collection[str] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
         """Check that the results can be compared."""
@@ -83,16 +87,18 @@ class Sensitivity:
         Returns
         -------
         Flips
-            The counts; the interval takes motions for independent where there are several, otherwise cells. A choice
-            compared with itself is known to flip nothing.
+            The counts; the interval takes motions for independent where there are several, otherwise the draws of
+            the histories, and is missing (NaN) where nothing is drawn. A choice compared with itself is known to flip
+            nothing.
         """
         a, b = (self._of(label, self.datasets)["outcome"] for label in (first, second))
         if first == second:
             return replace(flips_of(a.values, b.values), low=0.0, high=0.0)
+        drawn = not {first, second}.isdisjoint(self.drawn)
         if "motion" not in a.dims:
-            return flips_of(a.values, b.values)
+            return flips_of(a.values, b.values, drawn=drawn)
         shape = [-1 if name == "motion" else 1 for name in a.dims]
-        return flips_of(a.values, b.values, np.arange(a.sizes["motion"]).reshape(shape))
+        return flips_of(a.values, b.values, np.arange(a.sizes["motion"]).reshape(shape), drawn=drawn)
 
     def flips(self) -> "xr.Dataset":
         """Return how many verdicts differ between every two choices.
@@ -101,7 +107,7 @@ class Sensitivity:
         -------
         xarray.Dataset
             Over ``first, second``: count, gained (overturned in the second only), lost, compared, unknown, and the
-            share with its 95 % interval from low to high.
+            share with its 95 % interval from low to high, missing where there is no sample of motions or draws.
         """
         xarray = extra("xarray", "a table of flips")
         pairs = [self.flips_between(first, second) for first, second in product(self.labels, self.labels)]
@@ -109,7 +115,8 @@ class Sensitivity:
         data = {name: (both, np.array([getattr(p, name) for p in pairs]).reshape(shape)) for name in _COUNTS}
         made: xr.Dataset = xarray.Dataset(data, coords={name: list(self.labels) for name in both})
         clusters = max(pair.clusters for pair in pairs)
-        return made.assign_attrs(cases=self.cases, independent=f"{clusters} motions" if clusters else self.cases)
+        independent = f"{clusters} motions" if clusters else self.cases if self.drawn else "nothing"
+        return made.assign_attrs(cases=self.cases, independent=independent)
 
     def differences(self, name: str = "verdict") -> "xr.DataArray":
         """Return how a value moves from the baseline to every other choice.
@@ -195,7 +202,7 @@ class Sensitivity:
             good = int((outcome != Outcome.FAILED.code).sum())
             flips = self.flips_between(self.baseline, label)
             row = {"choice": label, "overturned": int((outcome == Outcome.OVERTURNED.code).sum()), "computed": good}
-            row |= {"flips" if name == "count" else name: getattr(flips, name) for name in _COUNTS}
+            row |= {"flips" if name == "count" else name: _known(getattr(flips, name)) for name in _COUNTS}
             for state, change in self._curve_changes.get(label, {}).items():
                 row |= _plain(state, change) | {f"{state}: fit": self.results[label].fits[state].method}
             rows.append(row)
@@ -209,7 +216,9 @@ class Sensitivity:
     def _sentence(self, label: str) -> str:
         flips = self.flips_between(self.baseline, label)
         where = f"{flips.count:,}" if flips.count else "none"
-        share = f"{percent(flips.share)}, 95 % interval {percent(flips.low)} to {percent(flips.high)}"
+        share = percent(flips.share)
+        if _known(flips.low) is not None:
+            share += f", 95 % interval {percent(flips.low)} to {percent(flips.high)}"
         words = [
             f"The choice between {self.baseline} and {label} changes the verdict in {where} of {flips.compared:,} "
             f"{self.cases} ({share})"
@@ -240,6 +249,10 @@ def _dataset(label: str, result: Any) -> "xr.Dataset":
         raise InvalidValueError("the study varies the restitution itself: give one of its axes to the study instead")
     made: xr.Dataset = found.squeeze("restitution", drop=True) if "restitution" in found.dims else found
     return made
+
+
+def _known(value: float) -> float | None:
+    return None if np.isnan(value) else value
 
 
 def _curve(fit: Any) -> tuple[float, float]:

@@ -18,6 +18,8 @@ UNKNOWN = 2
 LEVEL = 0.95
 """Confidence of the intervals [-]."""
 
+_SIGNED = "peak_rotation"
+
 
 @dataclass(frozen=True)
 class Flips:
@@ -34,10 +36,11 @@ class Flips:
     unknown : int
         Histories that could not be computed in one of them.
     low, high : float
-        95 % interval of the share: what other histories, or other motions, of the same kind may give [-].
+        95 % interval of the share: what other motions, or other draws, of the same kind may give; NaN where there is
+        neither, since the cells of a grid are no sample of anything [-].
     clusters : int
         Motions that the histories belong to, which are what the interval takes for independent; 0 if it takes every
-        history for independent.
+        history for independent, or there is none.
     """
 
     count: int
@@ -59,15 +62,18 @@ class Flips:
         return self.count - self.gained
 
 
-def flips_of(first: Any, second: Any, motions: Any = None) -> Flips:
-    """Return how many verdicts differ between two results, with a 95 % interval of their share.
+def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = False) -> Flips:
+    """Return how many verdicts differ between two results, with a 95 % interval of their share where there is one.
 
     Parameters
     ----------
     first, second : array_like of int
         Codes of `Outcome`.
     motions : array_like of int, optional
-        Number of each history's motion: histories of one motion are alike, so the interval counts motions.
+        Number of each history's motion: histories of one motion are alike, so the interval counts motions. With
+        fewer than two of them nothing was sampled but what is drawn.
+    drawn : bool
+        Whether each history has draws of its own, such as of a random restitution.
 
     Returns
     -------
@@ -82,8 +88,10 @@ def flips_of(first: Any, second: Any, motions: Any = None) -> Flips:
     Examples
     --------
     >>> found = flips_of([1, 2, 2, 2], [1, 1, 2, 2])
-    >>> found.count, found.gained, found.share
-    (1, 0, 0.25)
+    >>> found.count, found.gained, found.share, found.low
+    (1, 0, 0.25, nan)
+    >>> round(flips_of([1, 1, 1, 1], [1, 1, 1, 1], [1, 2, 3, 4]).high, 3)
+    0.602
     """
     sign = flip_map(first, second)
     known = sign != UNKNOWN
@@ -94,7 +102,7 @@ def flips_of(first: Any, second: Any, motions: Any = None) -> Flips:
     count, gained = int(flipped.sum()), int((sign == 1).sum())
     groups = None if motions is None else np.broadcast_to(np.asarray(motions), sign.shape)[known]
     size, clusters = _effective(flipped, groups)
-    low, high = share_interval(count / compared, size)
+    low, high = share_interval(count / compared, size) if clusters or drawn else (np.nan, np.nan)
     return Flips(count, gained, compared, sign.size - compared, low, high, clusters)
 
 
@@ -168,7 +176,8 @@ def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.D
     Returns
     -------
     xarray.DataArray
-        Second less first; missing (NaN) where either overturned or failed: its peak is then no rotation of rocking.
+        Second less first, of peak rotations their sizes; missing (NaN) where either overturned or failed: its peak is
+        then no rotation of rocking.
 
     Raises
     ------
@@ -183,10 +192,14 @@ def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.D
     if name not in names:
         raise InvalidValueError(f"name must be verdict or one of {', '.join(names)}, got {name!r}")
     stood = [result["outcome"].isin([Outcome.NO_UPLIFT.code, Outcome.ROCKED.code]) for result in (first, second)]
-    moved = second[name].astype(np.float64) - first[name].astype(np.float64)
+    before, after = (result[name].astype(np.float64) for result in (first, second))
+    words = name
+    if name == _SIGNED:  # 0.1 to the right and 0.1 to the left are no difference of 0.2
+        before, after, words = abs(before), abs(after), f"the size of {name}"
+    moved = after - before
     units = first[name].attrs.get("units", "1")
     kept: xr.DataArray = moved.where(stood[0] & stood[1]).rename(name)
-    return kept.assign_attrs(units=units, long_name=f"difference of {name}; missing where either did not stand")
+    return kept.assign_attrs(units=units, long_name=f"difference of {words}; missing where either did not stand")
 
 
 def _codes(values: Any) -> np.ndarray:

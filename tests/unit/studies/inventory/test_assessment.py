@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -223,3 +224,61 @@ def test_table_and_plain_values_agree(quakes):
     assert plain["counts"] == {"red": 1, "amber": 0, "green": 1, "not_assessed": 1}
     assert plain["hazard"]["number_of_motions"] == 60
     assert any("Sliding is not assessed" in each for each in plain["assumptions"])
+
+
+def test_the_range_of_velocities_is_not_overwritten(quakes):
+    """JSON gives the range of the motions' own velocities beside the level asked for, under names of their own."""
+    plain = as_plain(assess([COLUMN], quakes))["hazard"]
+    own = [np.abs(motion.time_step * np.cumsum(motion.acceleration)).max() for motion in quakes.motions]
+    # a running sum instead of trapezoids
+    assert plain["pgv_range_m_s"] == pytest.approx([min(own), max(own)], rel=0.05)
+    assert (plain["pga_m_s2"], plain["pgv_m_s"]) == (pytest.approx(0.3 * G), None)
+    scaled = Hazard.of_family("point-source", Level.of("PGV", "15cm/s"), count=3, seed=1)
+    plain = as_plain(assess([COLUMN], scaled))["hazard"]
+    assert plain["pgv_m_s"] == 0.15
+    assert plain["pgv_range_m_s"] == pytest.approx([0.15, 0.15], rel=1e-9)
+
+
+def test_advice_does_not_call_a_base_a_width(quakes):
+    """Where the base is narrower than the body, it is the base that is 8 cm; where it is not, the width is."""
+    objects = [InventoryObject(name="urn", width=0.3, depth=0.4, height=1.0, base_width=0.08, base_depth=0.3)]
+    objects.append(InventoryObject(name="stele", width=0.08, depth=0.4, height=1.0))
+    told = {v.item.name: words.advice(v, found) for found in [assess(objects, quakes)] for v in found.verdicts}
+    assert "its base is 8 cm along the width, and " in told["urn"]
+    assert "its width is 8 cm, and " in told["stele"]
+
+
+LISTED = [
+    InventoryObject(name=f"{k}", width=0.1 + 0.01 * (k % 17), depth=0.2, height=0.5 + 0.02 * (k % 13), row=k)
+    for k in range(320)
+]
+
+
+def test_blocks_of_objects_change_nothing(quakes, monkeypatch):
+    """In blocks of one, of a few or of all objects every verdict and the progress are the same."""
+    told = []
+    whole = assess(LISTED[:40], quakes, progress=told.append)
+    assert sum(told) == 40 * 60 * 2 * 2
+    for piece in (100, 1000, 60 * 4 * 7):
+        monkeypatch.setattr(module, "PIECE", piece)
+        told.clear()
+        found = assess(LISTED[:40], quakes, progress=told.append)
+        assert found.verdicts == whole.verdicts
+        assert max(told) <= piece
+        assert sum(told) == 40 * 60 * 2 * 2
+
+
+def test_memory_does_not_grow_with_the_inventory(quakes, monkeypatch):
+    """Eight times as many objects need less than twice the memory beyond what their verdicts take."""
+    monkeypatch.setattr(module, "PIECE", 60 * 4 * 40)
+
+    def needed(count):
+        tracemalloc.start()
+        found = assess(LISTED[:count], quakes, threads=1)
+        kept, most = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        assert len(found.verdicts) == count
+        return most - kept
+
+    needed(40)  # what is made once is made here
+    assert needed(320) < 2.0 * needed(40)

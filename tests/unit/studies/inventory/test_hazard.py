@@ -18,6 +18,7 @@ RECORDS = [GroundMotion([0.0, 1.0, -2.0, 0.0], 0.1, name="one"), GroundMotion([0
     [
         ("PGA", "0.3g", 0.3 * G),
         ("PGA", " 0.3 g ", 0.3 * G),
+        ("PGA", ".3g", 0.3 * G),
         ("PGA", "2.5m/s2", 2.5),
         ("PGA", "300 gal", 3.0),
         ("PGA", "3e2cm/s2", 3.0),

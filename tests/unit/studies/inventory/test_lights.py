@@ -6,7 +6,7 @@ import pytest
 from scipy import stats
 
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory.lights import Light, Thresholds, share_interval
+from rocking.studies.inventory.lights import Light, Thresholds, percent, share_interval
 
 
 @pytest.mark.parametrize(("hits", "count"), [(0, 7), (1, 7), (7, 7), (12, 200), (100, 200), (199, 200)])
@@ -58,6 +58,23 @@ def test_no_green_where_a_motion_could_not_be_computed():
     """What is not known is not safe."""
     assert light(200, 0, 0.0, lifted=0, failed=1) is Light.AMBER
     assert light(200, 0, 0.1, failed=1) is Light.AMBER
+
+
+@pytest.mark.parametrize(("share", "count", "fell"), [(0.07, 100, 7), (0.14, 100, 14), (0.29, 100, 29), (0.2, 5, 1)])
+def test_red_begins_at_its_share_whatever_the_rounding(share, count, fell):
+    """Just as many as the share says are red, although 0.07 * 100 is above 7 in floats; one fewer is not."""
+    limits = Thresholds(overturning_red=share)
+    lights = [limits.light(lifted=count, overturned=n, count=count, high_rotation=0.5) for n in (fell - 1, fell)]
+    assert lights == [Light.AMBER, Light.RED]
+
+
+def test_small_shares_are_not_printed_as_zero():
+    """A threshold of 0.5 % and a level of 99.9 % stand in the words as they are, not as 0 % and 100 %."""
+    own = Thresholds(overturning_green=0.005, overturning_red=0.125, level=0.999)
+    text = " ".join(own.sentences().values())
+    for number in ("is at most 0.5% (", "the 99.9% interval", "At least 12.5% of"):
+        assert number in text
+    assert percent(0.07) == "7%"
 
 
 def test_thresholds_stand_in_the_words():

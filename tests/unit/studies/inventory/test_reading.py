@@ -120,6 +120,16 @@ def test_bad_optional_value(column, value, words):
         (f"{HEAD},weight_stone\n{GOOD},10", "must name its unit: weight_kg"),
         (f"{HEAD},base_widht_cm\n{GOOD},10", "base_width_cm\\?"),
         (f"{HEAD},wieght_kg\n{GOOD},10", "weight_kg\\?"),
+        (f"{HEAD},foot_width_cm\n{GOOD},10", "'foot_width_cm' is not known but looks like a measure; "),
+        (f"{HEAD},diameter\n{GOOD},10", "'diameter' is not known but looks like a measure; "),
+        (f"{HEAD},Durchmesser_mm\n{GOOD},10", "looks like a measure"),
+        (f"{HEAD},gross (kg)\n{GOOD},10", "looks like a measure"),
+        (f"{HEAD},centre of area\n{GOOD},10", "looks like a measure"),
+        (f"{HEAD},base\n{GOOD},10", "'base' must name its unit: base_m"),
+        (f"{HEAD},base_cm,base_depth_cm\n{GOOD},10,9", "two columns give the base depth"),
+        (f"{HEAD},mass_kg,weight_kg\n{GOOD},10,9", "two columns give the mass"),
+        ("sep=|\nname|width_cm|depth_cm|height_cm\nvase|1|2|3", "the first line must name the columns"),
+        ("sep=;\n" + HEAD + "\n" + GOOD, "the first line must name the columns"),
         (f'{HEAD}\n"vase,20,25,100', "quotation mark"),
     ],
 )
@@ -134,7 +144,9 @@ def test_file_that_cannot_be_understood(text, words):
     [
         (["1,5", "1,234"], "1,234", 1.234),
         (["0,125"], "0,125", 0.125),
-        (["1.234"], "1.234", 1.234),
+        (["1.234"], "1.234", None),
+        (["12.5", "1.234"], "1.234", 1.234),
+        (["12.5", "7,25", "1.234"], "1.234", None),
         (["12,5", "1.234"], "1.234", None),
         (["12,5", "7.5", "1,234"], "1,234", None),
         (["1,234"], "1,234", None),
@@ -151,6 +163,52 @@ def test_decimal_mark(cells, cell, value):
             mark.number("width_cm", cell)
     else:
         assert mark.number("width_cm", cell) == pytest.approx(value, rel=1e-15)
+
+
+def test_a_point_before_three_digits_needs_proof_unless_commas_part_the_fields():
+    """1.800 in a German table of millimetres is not taken for 1.8 mm; between commas decimals have points."""
+    german = "name;width_cm;depth_cm;height_mm\nvase;30;30;1.800"
+    for text in (german, german.replace(";", "\t")):
+        found = parse_inventory(text)
+        assert found.objects == ()
+        assert "'1.800' could be 1.800 or 1800; write 1.8000 or 1800" in found.not_assessed[0].reason
+    proven = parse_inventory("name;width_cm;depth_cm;height_cm\nvase;30;30;1.800\nbox;12.5;30;40")
+    assert proven.objects[0].height == pytest.approx(0.018)
+    assert only("name,width_m,depth_m,height_m\nvase,0.3,0.3,1.800").height == 1.8
+
+
+@pytest.mark.parametrize(
+    ("column", "field", "value"),
+    [
+        ("mass_kg", "mass", 5.0),
+        ("Mass [g]", "mass", 5.0),
+        ("centre_of_gravity_cm", "centre_of_mass_height", 0.05),
+        ("center of gravity (mm)", "centre_of_mass_height", 0.005),
+        ("com_height_cm", "centre_of_mass_height", 0.05),
+        ("center_of_mass_height_cm", "centre_of_mass_height", 0.05),
+        ("base_cm", "base_width", 0.05),
+        ("base_cm", "base_depth", 0.05),
+    ],
+)
+def test_other_names_of_columns(column, field, value):
+    """Names that people use give the field they mean; a base without a direction is that of both."""
+    cell = "5000" if column == "Mass [g]" else "5"
+    assert getattr(only(f"{HEAD},{column}\n{GOOD},{cell}"), field) == pytest.approx(value)
+
+
+def test_a_narrow_base_is_not_dropped():
+    """The base of 5 cm under a body of 20 cm sets the uplift: g 5/100, not g 20/100."""
+    vase = only(f"{HEAD},base_cm\n{GOOD},5")
+    assert vase.uplift_acceleration("width") == pytest.approx(0.05 * 9.80665, rel=1e-14)
+    assert vase.uplift_acceleration("depth") == pytest.approx(0.05 * 9.80665, rel=1e-14)
+
+
+@pytest.mark.parametrize(("line", "mark"), [("sep=;", ";"), ('"sep=;"', ";"), ("SEP=,", ","), ("sep=\t", "\t")])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_the_line_that_excel_writes_first(line, mark, end):
+    """Excel's line about the separator is no header, gives the separator, and is counted among the lines."""
+    found = parse_inventory(end.join([line, HEAD.replace(",", mark), GOOD.replace(",", mark)]))
+    assert (found.objects[0].width, found.objects[0].row) == (0.2, 3)
 
 
 def test_encodings(tmp_path):

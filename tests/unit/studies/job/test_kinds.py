@@ -89,6 +89,14 @@ def test_spectrum_is_rocking_spectrum(finished, tmp_path):
     assert found["motion"].values.tolist() == wanted["motion"].values.tolist()
 
 
+def test_spectrum_with_a_law_has_no_coefficient(finished, tmp_path, text):
+    """As in `rocking_spectrum`, the coefficient is missing where a law changes it from impact to impact."""
+    law = "[restitution.distribution]\nmean = 0.9\ndeviation = 0.05\nseed = 8\n"
+    found = opened(finished("rocking-spectrum", 7, text("rocking-spectrum", 7) + law), tmp_path)
+    assert np.isnan(found["coefficient"]).all()
+    assert found["coefficient"].shape == (2, 6)
+
+
 def test_product_is_simulate_many(finished, tmp_path):
     """A plain product has every bit of `simulate_many`."""
     bodies = [BLOCK, rk.Block(width=0.3, height=1.0)]

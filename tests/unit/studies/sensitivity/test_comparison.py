@@ -8,6 +8,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError
+from rocking.studies.body_axes import Restitution
 from rocking.studies.sensitivity import (
     SampledRestitution,
     Sensitivity,
@@ -16,6 +17,7 @@ from rocking.studies.sensitivity import (
     sensitivity,
     spectrum_sensitivity,
 )
+from rocking.studies.sensitivity.differences import share_interval
 
 xr = pytest.importorskip("xarray")
 BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
@@ -57,11 +59,11 @@ def test_maps_of_differences():
 
 
 def test_the_verdict_in_words():
-    """The sentence names both choices, the count, the share with its interval, and which way the verdicts went."""
+    """The sentence names both choices, the count, the share, and which way the verdicts went; no interval of cells."""
     words = sensitivity(given(KNOWN), ["housner", "ked", 0.9]).verdict.splitlines()
-    assert words[0].startswith("The choice between housner and ked changes the verdict in 3 of 6 cells (50 %, 95 % int")
+    assert words[0].startswith("The choice between housner and ked changes the verdict in 3 of 6 cells (50 %); ")
     assert words[0].endswith("2 overturn only with ked, 1 only with housner.")
-    assert "in none of 5 cells (0 %, 95 % interval 0 % to 52.2 %); 1 could not be computed." in words[1]
+    assert "in none of 5 cells (0 %); 1 could not be computed." in words[1]
 
 
 def test_histories_of_one_motion_are_counted_together():
@@ -73,8 +75,36 @@ def test_histories_of_one_motion_are_counted_together():
     by_column = sensitivity(given(turned, ("level", "motion")), list(outcomes)).flips_between("housner", "ked")
     assert by_row == by_column
     assert by_row.clusters == 30
-    cells = sensitivity(given(outcomes), list(outcomes)).flips_between("housner", "ked")
+    results = {name: given(outcomes)(restitution=name) for name in outcomes}
+    cells = Sensitivity(results, baseline="ked", drawn=["ked"]).flips_between("housner", "ked")
     assert by_row.high - by_row.low > 2.0 * (cells.high - cells.low)
+
+
+def test_cells_of_a_grid_have_no_interval_unless_something_is_drawn():
+    """A map of constants is no sample: no interval in numbers or words; with one drawn choice its pairs have one."""
+    constant = map_sensitivity(BLOCK, PULSE, *AXES, ["housner", "ked"])
+    flips = constant.flips_between("housner", "ked")
+    assert np.isnan([flips.low, flips.high]).all()
+    assert "interval" not in constant.verdict
+    assert constant.summary()[1]["low"] is constant.summary()[1]["high"] is None
+    assert constant.flips().attrs["independent"] == "nothing"
+    law = RandomRestitution.normal(0.9, 0.02, seed=1)
+    drawn = map_sensitivity(BLOCK, PULSE, *AXES, {"housner": "housner", "ked": "ked", "drawn": law})
+    assert np.isnan(drawn.flips_between("housner", "ked").low)
+    flips = drawn.flips_between("housner", "drawn")
+    assert (flips.low, flips.high) == share_interval(flips.share, flips.compared)
+    assert [line.count("95 % interval") for line in drawn.verdict.splitlines()] == [0, 1]
+    single = spectrum_sensitivity(PULSE, [0.2], [2.0, 3.0, 4.0], ["housner", "ked"])
+    assert "interval" not in single.verdict
+
+
+def test_the_restitution_is_no_axis_where_it_is_compared():
+    """A map over the restitution itself would be the same for all choices: refused before anything is computed."""
+    told = []
+    for axes in ((("restitution", [0.8, 0.9]), AXES[1]), (AXES[0], Restitution([0.8, 0.9]))):
+        with pytest.raises(InvalidValueError, match="restitution cannot be an axis where it is what is compared"):
+            map_sensitivity(BLOCK, PULSE, *axes, ["housner", "ked"], progress=told.append)
+    assert told == []
 
 
 def test_summary_is_plain():
@@ -84,7 +114,7 @@ def test_summary_is_plain():
     assert [row["overturned"] for row in rows] == [4, 3, 3]
     assert [row["computed"] for row in rows] == [6, 6, 5]
     assert rows[0]["flips"] == 0
-    assert all(isinstance(value, (str, int, float)) for row in rows for value in row.values())
+    assert all(value is None or isinstance(value, (str, int, float)) for row in rows for value in row.values())
 
 
 def test_identical_restitutions_change_nothing():

@@ -42,7 +42,8 @@ def coverage(by_motion, repetitions=400):
     inside = 0
     for _ in range(repetitions):
         second = np.where(rng.random((40, 12)) < rng.beta(1.0, 4.0, (40, 1)), OVER, ROCKED)  # mean 0.2
-        found = flips_of(np.full_like(second, ROCKED), second, np.arange(40)[:, None] if by_motion else None)
+        motions = np.arange(40)[:, None] if by_motion else None
+        found = flips_of(np.full_like(second, ROCKED), second, motions, drawn=not by_motion)
         inside += found.low <= 0.2 <= found.high
     return inside / repetitions
 
@@ -62,9 +63,13 @@ def test_no_flips_are_as_sure_as_there_are_motions():
 
 
 def test_one_motion_is_no_sample_of_motions():
-    """With a single motion the histories themselves are counted."""
+    """With a single motion there is no interval, unless every history has draws of its own: these are counted."""
     first, second = np.full((1, 50), ROCKED), np.full((1, 50), OVER)
-    assert flips_of(first, second, [[0]]) == Flips(50, 50, 50, 0, *share_interval(1.0, 50), 0)
+    assert flips_of(first, second, [[0]], drawn=True) == Flips(50, 50, 50, 0, *share_interval(1.0, 50), 0)
+    for motions in ([[0]], None):
+        found = flips_of(first, second, motions)
+        assert (found.count, found.share, found.clusters) == (50, 1.0, 0)
+        assert np.isnan([found.low, found.high]).all()
 
 
 @pytest.mark.parametrize(
@@ -96,3 +101,16 @@ def test_values_are_compared_where_both_stood():
     assert difference_of(first, second, "verdict").values.tolist() == [0, 0, -1, 0]
     with pytest.raises(InvalidValueError, match="verdict or one of outcome, ratio"):
         difference_of(first, second, "word")
+
+
+def test_peak_rotations_differ_by_their_sizes():
+    """0.10 to the right and 0.12 to the left differ by 0.02, not by 0.22; and the long name says that it is sizes."""
+    xr = pytest.importorskip("xarray")
+    first, second = (
+        xr.Dataset({"outcome": ("x", [ROCKED] * 3), "peak_rotation": ("x", peaks, {"units": "rad"})})
+        for peaks in ([0.10, -0.10, -0.2], [-0.12, 0.07, -0.3])
+    )
+    found = difference_of(first, second, "peak_rotation")
+    assert found.values == pytest.approx([0.02, -0.03, 0.1], rel=1e-12)
+    assert found.attrs["long_name"] == "difference of the size of peak_rotation; missing where either did not stand"
+    assert found.attrs["units"] == "rad"

@@ -3,6 +3,7 @@
 from rocking.errors import InvalidValueError
 from rocking.studies.axes import axis_of
 from rocking.studies.axis import Axis
+from rocking.studies.body_axes import Restitution
 from rocking.studies.job.kinds.map_histories import MapHistories
 from rocking.studies.job.kinds.words import along, of_words
 from rocking.studies.job.parts import Parts
@@ -43,6 +44,8 @@ def map_study(parts: Parts) -> Study:
             Question(parts.bodies[0], parts.motions[0], choice, parts.settings, None, engine)
             for choice in parts.choices.values()
         ]
+        if len(questions) > 1 and any(isinstance(axis, Restitution) for axis in axes):
+            raise InvalidValueError("restitution cannot be an axis where it is what is compared; leave one model")
         planes = [Plane(question, *axes) for question in questions]
         histories = MapHistories.of(planes)
     x, y = axes

@@ -7,7 +7,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Block, Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.impact_law import ImpactLaw
+from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.rocker import Rocker
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Product
@@ -46,7 +46,8 @@ def spectrum_study(parts: Parts) -> Study:
     histories = Product(parts.motions, sides, np.array([scale]), law=law, settings=parts.settings, engine=engine)
     dims = {"motion": len(parts.motions), "slenderness_angle": angles.size, "period": times.size}
     shape = (angles.size, times.size, len(parts.choices))
-    coefficient = sides["r_right"].reshape(shape)
+    # a law changes it from impact to impact: there is no one coefficient to tell
+    coefficient = np.where(isinstance(law, ConstantRestitution), sides["r_right"], np.nan).reshape(shape)
     coordinates = {
         "motion": of_motions(parts.motions),
         "slenderness_angle": along("slenderness_angle", angles, "rad", "slenderness angle"),
