@@ -8,7 +8,7 @@ Keys of the JSON
   n >= 0 overturns after n impacts).
 - ``minimum_m_s2``, ``certain_m_s2`` (null where there is none), ``overturning_intervals_m_s2``,
   ``safe_intervals_m_s2``, ``lowest_m_s2``, ``highest_m_s2``, ``uplift_acceleration_m_s2``, ``resolution``,
-  ``starts_overturned``, ``samples``, ``failed``, ``sentence``.
+  ``resolution_below`` (the first crossing), ``starts_overturned``, ``samples``, ``failed``, ``sentence``.
 """
 
 import json
@@ -132,6 +132,8 @@ def sentence(found: Crossings) -> str:
     """
     falls = found.overturning_intervals
     scanned = f"scanned from {_g(found.lowest)} to {_g(found.highest)}, resolution {100.0 * found.resolution:.2g} %"
+    if found.minimum is not None and found.resolution_below < 0.5 * found.resolution:
+        scanned += f" ({100.0 * found.resolution_below:.2g} % below the first crossing); thinner stretches may exist"
     if not falls:
         return f"survives everything; {scanned}"
     if falls == ((found.lowest, found.highest),):
@@ -186,6 +188,7 @@ def as_json(answer: MinimumAnswer) -> str:
         "highest_m_s2": found.highest,
         "uplift_acceleration_m_s2": found.uplift_acceleration,
         "resolution": found.resolution,
+        "resolution_below": found.resolution_below if found.minimum is not None else None,
         "starts_overturned": found.starts_overturned,
         "samples": found.samples,
         "failed": found.failed,
