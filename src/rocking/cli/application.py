@@ -5,6 +5,7 @@ import typer
 from rocking.cli.campaign import campaign
 from rocking.cli.cor import cor
 from rocking.cli.formats import formats
+from rocking.cli.fragility import fragility
 from rocking.cli.inventory import inventory
 from rocking.cli.map import map
 from rocking.cli.minimum import minimum
@@ -32,7 +33,7 @@ def application() -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    for command in (cor, simulate, map, minimum, spectrum, inventory, paper, models, motion, formats):
+    for command in (cor, simulate, map, minimum, spectrum, fragility, inventory, paper, models, motion, formats):
         app.command()(command)
     app.add_typer(campaign, name="campaign")
     return app

@@ -5,13 +5,17 @@ from rocking.plots.body_picture import body_picture, coefficient_picture
 from rocking.plots.crossings import crossings_picture
 from rocking.plots.figure_1 import figure_1
 from rocking.plots.figure_2 import figure_2
+from rocking.plots.fragility import fragility_picture
 from rocking.plots.ground_motion import ground_motion_picture
 from rocking.plots.hero import hero
+from rocking.plots.incremental import incremental_picture
+from rocking.plots.measures import measures_picture
 from rocking.plots.overturning_map import overturning_map_picture
 from rocking.plots.overview import calibration_figure, league_figure, models_and_measurements
 from rocking.plots.paper_figures import figure_3, figure_5, figure_6, figure_7, figure_8, figure_9
 from rocking.plots.response import response_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
+from rocking.plots.sensitivity import sensitivity_picture
 from rocking.plots.style import save, write
 
 __all__ = [
@@ -29,13 +33,17 @@ __all__ = [
     "figure_7",
     "figure_8",
     "figure_9",
+    "fragility_picture",
     "ground_motion_picture",
     "hero",
+    "incremental_picture",
     "league_figure",
+    "measures_picture",
     "models_and_measurements",
     "overturning_map_picture",
     "response_picture",
     "rocking_spectrum_picture",
     "save",
+    "sensitivity_picture",
     "write",
 ]

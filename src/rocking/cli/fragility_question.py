@@ -1,0 +1,215 @@
+"""The question of `rocking fragility`: which body, which motions, which levels, and what is counted."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.cli import study_output as shared
+from rocking.cli.fragility_motions import motions_from
+from rocking.cli.simulate_question import restitution_from
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.measures import IntensityMeasure, measure
+from rocking.studies.fragility.states import limit_states
+from rocking.studies.fragility.subject import Subject, checked_levels
+from rocking.studies.motion_set import MotionList
+
+if TYPE_CHECKING:
+    from rocking.studies.sensitivity import Sensitivity
+
+ANALYSES = ("stripes", "cloud", "incremental")
+
+MOST_HISTORIES = 10_000_000
+"""A larger analysis is a campaign."""
+
+_REACH = (0.9, 9.0, 16)
+"""Levels of PGA that serve where none are given: from, to in what lifts the body, how many, in equal ratios."""
+
+
+@dataclass(frozen=True)
+class FragilityQuestion:
+    """An analysis that has been asked for.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    analysis : {"stripes", "cloud", "incremental"}
+        Which one.
+    measure : IntensityMeasure
+        The measure.
+    levels : ndarray, optional
+        Levels of the measure; None for a cloud, or for those that serve where none are given [its unit].
+    written : str
+        Unit that the levels were written in, empty if none; medians are printed in it.
+    states : tuple of float
+        Rotations over alpha [-].
+    factor : float
+        Factor on all motions of a cloud [-].
+    choices : dict of str to restitution
+        By the word that was given, the first one first.
+    settings : dict
+        As of `rocking.cli.study_output.settings_from`.
+    """
+
+    body: Body
+    analysis: str
+    measure: IntensityMeasure
+    levels: FloatArray | None
+    written: str
+    states: tuple[float, ...]
+    factor: float
+    choices: dict[str, Any]
+    settings: dict[str, Any]
+
+    @classmethod
+    def of(
+        cls, body: Body, asked: dict[str, Any], restitution: Sequence[str] | None, settings: dict[str, Any]
+    ) -> "FragilityQuestion":
+        """Put the question together; everything but the motions is checked here.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+        asked : dict
+            analysis, measure, levels, states, factor, as they were written.
+        restitution : sequence of str, optional
+            Models or coefficients.
+        settings : dict
+            As of `rocking.cli.study_output.settings_from`.
+
+        Returns
+        -------
+        FragilityQuestion
+            The question.
+
+        Raises
+        ------
+        InvalidValueError
+            If a word cannot be read, or options contradict one another.
+        """
+        kind, wanted = asked["analysis"], measure(asked["measure"])
+        if kind not in ANALYSES:
+            raise InvalidValueError(f"--analysis must be one of {', '.join(ANALYSES)}, got {kind!r:.60}")
+        words = list(restitution or ["ked"])
+        twice = next((word for word in words if words.count(word) > 1), None)
+        if twice is not None:
+            raise InvalidValueError(f"--restitution {twice[:60]} is given twice")
+        if len(words) > 1 and kind != "stripes":
+            raise InvalidValueError(f"several --restitution are compared by --analysis stripes, not by {kind}")
+        levels, written = _levels(kind, wanted, asked["levels"])
+        rotations = tuple(shared.row("--states", asked["states"], "1")[0].tolist())
+        limit_states(rotations)
+        if asked["factor"] is not None and kind != "cloud":
+            raise InvalidValueError(f"--factor is for --analysis cloud: {kind} brings every motion to the levels")
+        factor = checks.positive("--factor", 1.0 if asked["factor"] is None else asked["factor"])
+        choices = {word: restitution_from(word) for word in words}
+        return cls(body, kind, wanted, levels, written, rotations, factor, choices, settings)
+
+    def answered(self, sources: dict[str, Any], told: dict[str, Any], quiet: bool) -> "FragilityAnswer":
+        """Make the motions and compute.
+
+        Parameters
+        ----------
+        sources : dict
+            record, synthetic, count, seed, as they were given.
+        told : dict
+            What the record files leave open, as `rocking.cli.motion_options.motion_from` takes it.
+        quiet : bool
+            Whether to show no bar.
+
+        Returns
+        -------
+        FragilityAnswer
+            What is printed.
+
+        Raises
+        ------
+        InvalidValueError
+            If there are no motions, or too many histories.
+        """
+        motions, facts = motions_from(sources, told, quiet=quiet)
+        levels = self._levels(motions)
+        total = len(motions) * (1 if levels is None else levels.size) * len(self.choices)
+        if total > MOST_HISTORIES:
+            raise InvalidValueError(
+                f"there must be at most {MOST_HISTORIES} histories, got {total}; rocking campaign computes more"
+            )
+        with shared.bar("histories", total, quiet=quiet) as tell:
+            found, compared = self._computed(motions, levels, tell)
+        return FragilityAnswer(self, facts, found, compared)
+
+    def _levels(self, motions: MotionList) -> FloatArray | None:
+        if self.analysis == "cloud" or self.levels is not None:
+            return self.levels
+        options = {name: value for name, value in self.settings.items() if name != "threads"}
+        subject = Subject.of(self.body, motions, next(iter(self.choices.values())), self.measure, options)
+        low, high, count = _REACH
+        lifts = subject.scale.threshold if self.measure.name == "pga" else 1.0
+        return np.geomspace(low * lifts, high * lifts, count)
+
+    def _computed(
+        self, motions: MotionList, levels: FloatArray | None, tell: Callable[[int], None]
+    ) -> tuple[Any, "Sensitivity | None"]:
+        from rocking.studies.fragility import cloud, incremental, multiple_stripes
+        from rocking.studies.sensitivity import fragility_sensitivity
+
+        options = {**self.settings, "measure": self.measure, "states": self.states, "progress": tell}
+        first = next(iter(self.choices))
+        if len(self.choices) > 1:
+            compared = fragility_sensitivity(self.body, motions, levels, self.choices, **options)
+            return compared.results[first], compared
+        law = self.choices[first]
+        if self.analysis == "cloud":
+            return cloud(self.body, motions, law, factor=self.factor, **options), None
+        study = multiple_stripes if self.analysis == "stripes" else incremental
+        return study(self.body, motions, levels, law, **options), None
+
+
+@dataclass(frozen=True, eq=False)
+class FragilityAnswer:
+    """What was found.
+
+    Parameters
+    ----------
+    question : FragilityQuestion
+        What was asked.
+    motions : dict
+        Where the motions come from, as plain values.
+    found : StripeAnalysis, CloudAnalysis or IncrementalAnalysis
+        The analysis with the first restitution.
+    compared : Sensitivity, optional
+        Those with all restitutions, where there are several.
+    """
+
+    question: FragilityQuestion
+    motions: dict[str, Any]
+    found: Any
+    compared: "Sensitivity | None"
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """The analyses by their restitution."""
+        if self.compared is not None:
+            return self.compared.results
+        return {next(iter(self.question.choices)): self.found}
+
+
+def _levels(kind: str, wanted: IntensityMeasure, word: str | None) -> tuple[FloatArray | None, str]:
+    if kind == "cloud":
+        if word is not None:
+            raise InvalidValueError("--levels is not for --analysis cloud, which takes the motions as they are")
+        return None, "g" if wanted.name == "pga" else ""
+    if wanted.power == 0:
+        raise InvalidValueError(f"no factor on a motion changes {wanted.name}: take it with --analysis cloud")
+    if word is None:
+        if wanted.name not in {"pga", "pga/(g tan alpha)"}:
+            raise InvalidValueError(f"which levels of {wanted.name}? Give --levels FIRST:LAST:COUNT in {wanted.unit}")
+        return None, "g" if wanted.name == "pga" else ""
+    values, written = shared.row("--levels", word, "1" if wanted.unit == "-" else wanted.unit)
+    return checked_levels("--levels", values, wanted.unit), written

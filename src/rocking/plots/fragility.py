@@ -1,0 +1,239 @@
+"""Fragility: observed shares with their intervals, fitted curves with a band, and how the states make up the whole."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.plots.fragility_words import caption, symbol
+from rocking.plots.study_words import (
+    COLORS,
+    STATES,
+    axis_label,
+    geometric,
+    look,
+    plain_log,
+    wrapped,
+)
+from rocking.plots.style import INK, PALE, SINGLE, in_journal_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from rocking.studies.fragility.lognormal import LognormalFit
+
+HEIGHT = 4.4
+_MOST, _MOST_STRIPES, _OUTCOMES = 12, 24, 8
+"""Data of more levels are gathered into groups of neighbouring levels, of as many outcomes at least; stripes stay
+stripes as long as there is room."""
+
+_APART = 2.2
+"""Points of different states are drawn side by side, this far apart [pt]."""
+
+
+@in_journal_style
+def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
+    """Draw a fragility analysis.
+
+    Above: the share of the motions that reached each state, with exact binomial intervals, and the lognormal curve
+    of each state that has one; levels at which no motion can lift the body are shaded. The band of a curve is found by
+    drawing whole motions anew where each motion was used at several levels, whose outcomes are not independent;
+    otherwise by the profile of the likelihood. Below: the shares of the states, which add up to one. Where the
+    outcomes fix no curve, words below the panels say so.
+
+    Parameters
+    ----------
+    analysis : StripeAnalysis, CloudAnalysis or IncrementalAnalysis
+        The analysis.
+    level : float
+        Confidence of intervals and bands [-].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two panels over the measure, one column wide.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no such analysis.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.studies.fragility.stripes import multiple_stripes
+    >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8, 1.0)]
+    >>> found = multiple_stripes(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
+    >>> fragility_picture(found).axes[1].get_xlabel()
+    'peak ground acceleration [m/s$^2$]'
+    """
+    level = checks.within("level", level, 0.5, 0.999)
+    if not all(hasattr(analysis, name) for name in ("fits", "counts", "trials", "levels", "subject")):
+        raise InvalidValueError(f"analysis must be of stripes, cloud or incremental, got {analysis!r:.60}")
+    figure, (upper, lower) = new_figure(SINGLE, HEIGHT, rows=2, sharex=True, height_ratios=[2.0, 1.0])
+    levels = np.asarray(analysis.levels)
+    fine = _fine(levels)
+    for place, name in enumerate(analysis.counts):
+        _points(upper, analysis, name, place, level)
+        fit = analysis.fits.get(name)
+        if fit is not None and fit.exists:
+            _fitted(upper, fit, fine, place, level)
+        elif fit is None:
+            _step(upper, analysis.subject.uplift_threshold, fine, place)
+    upper.set_ylim(-0.03, 1.03)
+    upper.set_ylabel("probability [-]")
+    _stack(lower, analysis)
+    measure = analysis.subject.measure
+    lower.set_xlabel(axis_label(measure.name, measure.unit, linear=analysis.subject.settings.linear))
+    lower.set_xlim(fine[0], fine[-1])
+    if geometric(levels):
+        plain_log(lower, "x")
+    _legends(upper, lower, analysis)
+    told = caption(analysis)
+    if told:
+        figure.supxlabel(wrapped(told, 80, 7), x=0.01, ha="left", fontsize=6, color=INK)
+    return figure
+
+
+def _step(axes: "Axes", threshold: float, fine: FloatArray, place: int) -> None:
+    """Shade the levels at which the ground cannot lift the body."""
+    axes.axvline(threshold, linewidth=1.0, **look(place))
+    if threshold > fine[0]:
+        axes.axvspan(0.5 * fine[0], min(threshold, 2.0 * fine[-1]), color=PALE, linewidth=0, zorder=0)
+    if threshold > fine[0] + 0.08 * (fine[-1] - fine[0]):
+        axes.text(
+            min(threshold, fine[-1]), 0.5, "not lifted", transform=axes.get_xaxis_transform(), rotation=90,
+            ha="right", va="center", fontsize=6.5, color=INK,
+        )  # fmt: skip
+
+
+def _fine(levels: FloatArray) -> FloatArray:
+    low, high = float(levels[0]), float(levels[-1])
+    if high <= low:
+        low, high = 0.5 * low, 2.0 * high
+    if geometric(levels) and high / low > 3.0:
+        return np.geomspace(low / 1.15, 1.15 * high, 120)
+    return np.linspace(max(low - 0.06 * (high - low), 1e-3 * low), high + 0.06 * (high - low), 120)
+
+
+def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return counts of neighbouring levels together, where there are too many levels for points.
+
+    Parameters
+    ----------
+    levels : ndarray
+        Levels, increasing [unit of the measure].
+    reached, trials : ndarray
+        Counts at each [-].
+
+    Returns
+    -------
+    tuple of ndarray
+        Geometric mean of the levels of each group, weighted by trials; its counts. Groups without trials are left out.
+    """
+    group = np.arange(levels.size)
+    stripes = trials.sum() >= _OUTCOMES * levels.size
+    if levels.size > (_MOST_STRIPES if stripes else _MOST):
+        groups = max(1, min(_MOST, int(trials.sum()) // _OUTCOMES))
+        group = np.minimum((np.cumsum(trials) - trials) * groups // max(trials.sum(), 1), groups - 1).astype(int)
+    total = np.bincount(group, trials)
+    mean = np.exp(np.bincount(group, trials * np.log(levels)) / np.maximum(total, 1.0))
+    good = total > 0
+    hits = np.bincount(group, reached)
+    return mean[good], np.asarray(hits[good], np.float64), np.asarray(total[good], np.float64)
+
+
+def _points(axes: "Axes", analysis: Any, name: str, place: int, level: float) -> None:
+    from rocking.studies.sensitivity.differences import share_interval
+
+    counted = (np.asarray(part, dtype=np.float64) for part in (analysis.counts[name], analysis.trials))
+    at, reached, trials = gathered(np.asarray(analysis.levels), *counted)
+    share = reached / trials
+    ends = np.array([share_interval(s, n, level) for s, n in zip(share.tolist(), trials.tolist(), strict=True)])
+    reach = np.abs(ends.T - share) if share.size else np.empty((2, 0))
+    from matplotlib.transforms import ScaledTranslation
+
+    figure: Any = axes.figure
+    aside = (place - 0.5 * (len(analysis.counts) - 1)) * _APART / 72.0
+    axes.errorbar(
+        at, share, reach, fmt="osv^D"[place % 5], markersize=3.0, color=COLORS[place % len(COLORS)],
+        markerfacecolor="white", markeredgewidth=0.8, linestyle="none", elinewidth=0.7, zorder=3,
+        transform=axes.transData + ScaledTranslation(aside, 0.0, figure.dpi_scale_trans),
+    )  # fmt: skip
+
+
+def _fitted(axes: "Axes", fit: "LognormalFit", fine: FloatArray, place: int, level: float) -> None:
+    method: Any = "profile" if fit.counts.cluster_trials is None else "bootstrap"
+    try:
+        low, high = fit.band(fine, level, method)
+        axes.fill_between(fine, low, high, color=COLORS[place % len(COLORS)], alpha=0.18, linewidth=0)
+    except InvalidValueError:
+        # a curve of few motions or outcomes has no band: the points show how little is known
+        pass
+    penalised = fit.method == "penalised"
+    axes.plot(fine, fit.probability(fine), linewidth=0.7 if penalised else 1.2, zorder=2, **look(place))
+
+
+def _stack(axes: "Axes", analysis: Any) -> None:
+    """Draw the shares of the states as bars that add up to one."""
+    levels = np.asarray(analysis.levels)
+    trials = np.asarray(analysis.trials, dtype=np.float64)
+    parts = [gathered(levels, np.asarray(counts, dtype=np.float64), trials) for counts in analysis.counts.values()]
+    at, _, total = parts[0]
+    reached = [np.ones(at.size), *(hits / total for _, hits, _ in parts), np.zeros(at.size)]
+    left, width = _widths(at, geometric(levels))
+    for more, less, color in zip(reached[:-1], reached[1:], state_colors(len(parts)), strict=True):
+        axes.bar(left, more - less, width, bottom=less, align="edge", color=color, edgecolor="white", linewidth=0.4)
+    axes.set_ylim(0.0, 1.0)
+    axes.set_ylabel("share of\nmotions [-]")
+
+
+def _widths(at: FloatArray, ratios: bool) -> tuple[FloatArray, FloatArray]:
+    if at.size < 2:
+        return 0.9 * at, 0.2 * at
+    values = np.log(at) if ratios else at
+    middles = 0.5 * (values[1:] + values[:-1])
+    edges = np.concatenate([[2.0 * values[0] - middles[0]], middles, [2.0 * values[-1] - middles[-1]]])
+    edges = np.exp(edges) if ratios else np.maximum(edges, 0.0)
+    return edges[:-1], np.diff(edges)
+
+
+def state_colors(states: int) -> list[str]:
+    """Return colours from no rocking to overturned.
+
+    Parameters
+    ----------
+    states : int
+        Limit states: one fewer than the colours.
+
+    Returns
+    -------
+    list of str
+        Light to dark.
+
+    Examples
+    --------
+    >>> len(state_colors(3))
+    4
+    """
+    between = [STATES[1], STATES[2], STATES[3], "#009E73"]
+    return [STATES[0], *(between[k % 4] for k in range(states - 1)), STATES[-1]]
+
+
+def _legends(upper: "Axes", lower: "Axes", analysis: Any) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    names = list(analysis.counts)
+    curves = [
+        Line2D([], [], marker="osv^D"[k % 5], markersize=3.0, markerfacecolor="white", label=symbol(name), **look(k))
+        for k, name in enumerate(names)
+    ]
+    upper.legend(handles=curves, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2, fontsize=6.5)
+    words = ["no rocking", *(f"{symbol(a)}, not worse" for a in names[:-1]), symbol(names[-1])]
+    patches = [Patch(facecolor=c, label=w) for c, w in zip(state_colors(len(names)), words, strict=True)]
+    place: Any = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.2}
+    lower.legend(handles=patches, ncols=2, fontsize=6.5, handlelength=1.2, **place)

@@ -1,0 +1,169 @@
+"""Incremental curves: how the rotation of each motion grows with its level, where it falls, where it stands again."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.plots.study_words import PEAK, axis_label, geometric, plain_log
+from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
+from rocking.studies.fragility.incremental import IncrementalAnalysis
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+HEIGHT = 3.6
+_CROSS, _FALLEN, _AGAIN = "#7A2E00", "#DDB7A0", "#0072B2"
+WIDE = 0.01
+"""Survivals of less width over their level are not counted: in them the body balances on its corner [-]."""
+
+_OVER = 1.06
+"""Larger rotations of bodies that stood all the same are drawn here."""
+
+_FIRST, _LAST = 1.12, 1.72
+"""Where the lanes of the motions begin and end, on the axis of rotation."""
+
+
+@in_journal_style
+def incremental_picture(analysis: IncrementalAnalysis) -> "Figure":
+    """Draw an incremental analysis, the measure upwards as is usual.
+
+    Left: a grey curve for each motion up to where it first overturns the body; the levels above at which the body
+    stands all the same (resurrection) are blue, joined where they are neighbours. Beside the curves each motion that
+    overturns it has a lane, by first crossing: brown where it overturns the body, blue where that stands again.
+    Right: the fraction of the motions that overturn it at each level, and the share whose first crossing has been
+    passed.
+
+    Parameters
+    ----------
+    analysis : IncrementalAnalysis
+        As of `incremental`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two panels side by side, one column wide.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no incremental analysis.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.studies.fragility.incremental import incremental
+    >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
+    >>> found = incremental(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], restitution=0.9)
+    >>> len(incremental_picture(found).axes)
+    2
+    """
+    if not isinstance(analysis, IncrementalAnalysis):
+        raise InvalidValueError(f"analysis must be incremental, got {analysis!r:.60}")
+    figure, (left, right) = new_figure(SINGLE, HEIGHT, columns=2, sharey=True, width_ratios=[2.5, 1.0])
+    for curve in analysis.curves:
+        _curve(left, analysis.levels, curve)
+    _crossings(left, analysis)
+    _fractions(right, analysis)
+    measure = analysis.subject.measure
+    left.set_ylabel(axis_label(measure.name, measure.unit, linear=analysis.subject.settings.linear))
+    left.set_xlabel(PEAK, x=0.55 / (_LAST + 0.06))
+    left.set_xlim(-0.03, _LAST + 0.03)
+    left.set_xticks([0.0, 0.5, 1.0])
+    left.axvline(1.0, color=GREY, linewidth=0.6, linestyle=(0, (4, 2)), zorder=0)
+    left.text(
+        0.5 * (_FIRST + _LAST),
+        -0.045,
+        "by motion",
+        transform=left.get_xaxis_transform(),
+        ha="center",
+        va="top",
+        fontsize=7,
+    )
+    left.set_ylim(*_limits(analysis))
+    if geometric(analysis.levels) and analysis.levels[-1] / analysis.levels[0] > 3.0:
+        plain_log(left, "y")
+    _legend(figure, analysis)
+    return figure
+
+
+def _limits(analysis: IncrementalAnalysis) -> tuple[float, float]:
+    levels = analysis.levels
+    low, high = float(levels[0]), float(levels[-1])
+    if geometric(levels) and high / low > 3.0:
+        return low / 1.04, 1.04 * high
+    return low - 0.03 * (high - low), high + 0.03 * (high - low) or 1.1 * high
+
+
+def _curve(axes: "Axes", levels: FloatArray, curve: FloatArray) -> None:
+    """Draw one motion: grey up to its first overturning, blue where it stands again."""
+    over = np.isinf(curve)
+    first = int(np.argmax(over)) if over.any() else curve.size
+    shown = np.where(np.isfinite(curve), np.minimum(curve, _OVER), math.nan)
+    axes.plot(shown[:first], levels[:first], color=GREY, linewidth=0.6, alpha=0.8, zorder=1)
+    if np.isfinite(curve[first:]).any():
+        axes.plot(
+            shown[first:], levels[first:], color=_AGAIN, linewidth=1.0, zorder=3, marker="o", markersize=1.6,
+        )  # fmt: skip
+
+
+def _crossings(axes: "Axes", analysis: IncrementalAnalysis) -> None:
+    """Give every motion that overturns the body a lane, and mark its first crossing there."""
+    starts = analysis.first_crossings
+    order = [k for k in np.argsort(starts).tolist() if math.isfinite(starts[k])]
+    places = np.linspace(_FIRST, _LAST, 2 * len(order) + 1)[1::2]
+    lane = dict(zip(order, places.tolist(), strict=True))
+    width = min(3.0, max(0.4, 36.0 / max(1, len(order))))
+    top = float(analysis.levels[-1])
+    falls = [(lane[i.motion], i.start, min(i.end, top)) for i in analysis.intervals if i.motion in lane]
+    stands = [(lane[motion], low, high) for motion, low, high in analysis.survivals if high - low > WIDE * low]
+    for segments, color in ((falls, _FALLEN), (stands, _AGAIN)):
+        x, low, high = np.array(segments).T if segments else np.empty((3, 0))
+        axes.vlines(x, low, high, color=color, linewidth=width, zorder=2)
+    axes.plot(places, starts[order], linestyle="none", marker="x", markersize=2.6, color=_CROSS, zorder=4)
+
+
+def _fractions(axes: "Axes", analysis: IncrementalAnalysis) -> None:
+    known = np.sort(analysis.first_crossings[analysis.complete])
+    if known.size:
+        passed = np.searchsorted(known, analysis.levels, side="right") / known.size
+        axes.plot(passed, analysis.levels, color=_CROSS, linewidth=1.0, linestyle="--")
+    axes.plot(analysis.fractions, analysis.levels, color=INK, linewidth=1.2)
+    axes.set_xlim(-0.03, 1.03)
+    axes.set_xticks([0.0, 0.5, 1.0], ["0", "0.5", "1"])
+    axes.set_xlabel("share\noverturned [-]")
+
+
+def _legend(figure: "Figure", analysis: IncrementalAnalysis) -> None:
+    from matplotlib.lines import Line2D
+
+    count = int(analysis.complete.sum())
+    rows = [
+        Line2D([], [], color=GREY, linewidth=0.8, label=f"{count} motion{'s' * (count != 1)}"),
+        Line2D(
+            [],
+            [],
+            color=_FALLEN,
+            linewidth=2.5,
+            marker="x",
+            markersize=3.5,
+            markeredgecolor=_CROSS,
+            label="overturns, x: first",
+        ),
+    ]
+    again = len(analysis.resurrected(WIDE))
+    if again:
+        rows.append(
+            Line2D(
+                [], [], color=_AGAIN, linewidth=1.0, marker="o", markersize=3.0, markerfacecolor="white",
+                label=f"stands again: {again} motion{'s' * (again != 1)}",
+            )
+        )  # fmt: skip
+    rows += [
+        Line2D([], [], color=INK, linewidth=1.2, label="fraction at the level"),
+        Line2D([], [], color=_CROSS, linewidth=1.0, linestyle="--", label="first crossing passed"),
+    ]
+    figure.legend(handles=rows, loc="outside lower center", ncols=2, fontsize=6.5, handlelength=1.8)

@@ -1,0 +1,363 @@
+"""`rocking fragility`: numbers equal the studies and counts by hand, files, words, refusals in one sentence."""
+
+import csv
+import json
+import math
+import re
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+import typer
+
+import rocking as rk
+from rocking.cli import application, main
+from rocking.cli.fragility import fragility
+from rocking.studies.fragility import cloud, incremental, multiple_stripes
+from rocking.studies.record_set import SyntheticSet
+
+G = 9.80665
+SIZE = ("--width", "0.25", "--height", "1.25")
+BLOCK = rk.Block(width=0.25, height=1.25)
+FAMILY = ("--synthetic", "point-source", "--count", "16", "--seed", "3")
+LEVELS = ("--levels", "0.1g:0.9g:9")
+SINES = [word for t in (0.5, 0.7) for word in ("--record", f"sine:amplitude=1,period={t}")]
+
+
+@pytest.fixture(autouse=True)
+def _alone(monkeypatch):
+    """Let `main` have this command alone."""
+    app = typer.Typer(pretty_exceptions_enable=False)
+    app.callback()(lambda: None)
+    app.command()(fragility)
+    monkeypatch.setattr(application, "application", lambda: app)
+
+
+def run(capsys, *words):
+    """Exit code, standard output and standard error of `rocking fragility WORDS`."""
+    with pytest.raises(SystemExit) as stop:
+        main(["fragility", *(str(word) for word in words)])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+def told(capsys, *words):
+    """JSON of a run that succeeds."""
+    code, out, err = run(capsys, *words, "--json")
+    assert (code, err) == (0, "")
+    return json.loads(out)
+
+
+@pytest.fixture(scope="module")
+def motions():
+    """The motions of FAMILY."""
+    made = SyntheticSet("point-source", 16, 3)
+    return [made[k] for k in range(16)]
+
+
+def test_json_is_the_python_call(capsys, motions):
+    """Counts, medians and dispersions of stripes are those of the study, bit by bit; intervals hold them."""
+    answer = told(capsys, *SIZE, *FAMILY, *LEVELS, "--states", "0.2,0.5")
+    found = multiple_stripes(BLOCK, motions, np.linspace(0.1 * G, 0.9 * G, 9), "ked", "pga", (0.2, 0.5))
+    (result,) = answer["results"]
+    assert answer["levels"] == found.levels.tolist()
+    assert result["reached"] == {name: counts.tolist() for name, counts in found.counts.items()}
+    assert answer["motions"] == {"kind": "synthetic", "count": 16, "family": "point-source", "seed": 3}
+    # g b / h
+    assert answer["uplift_threshold"] == pytest.approx(0.2 * G, rel=1e-14)
+    assert set(result["curves"]) == {"rotation > 0.2 alpha", "rotation > 0.5 alpha", "overturned"}
+    for name, fit in found.fits.items():
+        curve = result["curves"][name]
+        assert (curve["median"], curve["dispersion"], curve["verdict"]) == (fit.median, fit.dispersion, fit.verdict)
+        assert curve["median_95"][0] < curve["median"] < curve["median_95"][1]
+    curve, fit = result["curves"]["overturned"], found.fits["overturned"]
+    # a motion serves at every level
+    assert curve["median_95"] == list(fit.interval("median", method="bootstrap"))
+    assert curve["median_95"] != list(fit.interval("median", method="profile"))
+    assert answer["comparison"] is None
+
+
+def test_keys_are_stable(capsys):
+    """Keys of the object and of a result do not depend on what is found."""
+    many, none = (
+        told(capsys, *SIZE, *FAMILY, "--levels", levels) for levels in ("0.1g:0.9g:9", "0.05g,0.1g")
+    )  # the second overturns nothing
+    keys = ["body", "motions", "gravity_m_s2", "linear", "analysis", "measure", "unit", "states", "uplift_threshold",
+            "levels", "results", "comparison"]  # fmt: skip
+    assert list(many) == list(none) == keys
+    first, second = many["results"][0], none["results"][0]
+    assert (
+        list(first) == list(second) == ["restitution", "definition", "uplift", "failed", "trials", "reached", "curves"]
+    )
+    assert list(first["curves"]["overturned"]) == list(second["curves"]["overturned"])
+    assert second["curves"]["overturned"]["median"] is None
+    assert second["curves"]["overturned"]["median_95"] == [None, None]
+
+
+def test_pulses_against_single_simulations(capsys):
+    """What is counted is what single simulations of the scaled pulses say."""
+    answer = told(capsys, *SIZE, *SINES, "--levels", "2,4,6", "--restitution", "0.9")
+    assert (answer["motions"]["kind"], answer["motions"]["count"]) == ("pulses", 2)
+    wanted = [
+        sum(
+            rk.simulate(BLOCK, rk.pulses.sine(level, period), 0.9).outcome is rk.Outcome.OVERTURNED
+            for period in (0.5, 0.7)
+        )
+        for level in (2.0, 4.0, 6.0)
+    ]
+    assert answer["results"][0]["reached"]["overturned"] == wanted
+    assert 0 < sum(wanted) < 6
+
+
+def test_incremental(capsys):
+    """Intervals and first crossings are the study's; an interval that stays open ends in null."""
+    words = ("--width", "0.4", "--height", "1.6", *SINES, "--levels", "3,6,9", "--restitution", "0.9")
+    (result,) = told(capsys, *words, "--analysis", "incremental")["results"]
+    pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
+    found = incremental(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], 0.9)
+    ends = [(one["start"], one["end"]) for one in result["overturning_intervals"]]
+    assert ends == [(i.start, i.end if math.isfinite(i.end) else None) for i in found.intervals]
+    assert None in [end for _, end in ends]
+    assert result["first_crossings"] == found.first_crossings.tolist()
+    # the second ceases to overturn it at 8.667 m/s2
+    assert result["resurrected_motions"] == found.resurrected() == [1]
+    code, out, _ = run(capsys, *words, "--analysis", "incremental")
+    assert code == 0
+    assert "First crossing: " in out
+    assert "Fraction: " in out
+
+
+def test_resurrection_is_said(capsys):
+    """Between 3.485 and 3.631 times g alpha a sine of Omega = 3 leaves a slender block standing (r = 0.9, linear)."""
+    block = rk.Block(width=0.4, height=1.6)
+    period = 2.0 * math.pi / (3.0 * block.frequency_parameter)
+    unit = G * block.slenderness_angle
+    words = ("--width", "0.4", "--height", "1.6", "--record", f"sine:amplitude=1,period={period!r}", "--linear",
+             "--restitution", "0.9", "--analysis", "incremental",
+             "--levels", f"{3.0 * unit!r},{3.4 * unit!r},{3.55 * unit!r},{4 * unit!r}")  # fmt: skip
+    (result,) = told(capsys, *words)["results"]
+    low, high = result["overturning_intervals"]
+    assert low["end"] / unit == pytest.approx(3.48466273332249203, rel=1e-7)
+    assert high["start"] / unit == pytest.approx(3.6311498724447945014, rel=1e-7)
+    assert result["resurrected_motions_over_1_percent"] == [0]
+    assert "1 of 1 motion left it standing at levels above one that overturns it" in run(capsys, *words)[1]
+
+
+def test_cloud(capsys, motions):
+    """A cloud takes the motions as they are, times a factor; its line is the study's."""
+    answer = told(capsys, *SIZE, *FAMILY, "--analysis", "cloud", "--factor", "4", "--measure", "pgv")
+    found = cloud(BLOCK, motions, measure="pgv", factor=4.0)
+    (result,) = answer["results"]
+    assert answer["levels"] == found.levels.tolist()
+    assert sum(result["trials"]) == 16
+    assert result["regression"]["slope"] == found.regression.slope
+    assert answer["uplift_threshold"] is None
+    page = run(capsys, *SIZE, *FAMILY, "--analysis", "cloud", "--factor", "4", "--measure", "pgv")[1]
+    assert f"slope {found.regression.slope:.3g} over ln(pgv)" in page
+    assert "no level of this measure alone decides" in page
+
+
+def test_comparison(capsys, tmp_path):
+    """Several restitutions give a result each, flips counted by hand, one table of counts."""
+    path = tmp_path / "counts.csv"
+    words = (*SIZE, *FAMILY, *LEVELS, "--restitution", "0.95", "--restitution", "0.7", "--csv", path)
+    answer = told(capsys, *words)
+    first, second = (np.array(one["reached"]["overturned"]) for one in answer["results"])
+    base, other = answer["comparison"]["choices"]
+    assert [base["choice"], other["choice"]] == ["0.95", "0.7"]
+    assert (base["overturned"], other["overturned"]) == (first.sum(), second.sum())
+    assert other["gained"] - other["lost"] == second.sum() - first.sum() < 0
+    rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+    assert [row["restitution"] for row in rows] == 9 * ["0.95"] + 9 * ["0.7"]
+    assert [int(row["reached overturned [-]"]) for row in rows] == [*first, *second]
+    out = run(capsys, *words)[1]
+    assert "The choice between 0.95 and 0.7 changes the verdict in" in out
+
+
+def test_page_in_the_unit_of_the_levels(capsys):
+    """Medians are printed in g where the levels were; the same in m/s2 otherwise."""
+    words = (*SIZE, *FAMILY)
+    median = told(capsys, *words, *LEVELS)["results"][0]["curves"]["overturned"]["median"]
+    code, out, _ = run(capsys, *words, *LEVELS)
+    row = next(line for line in out.splitlines() if line.startswith("overturned"))
+    assert code == 0
+    assert "median [g]" in out
+    assert f" {median / G:.4g} " in row
+    levels = ",".join(repr(float(x)) for x in np.linspace(0.1 * G, 0.9 * G, 9))
+    out = run(capsys, *words, "--levels", levels)[1]
+    assert "median [m/s2]" in out
+    assert f" {median:.4g} " in next(line for line in out.splitlines() if line.startswith("overturned"))
+    assert "certain above 1.961 m/s2, impossible below; 0 of " in out
+
+
+def test_no_curve_is_said(capsys):
+    """Levels that lift nothing: the verdict says what the data bound, with exit code 0."""
+    code, out, err = run(capsys, *SIZE, *FAMILY, "--levels", "0.05g,0.1g")
+    assert (code, err) == (0, "")
+    # one-sided bound of 16 trials: 1 - 0.05 ** (1 / 16) = 0.171
+    assert "Nothing failed" in out
+    assert "below 0.171" in out
+
+
+def test_few_motions_have_no_interval(capsys):
+    """Two motions at many levels give a curve, but no interval: drawn anew they would look certain."""
+    words = (*SIZE, *SINES, "--levels", "1.5:6:19", "--restitution", "0.9")
+    median = told(capsys, *words)["results"][0]["curves"]["overturned"]["median"]
+    out = run(capsys, *words)[1]
+    row = next(line for line in out.splitlines() if line.startswith("overturned "))
+    # median and dispersion alone
+    assert (len(row.split()), row.split()[1]) == (3, f"{median:.4g}")
+    assert "No interval of overturned: motions serve at every level, and there are too few of them (2 " in out
+
+
+def test_levels_that_serve(capsys):
+    """Without levels of PGA 16 are taken, from 0.9 to 9 times what lifts the body, in equal ratios."""
+    levels = told(capsys, *SIZE, *FAMILY)["levels"]
+    np.testing.assert_allclose(levels, 0.2 * G * np.geomspace(0.9, 9.0, 16), rtol=1e-12)
+
+
+def test_every_file(capsys, tmp_path):
+    """Picture, counts, P-58, NRML, workbook, MATLAB and netCDF are written and hold the same medians."""
+    import openpyxl
+    import scipy.io
+    import xarray as xr
+
+    paths = {kind: tmp_path / f"f.{end}" for kind, end in (
+        ("picture", "svg"), ("csv", "csv"), ("p58", "p58.csv"), ("nrml", "xml"), ("excel", "xlsx"), ("mat", "mat"),
+        ("netcdf", "nc"))}  # fmt: skip
+    words = [part for kind, path in paths.items() for part in (f"--{kind}", path)]
+    words += ["--name", "vase & stand", "--common-dispersion"]
+    code, out, err = run(capsys, *SIZE, *FAMILY, *LEVELS, *words)
+    assert (code, err) == (0, "")
+    assert [line[6:] for line in out.splitlines() if line.startswith("wrote ")] == [str(p) for p in paths.values()]
+    p58 = list(csv.DictReader(paths["p58"].read_text(encoding="utf-8").splitlines()))
+    medians = [float(row["Median Demand"]) for row in p58]
+    dispersions = [float(row["Total Dispersion (Beta)"]) for row in p58]
+    assert len(medians) == 2
+    assert medians[0] < medians[1]
+    assert dispersions[0] == dispersions[1]
+    assert {row["Component ID"] for row in p58} == {"vase & stand"}
+    space = "{http://openquake.org/xmlns/nrml/0.5}"
+    params = [one.attrib for one in ET.parse(paths["nrml"]).iter(f"{space}params")]
+    # mean and deviation of the lognormal variable itself, in g
+    for one, median, dispersion in zip(params, medians, dispersions, strict=True):
+        mean, deviation = float(one["mean"]), float(one["stddev"])
+        spread = math.sqrt(math.log1p((deviation / mean) ** 2))
+        assert spread == pytest.approx(dispersion, rel=1e-12)
+        assert mean * G / math.exp(0.5 * spread**2) == pytest.approx(median, rel=1e-12)
+    assert "parameters" in openpyxl.load_workbook(paths["excel"]).sheetnames
+    mat = scipy.io.loadmat(paths["mat"], squeeze_me=True)["fragility"]
+    np.testing.assert_array_equal(mat["median"].item(), medians)
+    with xr.open_dataset(paths["netcdf"], engine="h5netcdf") as found:
+        assert found["median"].values.tolist() == medians
+    assert paths["picture"].read_text(encoding="utf-8").startswith("<?xml")
+
+
+def test_curves_that_cross_are_no_file(capsys, tmp_path):
+    """Curves of unlike dispersion cross: no NRML, and the option that helps is named; MATLAB gets them as fitted."""
+    curves = told(capsys, *SIZE, *FAMILY, *LEVELS)["results"][0]["curves"]
+    least, worst = curves["rotation > 0.5 alpha"], curves["overturned"]
+    assert worst["dispersion"] > 1.2 * least["dispersion"]
+    code, _, err = run(capsys, *SIZE, *FAMILY, *LEVELS, "--nrml", tmp_path / "n.xml")
+    assert code == 2
+    assert err.startswith("rocking: curves must not cross")
+    assert "--common-dispersion fits one for all states" in err
+    assert list(tmp_path.iterdir()) == []
+    assert run(capsys, *SIZE, *FAMILY, *LEVELS, "--mat", tmp_path / "m.mat")[0] == 0
+
+
+def test_counts_as_csv(capsys, tmp_path):
+    """Counts at each level and the fitted probability, the lognormal distribution of median and dispersion."""
+    path = tmp_path / "c.csv"
+    answer = told(capsys, *SIZE, *FAMILY, *LEVELS, "--csv", path)
+    rows = list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+    assert [float(row["pga [m/s2]"]) for row in rows] == answer["levels"]
+    curve = answer["results"][0]["curves"]["overturned"]
+    for row in rows:
+        z = math.log(float(row["pga [m/s2]"]) / curve["median"]) / curve["dispersion"]
+        assert float(row["fitted overturned [-]"]) == pytest.approx(0.5 * math.erfc(-z / math.sqrt(2.0)), rel=1e-9)
+        # no curve where PGA decides
+        assert row["fitted rocking [-]"] == ""
+    # 0.2 g is the threshold itself, to the last bit
+    assert [int(row["reached rocking [-]"]) for row in rows if row is not rows[1]] == [0, *7 * [16]]
+
+
+@pytest.mark.parametrize("analysis", ["incremental", "cloud", "comparison"])
+def test_pictures(capsys, tmp_path, analysis):
+    """Every analysis draws its picture."""
+    path = tmp_path / "p.png"
+    words = {
+        "incremental": (*LEVELS, "--analysis", "incremental"),
+        "cloud": ("--analysis", "cloud", "--factor", "4"),
+        "comparison": (*LEVELS, "--restitution", "ked", "--restitution", "0.8"),
+    }[analysis]
+    assert run(capsys, *SIZE, *FAMILY, *words, "--picture", path)[0] == 0
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_nothing_to_export(capsys, tmp_path):
+    """Where there is no curve the numbers are printed, then one sentence says why there is no file."""
+    path = tmp_path / "n.xml"
+    code, out, err = run(capsys, *SIZE, *FAMILY, "--levels", "0.05g,0.1g", "--nrml", path)
+    assert code == 2
+    assert "Nothing failed" in out
+    assert err.startswith("rocking: nothing to export: no state")
+    assert not path.exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ((*SIZE, *LEVELS), "what shakes it?"),
+        ((*FAMILY, *LEVELS), "a body is a file, or --width"),
+        ((*SIZE, *FAMILY, "--record", "sine:amplitude=1,period=1"), "is for synthetic motions"),
+        ((*SIZE, *FAMILY, "--units", "g"), "--units is for record files"),
+        ((*SIZE, "--synthetic", "lunar"), "family must be one of firm-ground"),
+        ((*SIZE, "--synthetic", "point-source", "--count", "0"), r"--count must be in \[1, 5000\], got 0"),
+        ((*SIZE, "--synthetic", "point-source", "--seed", "-1"), "seed"),
+        ((*SIZE, *FAMILY, "--analysis", "ida"), "--analysis must be one of stripes, cloud, incremental"),
+        ((*SIZE, *FAMILY, "--measure", "richter"), "measure must be one of pga"),
+        ((*SIZE, *FAMILY, "--measure", "pgv/pga"), "no factor on a motion changes pgv/pga"),
+        ((*SIZE, *FAMILY, "--measure", "pgv"), "which levels of pgv"),
+        ((*SIZE, *FAMILY, "--levels", "0.1:1g:9"), "a unit at every number or at none"),
+        ((*SIZE, *FAMILY, "--levels", "1g:0.1g:9"), "--levels must be numbers"),
+        ((*SIZE, *FAMILY, "--levels", "0g:1g:9"), "--levels"),
+        ((*SIZE, *FAMILY, "--levels", "nan"), "--levels must be a number"),
+        ((*SIZE, *FAMILY, "--levels", "1s:2s:3"), "--levels must be a number, alone or with one of"),
+        ((*SIZE, *FAMILY, "--levels", "0.1g:1g:99999", "--count", "200"), "at most 10000000 histories, got 19999800"),
+        ((*SIZE, *FAMILY, *LEVELS, "--analysis", "cloud"), "--levels is not for --analysis cloud"),
+        ((*SIZE, *FAMILY, "--factor", "2"), "--factor is for --analysis cloud"),
+        ((*SIZE, *FAMILY, "--analysis", "cloud", "--factor", "-2"), "--factor"),
+        ((*SIZE, *FAMILY, "--states", "0.5,0.2"), "each above the one before"),
+        ((*SIZE, *FAMILY, "--states", "0.5rad"), "--states must be a number without a unit"),
+        ((*SIZE, *FAMILY, "--restitution", "ked", "--restitution", "ked"), "--restitution ked is given twice"),
+        (
+            (*SIZE, *FAMILY, "--analysis", "cloud", "--restitution", "ked", "--restitution", "1"),
+            "several --restitution",
+        ),
+        ((*SIZE, *FAMILY, "--restitution", "1.5"), "restitution"),
+        ((*SIZE, *FAMILY, "--engine", "slow"), "--engine must be auto"),
+        ((*SIZE, *FAMILY, "--picture", "p.jpg"), "a picture is .png"),
+        ((*SIZE, *FAMILY, "--csv", "nowhere/c.csv"), "no folder 'nowhere'"),
+        ((*SIZE, *FAMILY, "--measure", "housner", "--levels", "1,2", "--nrml", "n.xml"), "OpenQuake knows pga"),
+        (
+            (*SIZE, *FAMILY, "--restitution", "1", "--restitution", "ked", "--p58", "p.csv"),
+            "curves of one --restitution",
+        ),
+        (
+            (*SIZE, *FAMILY, "--picture", "p.png", *(w for r in range(3, 10) for w in ("--restitution", f"0.{r}"))),
+            "a picture holds 6 --restitution at most, got 7",
+        ),
+        ((*SIZE, "--record", "no_such_file.txt"), "no such file"),
+        ((*SIZE, "--record", "sine:amplitude=1"), "sine"),
+    ],
+)
+def test_refusals(capsys, monkeypatch, tmp_path, words, why):
+    """Bad input ends with code 2 and one sentence, without numbers and without a file."""
+    monkeypatch.chdir(tmp_path)
+    code, out, err = run(capsys, *words)
+    assert (code, out) == (2, "")
+    assert err.startswith("rocking: ")
+    assert err.count("\n") == 1
+    assert re.search(why, err), err
+    assert list(tmp_path.iterdir()) == []
