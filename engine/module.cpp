@@ -250,6 +250,7 @@ static nb::list run_single(const Library& library, const nb::dict& in, const nb:
 }  // namespace rocking
 
 NB_MODULE(_engine, m) {
+    nb::set_leak_warnings(false);  // a study that lives until Python ends keeps its motions laid out: no leak
     using namespace rocking;
     m.doc() = "Taylor steps of many rocking histories side by side.";
     nb::class_<Library>(m, "Library")

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.errors import InvalidValueError
 from rocking.studies.fragility.cloud import cloud
 from rocking.studies.fragility.curves import model_of
 from rocking.studies.fragility.incremental import incremental
@@ -215,14 +216,21 @@ def test_nrml_reproduces_the_curve(tmp_path):
     """Read by a parser of its own and evaluated by mpmath as OpenQuake does, the file gives P(im) to 1e-12."""
     found = multiple_stripes(BLOCK, records(60), np.linspace(2.0, 10.0, 9), restitution=0.9, states=(0.2, 0.5))
     made = model_of(found, "block <1>")
-    path = to_nrml(made, tmp_path / "fragility.xml")
+    with pytest.raises(InvalidValueError, match="curves must not cross, but at"):
+        to_nrml(made, tmp_path / "fragility.xml")
+    assert not list(tmp_path.iterdir())
+    path = to_nrml(made, tmp_path / "fragility.xml", crossing="common-dispersion")
     tag = "{http://openquake.org/xmlns/nrml/0.5}"
     root = ET.parse(path).getroot()
     params = root.findall(f".//{tag}params")
-    assert len(params) == len(found.fits) == 3
+    curves = model_of(found, "block <1>", method="common-dispersion").curves
+    words = ["rotation_above_0_2_alpha", "rotation_above_0_5_alpha", "overturned"]
+    assert root.find(f".//{tag}limitStates").text.split() == words
+    assert [curve.state for curve in curves] == list(found.fits)
     mp.mp.dps = 30
     worst, wrong = 0.0, 0.0
-    for node, (name, fit) in zip(params, found.fits.items(), strict=True):
+    for node, word, fit in zip(params, words, curves, strict=True):
+        assert node.attrib["ls"] == word
         mean, deviation = mp.mpf(node.attrib["mean"]), mp.mpf(node.attrib["stddev"])
         sigma = mp.sqrt(mp.log(1 + (deviation / mean) ** 2))
         median = mean**2 / mp.sqrt(deviation**2 + mean**2)
@@ -232,7 +240,6 @@ def test_nrml_reproduces_the_curve(tmp_path):
             # negative control: median and dispersion written as if they were mean and standard deviation
             naive_sigma = mp.sqrt(mp.log(1 + (mp.mpf(fit.dispersion) / fit.median) ** 2))
             wrong = max(wrong, abs(float(mp.ncdf(mp.log(level / mp.mpf(fit.median)) / naive_sigma) - p)))
-        assert name
     print(f"\nNRML: {worst:.1e}; mean and deviation mistaken: {wrong:.2f}")
     assert worst < 1e-12
     assert wrong > 0.05

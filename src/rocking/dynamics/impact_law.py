@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
+from rocking.dynamics.content import fields_of, hash_of
 from rocking.errors import InvalidValueError
 
 _MASK = (1 << 64) - 1
@@ -17,6 +18,7 @@ class ImpactLaw:
     """A factor on the coefficient of restitution of the side onto which the body lands; the base of all laws.
 
     A law of your own overrides `factor`, and `largest` if the factor can exceed one; it runs on the reference engine.
+    For studies it also says what makes it: as a dataclass of numbers, words and arrays, or by `content`.
 
     Attributes
     ----------
@@ -72,6 +74,20 @@ class ImpactLaw:
             Factor on the side's coefficient [-].
         """
         raise NotImplementedError
+
+    def content(self) -> dict[str, Any]:
+        """Return what makes this law this one, beside its class: two that differ in it may give different factors.
+
+        Returns
+        -------
+        dict
+            Plain values: the seed and the hashes of the tables; of a dataclass of your own, its fields.
+        """
+        return self._tables() if self.tabulated else fields_of(self)
+
+    def _tables(self) -> dict[str, Any]:
+        tables = {name: hash_of(np.asarray(getattr(self, name))) for name in ("at", "factors") if hasattr(self, name)}
+        return {"seed": int(getattr(self, "seed", 0)), **tables}
 
     def draws(self, numbers: Any) -> FloatArray:
         """Return the factors of many histories, of a law that draws once for each.

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from rocking import checks, conventions
 from rocking.errors import InvalidValueError
 
@@ -52,16 +54,26 @@ class Settings:
 
     def __post_init__(self) -> None:
         """Check every value."""
-        checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True)
-        checks.within("rest_speed", self.rest_speed, 0.0, 0.1, hint="the flights must be short for the sum to hold")
-        checks.within("longest_step", self.longest_step, SHORTEST_STEP, 1.0)
-        checks.within("tolerance", self.tolerance, 1e-17, 1e-3)
-        most: object = self.most_impacts
-        if isinstance(most, bool) or not isinstance(most, int) or most < 1:
-            raise InvalidValueError(f"most_impacts must be a whole number >= 1, got {self.most_impacts!r}")
+        hint = "the flights must be short for the sum to hold"
+        made: dict[str, float] = {
+            "gravity": checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True),
+            "rest_speed": checks.within("rest_speed", self.rest_speed, 0.0, 0.1, hint=hint),
+            "longest_step": checks.within("longest_step", self.longest_step, SHORTEST_STEP, 1.0),
+            "tolerance": checks.within("tolerance", self.tolerance, 1e-17, 1e-3),
+            "most_impacts": _whole("most_impacts", self.most_impacts),
+            "order": _whole("order", self.order),
+        }
         linear: object = self.linear
         if not isinstance(linear, bool):
             raise InvalidValueError(f"linear must be True or False, got {self.linear!r}")
-        order: object = self.order
-        if isinstance(order, bool) or not isinstance(order, int) or order not in ORDERS:
+        if made["order"] not in ORDERS:
             raise InvalidValueError(f"order must be one of {ORDERS}, got {self.order!r}")
+        for name, value in made.items():  # numbers of one kind: 9 and 9.0 are the same settings
+            object.__setattr__(self, name, value)
+
+
+def _whole(name: str, value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
+        allowed = f"one of {ORDERS}" if name == "order" else "a whole number >= 1"
+        raise InvalidValueError(f"{name} must be {allowed}, got {value!r:.60}")
+    return int(value)

@@ -9,13 +9,20 @@ from typing import Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.batch import ROWS, Batch, Rows
+from rocking.dynamics.content import full_name, hash_of
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.studies.motion_set import MotionSet
+
+__all__ = ["Histories", "Product", "Table", "described_law", "hash_of", "part"]
+
+_ROWS_AT_ONCE = 32768
+_MOTIONS_AT_ONCE = 128
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +89,10 @@ class Histories(ABC):
         """
         return {
             "histories": type(self).__name__,
+            "class": full_name(type(self)),
             "count": self.count,
             "content": self.content(),
-            "motions": self.motions.description(),
+            "motions": {"class": full_name(type(self.motions)), **self.motions.description()},
             "law": described_law(self.law),
             "settings": dict(vars(self.settings)),
             "engine": self.engine,
@@ -97,8 +105,18 @@ class Histories(ABC):
         -------
         str
             SHA-256 of `description`, 64 hexadecimal digits.
+
+        Raises
+        ------
+        InvalidValueError
+            If the description holds anything but plain values.
         """
-        text = json.dumps(self.description(), sort_keys=True, separators=(",", ":"), allow_nan=False)
+        told = self.description()
+        try:
+            text = json.dumps(told, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        except (TypeError, ValueError) as error:
+            why = f"what makes histories must be finite numbers, words, lists and dictionaries of words: {error}"
+            raise InvalidValueError(why) from error
         return hashlib.sha256(text.encode()).hexdigest()
 
     def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
@@ -137,22 +155,27 @@ class Histories(ABC):
         return {name: value for name, value in self.__dict__.items() if name != "_batch"}
 
     def _run_made(self, first: int, last: int, threads: int | None) -> Arrays:
-        """Run with motions that are made for a piece and forgotten after it."""
+        """Run with motions that are made for some histories and forgotten after them: never many at once."""
         results = {name: np.empty(last - first, dtype) for name, dtype in RESULTS.items()}
-        for start in range(first, last, _MADE):
-            stop = min(start + _MADE, last)
-            rows = self.rows(start, stop)
+        for start in range(first, last, _ROWS_AT_ONCE):
+            rows = self.rows(start, min(start + _ROWS_AT_ONCE, last))
             wanted, places = np.unique(rows.motion, return_inverse=True)
-            made = [self.motions[int(k)].segments() for k in wanted]
-            local = Rows(rows.values, places.astype(np.int64), rows.key)
-            batch = Batch(made, self.law, self.settings, threads, self.engine)
-            found, _ = batch.run(stop - start, lambda a, b, local=local: part(local, a, b))  # type: ignore[misc]
-            for name, values in found.items():
-                results[name][start - first : stop - first] = values
+            for low in range(0, len(wanted), _MOTIONS_AT_ONCE):
+                some = wanted[low : low + _MOTIONS_AT_ONCE]
+                chosen = np.flatnonzero((places >= low) & (places < low + len(some)))
+                local = Rows(
+                    {name: rows.values[name][chosen] for name in ROWS}, places[chosen].astype(np.int64) - low,
+                    rows.key[chosen],
+                )  # fmt: skip
+                for name, values in self._made(some, local, threads).items():
+                    results[name][start - first + chosen] = values
         return results
 
-
-_MADE = 4096
+    def _made(self, wanted: np.ndarray, rows: Rows, threads: int | None) -> Arrays:
+        """Run some histories with their motions, made here; the rows number these from nought."""
+        made = [self.motions[int(k)].segments() for k in wanted]
+        batch = Batch(made, self.law, self.settings, threads, self.engine)
+        return batch.run(len(rows), lambda first, last: part(rows, first, last))[0]
 
 
 def part(rows: Rows, first: int, last: int) -> Rows:
@@ -200,8 +223,9 @@ class Table(Histories):
         """Repeat what is given once, and check it."""
         count = max((np.size(v) for v in [self.motion, *self.values.values()]), default=0)
         whole = Rows.of(count, self.motion, **self.values)
-        object.__setattr__(self, "motion", whole.motion)
-        object.__setattr__(self, "values", whole.values)
+        values = {name: _own(array, self.values.get(name)) for name, array in whole.values.items()}
+        object.__setattr__(self, "motion", _own(whole.motion, self.motion))
+        object.__setattr__(self, "values", values)
 
     @property
     def count(self) -> int:
@@ -261,7 +285,9 @@ class Product(Histories):
         scales = np.asarray(self.scales, dtype=np.float64)
         if scales.ndim not in {1, 2} or (scales.ndim == 2 and len(scales) != len(self.motions)) or not scales.size:
             raise InvalidValueError(f"scales must be of shape (scales,) or (motions, scales), got {scales.shape}")
-        object.__setattr__(self, "scales", scales)
+        sides = {name: checks.real_array(name, values) for name, values in self.sides.items()}
+        object.__setattr__(self, "sides", {name: _own(array, self.sides[name]) for name, array in sides.items()})
+        object.__setattr__(self, "scales", _own(scales, self.scales))
 
     @property
     def shape(self) -> tuple[int, int, int, int]:
@@ -305,6 +331,13 @@ class Product(Histories):
         return {"shape": list(self.shape), "scales": hash_of(self.scales), **hashes}
 
 
+def _own(array: np.ndarray, given: object) -> np.ndarray:
+    """Return the array, read-only, and as a copy where it is the caller's: what has been named must not change."""
+    mine = array.copy() if np.may_share_memory(array, np.asarray(given)) else array
+    mine.setflags(write=False)
+    return mine
+
+
 def described_law(law: ImpactLaw) -> dict[str, Any]:
     """Return what makes a law of impact this law.
 
@@ -316,24 +349,6 @@ def described_law(law: ImpactLaw) -> dict[str, Any]:
     Returns
     -------
     dict
-        Its kind, its seed and the hashes of its tables.
+        Its class, and what it says of itself.
     """
-    tables = {name: hash_of(np.asarray(getattr(law, name))) for name in ("at", "factors") if hasattr(law, name)}
-    return {"law": type(law).__name__, "seed": int(getattr(law, "seed", 0)), **tables}
-
-
-def hash_of(values: np.ndarray) -> str:
-    """Return the SHA-256 of an array of numbers.
-
-    Parameters
-    ----------
-    values : ndarray
-        The array.
-
-    Returns
-    -------
-    str
-        64 hexadecimal digits, the same on every machine.
-    """
-    little = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
-    return hashlib.sha256(str((little.dtype.str, little.shape)).encode() + little.tobytes()).hexdigest()
+    return {"law": type(law).__name__, "class": full_name(type(law)), "content": law.content()}

@@ -1,14 +1,18 @@
 """Synthetic sets of records by family and seed: a study that needs nobody's files."""
 
+from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 from rocking import checks
+from rocking.dynamics.content import full_name
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.scaling import scaled_to_pga, scaled_to_pgv
+from rocking.motions.synthetic.distributions import Distribution
 from rocking.motions.synthetic.families import family
 from rocking.motions.synthetic.family import Family, whole
-from rocking.studies.motion_set import MotionSet
+from rocking.studies.motion_set import MotionSet, digest
 
 MOST_MOTIONS = 10_000_000
 """No set has more motions: asking for more is a slip."""
@@ -81,23 +85,56 @@ class SyntheticSet(MotionSet):
         return motion if self.pgv is None else scaled_to_pgv(motion, self.pgv)
 
     def description(self) -> dict[str, Any]:
-        """Return family, distributions, seed and level.
+        """Return family, distributions in the order of drawing, seed, level, and hashes of the first and last motion.
 
         Returns
         -------
         dict
             Plain values; two sets that describe themselves alike hold the same motions.
+
+        Raises
+        ------
+        InvalidValueError
+            If the family draws or makes its motions in a way that has no name of its own.
         """
+        first, last = self._ends
         return {
             "kind": "synthetic",
             "family": self.family.name,
             "generator": self.family.generator,
-            "distributions": {name: repr(each) for name, each in self.family.distributions.items()},
-            "make": f"{self.family.make.__module__}.{self.family.make.__qualname__}",
+            "distributions": [[name, _told(name, each)] for name, each in self.family.distributions.items()],
+            "make": _named(self.family.make),
             "origin": self.family.origin,
             "count": self.count,
             "seed": self.seed,
             "pga_m_s2": self.pga,
             "pgv_m_s": self.pgv,
             "time_step_s": self.time_step,
+            "first": first,
+            "last": last,
         }
+
+    @cached_property
+    def _ends(self) -> tuple[str, str]:
+        """Hashes of the first and the last motion, which show what the code of the family makes."""
+        return digest(self[0]), digest(self[-1])
+
+
+def _named(make: Callable[..., GroundMotion]) -> str:
+    """Return the name of a function; one without a name, or which holds other values, does not say what it makes."""
+    name = getattr(make, "__qualname__", "")
+    held = getattr(make, "__closure__", None) or (getattr(make, "__self__", None) is not None)
+    if not name or "<lambda>" in name or held:
+        raise InvalidValueError(
+            "make of a family must be a function with a name that holds no other values, got "
+            f"{make!r:.60}: a lambda, a partial, a method or a closure does not say which motions it makes"
+        )
+    return f"{make.__module__}.{name}"
+
+
+def _told(name: str, distribution: Distribution) -> str:
+    if type(distribution).__repr__ is object.__repr__:
+        raise InvalidValueError(
+            f"distribution {name} must say what makes it by repr(), as a dataclass does, got {distribution!r:.60}"
+        )
+    return f"{full_name(type(distribution))}: {distribution!r}"

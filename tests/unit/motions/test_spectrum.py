@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 from rocking.errors import InvalidValueError
 from rocking.motions import GroundMotion
+from rocking.motions.kinematics import quadratic_roots
 from rocking.motions.spectrum import phi, response_spectrum
 
 JAGGED = GroundMotion(np.random.default_rng(5).standard_normal(40), 0.01)
@@ -116,6 +117,71 @@ def test_pseudo_and_true_acceleration_differ_with_damping():
     free, damped = response_spectrum(JAGGED, [0.1, 0.5], 0.0), response_spectrum(JAGGED, [0.1, 0.5], 0.4)
     np.testing.assert_allclose(free.pseudo_acceleration, free.absolute_acceleration, rtol=1e-12)
     assert (damped.absolute_acceleration > 1.02 * damped.pseudo_acceleration).all()
+
+
+def _per_period(motion, period, damping):
+    """Peaks of one oscillator: every part of every step is looked at, none is passed over."""
+    w = 2.0 * math.pi / period
+    s = complex(-damping * w, w * math.sqrt(1.0 - damping * damping))
+    a, h, states = motion.acceleration, motion.time_step, np.zeros(len(motion), complex)
+    first, second = phi(s * h)
+    for k in range(a.size - 1):
+        states[k + 1] = np.exp(s * h) * states[k] - h * ((first - second) * a[k] + second * a[k + 1])
+    parts, rise, best = math.ceil(36 * h / period), np.diff(a), np.zeros(3)
+    left = _responses(states[:-1], a[:-1], s)
+    for k in range(1, parts + 1):
+        t = k * h / parts
+        first, second = phi(s * t)
+        inside = np.exp(s * t) * states[:-1] - t * first * a[:-1] - (t * t / h * second) * rise
+        right = _responses(inside, a[:-1] + k / parts * rise, s)
+        best = np.maximum(best, [_cubic_peak(*pair, h / parts) for pair in zip(left, right, strict=True)])
+        left = right
+    free = states[-1] * np.exp(s * np.linspace(0.0, math.pi / s.imag, 288))
+    return np.maximum(best, [np.abs(value).max() for value, _ in _responses(free, np.zeros(288), s)])
+
+
+def _responses(z, ground, s):
+    """Displacement, velocity and absolute acceleration, each with its rate, from the complex state u' - conj(s) u."""
+    u = z.imag / s.imag
+    v = z.real + s.real * u
+    absolute = 2.0 * s.real * v - abs(s) ** 2 * u
+    return [(u, v), (v, absolute - ground), (absolute, 2.0 * s.real * (absolute - ground) - abs(s) ** 2 * v)]
+
+
+def _cubic_peak(left, right, step):
+    """Largest magnitude of all cubics through values and slopes at both ends."""
+    (y, d), (z, e) = ((side[0], step * side[1]) for side in (left, right))
+    rise = z - y
+    best = max(np.abs(y).max(), np.abs(z).max())
+    for root in quadratic_roots(3.0 * (d + e - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * d - e), d):
+        t = np.where((root > 0.0) & (root < 1.0), root, 0.0)
+        best = max(best, np.abs(y + t * (d + t * (3.0 * rise - 2.0 * d - e + t * (d + e - 2.0 * rise)))).max())
+    return best
+
+
+LONG = GroundMotion(
+    np.convolve(np.random.default_rng(8).standard_normal(700), np.ones(9) / 9.0, mode="same") * np.hanning(700), 0.01
+)
+
+
+@pytest.mark.parametrize("motion", [JAGGED, LONG, GroundMotion([0.0, 3.0], 0.02), GroundMotion(np.ones(50), 0.1)])
+@pytest.mark.parametrize("damping", [0.0, 0.05, 0.6])
+def test_all_periods_at_once_are_each_period_by_itself(motion, damping):
+    """The steps that are passed over hold no peak: a loop over periods and all steps agrees to 1e-12."""
+    periods = motion.time_step * np.geomspace(0.07, 600.0, 40)
+    found = response_spectrum(motion, periods, damping)
+    wanted = np.array([_per_period(motion, period, damping) for period in periods]).T
+    for name, values in zip(("displacement", "velocity", "absolute_acceleration"), wanted, strict=True):
+        np.testing.assert_allclose(getattr(found, name), values, rtol=1e-12)
+
+
+def test_passing_over_too_much_is_noticed(monkeypatch):
+    """Negative control: with the bound of what a step can hold cut to 80 %, peaks are missed by far over 1e-12."""
+    monkeypatch.setattr("rocking.motions.spectrum.MARGIN", 0.8)
+    periods = LONG.time_step * np.geomspace(2.0, 600.0, 40)
+    found = response_spectrum(LONG, periods, 0.05).displacement
+    wanted = np.array([_per_period(LONG, period, 0.05)[0] for period in periods])
+    assert np.abs(found / wanted - 1.0).max() > 1e-6
 
 
 def test_phi_functions_on_both_branches():

@@ -1,14 +1,17 @@
 import pickle
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics import RandomRestitution, Settings
+from rocking.dynamics import ImpactLaw, RandomRestitution, Settings
 from rocking.dynamics.engine import RESULTS
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse
-from rocking.studies import Histories, MotionList, MotionSet, Product, Table
+from rocking.restitution import model
+from rocking.studies import Histories, MotionList, MotionSet, Product, Table, histories
 from rocking.studies.motion_set import digest
 
 
@@ -23,6 +26,57 @@ class Sines(MotionSet):
 
     def description(self):
         return {"kind": "sines"}
+
+
+class Slower(Sines):
+    """Other pulses that describe themselves with the same words."""
+
+    def __getitem__(self, index):
+        return rk.pulses.sine(amplitude=2.0 + 0.5 * index, period=0.8 + 0.1 * index)
+
+
+class Reversed(Product):
+    """A product that says no more of itself than a product does."""
+
+    def rows(self, first, last):
+        rows = super().rows(first, last)
+        return type(rows)(rows.values, rows.motion[::-1].copy(), rows.key)
+
+
+@dataclass
+class Worn(ImpactLaw):
+    """A law of one's own: each impact takes a little more."""
+
+    rate: Any
+    times: Any = 1.0
+
+    def factor(self, speed, key, impact):
+        return float(np.sum(self.rate)) ** impact
+
+
+@dataclass
+class Battered(Worn):
+    """Another law with the same numbers."""
+
+    def factor(self, speed, key, impact):
+        return 0.9 * super().factor(speed, key, impact)
+
+
+class Bare(ImpactLaw):
+    """A law that does not say what makes it."""
+
+    def __init__(self, rate):
+        self.rate = rate
+
+    def factor(self, speed, key, impact):
+        return self.rate
+
+
+class Told(Bare):
+    """A law that says it."""
+
+    def content(self):
+        return {"rate": self.rate}
 
 
 def product(motions=None, law=None, **changed):
@@ -121,9 +175,104 @@ def test_key_names_the_content():
         Product(base.motions, base.sides, base.scales, settings=Settings(gravity=9.81)),
         Product(base.motions, base.sides, base.scales, engine="reference"),
     ]
+    others += [product(law=law) for law in (Worn(0.99), Worn(0.98), Worn(np.array([0.5, 0.49])), Battered(0.99))]
+    others += [product(law=law) for law in (Worn(0.99, times=0.9), Told(0.9), Told(0.8))]
+    others += [product(Sines()), product(Slower()), Reversed(base.motions, base.sides, base.scales)]
     keys = [base.key(), *[other.key() for other in others]]
     assert len(set(keys)) == len(keys)
     assert product().key() == base.key()
+    models = [product(law=Worn(0.99, times=model(name))).key() for name in ("ked", "housner")]
+    assert models[0] == models[1]  # what a law multiplies is in the coefficients
+    assert product(law=Worn(np.float32(0.5))).key() == product(law=Worn(0.5)).key()
+
+
+def test_laws_that_do_not_say_what_makes_them_are_refused():
+    """Without fields, with a field that is no number, with values from around: a name for two laws is none."""
+    given = 0.5
+
+    @dataclass
+    class Around(ImpactLaw):
+        def factor(self, speed, key, impact):
+            return given
+
+    class Undeclared(Worn):
+        pass
+
+    for law in (Bare(0.9), Worn(np.sin), Worn([1.0, {}]), Worn(float("nan")), Around(), Undeclared(0.9)):
+        with pytest.raises(InvalidValueError, match=r"a law of your own must say what makes it, by content\(\)"):
+            product(law=law).key()
+
+
+def test_contents_that_are_not_plain_are_refused():
+    """What a law says of itself must be writable as JSON, without NaN."""
+    for value in (np.ones(2), float("inf")):
+        with pytest.raises(InvalidValueError, match="must be finite numbers, words, lists"):
+            product(law=Told(value)).key()
+
+
+def test_numbers_of_settings_are_of_one_kind():
+    """9 and 9.0, or numbers of another library, are the same settings with the same key."""
+    base = product()
+    one = replace(base, settings=Settings(gravity=9, order=np.int64(8), most_impacts=np.int32(500)))
+    two = replace(base, settings=Settings(gravity=9.0, order=8, most_impacts=500))
+    assert one.key() == two.key()
+    assert type(one.settings.gravity) is float
+    narrow = replace(base, settings=Settings(gravity=np.float32(9.8), longest_step=np.float16(0.125)))
+    assert narrow.key() == replace(base, settings=Settings(gravity=float(np.float32(9.8)), longest_step=0.125)).key()
+
+
+def test_arrays_are_not_shared_with_the_caller():
+    """What the caller does to the arrays afterwards changes neither the key nor the results; nobody can write them."""
+    whole = product()
+    rows = whole.rows(0, whole.count)
+    values, motion = {name: array.copy() for name, array in rows.values.items()}, rows.motion.copy()
+    sides, scales = {name: array.copy() for name, array in whole.sides.items()}, whole.scales.copy()
+    table, made = Table(whole.motions, motion, values), Product(whole.motions, sides, scales)
+    keys, results = (table.key(), made.key()), made.run(0, made.count)
+    for array in (*values.values(), *sides.values(), scales):
+        np.multiply(array, 0.5, out=array)
+    motion[:] = 0
+    assert (table.key(), made.key()) == keys
+    assert same(table.run(0, table.count), results)
+    assert same(made.run(0, made.count), results)
+    for array in (table.motion, table.values["scale"], made.sides["p_left"], made.scales):
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0.0
+
+
+class Many(MotionSet):
+    """Five hundred short pulses, made when they are asked for."""
+
+    def __len__(self):
+        return 500
+
+    def __getitem__(self, index):
+        return rk.pulses.half_sine(amplitude=2.0 + 0.01 * index, period=0.4 + 0.001 * index)
+
+    def description(self):
+        return {"kind": "many"}
+
+
+def test_few_motions_are_held_at_once(monkeypatch):
+    """Of 500 motions in any order no more than 128 are laid out at a time, and the bits are those of all at hand."""
+    random = np.random.default_rng(1)
+    rows = product().rows(0, 120)
+    values = {name: random.permutation(np.tile(array, 10)) for name, array in rows.values.items()}
+    law = RandomRestitution.normal(0.9, 0.05, seed=3)
+    made = Table(Many(), random.integers(0, 500, 1200), values, law=law)
+    held = Table(MotionList([Many()[k] for k in range(500)]), made.motion, made.values, law=law)
+    laid, batch = [], histories.Batch
+
+    def watched(motions, *others):
+        laid.append(len(motions))
+        return batch(motions, *others)
+
+    expected = held.run(0, 1200)
+    monkeypatch.setattr(histories, "Batch", watched)
+    assert same(made.run(0, 1200), expected)
+    assert same(made.run(0, 1200, threads=1), joined(made, 501))
+    assert max(laid) == 128
+    assert sum(laid[:4]) == len(np.unique(made.motion)) > 400
 
 
 def test_digest_sees_the_last_bit():

@@ -2,7 +2,8 @@
 
 import json
 import pickle
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from rocking.dynamics.rocker import Rocker
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
+from rocking.motions.synthetic.distributions import Uniform
 from rocking.motions.synthetic.families import families, family
 from rocking.studies.histories import Product
 from rocking.studies.motion_set import MotionList
@@ -87,6 +89,80 @@ def test_description_tells_sets_apart():
         SyntheticSet("pulse-like", 4, 1, pgv=1.0), SyntheticSet("pulse-like", 4, 1, pga=1.0, time_step=0.02),
     ]  # fmt: skip
     assert all(one.description() != other.description() for other in others)
+
+
+def bump(values, noise, step):
+    """A motion by a function of one's own."""
+    return GroundMotion([0.0, sum(values.values()), 0.0], step)
+
+
+def own(make=bump, **distributions):
+    """A family of one's own."""
+    given = distributions or {"first_m": Uniform(1.0, 2.0), "second_m": Uniform(1.0, 2.0)}
+    return replace(family("firm-ground"), make=make, distributions=given)
+
+
+def test_order_of_drawing_is_described():
+    """The same distributions in another order draw other motions, and say so."""
+    one = own(first_m=Uniform(1.0, 2.0), second_m=Uniform(1.0, 2.0))
+    two = own(second_m=Uniform(1.0, 2.0), first_m=Uniform(1.0, 2.0))
+    assert SyntheticSet(one, 3, 1).description() != SyntheticSet(two, 3, 1).description()
+    assert SyntheticSet(one, 3, 1).description() == SyntheticSet(replace(one), 3, 1).description()
+    named = json.dumps(SyntheticSet(one, 3, 1).description(), sort_keys=True)
+    assert named != json.dumps(SyntheticSet(two, 3, 1).description(), sort_keys=True)
+
+
+def test_changed_functions_are_seen(monkeypatch):
+    """A function that was changed under its name makes other motions, which their hashes show."""
+    before = SyntheticSet(own(), 3, 1).description()
+    assert before["make"].endswith(".bump")
+
+    def changed(values, noise, step):
+        return GroundMotion([0.0, 1.0 + sum(values.values()), 0.0], step)
+
+    changed.__qualname__, changed.__module__ = bump.__qualname__, bump.__module__
+    after = SyntheticSet(own(changed), 3, 1).description()
+    assert {name for name in before if before[name] != after[name]} == {"first", "last"}
+
+
+@dataclass(frozen=True)
+class Maker:
+    """A callable that holds a number."""
+
+    size: float
+
+    def __call__(self, values, noise, step):
+        return bump(values, noise, step)
+
+    def make(self, values, noise, step):
+        return bump(values, noise, step)
+
+
+def test_functions_without_a_name_are_refused():
+    """Lambdas, partials, closures, methods and callables do not say which motions they make; nor do some draws."""
+    held = 1.0
+
+    def closure(values, noise, step):
+        return bump(values, held, step)
+
+    for make in (lambda v, n, s: bump(v, n, 2.0 * s), partial(bump), closure, Maker(1.0), Maker(1.0).make):
+        with pytest.raises(InvalidValueError, match="must be a function with a name that holds no other values"):
+            SyntheticSet(own(make), 3, 1).description()
+
+    class Silent(Uniform):
+        __repr__ = object.__repr__
+
+    with pytest.raises(InvalidValueError, match=r"must say what makes it by repr\(\)"):
+        SyntheticSet(own(first_m=Silent(1.0, 2.0)), 3, 1).description()
+
+
+def test_description_makes_two_motions_once(monkeypatch):
+    """However often a set is described, its first and last motion are made once."""
+    motions, made = SyntheticSet("firm-ground", 50, 1), []
+    original = SyntheticSet.__getitem__
+    monkeypatch.setattr(SyntheticSet, "__getitem__", lambda self, k: made.append(k) or original(self, k))
+    assert motions.description() == motions.description()
+    assert made == [0, -1]
 
 
 def test_set_can_be_sent_to_a_worker():

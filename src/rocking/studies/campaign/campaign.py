@@ -10,7 +10,7 @@ import numpy as np
 from rocking.dynamics.engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import disk, reading
-from rocking.studies.campaign.chunks import DEFAULT_CHUNK, Plan
+from rocking.studies.campaign.chunks import Plan
 from rocking.studies.campaign.errors import CampaignMismatchError
 from rocking.studies.campaign.executors import Executor, chosen
 from rocking.studies.campaign.forecast import Forecast, forecast
@@ -59,7 +59,7 @@ class Campaign:
         histories : Histories
             What to compute.
         chunk : int, optional
-            Histories of a chunk; as many as take about 0.3 s of the fast engine, if not given.
+            Histories of a chunk; as many as take about 0.3 s of the engine, if not given.
 
         Returns
         -------
@@ -72,7 +72,7 @@ class Campaign:
             If the folder holds something already.
         """
         path = Path(folder)
-        identity = Identity.of(_histories(histories), DEFAULT_CHUNK if chunk is None else chunk)
+        identity = Identity.of(_histories(histories), chunk)
         with disk.guarded(path, lambda: "nothing was written"):
             disk.make_folder(path)
             with FolderLock(path):
@@ -194,6 +194,8 @@ class Campaign:
         ------
         InvalidValueError
             If an argument is out of range.
+        CampaignMismatchError
+            If the histories have changed since the campaign was opened, or this machine computes other last digits.
         CampaignBusyError
             If another process runs this campaign.
         CampaignStorageError
@@ -212,6 +214,7 @@ class Campaign:
         if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
             raise InvalidValueError(f"order_seed must be a whole number >= 0, got {seed!r:.60}")
         who = chosen(executor, workers, start_method)
+        self.identity.refuse_other(self.folder, self.histories)
         return run(self.folder, self.identity, self.histories, who, order_seed, progress)
 
     def pieces(self) -> Iterator[reading.Piece]:

@@ -11,7 +11,10 @@ FORMAT = 1
 """Version of the files of a campaign."""
 
 DEFAULT_CHUNK = 32768
-"""Histories of a chunk: about 0.3 s of work, beside which a few milliseconds of safety are small."""
+"""Histories of a chunk of the fast engine: about 0.3 s of work, beside which a few milliseconds of safety are small."""
+
+REFERENCE_CHUNK = 256
+"""Histories of a chunk of the reference engine, which takes a hundred times as long."""
 
 LARGEST_CHUNK = 1 << 22
 """A chunk is held in memory as a whole: 0.3 GB."""
@@ -26,6 +29,22 @@ class Chunk(NamedTuple):
     name: str
 
 
+def default_chunk(engine: str) -> int:
+    """Return how many histories make a chunk, unless somebody wants another number.
+
+    Parameters
+    ----------
+    engine : str
+        The engine, as in a `Plan`.
+
+    Returns
+    -------
+    int
+        Histories.
+    """
+    return DEFAULT_CHUNK if engine.startswith("fast") else REFERENCE_CHUNK
+
+
 @dataclass(frozen=True)
 class Plan:
     """What fixes the name of every chunk, and with it the bytes of its shard.
@@ -38,8 +57,8 @@ class Plan:
         Number of histories.
     size : int
         Histories of a chunk.
-    engine : {"fast", "reference"}
-        The engine that computes all of them.
+    engine : str
+        The engine that computes all of them, with the last digits that it gives: "fast, 0123456789abcdef".
     software : str
         Version of this package.
     format : int

@@ -12,7 +12,7 @@ from typing import Any
 from rocking.errors import InvalidValueError, MissingExtraError
 from rocking.studies.campaign.chunks import Chunk
 from rocking.studies.campaign.errors import CampaignWorkerError
-from rocking.studies.campaign.executors import Done, Executor, Job, whole
+from rocking.studies.campaign.executors import Done, Executor, Job, cannot_be_sent, whole
 
 _LOOK = 0.2
 _GRACE = 0.8
@@ -85,7 +85,7 @@ class _Window:
     def __init__(self, dask: ModuleType, client: Any, job: Job, ahead: int) -> None:
         self._dask, self._client, self._job, self._ahead = dask, client, job, ahead
         # a task and not scattered data: when the worker that holds it dies, another one makes it again
-        self._loaded = client.submit(pickle.loads, pickle.dumps(job), pure=False)
+        self._loaded = client.submit(pickle.loads, _pickled(job), pure=False)
         self._flying: dict[Any, tuple[Chunk, int]] = {}
 
     def work(
@@ -143,6 +143,13 @@ class _Window:
             raise CampaignWorkerError(f"the Dask cluster lost histories {chunk.first} to {chunk.last - 1}; is it gone?")
         retried(chunk, "the cluster lost a chunk; it is computed again")
         self._submit(chunk, attempts + 1)
+
+
+def _pickled(job: Job) -> bytes:
+    try:
+        return pickle.dumps(job)
+    except (AttributeError, TypeError, pickle.PicklingError) as error:
+        raise CampaignWorkerError(cannot_be_sent(error)) from error
 
 
 def _compute(job: Job, chunk: Chunk) -> tuple[bytes, float, str]:

@@ -61,8 +61,10 @@ def make_folder(folder: Path) -> None:
     folder : Path
         The folder; it may be there.
     """
+    fresh = [each for each in (folder, *folder.parents) if not each.exists()]
     folder.mkdir(parents=True, exist_ok=True)
-    sync_folder(folder.parent)
+    for each in reversed(fresh or [folder]):  # also where it was there: who made it may have been killed before this
+        sync_folder(each.parent)
 
 
 def remove_unfinished(folder: Path) -> int:
@@ -106,7 +108,9 @@ def set_aside(path: Path) -> Path:
 
 
 @contextmanager
-def guarded(folder: Path, safe: Callable[[], str]) -> Iterator[None]:
+def guarded(
+    folder: Path, safe: Callable[[], str], foreign: Callable[[BaseException], bool] = lambda _: False
+) -> Iterator[None]:
     """Turn what disk and database say into one sentence that a user can act on.
 
     Parameters
@@ -115,6 +119,8 @@ def guarded(folder: Path, safe: Callable[[], str]) -> Iterator[None]:
         The campaign.
     safe : callable
         Returns a sentence that says what is finished.
+    foreign : callable
+        Whether an error is none of the campaign's, but of a function that a user gave; it stays what it is.
 
     Yields
     ------
@@ -123,8 +129,10 @@ def guarded(folder: Path, safe: Callable[[], str]) -> Iterator[None]:
 
     Raises
     ------
-    ConnectionError
-        If whoever is told of the progress has gone.
+    OSError
+        If it is foreign, or whoever is told of the progress has gone.
+    DatabaseError
+        If it is foreign.
     CampaignStorageError
         If the folder does not take what is written.
     CampaignBusyError
@@ -134,11 +142,13 @@ def guarded(folder: Path, safe: Callable[[], str]) -> Iterator[None]:
     """
     try:
         yield
-    except ConnectionError:
-        raise
     except OSError as error:
+        if foreign(error) or isinstance(error, ConnectionError):
+            raise
         raise CampaignStorageError(f"{folder}: {error.strerror or error}; {safe()}; {_ADVICE}") from error
     except sqlite3.DatabaseError as error:
+        if foreign(error):
+            raise
         code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT) & 0xFF
         if code in _FULL | _DENIED:
             raise CampaignStorageError(f"{folder}: the ledger: {error}; {safe()}; {_ADVICE}") from error

@@ -8,14 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from rocking.dynamics import engine
+from rocking.dynamics.engine import empty_results
 from rocking.errors import InvalidValueError
-from rocking.studies.campaign import disk, shard
+from rocking.studies.campaign import disk, fingerprint, identity, shard
 from rocking.studies.campaign.chunks import DEFAULT_CHUNK, Chunk
 from rocking.studies.campaign.errors import CampaignWorkerError
+from rocking.studies.campaign.fingerprint import kind_of
 from rocking.studies.histories import Histories
 
 SUFFIX = ".shard"
+_ASK = 0.3
+_FIRST = {"fast": 64, "reference": 4}
+_FASTER = 4
 
 
 class Done(NamedTuple):
@@ -37,15 +41,41 @@ class Job:
     ----------
     histories : Histories
         What to compute.
-    engine : {"fast", "reference"}
-        The engine that all workers must have.
+    engine : str
+        The engine that all workers must have, with the last digits that it gives.
+    software : str
+        Version of this package that all workers must have.
     folder : Path
         Where the shards are.
     """
 
     histories: Histories
     engine: str
+    software: str
     folder: Path
+
+    def check(self) -> None:
+        """Refuse to compute what this campaign would not recognise as its own bits.
+
+        Raises
+        ------
+        CampaignWorkerError
+            If this worker has another version, engine, or engine of other last digits than the campaign.
+        """
+        software = identity.software()
+        if software != self.software:
+            raise CampaignWorkerError(
+                f"this worker has version {software}, the campaign was begun with {self.software}"
+            )
+        here, wanted = fingerprint.engine_of(self.histories), self.engine
+        if kind_of(here) != kind_of(wanted):
+            kinds = f"{kind_of(here)} engine, the campaign takes the {kind_of(wanted)} one"
+            raise CampaignWorkerError(f"this worker has the {kinds}")
+        if here != wanted:
+            raise CampaignWorkerError(
+                f"this worker computes other last digits: its engine is {here}, that of the campaign is {wanted} "
+                f"({fingerprint.LAST_DIGITS})"
+            )
 
     def compute(self, chunk: Chunk, threads: int | None = 1, stop: Callable[[], bool] = lambda: False) -> bytes | None:
         """Return the shard of a chunk.
@@ -57,28 +87,23 @@ class Job:
         threads : int, optional
             Threads of the fast engine; as many as the processor has, if None.
         stop : callable
-            Whether to stop; asked every 0.2 s or so.
+            Whether to stop; asked every 0.3 s or so, whatever the histories take.
 
         Returns
         -------
         bytes or None
             The shard; None if it was stopped.
-
-        Raises
-        ------
-        CampaignWorkerError
-            If this worker lacks the engine of the campaign.
         """
-        chosen = engine.chosen(self.histories.engine, self.histories.law)
-        if chosen != self.engine:
-            raise CampaignWorkerError(f"this worker has the {chosen} engine, the campaign takes the {self.engine} one")
-        results = engine.empty_results(chunk.last - chunk.first)
-        for first in range(chunk.first, chunk.last, DEFAULT_CHUNK):
+        self.check()
+        results = empty_results(chunk.last - chunk.first)
+        first, step = chunk.first, _FIRST[kind_of(self.engine)]
+        while first < chunk.last:
             if first > chunk.first and stop():
                 return None
-            last = min(first + DEFAULT_CHUNK, chunk.last)
+            start, last = time.perf_counter(), min(first + step, chunk.last)
             for name, values in self.histories.run(first, last, threads=threads).items():
                 results[name][first - chunk.first : last - chunk.first] = values
+            first, step = last, _next_step(step, time.perf_counter() - start)
         return shard.pack(chunk, results)
 
     def keep(self, chunk: Chunk, data: bytes, seconds: float, worker: str = "") -> Done:
@@ -102,6 +127,12 @@ class Job:
         """
         disk.write_new(self.folder / f"{chunk.name}{SUFFIX}", data)
         return Done(chunk, shard.seal(data), len(data), seconds, worker or f"process {os.getpid()}")
+
+
+def _next_step(step: int, seconds: float) -> int:
+    """Return how many histories take as long as nobody minds to wait, from what the last ones took."""
+    wanted = int(step * _ASK / max(seconds, 1e-6))
+    return max(1, min(wanted, _FASTER * step, DEFAULT_CHUNK))
 
 
 class Executor(ABC):
@@ -170,6 +201,22 @@ class Serial(Executor):
             if data is None:
                 return
             yield job.keep(chunk, data, time.perf_counter() - start)
+
+
+def cannot_be_sent(error: Exception) -> str:
+    """Return what is said of histories that cannot be pickled.
+
+    Parameters
+    ----------
+    error : Exception
+        What pickle says.
+
+    Returns
+    -------
+    str
+        A sentence.
+    """
+    return f"the histories cannot be sent to a process: {error}; lambdas and local functions cannot, named ones can"
 
 
 def chosen(executor: "str | Executor", workers: int | None, start_method: str | None) -> Executor:

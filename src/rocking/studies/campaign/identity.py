@@ -7,11 +7,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from rocking.dynamics import engine
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import disk
-from rocking.studies.campaign.chunks import FORMAT, Plan
+from rocking.studies.campaign.chunks import FORMAT, Plan, default_chunk
 from rocking.studies.campaign.errors import CampaignDamagedError, CampaignMismatchError
+from rocking.studies.campaign.fingerprint import LAST_DIGITS, engine_of, kind_of
 from rocking.studies.histories import Histories
 
 NAME = "campaign.json"
@@ -35,23 +35,24 @@ class Identity:
     histories: dict[str, Any]
 
     @classmethod
-    def of(cls, histories: Histories, size: int) -> "Identity":
+    def of(cls, histories: Histories, size: int | None = None) -> "Identity":
         """Return the identity of a new campaign.
 
         Parameters
         ----------
         histories : Histories
             What to compute.
-        size : int
-            Histories of a chunk.
+        size : int, optional
+            Histories of a chunk; what suits the engine, if not given.
 
         Returns
         -------
         Identity
-            The same wherever it is made with this version of the package.
+            The same wherever it is made with this version of the package by an engine of the same last digits.
         """
-        chosen = engine.chosen(histories.engine, histories.law)
-        return cls(Plan(histories.key(), histories.count, size, chosen, software()), _plain(histories))
+        chosen = engine_of(histories)
+        pieces = default_chunk(chosen) if size is None else size
+        return cls(Plan(histories.key(), histories.count, pieces, chosen, software()), _plain(histories))
 
     @classmethod
     def read(cls, folder: Path) -> "Identity":
@@ -122,13 +123,16 @@ class Identity:
             found = sorted(differences, key=lambda text: "..." in text)  # what a person can read comes first
             shown = "; ".join(found[:_SHOWN]) + (f"; and {len(found) - _SHOWN} more" if len(found) > _SHOWN else "")
             raise CampaignMismatchError(f"{folder}: this campaign is of other histories: {shown or 'their key'}")
-        for what in ("software", "engine"):
-            was, now = getattr(self.plan, what), getattr(given.plan, what)
-            if was != now:
-                raise CampaignMismatchError(
-                    f"{folder}: begun with {what} {was}, this is {now}, whose results may differ in their last bits; "
-                    f"finish it with {was}, or create a new campaign"
-                )
+        if given.plan.software != self.plan.software:
+            raise CampaignMismatchError(_other(folder, "software", self.plan.software, given.plan.software))
+        was, now = self.plan.engine, given.plan.engine
+        if was != now and kind_of(was) == kind_of(now):
+            raise CampaignMismatchError(
+                f"{folder}: this machine computes other last digits: begun with engine {was}, here it is {now} "
+                f"({LAST_DIGITS}); finish it where it was begun, or create a new campaign"
+            )
+        if was != now:
+            raise CampaignMismatchError(_other(folder, "engine", was, now))
 
 
 def software() -> str:
@@ -162,6 +166,13 @@ def _sum(content: Any) -> str:
 
 def _encoded(content: Any, stated: str) -> bytes:
     return (json.dumps({"campaign": content, "sha256": stated}, sort_keys=True, indent=1) + "\n").encode()
+
+
+def _other(folder: Path, what: str, was: str, now: str) -> str:
+    return (
+        f"{folder}: begun with {what} {was}, this is {now}, whose results may differ in their last bits; "
+        f"finish it with {was}, or create a new campaign"
+    )
 
 
 def _differences(was: Any, now: Any, where: str) -> Iterator[str]:

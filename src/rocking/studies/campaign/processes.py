@@ -3,6 +3,7 @@
 import contextlib
 import multiprocessing
 import os
+import pickle
 import signal
 import time
 from collections import deque
@@ -15,7 +16,7 @@ from typing import Any, NoReturn
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign.chunks import Chunk
 from rocking.studies.campaign.errors import CampaignWorkerError
-from rocking.studies.campaign.executors import Done, Executor, Job, whole
+from rocking.studies.campaign.executors import Done, Executor, Job, cannot_be_sent, whole
 from rocking.studies.campaign.worker import Failure, serve
 
 _ATTEMPTS = 3
@@ -85,13 +86,12 @@ class _Member:
     def __init__(self, context: Any, job: Job) -> None:
         self.connection, theirs = context.Pipe()
         self.tasks: deque[tuple[Chunk, int]] = deque()
-        arguments = (job, theirs, os.getpid())
-        self.process: BaseProcess = context.Process(target=serve, args=arguments, daemon=True)
+        self.process: BaseProcess = context.Process(target=serve, args=(job, theirs), daemon=True)
         try:
             with _no_interruption():
                 self.process.start()
-        except (AttributeError, TypeError) as error:  # also pickle's: they derive from these or say so
-            raise CampaignWorkerError(f"the histories cannot be sent to a process: {error}") from error
+        except (AttributeError, TypeError, pickle.PicklingError) as error:
+            raise CampaignWorkerError(cannot_be_sent(error)) from error
         finally:
             theirs.close()
 

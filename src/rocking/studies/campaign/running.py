@@ -55,7 +55,7 @@ def run(
         If it was asked to stop.
     """
     meter = Meter(folder, identity.plan, progress)
-    with disk.guarded(folder, meter.sentence), FolderLock(folder), Interruption() as interruption:
+    with disk.guarded(folder, meter.sentence, meter.raised), FolderLock(folder), Interruption() as interruption:
         disk.make_folder(folder / SHARDS)
         disk.remove_unfinished(folder)
         with Ledger(folder, writable=True) as ledger:
@@ -64,7 +64,7 @@ def run(
             before = ledger.finished()
             meter.begin(*before)
             chunks = _missing(identity, found, order_seed, interruption.asked)
-            job = Job(histories, identity.plan.engine, folder / SHARDS)
+            job = Job(histories, identity.plan.engine, identity.plan.software, folder / SHARDS)
             _compute(job, executor, chunks, ledger, meter, interruption.asked)
         if interruption.asked():
             raise CampaignInterrupted(f"stopped: {meter.sentence()} in {folder}; run the campaign again to go on")

@@ -134,6 +134,7 @@ class Meter:
         self._begun = self._start
         self.chunks = self.histories = self.resumed = 0
         self.known = False
+        self._error: Exception | None = None
         self.retries: list[str] = []
 
     def begin(self, chunks: int, histories: int) -> None:
@@ -179,6 +180,21 @@ class Meter:
         total = self._plan.chunks
         return f"all {total} chunks are safe" if self.chunks == total else f"{self.chunks} of {total} chunks are safe"
 
+    def raised(self, error: BaseException) -> bool:
+        """Return whether an error is of the function that is told, and so not of the campaign.
+
+        Parameters
+        ----------
+        error : BaseException
+            What was raised.
+
+        Returns
+        -------
+        bool
+            True for that very error.
+        """
+        return error is self._error
+
     def _say(self) -> None:
         if self._tell is None:
             return
@@ -187,4 +203,8 @@ class Meter:
         rate = here / spent if here and spent > 0.0 else 0.0
         left = (self._plan.count - self.histories) / rate if rate else None
         done = (self.histories, self._plan.count, self.chunks, self._plan.chunks)
-        self._tell(Progress(*done, rate, left, self.seconds, len(self.retries)))
+        try:
+            self._tell(Progress(*done, rate, left, self.seconds, len(self.retries)))
+        except Exception as error:
+            self._error = error
+            raise

@@ -1,8 +1,10 @@
 """What a worker process does: it computes the chunks that it is sent, and ends when its campaign does."""
 
+import multiprocessing
 import os
 import signal
 import time
+from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import NamedTuple
 
@@ -20,7 +22,7 @@ class Failure(NamedTuple):
     number: int | None
 
 
-def serve(job: Job, connection: Connection, parent: int) -> None:
+def serve(job: Job, connection: Connection) -> None:
     """Compute chunks until told to end, or the campaign's process is gone.
 
     Parameters
@@ -29,20 +31,19 @@ def serve(job: Job, connection: Connection, parent: int) -> None:
         What to compute.
     connection : Connection
         Where chunks come from and answers go to.
-    parent : int
-        The campaign's process.
     """
+    orphaned = _orphaned()
     # Ctrl-C goes to all processes of a terminal: the campaign's process decides what it means
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     try:
-        while (chunk := _next(connection, parent)) is not None:
-            connection.send(answer(job, chunk))
+        while (chunk := _next(connection, orphaned)) is not None:
+            connection.send(answer(job, chunk, orphaned))
     except (EOFError, OSError):
         return
 
 
-def answer(job: Job, chunk: Chunk) -> Done | Failure:
+def answer(job: Job, chunk: Chunk, stop: Callable[[], bool] = lambda: False) -> Done | Failure:
     """Return what became of a chunk; nothing that goes wrong with it ends the worker.
 
     Parameters
@@ -51,6 +52,8 @@ def answer(job: Job, chunk: Chunk) -> Done | Failure:
         What to compute.
     chunk : Chunk
         Which.
+    stop : callable
+        Whether to stop; asked several times a second.
 
     Returns
     -------
@@ -59,7 +62,7 @@ def answer(job: Job, chunk: Chunk) -> Done | Failure:
     """
     start = time.perf_counter()
     try:
-        data = job.compute(chunk)
+        data = job.compute(chunk, 1, stop)
         if data is None:
             return Failure(chunk, "stopped", None)
         return job.keep(chunk, data, time.perf_counter() - start)
@@ -69,10 +72,17 @@ def answer(job: Job, chunk: Chunk) -> Done | Failure:
         return Failure(chunk, f"{type(error).__name__}: {error}", None)
 
 
-def _next(connection: Connection, parent: int) -> Chunk | None:
-    # a forked sibling may hold the other end open, so that its closing alone does not tell
+def _orphaned() -> Callable[[], bool]:
+    """Make the question whether the campaign's process has gone."""
+    # its end closes a pipe, but a forked sibling may hold that open; a new father tells as well, but under a fork
+    # server the father is the server: so both are asked
+    father, campaign = os.getppid(), multiprocessing.parent_process()
+    return lambda: os.getppid() != father or (campaign is not None and not campaign.is_alive())
+
+
+def _next(connection: Connection, orphaned: Callable[[], bool]) -> Chunk | None:
     while not connection.poll(_LOOK):
-        if os.getppid() != parent:
+        if orphaned():
             return None
     received: Chunk | None = connection.recv()
     return received

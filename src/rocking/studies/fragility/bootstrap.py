@@ -18,6 +18,7 @@ from rocking.studies.fragility.estimate import (
     quadratic_error,
     standard_errors,
 )
+from rocking.studies.fragility.robust import with_cluster_errors
 
 Resampling = Literal["parametric", "cases", "clusters"]
 Ends = Literal["studentised", "percentile", "basic"]
@@ -53,7 +54,8 @@ def resample(
     Raises
     ------
     InvalidValueError
-        If the kind is unknown, clusters were not named, or the repetitions are not between 1 and ten millions.
+        If the kind is unknown, clusters were not named or are fewer than five distinct ones, or the repetitions are
+        not between 1 and ten millions.
     """
     checks.within("repetitions", repetitions, 1, 10**7)
     random = np.random.default_rng(seed)
@@ -67,11 +69,22 @@ def resample(
         return failures, failures + survivals
     if kind != "clusters":
         raise InvalidValueError(f"kind must be one of {', '.join(RESAMPLING)}, got {kind!r}")
-    if counts.cluster_failures is None or counts.cluster_trials is None:
+    if counts.cluster_trials is None:
         raise InvalidValueError("kind must not be 'clusters' unless clusters= names the record of each outcome")
-    number = counts.cluster_trials.shape[0]
-    drawn = random.multinomial(number, np.full(number, 1.0 / number), size=repetitions).astype(np.float64)
-    return drawn @ counts.cluster_failures, drawn @ counts.cluster_trials
+    if counts.scarcity:
+        raise InvalidValueError(
+            f"kind must not be 'clusters' for {counts.scarcity}: drawn again they repeat one another, and the interval"
+            " would be far too narrow; take more records, or the profile interval with that caution"
+        )
+    failures, trials = np.split(_drawn_clusters(counts, repetitions, seed) @ counts.distinct_clusters[0], 2, axis=1)
+    return failures, trials
+
+
+def _drawn_clusters(counts: Counts, repetitions: int, seed: int) -> FloatArray:
+    """Return how often each distinct cluster is drawn: a hundred thousand cost no more than their distinct outcomes."""
+    share = counts.distinct_clusters[1] / counts.clusters
+    drawn = np.random.default_rng(seed).multinomial(counts.clusters, share, size=repetitions)
+    return drawn.astype(np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,6 +230,11 @@ def bootstrap(
     """
     failures, trials = resample(counts, curve_probability(original, scale, counts.levels), kind, repetitions, seed)
     curves = find_curves(counts.levels, scale, failures, trials, penalised=bool(original.penalised[0]))
+    if kind == "clusters":
+        drawn, whole = _drawn_clusters(counts, repetitions, seed), counts.distinct_clusters[1][None]
+        curves, original = (
+            with_cluster_errors(counts, scale, one, of) for one, of in ((curves, drawn), (original, whole))
+        )
     return BootstrapSample(curves, original, scale, kind)
 
 

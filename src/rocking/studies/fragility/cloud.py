@@ -1,205 +1,20 @@
 """Cloud analysis: the motions as they are, a regression of the rotation on the measure, and overturning apart."""
 
-import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.engine import Arrays
-from rocking.dynamics.export import extra
-from rocking.errors import InvalidValueError
-from rocking.studies.fragility.curves import fits_of
-from rocking.studies.fragility.regression import Regression, regression
-from rocking.studies.fragility.states import LimitState, Responses, limit_states
+from rocking.studies.fragility.barely_lifted import LEAST, checked_least
+from rocking.studies.fragility.cloud_analysis import CloudAnalysis
+from rocking.studies.fragility.states import Responses, limit_states
 from rocking.studies.fragility.subject import Motions, Progress, Subject, results_of
-from rocking.studies.fragility.uplift import UpliftCheck, uplift_check
 from rocking.studies.histories import Product
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from rocking.studies.fragility.lognormal import LognormalFit
-
-DEFINITION = (
-    "cloud: overturning is fitted to the outcome of each motion at its own level; among histories that rocked and "
-    "stayed standing, ln(theta/alpha) is a straight line in the ln of the measure; a rotation is exceeded by what "
-    "overturned, and by what rocked beyond it"
-)
-
-
-@dataclass(frozen=True, eq=False)
-class CloudAnalysis:
-    """The outcome of a cloud analysis.
-
-    Parameters
-    ----------
-    subject : Subject
-        The body, the motions and the measure.
-    motion_levels : ndarray
-        Measure of each motion, with the factor [its unit].
-    states : tuple of LimitState
-        From rocking to overturned.
-    histories : Product
-        What was computed: one history a motion.
-    responses : Responses
-        States and rotations, one entry a motion.
-    """
-
-    subject: Subject
-    motion_levels: FloatArray
-    states: tuple[LimitState, ...]
-    histories: Product
-    responses: Responses
-
-    @property
-    def definition(self) -> str:
-        """What is meant by the probability of a state."""
-        return DEFINITION
-
-    @property
-    def failed(self) -> int:
-        """Number of histories that could not be computed; they are left out."""
-        return int((~self.responses.good).sum())
-
-    @cached_property
-    def _sorted(self) -> tuple[FloatArray, IntArray]:
-        return np.unique(self.motion_levels, return_inverse=True)
-
-    @property
-    def levels(self) -> FloatArray:
-        """Levels at which there are motions, increasing [unit of the measure]."""
-        return self._sorted[0]
-
-    @property
-    def trials(self) -> IntArray:
-        """Number of motions at each level whose history could be computed."""
-        return self._counted(self.responses.good)
-
-    @cached_property
-    def counts(self) -> dict[str, IntArray]:
-        """Number of motions that reach each state, by name of the state, at each level."""
-        return {s.name: self._counted(self.responses.exceed(s)) for s in self.states}
-
-    def _counted(self, chosen: BoolArray) -> IntArray:
-        return np.bincount(self._sorted[1][chosen], minlength=self.levels.size).astype(np.int64)
-
-    @cached_property
-    def fits(self) -> "dict[str, LognormalFit]":
-        """Lognormal curve of each state from the outcomes alone; none for rocking where a level decides it."""
-        return fits_of(self.subject, self.states, self.motion_levels, self.responses)
-
-    @cached_property
-    def regression(self) -> Regression:
-        """Straight line of ln(theta/alpha) over ln of the measure, of histories that rocked and stayed standing."""
-        rocked = self.responses.rocked & (self.responses.rotation > 0.0)
-        return regression(np.log(self.motion_levels[rocked]), np.log(self.responses.rotation[rocked]))
-
-    @cached_property
-    def uplift(self) -> UpliftCheck:
-        """Check of the histories against the threshold of uplift."""
-        return uplift_check(self.subject, self.motion_levels, self.responses)
-
-    def probability_of_rocking(self, level: Any) -> FloatArray:
-        """Return the probability that the body rocks or overturns.
-
-        Parameters
-        ----------
-        level : float or array_like
-            Levels of the measure [its unit].
-
-        Returns
-        -------
-        ndarray
-            Zero or one where a level decides it, else the fitted curve [-].
-        """
-        levels = checks.positive_array("level", level, self.subject.measure.unit)
-        threshold = self.subject.uplift_threshold
-        if threshold is not None:
-            return np.asarray(levels > threshold, dtype=np.float64)
-        return np.asarray(self.fits["rocking"].probability(levels), dtype=np.float64)
-
-    def probability(self, level: Any, rotation: float) -> FloatArray:
-        """Return the probability that the rotation exceeds a value, from all three parts.
-
-        Parameters
-        ----------
-        level : float or array_like
-            Levels of the measure [its unit].
-        rotation : float
-            Rotation over alpha [-].
-
-        Returns
-        -------
-        ndarray
-            P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned) [-].
-        """
-        parts = self.parts(level, rotation)
-        return parts["overturned"] + parts["exceeded"]
-
-    def parts(self, level: Any, rotation: float) -> dict[str, FloatArray]:
-        """Return the parts of the total probability, which add up to one.
-
-        Parameters
-        ----------
-        level : float or array_like
-            Levels of the measure [its unit].
-        rotation : float
-            Rotation over alpha [-].
-
-        Returns
-        -------
-        dict of str to ndarray
-            ``no rocking``, ``below`` (rocked, not beyond the rotation), ``exceeded`` (rocked beyond it, did not
-            overturn) and ``overturned`` [-].
-        """
-        levels = checks.positive_array("level", level, self.subject.measure.unit)
-        limit = math.log(checks.positive("rotation", rotation))
-        # whatever overturned has rocked: where the curves cross, rocking is at least as probable
-        rocks = self.probability_of_rocking(levels)
-        over = np.minimum(np.asarray(self.fits["overturned"].probability(levels), dtype=np.float64), rocks)
-        beyond = self.regression.probability_above(limit, np.log(levels))
-        return {
-            "no rocking": 1.0 - rocks,
-            "below": (rocks - over) * (1.0 - beyond),
-            "exceeded": (rocks - over) * beyond,
-            "overturned": over,
-        }
-
-    @cached_property
-    def dataset(self) -> "xr.Dataset":
-        """All outcomes with their units, over motion."""
-        xarray = extra("xarray", "a labelled dataset")
-        data = {**self.responses.labelled("motion"), "level": ("motion", self.motion_levels, self.subject.label)}
-        more = {"definition": self.definition, "uplift": self.uplift.verdict, "failed": self.failed}
-        coords = {"motion_name": ("motion", self.subject.names)}
-        made: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=self.subject.about() | more)
-        return made
-
-    def summary(self) -> dict[str, Any]:
-        """Return what is printed: the definition, the check, the line and the curves.
-
-        Returns
-        -------
-        dict
-            Plain values; median in the unit of the measure.
-        """
-        return {
-            "analysis": "cloud",
-            "definition": self.definition,
-            "measure": self.subject.measure.name,
-            "unit": self.subject.measure.unit,
-            "uplift": self.uplift.verdict,
-            "failed": self.failed,
-            "states": {state.name.lower(): n for state, n in self.responses.counts().items()},
-            "regression": _told(self),
-            "curves": {name: fit.summary() for name, fit in self.fits.items()},
-        }
+__all__ = ["CloudAnalysis", "cloud", "cloud_plan"]
 
 
 def cloud_plan(
@@ -210,13 +25,14 @@ def cloud_plan(
     states: Sequence[float] = (0.5,),
     *,
     factor: float = 1.0,
+    least: float = LEAST,
     **options: Any,
 ) -> tuple[Product, Callable[[Arrays], CloudAnalysis]]:
     """Return the histories of a cloud analysis, and what makes the analysis of their results.
 
     Parameters
     ----------
-    body, motions, restitution, measure, states, factor, **options
+    body, motions, restitution, measure, states, factor, least, **options
         As for `cloud`.
 
     Returns
@@ -227,14 +43,14 @@ def cloud_plan(
         Takes the results of all histories and returns the `CloudAnalysis`.
     """
     subject = Subject.of(body, motions, restitution, measure, options)
-    factor = checks.positive("factor", factor)
+    factor, least = checks.positive("factor", factor), checked_least(least)
     levels = subject.measure.scaled(subject.intensities, factor)
     limits = limit_states(states)
     histories = subject.product(np.array([factor]))
 
     def finish(arrays: Arrays) -> CloudAnalysis:
         responses = Responses.of(arrays, subject.rocker, (len(subject.motions),))
-        return CloudAnalysis(subject, levels, limits, histories, responses)
+        return CloudAnalysis(subject, levels, limits, histories, responses, least)
 
     return histories, finish
 
@@ -247,6 +63,7 @@ def cloud(
     states: Sequence[float] = (0.5,),
     *,
     factor: float = 1.0,
+    least: float = LEAST,
     progress: Progress = None,
     **options: Any,
 ) -> CloudAnalysis:
@@ -266,6 +83,8 @@ def cloud(
         Rotations over alpha that count as states of their own [-].
     factor : float
         One factor on all motions [-].
+    least : float
+        Rotation over alpha below which a history counts as barely lifted, and is left out of the line [-].
     progress : callable, optional
         Called with the number of histories done since the last call.
     **options
@@ -285,12 +104,5 @@ def cloud(
     {'NO_ROCKING': 1, 'ROCKING': 4, 'OVERTURNED': 2}
     """
     threads = options.pop("threads", None)
-    histories, finish = cloud_plan(body, motions, restitution, measure, states, factor=factor, **options)
+    histories, finish = cloud_plan(body, motions, restitution, measure, states, factor=factor, least=least, **options)
     return finish(results_of(histories, threads=threads, progress=progress))
-
-
-def _told(analysis: CloudAnalysis) -> dict[str, Any]:
-    try:
-        return analysis.regression.summary()
-    except InvalidValueError as error:
-        return {"none": str(error)}

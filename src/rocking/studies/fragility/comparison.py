@@ -11,10 +11,12 @@ from rocking import checks
 from rocking.conventions import BoolArray, FloatArray
 from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
+from rocking.studies.fragility.barely_lifted import LEAST, checked_least, clearly_lifted
 from rocking.studies.fragility.cloud import CloudAnalysis
 from rocking.studies.fragility.curves import curve_of, fits_of
 from rocking.studies.fragility.measures import measure
 from rocking.studies.fragility.regression import Regression, regression
+from rocking.studies.fragility.subject import Progress, check_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,6 +53,8 @@ class MeasureScore:
         measure leaves out what the column knows [-].
     rocked, overturned : int
         Histories that the line and the curve rest on.
+    barely_lifted : int
+        Histories that rocked too little for the line, and were left out of it.
     """
 
     measure: str
@@ -64,6 +68,7 @@ class MeasureScore:
     sufficiency: Mapping[str, float]
     rocked: int
     overturned: int
+    barely_lifted: int = 0
 
 
 @dataclass(frozen=True)
@@ -76,10 +81,13 @@ class MeasureComparison:
         One a measure.
     left_out : dict of str to str
         Measures that cannot be ranked, and why: one that is the same for all motions says nothing about them.
+    least : float
+        Rotation over alpha below which a history counts as barely lifted [-].
     """
 
     scores: tuple[MeasureScore, ...]
     left_out: Mapping[str, str]
+    least: float = LEAST
 
     @property
     def best(self) -> str:
@@ -116,6 +124,9 @@ def compare_measures(
     analysis: CloudAnalysis,
     measures: Sequence[Any] = DEFAULT_MEASURES,
     metadata: Mapping[str, Any] | None = None,
+    *,
+    least: float | None = None,
+    progress: Progress = None,
 ) -> MeasureComparison:
     """Rank measures of intensity by how well they predict the histories of one cloud analysis.
 
@@ -131,6 +142,11 @@ def compare_measures(
         What to compare.
     metadata : mapping of str to array_like, optional
         Numbers that belong to the motions, such as magnitude, ln of the distance, duration; one a motion.
+    least : float, optional
+        Rotation over alpha below which a history counts as barely lifted, and is left out of the lines: rotations next
+        to nothing have logarithms that outweigh all others. That of the analysis, 0.01 there, if not given [-].
+    progress : callable, optional
+        Called with the number of motions measured since the last call; all are measured once for each measure.
 
     Returns
     -------
@@ -156,17 +172,22 @@ def compare_measures(
     names = [one.name for one in chosen]
     if not names or len(set(names)) < len(names):
         raise InvalidValueError(f"measures must be at least one, none of them twice, got {names}")
+    check_progress(progress)
+    if least is not None:
+        analysis = replace(analysis, least=checked_least(least))
     columns = {name: _column(name, values, analysis) for name, values in (metadata or {}).items()}
     scores, left_out = [], {}
     for one in chosen:
         other = replace_measure(analysis, one)
+        if progress is not None:
+            progress(len(analysis.subject.motions))
         if len(np.unique(other.motion_levels[_rocked(other)])) == 1:
             left_out[one.name] = f"{one.name} is {other.motion_levels[0]:g} {one.unit} for all that rocked"
         else:
             scores.append(_score(other, columns))
     if not scores:
         raise InvalidValueError(f"no measure can be ranked: {'; '.join(left_out.values())}")
-    return MeasureComparison(tuple(sorted(scores, key=lambda score: score.efficiency)), left_out)
+    return MeasureComparison(tuple(sorted(scores, key=lambda score: score.efficiency)), left_out, analysis.least)
 
 
 def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:
@@ -190,7 +211,7 @@ def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:
 
 
 def _rocked(analysis: CloudAnalysis) -> BoolArray:
-    return np.asarray(analysis.responses.rocked & (analysis.responses.rotation > 0.0))
+    return clearly_lifted(analysis.responses, analysis.least)
 
 
 def _score(analysis: CloudAnalysis, columns: Mapping[str, FloatArray]) -> MeasureScore:
@@ -201,7 +222,7 @@ def _score(analysis: CloudAnalysis, columns: Mapping[str, FloatArray]) -> Measur
         analysis.subject.measure.name, analysis.subject.measure.unit, line.scatter, line.slope, proficiency,
         line.determination, dispersion, verdict,
         {name: _sufficiency(line, values[rocked]) for name, values in columns.items()},
-        line.count, int(analysis.responses.overturned.sum()),
+        line.count, int(analysis.responses.overturned.sum()), analysis.barely_lifted,
     )  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,9 @@ from rocking.errors import InvalidValueError
 
 NARROWEST = 1e-9
 """Least relative distance between the lowest and the highest level [-]."""
+
+LEAST_CLUSTERS = 5
+"""Distinct clusters below which drawing them again says nothing about clusters that were not seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +47,39 @@ class Counts:
     def observations(self) -> int:
         """Number of trials in all [-]."""
         return int(self.trials.sum())
+
+    @property
+    def clusters(self) -> int:
+        """Number of clusters that were named; 0 if none were."""
+        return 0 if self.cluster_trials is None else self.cluster_trials.shape[0]
+
+    @property
+    def is_clustered(self) -> bool:
+        """Whether a cluster holds more than one trial, so that the trials are not independent."""
+        return self.cluster_trials is not None and bool(self.cluster_trials.sum(axis=1).max() > 1.0)
+
+    @cached_property
+    def distinct_clusters(self) -> tuple[FloatArray, FloatArray]:
+        """Distinct rows of failures and trials by level, side by side, and how many clusters have each [-]."""
+        if self.cluster_failures is None or self.cluster_trials is None:
+            return np.empty((0, 2 * self.levels.size)), np.empty(0)
+        both = np.hstack([self.cluster_failures, self.cluster_trials])
+        rows, number = np.unique(both, axis=0, return_counts=True)
+        return rows, number.astype(np.float64)
+
+    @property
+    def scarcity(self) -> str:
+        """Why the clusters are too few to be drawn again; empty if they are not.
+
+        Five must differ in name and in outcome; at fewer than four levels as many outcomes as can differ there while
+        they grow with the level: one more than there are levels.
+        """
+        found, wanted = self.distinct_clusters[1].size, min(LEAST_CLUSTERS, self.levels.size + 1)
+        if self.clusters >= LEAST_CLUSTERS and found >= wanted:
+            return ""
+        if self.clusters < LEAST_CLUSTERS:
+            return f"{self.clusters} distinct {_plural(self.clusters)}, where {LEAST_CLUSTERS} are needed"
+        return f"{self.clusters} clusters of {found} distinct outcomes, where {wanted} are needed"
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,6 +186,10 @@ def count_states(levels: Any, rocked: Any, overturned: Any, trials: Any = None) 
     pair = [_whole(name, values, np.size(levels), 0.0) for name, values in (("o", overturned), ("r", rocked))]
     _none_above("overturned", pair[0], pair[1], "rocked")
     return StateCounts(least.levels, least.failures, worst.failures, least.trials)
+
+
+def _plural(count: int) -> str:
+    return "cluster" if count == 1 else "clusters"
 
 
 def _pool(values: FloatArray, where: IntArray, size: int) -> FloatArray:

@@ -18,6 +18,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.studies.fragility.lognormal import LognormalFit
+    from rocking.studies.fragility.ordered import OrderedMethod
+
+Ends = tuple[float | None, float | None]
+"""Both ends of an interval; None where it is open."""
+
+CLAIMS = ("method", "verdict", "interval_method")
+"""What is said of each curve wherever it goes."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +41,12 @@ class FragilityCurve:
         Standard deviation of the natural logarithm of that level [-].
     method : str
         How it was fitted.
+    verdict : str
+        What can be claimed of it.
+    median_95, dispersion_95 : tuple, optional
+        Ends of their 95 % intervals, None where one is open; None if there is no interval [as median, dispersion].
+    interval_method : str
+        How the intervals were found.
 
     Raises
     ------
@@ -45,6 +58,10 @@ class FragilityCurve:
     median: float
     dispersion: float
     method: str = ""
+    verdict: str = ""
+    median_95: Ends | None = None
+    dispersion_95: Ends | None = None
+    interval_method: str = ""
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -131,6 +148,11 @@ class FragilityModel:
                 raise InvalidValueError(f"{name} must be {self.levels.size} counts, got shape {np.shape(counts)}")
 
     @property
+    def highest(self) -> float:
+        """Level above which all curves are one: four dispersions above every median and no level tried [its unit]."""
+        return max(float(self.levels[-1]), *(c.median * math.exp(min(4.0 * c.dispersion, 600.0)) for c in self.curves))
+
+    @property
     def dataset(self) -> "xr.Dataset":
         """Curves, levels and counts with their units, over state and level."""
         xarray = extra("xarray", "a labelled dataset")
@@ -148,12 +170,13 @@ class FragilityModel:
             "counted_state": counted,
             "level": ("level", self.levels, {"units": unit, "long_name": self.measure}),
         }
-        about = {"component": self.name, "measure": self.measure, "source": self.source, **self.about}
+        words = {word: "; ".join(f"{c.state}: {getattr(c, word)}" for c in self.curves) for word in CLAIMS}
+        about = {"component": self.name, "measure": self.measure, "source": self.source, **words, **self.about}
         made: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=about)
         return made
 
 
-def model_of(analysis: Any, name: str, source: str = "") -> FragilityModel:
+def model_of(analysis: Any, name: str, source: str = "", *, method: "OrderedMethod" = "separate") -> FragilityModel:
     """Return the curves of an analysis, ready for export.
 
     Parameters
@@ -164,6 +187,8 @@ def model_of(analysis: Any, name: str, source: str = "") -> FragilityModel:
         Name of the body, as in an inventory.
     source : str
         Where the data come from; the definition of the analysis, if not given.
+    method : {"separate", "common-dispersion"}
+        Each state's own curve; or one dispersion for all states, so that no curves cross.
 
     Returns
     -------
@@ -173,8 +198,13 @@ def model_of(analysis: Any, name: str, source: str = "") -> FragilityModel:
     Raises
     ------
     InvalidValueError
-        If no state has a curve.
+        If the method is unknown, no state has a curve, or there is no common dispersion.
     """
+    from rocking.studies.fragility.nesting import with_common_dispersion
+    from rocking.studies.fragility.ordered import ORDERED_METHODS
+
+    if method not in ORDERED_METHODS:
+        raise InvalidValueError(f"method must be one of {', '.join(ORDERED_METHODS)}, got {method!r:.60}")
     subject: Subject = analysis.subject
     found = {state: curve_of(state, fit) for state, fit in analysis.fits.items()}
     without = [state for state, curve in found.items() if curve is None]
@@ -185,10 +215,11 @@ def model_of(analysis: Any, name: str, source: str = "") -> FragilityModel:
             f"state and miss it, at levels that overlap ({', '.join(without)})"
         )
     about = subject.about() | {"definition": analysis.definition, "without_curve": ", ".join(without)}
-    return FragilityModel(
+    model = FragilityModel(
         name, subject.measure.name, subject.measure.unit, curves, analysis.levels, analysis.trials, analysis.counts,
         source or analysis.definition, subject.uplift_threshold, about,
     )  # fmt: skip
+    return model if method == "separate" else with_common_dispersion(model)
 
 
 def curve_of(state: str, fit: "LognormalFit") -> FragilityCurve | None:
@@ -209,7 +240,11 @@ def curve_of(state: str, fit: "LognormalFit") -> FragilityCurve | None:
     median, dispersion = fit.median, fit.dispersion
     if median is None or dispersion is None or not 0.0 < median < math.inf or not 0.0 < dispersion < math.inf:
         return None
-    return FragilityCurve(state, float(median), float(dispersion), fit.method)
+    told = fit.summary()
+    return FragilityCurve(
+        state, float(median), float(dispersion), fit.method, fit.verdict, tuple(told["median_95"]),
+        tuple(told["dispersion_95"]), told["interval_method"],
+    )  # fmt: skip
 
 
 def fits_of(
@@ -226,7 +261,8 @@ def fits_of(
     levels : ndarray
         Level of the measure of each history [its unit].
     responses : Responses
-        Their outcomes, of the same shape; motions come first, and the histories of one motion are a cluster.
+        Their outcomes, of the same shape; motions come first, and the histories of one motion are a cluster, together
+        with those of other motions that are the same sample by sample.
 
     Returns
     -------
@@ -236,8 +272,9 @@ def fits_of(
     from rocking.studies.fragility.lognormal import fit_lognormal
 
     good = responses.good
-    motion = np.broadcast_to(np.arange(good.shape[0]).reshape(-1, *[1] * (good.ndim - 1)), good.shape)
-    clusters = motion[good].tolist() if good.ndim > 1 else None
+    motion = np.broadcast_to(subject.clusters.reshape(-1, *[1] * (good.ndim - 1)), good.shape)[good]
+    # one history each: independent, and a table of single histories by level would be large
+    clusters = None if np.unique(motion).size == motion.size else motion.tolist()
     wanted = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
     return {
         state.name: fit_lognormal(levels[good], responses.exceed(state)[good], clusters=clusters) for state in wanted

@@ -10,13 +10,20 @@ import numpy as np
 
 from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.curves import FragilityModel
-from rocking.studies.fragility.tables import TABLES, CellTable, table
+from rocking.studies.fragility.curves import CLAIMS, FragilityModel
+from rocking.studies.fragility.nesting import Crossing, check_crossing
+from rocking.studies.fragility.tables import TABLES, Cell, CellTable, safe_cell, table
 
 Destination = str | os.PathLike[str]
 
 
-def to_csv(model: FragilityModel, path: Destination, which: str | CellTable = "parameters") -> Path:
+def to_csv(
+    model: FragilityModel,
+    path: Destination,
+    which: str | CellTable = "parameters",
+    *,
+    crossing: Crossing = "refuse",
+) -> Path:
     """Write a table of a model as comma-separated values, all digits kept.
 
     Parameters
@@ -27,6 +34,8 @@ def to_csv(model: FragilityModel, path: Destination, which: str | CellTable = "p
         The file.
     which : {"parameters", "points", "fema-p58"} or CellTable
         What to write.
+    crossing : {"refuse", "common-dispersion"}
+        What to do with curves that cross, in the table of FEMA P-58.
 
     Returns
     -------
@@ -34,13 +43,13 @@ def to_csv(model: FragilityModel, path: Destination, which: str | CellTable = "p
         The file. Words that a spreadsheet would take for a formula start with an apostrophe.
     """
     target = checked_path(path)
-    cells = which if isinstance(which, CellTable) else table(model, which)
+    cells = which if isinstance(which, CellTable) else table(model, which, crossing=crossing)
     with target.open("w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(cells.safe())
     return target
 
 
-def to_excel(model: FragilityModel, path: Destination) -> Path:
+def to_excel(model: FragilityModel, path: Destination, *, crossing: Crossing = "refuse") -> Path:
     """Write all tables of a model as a workbook, one sheet a table.
 
     Parameters
@@ -49,6 +58,9 @@ def to_excel(model: FragilityModel, path: Destination) -> Path:
         The curves.
     path : str or path
         The file.
+    crossing : {"refuse", "common-dispersion"}
+        What to do with curves that cross: the sheet of FEMA P-58 says why they are refused there, or all states get
+        one dispersion in it.
 
     Returns
     -------
@@ -61,7 +73,7 @@ def to_excel(model: FragilityModel, path: Destination) -> Path:
     book.remove(book.active)
     for name in TABLES:
         sheet = book.create_sheet(name)
-        for row, cells in enumerate(table(model, name).safe(), 1):
+        for row, cells in enumerate(_sheet(model, name, crossing), 1):
             for column, value in enumerate(cells, 1):
                 cell = sheet.cell(row=row, column=column, value=value)
                 if isinstance(value, str):
@@ -72,6 +84,15 @@ def to_excel(model: FragilityModel, path: Destination) -> Path:
         sheet.cell(row=row, column=2, value=str(value)).data_type = "s"
     book.save(target)
     return target
+
+
+def _sheet(model: FragilityModel, name: str, crossing: Crossing) -> list[list[Cell]]:
+    """Return the cells of a sheet; a refusal to draw up one table does not cost the others."""
+    check_crossing(crossing)
+    try:
+        return table(model, name, crossing=crossing).safe()
+    except InvalidValueError as error:
+        return [[safe_cell(str(error))]]
 
 
 def to_mat(model: FragilityModel, path: Destination) -> Path:
@@ -98,6 +119,7 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
         "unit": model.unit,
         "source": model.source,
         "states": np.array([c.state for c in model.curves], dtype=object),
+        **{word: np.array([getattr(c, word) for c in model.curves], dtype=object) for word in CLAIMS},
         "median": np.array([c.median for c in model.curves]),
         "dispersion": np.array([c.dispersion for c in model.curves]),
         "levels": model.levels,

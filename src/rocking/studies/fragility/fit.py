@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.bootstrap import BootstrapSample, Resampling, bootstrap
@@ -95,6 +96,15 @@ class LognormalFit:
         rise = self.intervals.rise if self.exists and self.method == "maximum-likelihood" else None
         return verdict_of(self.counts, self.separation, curve, rise)
 
+    @property
+    def interval_method(self) -> IntervalMethod:
+        """How intervals are found unless another way is asked for.
+
+        The bootstrap of whole clusters where a cluster has more than one outcome, since the likelihood takes them for
+        independent; the profile likelihood elsewhere, and where the clusters are too few (`verdict` says so).
+        """
+        return "bootstrap" if self.counts.is_clustered and not self.counts.scarcity else "profile"
+
     @cached_property
     def intervals(self) -> Intervals:
         """What the curve's coefficients mean, and how far the data let them move.
@@ -142,7 +152,7 @@ class LognormalFit:
         self,
         parameter: str | float,
         level: float = 0.95,
-        method: IntervalMethod = "profile",
+        method: IntervalMethod | None = None,
         *,
         repetitions: int = 1000,
         seed: int = 0,
@@ -155,9 +165,9 @@ class LognormalFit:
             A number is the probability of a fractile [-].
         level : float
             Confidence level, between 0 and 1 [-].
-        method : {"profile", "bootstrap", "wald"}
+        method : {"profile", "bootstrap", "wald"}, optional
             By the likelihood; by repeating the study (whole clusters where they were named, else from the curve), with
-            studentised ends; or from standard errors on the logarithmic scale.
+            studentised ends; or from standard errors on the logarithmic scale. `interval_method`, if not given.
         repetitions : int
             Number of repetitions of the bootstrap.
         seed : int
@@ -168,14 +178,15 @@ class LognormalFit:
         tuple of float
             Both ends [unit of the levels, or - for the dispersion]; 0 or infinite where the data leave it open.
         """
-        sample = self.bootstrap(repetitions=repetitions, seed=seed) if method == "bootstrap" else None
-        return self.intervals.interval(parameter, level, method, sample)
+        used = self.interval_method if method is None else method
+        sample = self._sample(repetitions, seed) if used == "bootstrap" else None
+        return self.intervals.interval(parameter, level, used, sample)
 
     def band(
         self,
         im: Any,
         level: float = 0.95,
-        method: IntervalMethod = "profile",
+        method: IntervalMethod | None = None,
         *,
         repetitions: int = 1000,
         seed: int = 0,
@@ -188,7 +199,7 @@ class LognormalFit:
             Levels of the intensity measure, >= 0 [unit of the levels].
         level : float
             Confidence level, between 0 and 1 [-].
-        method : {"profile", "bootstrap", "wald"}
+        method : {"profile", "bootstrap", "wald"}, optional
             See `interval`.
         repetitions : int
             Number of repetitions of the bootstrap.
@@ -200,8 +211,20 @@ class LognormalFit:
         tuple of ndarray
             Lower and upper ends, of the shape of `im` [-].
         """
-        sample = self.bootstrap(repetitions=repetitions, seed=seed) if method == "bootstrap" else None
-        return self.intervals.band(im, level, method, sample)
+        used = self.interval_method if method is None else method
+        sample = self._sample(repetitions, seed) if used == "bootstrap" else None
+        return self.intervals.band(im, level, used, sample)
+
+    @cached_property
+    def _samples(self) -> dict[tuple[float, int], BootstrapSample]:
+        return {}
+
+    def _sample(self, repetitions: int, seed: int) -> BootstrapSample:
+        """Return a bootstrap, made once: both ends of all parameters come from the same one."""
+        key = checks.within("repetitions", repetitions, 1, 10**7), seed
+        if key not in self._samples:
+            self._samples[key] = self.bootstrap(repetitions=repetitions, seed=seed)
+        return self._samples[key]
 
     def bootstrap(self, kind: Resampling | None = None, *, repetitions: int = 1000, seed: int = 0) -> BootstrapSample:
         """Return curves of the study repeated many times.
@@ -262,6 +285,7 @@ class LognormalFit:
             "dispersion": self.dispersion,
             "median_95": closed["median"],
             "dispersion_95": closed["dispersion"],
+            "interval_method": self.interval_method if self.exists else None,
             "standard_errors": self.standard_errors,
             "log_likelihood": self.log_likelihood,
             "method": self.method,

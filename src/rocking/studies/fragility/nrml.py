@@ -10,6 +10,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.curves import FragilityModel
 from rocking.studies.fragility.export import Destination, checked_path
 from rocking.studies.fragility.measures import spectral_period
+from rocking.studies.fragility.nesting import Crossing, nested
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 LOSS_CATEGORIES = ("structural", "nonstructural", "contents", "business_interruption", "occupants")
@@ -34,6 +35,7 @@ def to_nrml(
     loss_category: str = "contents",
     description: str = "",
     highest: float | None = None,
+    crossing: Crossing = "refuse",
 ) -> Path:
     """Write a model as an OpenQuake fragility model (NRML 0.5).
 
@@ -50,10 +52,14 @@ def to_nrml(
     loss_category : {"structural", "nonstructural", "contents", "business_interruption", "occupants"}
         What kind of loss.
     description : str
-        Words for the reader; the source of the model, if not given.
+        Words for the reader; the source of the model, if not given. How each curve was fitted, and what can be claimed
+        of it, stands after them.
     highest : float, optional
         OpenQuake takes the measure for no larger than this; four dispersions above all medians and all levels, if
         not given [unit of the measure].
+    crossing : {"refuse", "common-dispersion"}
+        What to do with curves that cross between the ends of the file: no worse state may be likelier than a lesser
+        one, or the file gives states negative probabilities.
 
     Returns
     -------
@@ -63,22 +69,19 @@ def to_nrml(
     Raises
     ------
     InvalidValueError
-        If OpenQuake does not know the measure or the loss category, or a name cannot stand in XML.
+        If OpenQuake does not know the measure or the loss category, a name cannot stand in XML, or curves cross.
     """
     target = checked_path(path)
     if loss_category not in LOSS_CATEGORIES:
         raise InvalidValueError(f"loss_category must be one of {', '.join(LOSS_CATEGORIES)}, got {loss_category!r:.60}")
     imt, unit = intensity_type(model.measure)
-    top = (
-        highest
-        if highest is not None
-        else max(float(model.levels[-1]), *(c.median * math.exp(4.0 * c.dispersion) for c in model.curves))
-    )
+    model = nested(model, crossing, None if highest is None else checks.positive("highest", highest, model.unit))
+    top = model.highest if highest is None else highest
     states = _identifiers([curve.state for curve in model.curves])
     root = ET.Element("nrml", xmlns=NAMESPACE)
     about = {"id": _identifier(model.name), "assetCategory": asset_category, "lossCategory": loss_category}
     node = ET.SubElement(root, "fragilityModel", {k: _word(v) for k, v in about.items()})
-    ET.SubElement(node, "description").text = _word(description or model.source or "fragility of a rocking body")
+    ET.SubElement(node, "description").text = _word(_description(model, description))
     ET.SubElement(node, "limitStates").text = " ".join(states)
     function = ET.SubElement(
         node, "fragilityFunction", {"id": _word(model.name), "format": "continuous", "shape": "logncdf"}
@@ -162,6 +165,11 @@ def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float
         raise InvalidValueError(f"dispersion must be at most 25 for a finite standard deviation, got {dispersion:g}")
     mean = median * math.exp(0.5 * dispersion**2)
     return mean, mean * math.sqrt(math.expm1(dispersion**2))
+
+
+def _description(model: FragilityModel, given: str) -> str:
+    claims = [f"{c.state}: {'; '.join(filter(None, (c.method, c.verdict)))}" for c in model.curves if c.method]
+    return " | ".join([given or model.source or "fragility of a rocking body", *claims])
 
 
 def _identifier(name: str) -> str:

@@ -5,7 +5,7 @@ than rocking: where, and by how much, is reported. With one dispersion for both 
 """
 
 from dataclasses import dataclass
-from typing import Any, Literal, Self
+from typing import Any, Literal
 
 import numpy as np
 
@@ -13,15 +13,11 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.counts import StateCounts, count_states
-from rocking.studies.fragility.estimate import Scale
-from rocking.studies.fragility.likelihood import Derivatives, tails
 from rocking.studies.fragility.lognormal import LognormalFit, fit_lognormal
-from rocking.studies.fragility.maximum import maximise
+from rocking.studies.fragility.ordered_probit import Curve, nested_curves
 
 OrderedMethod = Literal["separate", "common-dispersion"]
 ORDERED_METHODS: tuple[OrderedMethod, ...] = ("separate", "common-dispersion")
-Curve = tuple[float, float]
-"""Median [unit of the levels] and dispersion [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +60,7 @@ class OrderedFit:
         if self.rocked is None or self.overturned is None:
             return None
         ends = np.log(self.counts.levels[[0, -1]])
-        places = np.concatenate([ends, np.clip(_extremes(self.rocked, self.overturned), *ends)])
+        places = np.concatenate([ends, np.clip(difference_extremes(self.rocked, self.overturned), *ends)])
         apart = _probability(np.exp(places), self.overturned) - _probability(np.exp(places), self.rocked)
         return max(0.0, float(apart.max()))
 
@@ -156,75 +152,12 @@ def fit_ordered(
     least, worst = (fit_lognormal(counts.levels, z, counts.trials) for z in (counts.rocked, counts.overturned))
     if method == "separate":
         return OrderedFit(counts, (least, worst), method, _curve(least), _curve(worst))
-    return OrderedFit(counts, (least, worst), method, *_common(counts, least, worst))
-
-
-@dataclass(frozen=True, eq=False)
-class _OrderedProbit:
-    """Log likelihood of three states with thresholds a1 > a2 and one slope b, concave in all three (Pratt 1981)."""
-
-    position: FloatArray
-    counts: tuple[FloatArray, FloatArray, FloatArray]
-
-    def rows(self, index: Any) -> Self:
-        return self
-
-    def derivatives(self, theta: FloatArray) -> Derivatives:
-        none, middle, worst = self.counts
-        high, low = theta[0, 0] + theta[0, 2] * self.position, theta[0, 1] + theta[0, 2] * self.position
-        if theta[0, 0] <= theta[0, 1]:
-            return Derivatives(np.array([-np.inf]), np.zeros((1, 3)), np.zeros((1, 3, 3)))
-        top, bottom, width = tails(high), tails(low), _log_difference(high, low)
-        p, q = (np.exp(-0.5 * eta**2 - 0.5 * np.log(2.0 * np.pi) - width) for eta in (high, low))
-        value = np.sum(none * top.log_survival + middle * width + worst * bottom.log_failure)
-        first = middle * p - none * top.survival_rate, worst * bottom.failure_rate - middle * q
-        bend_high = none * top.survival_bend + middle * p * (high + p)
-        bend_low = worst * bottom.failure_bend + middle * q * (q - low)
-        across = -middle * p * q
-        # how high and low move with a1, a2 and b
-        one, zero = np.ones_like(self.position), np.zeros_like(self.position)
-        up, down = np.stack([one, zero, self.position]), np.stack([zero, one, self.position])
-        gradient = up @ first[0] + down @ first[1]
-        mixed = (up * across) @ down.T
-        curvature = (up * bend_high) @ up.T + (down * bend_low) @ down.T + mixed + mixed.T
-        return Derivatives(np.array([value]), gradient[None], curvature[None])
-
-
-def _common(counts: StateCounts, least: LognormalFit, worst: LognormalFit) -> tuple[Curve, Curve]:
-    both = (least.method, worst.method)
-    if both != ("maximum-likelihood",) * 2 or np.array_equal(counts.rocked, counts.overturned):
-        raise InvalidValueError(
-            "method must not be 'common-dispersion' unless both states overlap with what is below them and some"
-            f" trials rock without overturning; rocking: {least.verdict} overturning: {worst.verdict}"
-        )
-    scale = Scale.of(least.counts)
-    states = counts.trials - counts.rocked, counts.rocked - counts.overturned, counts.overturned
-    starts = [(-np.log(m) + scale.center) / s for m, s in (_known(least), _known(worst))]
-    slope = scale.spread * 2.0 / (_known(least)[1] + _known(worst)[1])
-    start = np.array([[max(starts), min(*starts, max(starts) - 0.1), slope]])
-    best = maximise(_OrderedProbit(scale.position(counts.levels), states), start)
-    a1, a2, b = best.theta[0]
-    if not best.proven[0] or b <= 0.0:
-        raise InvalidValueError("outcomes must fix one dispersion, got a likelihood whose maximum cannot be proven")
-    low, high = (float(np.exp(scale.log_level(np.array(-a / b)))) for a in (a1, a2))
-    dispersion = float(scale.spread / b)
-    return (low, dispersion), (high, dispersion)
-
-
-def _log_difference(high: FloatArray, low: FloatArray) -> FloatArray:
-    """Return ln(Phi(high) - Phi(low)) without cancellation in the upper tail."""
-    flip = low > 0.0
-    above, below = np.where(flip, -low, high), np.where(flip, -high, low)
-    larger, smaller = tails(above).log_failure, tails(below).log_failure
-    return np.asarray(larger + np.log(-np.expm1(smaller - larger)))
+    curves = nested_curves(counts.levels, np.stack([counts.rocked, counts.overturned]), counts.trials)
+    return OrderedFit(counts, (least, worst), method, curves[0], curves[1])
 
 
 def _curve(fit: LognormalFit) -> Curve | None:
-    return _known(fit) if fit.exists else None
-
-
-def _known(fit: LognormalFit) -> Curve:
-    return fit.intervals.fractile(0.5), fit.intervals.dispersion
+    return (fit.intervals.fractile(0.5), fit.intervals.dispersion) if fit.exists else None
 
 
 def _probability(level: FloatArray, curve: Curve) -> FloatArray:
@@ -234,8 +167,24 @@ def _probability(level: FloatArray, curve: Curve) -> FloatArray:
     return np.asarray(np.where(some, ndtr(np.log(np.where(some, level, 1.0) / curve[0]) / curve[1]), 0.0))
 
 
-def _extremes(first: Curve, second: Curve) -> FloatArray:
-    """Return ln level where the densities of two lognormal curves are equal: their difference is extreme there."""
+def difference_extremes(first: Curve, second: Curve) -> FloatArray:
+    """Return where the difference of two lognormal curves is extreme: there their densities are equal.
+
+    Parameters
+    ----------
+    first, second : tuple of float
+        Median [any unit] and dispersion [-] of each.
+
+    Returns
+    -------
+    ndarray
+        ln level, of none, one or two places [-].
+
+    Examples
+    --------
+    >>> difference_extremes((1.0, 0.5), (1.0, 0.25)).round(4).tolist()
+    [-0.3399, 0.3399]
+    """
     (m, s), (n, t) = (first, second)
     x, y = 1.0 / s**2, 1.0 / t**2
     u, v = np.log(m), np.log(n)

@@ -124,7 +124,9 @@ def regression(x: FloatArray, y: FloatArray) -> Regression:
     """
     count = int(np.size(x))
     if count < 3 or np.shape(x) != np.shape(y):
-        raise InvalidValueError(f"a line needs at least 3 points, got {count}; too few rocked and stayed standing?")
+        raise InvalidValueError(
+            f"a line needs at least 3 points, got {count}; too few rocked, not barely, and stayed standing?"
+        )
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         raise InvalidValueError("points of a line must be finite, got NaN or infinity")
     dx, dy = x - x.mean(), y - y.mean()

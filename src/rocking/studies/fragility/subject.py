@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking import checks, conventions
 from rocking.bodies import Body
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.batch import PIECE
 from rocking.dynamics.engine import Arrays, empty_results
 from rocking.dynamics.histories import settings_of
@@ -20,7 +20,7 @@ from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.measures import IntensityMeasure, RockingScale, measure
 from rocking.studies.histories import Histories, Product, Table
-from rocking.studies.motion_set import MotionList, MotionSet
+from rocking.studies.motion_set import MotionList, MotionSet, digest
 
 Motions = MotionSet | Motion | Sequence[Motion]
 Progress = Callable[[int], None] | None
@@ -101,13 +101,34 @@ class Subject:
         levels = {"pga": self.scale.threshold, "pga/(g tan alpha)": 1.0}
         equal = math.isclose(self.rocker.right.slenderness_angle, self.rocker.left.slenderness_angle, rel_tol=1e-12)
         level = levels.get(self.measure.name)
-        horizontal = all(getattr(self.motions[k], "vertical", None) is None for k in range(len(self.motions)))
-        return level if level is not None and equal and horizontal else None
+        return level if level is not None and equal and self._seen[1] else None
 
     @property
     def names(self) -> list[str]:
         """Names of the motions."""
-        return [self.motions[k].name for k in range(len(self.motions))]
+        return self._seen[0]
+
+    @cached_property
+    def _seen(self) -> tuple[list[str], bool]:
+        """Names, and whether all motions are horizontal; each motion is made once for both."""
+        seen = [(one.name, getattr(one, "vertical", None) is None) for one in map(self.motions.__getitem__, self._all)]
+        return [name for name, _ in seen], all(horizontal for _, horizontal in seen)
+
+    @property
+    def _all(self) -> range:
+        return range(len(self.motions))
+
+    @cached_property
+    def clusters(self) -> IntArray:
+        """Number of the first motion that is the same as each motion, sample by sample.
+
+        Only motions of equal intensity are compared: to make all those of a large set once more would take long.
+        """
+        _, group, size = np.unique(self.intensities, return_inverse=True, return_counts=True)
+        found, first = np.arange(len(self.motions)), dict[str, int]()
+        for k in np.flatnonzero(size[group] > 1).tolist():
+            found[k] = first.setdefault(digest(self.motions[k]), k)
+        return found
 
     @property
     def label(self) -> dict[str, str]:
@@ -232,9 +253,7 @@ def results_of(histories: Histories, *, threads: int | None = None, progress: Pr
     InvalidValueError
         If progress is no function.
     """
-    given: object = progress
-    if given is not None and not callable(given):
-        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {given!r:.60}")
+    check_progress(progress)
     results = empty_results(histories.count)
     for first in range(0, histories.count, PIECE):
         last = min(first + PIECE, histories.count)
@@ -243,3 +262,20 @@ def results_of(histories: Histories, *, threads: int | None = None, progress: Pr
         if progress is not None:
             progress(last - first)
     return results
+
+
+def check_progress(progress: Any) -> None:
+    """Refuse what cannot be told how far the work is.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        What is called with a number.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no function.
+    """
+    if progress is not None and not callable(progress):
+        raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")

@@ -7,7 +7,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.curves import FragilityModel
+from rocking.studies.fragility.curves import Ends, FragilityModel
+from rocking.studies.fragility.nesting import Crossing, nested
 
 TABLES = ("parameters", "points", "fema-p58")
 """Tables that can be written."""
@@ -78,7 +79,7 @@ def safe_cell(cell: Cell) -> Cell:
     return f"'{clean}" if cell.lstrip(" ").startswith(_FORMULA) else clean
 
 
-def table(model: FragilityModel, which: str = "parameters") -> CellTable:
+def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossing = "refuse") -> CellTable:
     """Return one of the tables of a model.
 
     Parameters
@@ -88,6 +89,8 @@ def table(model: FragilityModel, which: str = "parameters") -> CellTable:
     which : {"parameters", "points", "fema-p58"}
         Median and dispersion of each state; observed and fitted probabilities at each level; or what FEMA P-58 asks
         for, a row a damage state.
+    crossing : {"refuse", "common-dispersion"}
+        What to do with curves that cross, in the table of FEMA P-58.
 
     Returns
     -------
@@ -97,13 +100,13 @@ def table(model: FragilityModel, which: str = "parameters") -> CellTable:
     Raises
     ------
     InvalidValueError
-        If there is no such table.
+        If there is no such table, or curves cross in one that forbids it.
     """
-    made = {"parameters": _parameters, "points": _points, "fema-p58": fema_p58_table}
+    made = {"parameters": _parameters, "points": _points}
     given: object = which
-    if not isinstance(given, str) or which not in made:
+    if not isinstance(given, str) or which not in TABLES:
         raise InvalidValueError(f"table must be one of {', '.join(TABLES)}, got {which!r:.60}")
-    return made[which](model)
+    return made[which](model) if which in made else fema_p58_table(model, crossing=crossing)
 
 
 def _bracket(model: FragilityModel) -> str:
@@ -114,14 +117,24 @@ def _parameters(model: FragilityModel) -> CellTable:
     header = (
         "component", "state", "measure", f"median {_bracket(model)}", "dispersion [-]", "method",
         f"lowest level {_bracket(model)}", f"highest level {_bracket(model)}", "histories", "source",
+        f"median 95 % from {_bracket(model)}", f"median 95 % to {_bracket(model)}", "dispersion 95 % from [-]",
+        "dispersion 95 % to [-]", "intervals by", "verdict",
     )  # fmt: skip
     ends = float(model.levels[0]), float(model.levels[-1])
     count = int(np.sum(model.trials))
     rows = tuple(
-        (model.name, c.state, model.measure, c.median, c.dispersion, c.method, *ends, count, model.source)
+        (
+            model.name, c.state, model.measure, c.median, c.dispersion, c.method, *ends, count, model.source,
+            *_cells(c.median_95), *_cells(c.dispersion_95), c.interval_method, c.verdict,
+        )
         for c in model.curves
-    )
+    )  # fmt: skip
     return CellTable("parameters", header, rows)
+
+
+def _cells(interval: Ends | None) -> tuple[Cell, Cell]:
+    low, high = ("" if end is None else end for end in interval or (None, None))
+    return low, high
 
 
 def _points(model: FragilityModel) -> CellTable:
@@ -138,7 +151,12 @@ def _points(model: FragilityModel) -> CellTable:
 
 
 def fema_p58_table(
-    model: FragilityModel, description: str = "", demand_parameter: str = "", quality: str = "Analytical"
+    model: FragilityModel,
+    description: str = "",
+    demand_parameter: str = "",
+    quality: str = "Analytical",
+    *,
+    crossing: Crossing = "refuse",
 ) -> CellTable:
     """Return the table of a component as FEMA P-58 asks for it, one row a damage state.
 
@@ -151,12 +169,20 @@ def fema_p58_table(
     demand_parameter : str
         The demand in the words of the method; the measure, if not given.
     quality : str
-        What the data are: a derivation by analysis, unless said otherwise.
+        What the data are: a derivation by analysis, unless said otherwise. How each curve was fitted, and what can be
+        claimed of it, stands after it.
+    crossing : {"refuse", "common-dispersion"}
+        What to do with curves that cross: no worse damage state may be likelier than a lesser one.
 
     Returns
     -------
     CellTable
         Damage states DS1, DS2, ... from the least to the worst, sequential.
+
+    Raises
+    ------
+    InvalidValueError
+        If curves cross and `crossing` is "refuse".
 
     Examples
     --------
@@ -171,12 +197,14 @@ def fema_p58_table(
         "Total Dispersion (Beta)", "Demand Parameter", "Demand Unit", "Damage State Relation",
         "Data Quality and Relevance", "Source of Data", "Number of Histories",
     )  # fmt: skip
+    model = nested(model, crossing)
     demand, count = demand_parameter or model.measure, int(np.sum(model.trials))
     unit = "dimensionless" if model.unit == "-" else model.unit
     rows = tuple(
         (
             model.name, description, f"DS{k}", curve.state, curve.median, curve.dispersion, demand, unit,
-            "sequential", quality, model.source, count,
+            "sequential", "; ".join(part for part in (quality, curve.method, curve.verdict) if part), model.source,
+            count,
         )
         for k, curve in enumerate(model.curves, 1)
     )  # fmt: skip

@@ -53,12 +53,21 @@ def verdict_of(counts: Counts, separation: Separation, curve: tuple[float, float
     parts = [_finding(counts, separation, curve, penalised=rise is None)]
     if rise is not None and rise < 3.841:
         parts.append("Chance alone explains the growth with the level (5 % test): intervals may be open.")
-    if counts.cluster_trials is not None and (counts.cluster_trials > 0.0).sum(axis=1).max() > 1:
-        parts.append(
-            "Outcomes of one cluster are not independent: take intervals from the bootstrap, which draws whole"
-            " clusters; likelihood intervals may be too narrow."
-        )
+    if curve is not None and counts.is_clustered:
+        parts.append(_clustered(counts))
     return " ".join(parts)
+
+
+def _clustered(counts: Counts) -> str:
+    if counts.scarcity:
+        return (
+            f"Intervals are those of the likelihood and may be much too narrow: they take the outcomes of one cluster"
+            f" for independent; the bootstrap of whole clusters has too few of them ({counts.scarcity})."
+        )
+    return (
+        "Outcomes of one cluster are not independent: intervals are from the bootstrap, which draws whole clusters;"
+        " likelihood intervals would be too narrow."
+    )
 
 
 def _finding(counts: Counts, separation: Separation, curve: tuple[float, float] | None, *, penalised: bool) -> str:

@@ -8,9 +8,10 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.batch import Rows
+from rocking.dynamics.content import full_name
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, interpolated, uniform
 from rocking.errors import InvalidValueError
-from rocking.studies.histories import Histories, hash_of
+from rocking.studies.histories import Histories, described_law
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _FIRST, _SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
@@ -141,6 +142,16 @@ class SampledRestitution(ImpactLaw):
         """
         return interpolated(self.at, self.factors, uniform(self.seed, key, 0))
 
+    def content(self) -> dict[str, Any]:
+        """Return the seed and the hashes of the tables; of a dataclass of your own, its fields.
+
+        Returns
+        -------
+        dict
+            What beside the class makes this law; what it multiplies is in the coefficients of the histories.
+        """
+        return self._tables() if type(self) is SampledRestitution else super().content()
+
     def draws(self, numbers: Any) -> FloatArray:
         """Return the draws of many histories, to the last bit those of `factor`.
 
@@ -227,15 +238,15 @@ class SampledHistories(Histories):
         return replace(rows, values=rows.values | {name: rows.values[name] * factor for name in ("r_right", "r_left")})
 
     def content(self) -> dict[str, Any]:
-        """Return the content of the base, the hash of the quantiles and the seed.
+        """Return the content of the base, and the distribution with its seed.
 
         Returns
         -------
         dict
             By name.
         """
-        base = {"histories": type(self.base).__name__, "content": self.base.content()}
-        return {"base": base, "quantiles": hash_of(self.draw.factors), "seed": int(self.draw.seed)}
+        base = {"class": full_name(type(self.base)), "content": self.base.content()}
+        return {"base": base, "draw": described_law(self.draw)}
 
 
 def sampled(histories: Histories) -> Histories:

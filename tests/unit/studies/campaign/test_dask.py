@@ -15,6 +15,8 @@ from rocking.studies.campaign import Campaign, CampaignWorkerError, DaskExecutor
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("default")  # those of the cluster are not ours
 
+nameless = lambda: 0  # noqa: E731 (pickle refuses it in another way than a local one)
+
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
@@ -35,6 +37,31 @@ def test_cluster_gives_the_same_files(
     assert shards(campaign) == shards(finished)
 
 
+@pytest.mark.parametrize(
+    ("where", "name", "value", "words"),
+    [
+        ("fingerprint", "_fingerprint", "lambda *_: '0' * 16", "this worker computes other last digits: .* fast, 0000"),
+        ("identity", "software", "lambda: '9.9'", r"this worker has version 9\.9, the campaign was begun with"),
+    ],
+)
+def test_worker_of_other_bits_is_refused(
+    cluster: Any, tmp_path: Path, work: Table, where: str, name: str, value: str, words: str
+) -> None:
+    """A worker with another version, or of other last digits, is told so, and writes nothing."""
+    from distributed import Client
+
+    place = f"import rocking.studies.campaign.{where} as place; "
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    with Client(cluster, set_as_default=False) as client:
+        client.run(exec, f"{place}place.kept = place.{name}; place.{name} = {value}")
+        try:
+            with pytest.raises(CampaignWorkerError, match=words):
+                campaign.run(DaskExecutor(cluster.scheduler_address))
+        finally:
+            client.run(exec, f"{place}place.{name} = place.kept")
+    assert not list((campaign.folder / "shards").iterdir())
+
+
 def test_worker_that_dies_costs_nothing(cluster: Any, tmp_path: Path, make: Any) -> None:
     """kill -9 of one of the workers while chunks are on their way: nothing is lost, and the results are the same."""
     work = make(60_000)
@@ -51,6 +78,14 @@ def test_worker_that_dies_costs_nothing(cluster: Any, tmp_path: Path, make: Any)
     assert len(killed) == 2
     bare, found = work.run(0, work.count, threads=1), campaign.results()
     assert all(found[name].tobytes() == bare[name].tobytes() for name in bare)
+
+
+def test_histories_that_cannot_be_sent_are_refused(cluster: Any, tmp_path: Path, work: Table) -> None:
+    """What cannot be pickled has the sentence that processes have."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    object.__setattr__(work, "listener", nameless)
+    with pytest.raises(CampaignWorkerError, match="cannot be sent to a process"):
+        campaign.run(DaskExecutor(cluster.scheduler_address))
 
 
 def test_no_scheduler_has_a_sentence(tmp_path: Path, work: Table) -> None:

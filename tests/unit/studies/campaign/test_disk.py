@@ -8,7 +8,14 @@ from typing import Any
 
 import pytest
 
-from rocking.studies.campaign import Campaign, CampaignBusyError, CampaignDamagedError, CampaignStorageError, disk
+from rocking.studies.campaign import (
+    Campaign,
+    CampaignBusyError,
+    CampaignDamagedError,
+    CampaignStorageError,
+    Progress,
+    disk,
+)
 from rocking.studies.campaign.ledger import Ledger
 
 SAFE = ["write", "sync file", "rename", "sync folder", "record"]
@@ -52,6 +59,23 @@ def test_missing_flush_is_seen(tmp_path: Path, work: Any, monkeypatch: pytest.Mo
     seen = traced(monkeypatch)
     campaign.run(workers=1)
     assert "".join(SAFE) not in "".join(seen)
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="/proc tells which folder it is")
+def test_new_folders_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each folder that was made on the way is flushed into the one it is in, from above; one that was there, too."""
+    seen: list[Path] = []
+    real = os.fsync
+
+    def watched(handle: int) -> None:
+        seen.append(Path(f"/proc/self/fd/{handle}").readlink())
+        real(handle)
+
+    monkeypatch.setattr(os, "fsync", watched)
+    disk.make_folder(tmp_path / "a" / "b" / "c")
+    assert seen == [tmp_path, tmp_path / "a", tmp_path / "a" / "b"]
+    disk.make_folder(tmp_path / "a" / "b" / "c")
+    assert seen[3:] == [tmp_path / "a" / "b"]
 
 
 def test_synchronous_is_full(tmp_path: Path) -> None:
@@ -106,6 +130,29 @@ def test_database_errors_have_sentences(tmp_path: Path, code: int, kind: type, w
     error.sqlite_errorcode = code
     with pytest.raises(kind, match=words), disk.guarded(tmp_path, lambda: "all is safe"):
         raise error
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"), [(FileNotFoundError, (2, "no chart")), (OSError, ("odd",)), (sqlite3.OperationalError, ("x",))]
+)
+@pytest.mark.parametrize("executor", [{"workers": 1}, {"executor": "processes", "start_method": "fork", "workers": 1}])
+def test_errors_of_the_progress_are_not_the_disks(
+    tmp_path: Path, work: Any, kind: type[Exception], words: tuple[Any, ...], executor: dict[str, Any]
+) -> None:
+    """What the function raises that is told of the progress comes out as it is; what was recorded is safe."""
+    error = kind(*words)
+
+    def tell(progress: Progress) -> None:
+        if progress.chunks_done == 2:
+            raise error
+
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    with pytest.raises(kind) as found:
+        campaign.run(**executor, progress=tell)
+    assert found.value is error
+    assert campaign.status().chunks_done == 2
+    summary = campaign.run(workers=1)
+    assert summary.resumed - summary.adopted == 2
 
 
 def test_errors_of_the_listener_stay_what_they_are(tmp_path: Path) -> None:

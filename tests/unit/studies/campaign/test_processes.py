@@ -3,19 +3,24 @@
 import multiprocessing
 import os
 import signal
+import subprocess
+import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from rocking.dynamics import engine
 from rocking.studies import Table
-from rocking.studies.campaign import Campaign, CampaignWorkerError, Progress
+from rocking.studies.campaign import Campaign, CampaignWorkerError, Progress, fingerprint, identity
 from rocking.studies.campaign.chunks import Chunk
 from rocking.studies.campaign.executors import Job
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="workers are forked, so that they can be made to fail")
+nameless = lambda: 0  # noqa: E731 (pickle refuses it in another way than a local one)
 FORK: dict[str, Any] = {"executor": "processes", "start_method": "fork"}
 
 
@@ -76,17 +81,86 @@ def test_error_in_a_worker_is_told(tmp_path: Path, work: Table, monkeypatch: pyt
 def test_worker_without_the_engine_is_refused(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
     """Results of two engines are never mixed."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
-    monkeypatch.setattr("rocking.dynamics.engine.chosen", lambda *_: "reference")
-    with pytest.raises(CampaignWorkerError, match="this worker has the reference engine"):
+    breaking(monkeypatch, lambda _: setattr(engine, "chosen", lambda *_: "reference"))
+    with pytest.raises(CampaignWorkerError, match="this worker has the reference engine, the campaign takes the fast"):
         campaign.run(**FORK, workers=1)
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "value", "words"),
+    [
+        (fingerprint, "_fingerprint", lambda *_: "0" * 16, "this worker computes other last digits: .* fast, 0000"),
+        (identity, "software", lambda: "9.9", r"this worker has version 9\.9, the campaign was begun with"),
+    ],
+)
+def test_worker_of_other_bits_is_refused(
+    tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, value: Any, words: str
+) -> None:
+    """Another version, or an engine of other last digits, writes nothing into chunks that are named for this one."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    breaking(monkeypatch, lambda _: setattr(module, name, value))
+    with pytest.raises(CampaignWorkerError, match=words):
+        campaign.run(**FORK, workers=1)
+    assert not list((campaign.folder / "shards").iterdir())
 
 
 def test_histories_that_cannot_be_sent_are_refused(tmp_path: Path, work: Table) -> None:
     """What cannot be pickled has a sentence."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
-    object.__setattr__(work, "listener", threading.Lock())
-    with pytest.raises(CampaignWorkerError, match="cannot be sent to a process"):
-        campaign.run("processes", workers=1)
+    for unsendable in (threading.Lock(), nameless, lambda: 0):
+        object.__setattr__(work, "listener", unsendable)
+        with pytest.raises(CampaignWorkerError, match="cannot be sent to a process"):
+            campaign.run("processes", workers=1)
+
+
+@pytest.mark.parametrize("start_method", ["fork", "forkserver"])
+def test_idle_workers_stay(tmp_path: Path, work: Table, start_method: str) -> None:
+    """Workers that wait for more than their patience are still there: under a fork server, too."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    summary = campaign.run(
+        "processes", workers=1, start_method=start_method, progress=lambda p: time.sleep(1.3 * (p.chunks_done == 1))
+    )
+    assert (summary.computed, summary.retries) == (6, ())
+
+
+ORPHANS = """
+import multiprocessing, os, signal, sys, time
+sys.path.insert(0, sys.argv[2])
+from conftest import made
+from rocking.studies.campaign import Campaign
+
+def die(progress):
+    if progress.chunks_done == 3:
+        print(*[child.pid for child in multiprocessing.active_children()], flush=True)
+        os.kill(os.getpid(), signal.SIGKILL)
+
+if __name__ == "__main__":
+    Campaign.create(sys.argv[1], made(100_000), 50).run("processes", workers=3, start_method=sys.argv[3], progress=die)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="/proc tells the dead from the living")
+@pytest.mark.parametrize("start_method", ["fork", "forkserver"])
+def test_orphans_end(tmp_path: Path, start_method: str) -> None:
+    """When the campaign's process is killed alone, its workers end by themselves, however they were started."""
+    (tmp_path / "run.py").write_text(ORPHANS, encoding="utf-8")
+    arguments = [str(tmp_path / "c"), str(Path(__file__).parent), start_method]
+    command = [sys.executable, str(tmp_path / "run.py"), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == -signal.SIGKILL
+    left, deadline = list(map(int, done.stdout.split())), time.monotonic() + 10.0
+    assert left
+    while (left := [pid for pid in left if alive(pid)]) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert left == []
+
+
+def alive(process: int) -> bool:
+    """Whether a process runs: not gone, and no zombie."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def test_no_worker_stays(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -115,7 +189,7 @@ def test_work_is_taken_as_it_is_needed(tmp_path: Path, work: Table) -> None:
             taken += 1
             yield campaign.plan.chunk(k)
 
-    job = Job(work, campaign.plan.engine, campaign.folder / "shards")
+    job = Job(work, campaign.plan.engine, campaign.plan.software, campaign.folder / "shards")
     for _ in Processes(2, "fork").run(job, chunks(), lambda: False, lambda *_: None):
         finished += 1
         most = max(most, taken - finished)

@@ -126,6 +126,19 @@ def test_other_versions_are_refused(finished: Campaign, work: Table, monkeypatch
         Campaign.open(finished.folder, work)
 
 
+def test_histories_that_changed_are_refused_by_a_run(tmp_path: Path, work: Table) -> None:
+    """Between creating and running, somebody writes into an array or a law: no chunk is computed of it."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    work.values["scale"] = 2.0 * work.values["scale"]
+    with pytest.raises(CampaignMismatchError, match=r"content\.scale was .*, is "):
+        campaign.run(workers=1)
+    work.values["scale"] = 0.5 * work.values["scale"]
+    object.__setattr__(work, "law", dataclasses.replace(work.law, seed=4))  # type: ignore[type-var]
+    with pytest.raises(CampaignMismatchError, match=r"law\.content\.seed was 3, is 4"):
+        campaign.run(workers=1)
+    assert campaign.status().chunks_done == 0
+
+
 def test_folders_are_refused(finished: Campaign, tmp_path: Path, work: Table) -> None:
     """No campaign, one that is there already, other things in the folder, a file in the way."""
     with pytest.raises(CampaignMismatchError, match="no campaign here"):

@@ -1,5 +1,6 @@
 """Cloud analysis: the line, the three parts of the probability, plans, what is refused."""
 
+import dataclasses
 import json
 import math
 
@@ -48,7 +49,7 @@ def test_outcomes_are_those_of_the_motions_as_they_are(found):
 
 def test_the_line_against_scipy(found):
     """Slope, intercept, p-value, errors and R squared are those of scipy's independent regression."""
-    rocked = found.responses.rocked
+    rocked = found.responses.rocked & (found.responses.rotation >= 0.01)
     peaks = np.array([np.abs(m.acceleration).max() for m in MOTIONS])
     line = stats.linregress(np.log(peaks[rocked]), np.log(found.responses.rotation[rocked]))
     mine = found.regression
@@ -62,6 +63,8 @@ def test_the_line_against_scipy(found):
 
 def test_three_parts_of_the_probability(found):
     """No rocking, below, beyond and overturned add up to one, and each is what its definition says."""
+    found = dataclasses.replace(found, least=1e-9)  # no history of these is lifted by less
+    assert found.barely_lifted == 0
     levels, threshold = np.array([2.0, 2.6, 4.0, 8.0]), rk.conventions.g * 0.25
     parts = found.parts(levels, 0.3)
     np.testing.assert_allclose(sum(parts.values()), 1.0, rtol=1e-14)
@@ -71,6 +74,57 @@ def test_three_parts_of_the_probability(found):
     beyond = stats.norm.sf((math.log(0.3) - line.intercept - line.slope * np.log(levels)) / line.scatter)
     expected = over + (1.0 - over) * beyond * (levels > threshold)
     np.testing.assert_allclose(found.probability(levels, 0.3), expected, rtol=1e-12)
+
+
+def barely(count):
+    """A cloud whose first histories above the threshold are lifted by 1e-7 alpha only, and where they are."""
+    histories, finish = cloud_plan(BLOCK, MOTIONS, restitution=0.9)
+    arrays = histories.run(0, 80)
+    chosen = np.flatnonzero(arrays["outcome"] == Outcome.ROCKED.code)[::2][:count]
+    arrays["peak_rotation"][chosen] = 1e-7 * math.atan(0.25)
+    return finish(arrays), chosen
+
+
+def test_barely_lifted_histories_are_no_points_of_the_line():
+    """Rotations of 1e-7 alpha leave the line where it is without them; kept in, they would tilt it (the control)."""
+    hurt, chosen = barely(8)
+    kept = hurt.responses.rocked & (hurt.responses.rotation >= 0.01)
+    line = stats.linregress(np.log(hurt.motion_levels[kept]), np.log(hurt.responses.rotation[kept]))
+    assert hurt.regression.slope == pytest.approx(line.slope, rel=1e-11)
+    told = hurt.summary()
+    assert (told["least"], told["barely lifted"]) == (0.01, hurt.responses.rocked.sum() - kept.sum())
+    assert told["barely lifted"] >= chosen.size
+    everything = dataclasses.replace(hurt, least=0.0)
+    assert everything.barely_lifted == 0
+    assert everything.regression.scatter > 3.0 * hurt.regression.scatter
+
+
+def test_barely_lifted_histories_reach_no_state():
+    """The total probability counts them as standing: its mean is the observed share, and without them too high."""
+    hurt, _ = barely(16)
+    observed = np.mean(hurt.responses.rotation > 0.05)
+    mean = hurt.probability(hurt.motion_levels, 0.05).mean()
+    # the fits know the shares, and miss by the shape of their curves alone
+    assert abs(mean - observed) < 0.02
+    ignored = cloud(BLOCK, MOTIONS, restitution=0.9).probability(hurt.motion_levels, 0.05).mean()
+    assert ignored - observed > 0.07
+    np.testing.assert_allclose(sum(hurt.parts(hurt.motion_levels, 0.05).values()), 1.0, rtol=1e-14)
+    with pytest.raises(InvalidValueError, match="barely lifted"):
+        hurt.probability(4.0, 0.005)
+    for bad in (-0.1, 1.0, math.nan):
+        with pytest.raises(InvalidValueError, match="least"):
+            cloud(BLOCK, MOTIONS[:2], least=bad)
+
+
+def test_the_same_motion_twice_is_one_observation():
+    """Six copies of each motion: intervals come from whole motions, not from six times as many outcomes."""
+    once, often = (cloud(BLOCK, MOTIONS * n, restitution=0.9).fits["overturned"] for n in (1, 6))
+    assert (once.counts.clusters, once.interval_method) == (0, "profile")
+    assert (often.counts.clusters, often.interval_method) == (80, "bootstrap")
+    ends = often.interval("median"), often.interval("median", method="profile")
+    widths = [math.log(high / low) for low, high in ends]
+    # six copies of everything narrow the interval of independent outcomes by the root of 6 = 2.4
+    assert widths[0] > 1.8 * widths[1]
 
 
 def test_probability_follows_what_was_observed(found):

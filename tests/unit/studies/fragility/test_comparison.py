@@ -8,8 +8,9 @@ import pytest
 from scipy import stats
 
 import rocking as rk
+from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.cloud import cloud
+from rocking.studies.fragility.cloud import cloud, cloud_plan
 from rocking.studies.fragility.comparison import compare_measures, replace_measure
 
 BLOCK = rk.Block(width=0.5, height=2.0)
@@ -32,7 +33,7 @@ def ranking(analysis):
 
 def test_every_number_against_independent_regressions(analysis, ranking):
     """Efficiency, slope, R squared and p-values, recomputed by scipy from the closed forms of half sines."""
-    rocked = analysis.responses.rocked
+    rocked = analysis.responses.rocked & (analysis.responses.rotation >= 0.01)
     response = np.log(analysis.responses.rotation[rocked])
     # PGV of a half sine that lasts half its period: a T / pi
     closed = {"pga": PEAKS, "pgv": PEAKS * PERIODS / math.pi, "pgv/pga": PERIODS / math.pi}
@@ -60,6 +61,36 @@ def test_velocity_beats_acceleration_for_short_pulses(ranking):
     assert by_name["pga"].sufficiency["ln period"] < 1e-6
     assert by_name["pga"].sufficiency["noise"] > 0.01  # the control: noise has nothing to say
     assert [s.efficiency for s in ranking.scores] == sorted(s.efficiency for s in ranking.scores)
+
+
+def test_barely_lifted_histories_do_not_rank_measures():
+    """A cloud with rotations of 1e-7 alpha ranks as the one without those histories; with them it does not."""
+    histories, finish = cloud_plan(BLOCK, MOTIONS, restitution=0.9)
+    arrays = histories.run(0, 120)
+    chosen = np.flatnonzero(arrays["outcome"] == Outcome.ROCKED.code)[:20]
+    arrays["peak_rotation"][chosen] *= 1e-7 / np.abs(arrays["peak_rotation"][chosen]) * math.atan(0.25)
+    hurt = finish(arrays)
+    kept = hurt.responses.rocked & (hurt.responses.rotation >= 0.01)
+    found = compare_measures(hurt, ["pga", "pgv"])
+    assert found.least == 0.01
+    for score in found.scores:
+        values = {"pga": PEAKS, "pgv": PEAKS * PERIODS / math.pi}[score.measure]
+        line = stats.linregress(np.log(values[kept]), np.log(hurt.responses.rotation[kept]))
+        assert score.slope == pytest.approx(line.slope, rel=1e-5)  # sampled pulses are right to 1e-6
+        assert score.rocked == kept.sum()
+        assert score.barely_lifted == hurt.responses.rocked.sum() - kept.sum() >= 20
+    everything = compare_measures(hurt, ["pga", "pgv"], least=0.0)
+    assert everything.scores[0].efficiency > 3.0 * found.scores[0].efficiency
+    assert found.rows()[0]["barely_lifted"] >= 20
+
+
+def test_progress_counts_every_motion_for_every_measure(analysis):
+    """The numbers told add up to motions times measures; what is no function is refused."""
+    done = []
+    compare_measures(analysis, ["pga", "pgv"], progress=done.append)
+    assert sum(done) == 240
+    with pytest.raises(InvalidValueError, match="progress"):
+        compare_measures(analysis, ["pga"], progress=3)
 
 
 def test_the_table(ranking):
@@ -100,7 +131,7 @@ def test_measures_of_nothing_overturned_say_so(ranking):
 
 def test_a_measure_that_does_not_vary_is_left_out():
     """Pulses of one amplitude: PGA says nothing about them and is named, the others are ranked."""
-    same = cloud(BLOCK, [rk.pulses.half_sine(4.0, t) for t in (0.1, 0.2, 0.3, 0.4)], restitution=0.9)
+    same = cloud(BLOCK, [rk.pulses.half_sine(4.0, t) for t in (0.2, 0.3, 0.4, 0.5, 0.6)], restitution=0.9)
     found = compare_measures(same, ["pga", "pgv"])
     assert [s.measure for s in found.scores] == ["pgv"]
     assert list(found.left_out) == ["pga"]

@@ -268,14 +268,6 @@ def test_moments_and_their_limits():
     assert fit_moments(np.array([2.0, 2.0])).probability([1.9, 2.0]).tolist() == [0.0, 1.0]
 
 
-def test_random_coefficients_have_no_crossing():
-    """Coefficients drawn anew for every history leave no crossing to search: refused, and stripes take them."""
-    law = rk.RandomRestitution(np.array([0.9, 1.0]), seed=3)
-    with pytest.raises(InvalidValueError, match="drawn anew"):
-        incremental(BLOCK, PULSES, LEVELS, restitution=law)
-    assert multiple_stripes(BLOCK, PULSES, LEVELS, restitution=law).failed == 0
-
-
 def test_crossings_with_and_without_bounds():
     """All known: moments; some infinite: bounds at the highest level; too few or all equal: no fit."""
     known = np.array([2.0, 3.0, 4.0])

@@ -10,6 +10,7 @@ from scipy.special import ndtr
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.lognormal import fit_lognormal
 from rocking.studies.fragility.ordered import fit_ordered
+from rocking.studies.fragility.ordered_probit import nested_curves
 
 LEVELS, ROCKED, OVERTURNED = [0.2, 0.4, 0.6, 0.8], [2, 9, 18, 20], [0, 3, 9, 16]
 
@@ -50,6 +51,27 @@ def test_common_dispersion_recovers_the_truth():
     y = np.array([random.multinomial(150_000, q) for q in np.stack([1 - one, one - two, two], axis=1)])
     fit = fit_ordered(levels, y[:, 1] + y[:, 2], y[:, 2], [150_000] * 7, method="common-dispersion")
     np.testing.assert_allclose([*fit.rocked, *fit.overturned], [0.7, 0.5, 1.3, 0.5], rtol=5e-3)
+
+
+def test_three_curves_of_one_dispersion_against_a_direct_search():
+    """The medians of three nested states and their one dispersion agree with a simplex search of the likelihood."""
+    reached, n = np.array([[3, 10, 19, 20], [2, 7, 14, 18], [0, 3, 9, 15]]), 20
+    curves = nested_curves(np.array(LEVELS), reached.astype(float), np.full(4, 20.0))
+    ended = -np.diff(np.vstack([np.full(4, n), reached, np.zeros(4)]), axis=0)
+
+    def minus(q):
+        logs = q[0] + np.cumsum([0.0, *np.exp(q[1:3])])
+        above = [ndtr((np.log(LEVELS) - m) / math.exp(q[3])) for m in logs]
+        shares = -np.diff(np.vstack([np.ones(4), *above, np.zeros(4)]), axis=0)
+        return -np.sum(ended * np.log(np.maximum(shares, 1e-300)))
+
+    options = {"xatol": 1e-11, "fatol": 1e-14, "maxiter": 20_000, "maxfev": 20_000}
+    best = minimize(minus, [-1.0, -1.5, -1.5, -1.0], method="Nelder-Mead", options=options).x
+    medians = np.exp(best[0] + np.cumsum([0.0, *np.exp(best[1:3])]))
+    assert [median for median, _ in curves] == pytest.approx(medians.tolist(), rel=1e-6)
+    assert [dispersion for _, dispersion in curves] == pytest.approx([math.exp(best[3])] * 3, rel=1e-6)
+    with pytest.raises(InvalidValueError, match="some trials end in each"):
+        nested_curves(np.array(LEVELS), reached[[0, 0, 2]].astype(float), np.full(4, 20.0))
 
 
 def test_crossing_is_found_and_measured():

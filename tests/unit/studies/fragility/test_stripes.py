@@ -10,7 +10,9 @@ import rocking as rk
 from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.stripes import multiple_stripes, stripes_plan
+from rocking.studies.fragility.subject import Subject
 from rocking.studies.fragility.uplift import uplift_check
+from rocking.studies.motion_set import MotionSet
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 
@@ -125,6 +127,45 @@ def test_dataset_and_summary(stripes):
     assert data.exceeded.sel(state="overturned").values.tolist() == stripes.counts["overturned"].tolist()
     assert "stripes" in data.attrs["definition"]
     assert "0 of 72" in json.dumps(stripes.summary(), default=str)
+
+
+class Lazy(MotionSet):
+    """Motions that count how often they are made."""
+
+    def __init__(self):
+        self.made = 0
+
+    def __len__(self):
+        return 12
+
+    def __getitem__(self, index):
+        self.made += 1
+        return MOTIONS[index]
+
+    def description(self):
+        return {"kind": "lazy"}
+
+
+def test_names_and_threshold_make_each_motion_once():
+    """However often names and threshold of uplift are asked for, a lazy set makes each motion once for both."""
+    lazy = Lazy()
+    subject = Subject.of(BLOCK, lazy, 0.9, "pga", {})
+    for _ in range(3):
+        assert subject.names == [f"noise {k}" for k in range(12)]
+        assert subject.uplift_threshold == pytest.approx(rk.conventions.g * 0.25)
+    assert lazy.made == 12
+
+
+def test_the_same_motion_under_six_names_is_one_cluster():
+    """Copies of one record are one observation: no bootstrap of a certainty, and the verdict says why."""
+    copies = [rk.GroundMotion(MOTIONS[0].acceleration, 0.02, name=f"copy {k}") for k in range(6)]
+    one = multiple_stripes(BLOCK, copies, np.linspace(3.0, 12.0, 9), restitution=0.9).fits["overturned"]
+    assert (one.counts.clusters, one.interval_method) == (1, "profile")
+    assert "1 distinct cluster, where 5 are needed" in one.verdict
+    with pytest.raises(InvalidValueError, match="far too narrow"):
+        one.bootstrap("clusters")
+    mixed = multiple_stripes(BLOCK, [*MOTIONS, MOTIONS[3], MOTIONS[3]], LEVELS, restitution=0.9).fits["overturned"]
+    assert mixed.counts.clusters == 12
 
 
 @pytest.mark.parametrize(

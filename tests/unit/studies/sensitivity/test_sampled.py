@@ -180,3 +180,30 @@ def test_what_is_no_history_is_refused():
         LAW.draws([0.5])
     with pytest.raises(InvalidValueError, match="RandomRestitution"):
         SampledRestitution.of_law(0.9)
+
+
+class Backwards(Product):
+    """A product in another order, with the same content."""
+
+    def rows(self, first, last):
+        rows = super().rows(first, last)
+        return type(rows)(rows.values, rows.motion[::-1].copy(), rows.key)
+
+
+class Halved(SampledRestitution):
+    """Another draw from the same distribution, which does not say what makes it."""
+
+    def draws(self, numbers):
+        return 0.5 * super().draws(numbers)
+
+
+def test_key_sees_the_classes_of_base_and_draw():
+    """Another kind of histories, seed or distribution is another key; a draw of one's own must say what makes it."""
+    base = histories()
+    other = Backwards(base.motions, base.sides, base.scales)
+    laws = [LAW, SampledRestitution.normal(0.9, 0.02, seed=12), SampledRestitution.normal(0.9, 0.03, seed=11)]
+    keys = [SampledHistories.of(each, law).key() for each in (base, other) for law in laws]
+    assert len(set(keys)) == 6
+    assert SampledHistories.of(histories(), replace(LAW)).key() == keys[0]
+    with pytest.raises(InvalidValueError, match=r"must say what makes it, by content\(\)"):
+        SampledHistories.of(base, Halved(LAW.factors, 11)).key()

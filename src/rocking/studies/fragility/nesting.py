@@ -1,0 +1,155 @@
+"""Whether a worse state is anywhere likelier than a lesser one, which curves of unlike dispersion always claim."""
+
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.curves import FragilityCurve, FragilityModel
+from rocking.studies.fragility.ordered import difference_extremes
+from rocking.studies.fragility.ordered_probit import nested_curves
+
+Crossing = Literal["refuse", "common-dispersion"]
+CROSSING: tuple[Crossing, ...] = ("refuse", "common-dispersion")
+
+TOLERANCE = 1e-6
+"""Largest probability by which a worse state may be likelier than a lesser one in a file [-]."""
+
+
+@dataclass(frozen=True)
+class Excess:
+    """Where the curve of a worse state lies highest above that of a lesser one.
+
+    Parameters
+    ----------
+    lesser, worse : str
+        Names of the states.
+    level : float
+        Where [unit of the measure].
+    size : float
+        By how much [-].
+    """
+
+    lesser: str
+    worse: str
+    level: float
+    size: float
+
+
+def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
+    """Return where neighbouring curves are most out of order.
+
+    Parameters
+    ----------
+    model : FragilityModel
+        Curves from the least to the worst state.
+    lowest, highest : float
+        Levels between which they are compared, >= 0 [unit of the measure].
+
+    Returns
+    -------
+    Excess or None
+        None if no curve is above the one before it.
+    """
+    found = None
+    for lesser, worse in zip(model.curves[:-1], model.curves[1:], strict=True):
+        with np.errstate(over="ignore", under="ignore"):
+            extremes = np.exp(difference_extremes(*((c.median, c.dispersion) for c in (lesser, worse))))
+        places = np.array([lowest, highest, *extremes[(extremes > lowest) & (extremes < highest)]])
+        apart = worse.probability(places) - lesser.probability(places)
+        k = int(np.argmax(apart))
+        if apart[k] > (0.0 if found is None else found.size):
+            found = Excess(lesser.state, worse.state, float(places[k]), float(apart[k]))
+    return found
+
+
+def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
+    """Return curves that may be written: no worse state is likelier than a lesser one.
+
+    Parameters
+    ----------
+    model : FragilityModel
+        The curves.
+    crossing : {"refuse", "common-dispersion"}
+        What to do if curves cross: refuse them, or fit all states again with one dispersion.
+    highest : float, optional
+        Largest level that readers of the file take; `FragilityModel.highest`, if not given [unit of the measure].
+
+    Returns
+    -------
+    FragilityModel
+        The model itself if its curves do not cross, or the one with common dispersion if that was asked for.
+
+    Raises
+    ------
+    InvalidValueError
+        If they cross by more than 1e-6 and `crossing` is "refuse", or there is no common dispersion.
+    """
+    check_crossing(crossing)
+    if crossing == "common-dispersion":
+        return with_common_dispersion(model)
+    worst = largest_excess(model, model.uplift_threshold or 0.0, model.highest if highest is None else highest)
+    if worst is None or worst.size <= TOLERANCE:
+        return model
+    raise InvalidValueError(
+        f"curves must not cross, but at {worst.level:.4g} {model.unit} {worst.worse!r} would be likelier than"
+        f" {worst.lesser!r} by {worst.size:.2g}, at most {TOLERANCE:g} is allowed; their dispersions differ:"
+        ' crossing="common-dispersion" fits one for all states'
+    )
+
+
+def check_crossing(crossing: Any) -> None:
+    """Refuse what is no way to treat curves that cross.
+
+    Parameters
+    ----------
+    crossing : {"refuse", "common-dispersion"}
+        The way.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is another.
+    """
+    if crossing not in CROSSING:
+        raise InvalidValueError(f"crossing must be one of {', '.join(CROSSING)}, got {crossing!r:.60}")
+
+
+def with_common_dispersion(model: FragilityModel) -> FragilityModel:
+    """Return the model with all states fitted again with one dispersion, from its counts.
+
+    Parameters
+    ----------
+    model : FragilityModel
+        Curves with the counts of all their states.
+
+    Returns
+    -------
+    FragilityModel
+        The same states with other medians and one dispersion; each curve says so in method and verdict.
+
+    Raises
+    ------
+    InvalidValueError
+        If counts are missing, or there is no common dispersion.
+    """
+    missing = [curve.state for curve in model.curves if curve.state not in model.reached]
+    if missing:
+        raise InvalidValueError(f"counts of all states are needed for one dispersion, got none of {missing[0]!r:.60}")
+    tried = np.asarray(model.trials) > 0
+    reached = np.array([np.asarray(model.reached[c.state], dtype=np.float64)[tried] for c in model.curves])
+    found = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
+    curves = tuple(_common(curve, *pair) for curve, pair in zip(model.curves, found, strict=True))
+    return replace(model, curves=curves)
+
+
+def _common(curve: FragilityCurve, median: float, dispersion: float) -> FragilityCurve:
+    told = (
+        f"One dispersion was fitted to all states, so that no curves cross; alone this state has median"
+        f" {curve.median:.4g}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
+    )
+    none: dict[str, Any] = {"median_95": None, "dispersion_95": None, "interval_method": ""}
+    return replace(
+        curve, median=median, dispersion=dispersion, method="common-dispersion", verdict=told.strip(), **none
+    )

@@ -1,0 +1,102 @@
+"""Outcomes that come in clusters: which intervals are taken, when they are refused, and what is said of them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.estimate import Scale
+from rocking.studies.fragility.likelihood import Probit
+from rocking.studies.fragility.lognormal import fit_lognormal
+from rocking.studies.fragility.robust import with_cluster_errors
+
+LEVELS = np.geomspace(0.3, 2.1, 9)
+
+
+def study(capacities, levels=LEVELS):
+    """Fit of motions that fail at all levels above a capacity of their own; one cluster each."""
+    failures = np.asarray(capacities)[:, None] < levels
+    names = np.repeat(np.arange(len(capacities)), levels.size)
+    return fit_lognormal(np.tile(levels, len(capacities)), failures.ravel(), clusters=names.tolist())
+
+
+SPREAD = study(np.exp(0.5 * np.random.default_rng(3).normal(size=30)))
+
+
+def test_one_cluster_gives_no_bootstrap_and_no_certainty():
+    """One motion at nine levels: the cluster bootstrap is refused, the interval open-ended, the verdict says why."""
+    failed = [0, 0, 1, 0, 1, 0, 1, 1, 1]
+    fit = fit_lognormal(LEVELS, failed, clusters=["one"] * 9)
+    with pytest.raises(InvalidValueError, match="1 distinct cluster, where 5 are needed"):
+        fit.interval("median", method="bootstrap")
+    low, high = fit.interval("median")
+    assert (low, high) == fit_lognormal(LEVELS, failed).interval("median")
+    assert high > 1.5 * low
+    assert fit.interval_method == fit.summary()["interval_method"] == "profile"
+    assert "too narrow" in fit.verdict
+    assert "are from the bootstrap" not in fit.verdict
+
+
+@pytest.mark.parametrize("capacities", [[0.4, 0.6, 0.8, 1.2], [1.0] * 20 + [0.5, 0.7, 1.4]])
+def test_fewer_than_five_distinct_clusters_are_refused(capacities):
+    """Four motions, or twenty-three of four distinct outcomes: both are flagged and keep the likelihood's interval."""
+    fit = study(capacities)
+    assert fit.counts.scarcity
+    assert fit.interval_method == "profile"
+    with pytest.raises(InvalidValueError, match="too narrow"):
+        fit.bootstrap("clusters")
+
+
+def test_few_levels_leave_few_outcomes_that_can_differ():
+    """At two levels only three outcomes can differ while they grow with the level: three are enough there."""
+    random = np.random.default_rng(5)
+    fit = study(np.exp(0.5 * random.normal(size=40)), np.array([0.7, 1.4]))
+    assert fit.counts.distinct_clusters[1].size == 3
+    assert (fit.counts.scarcity, fit.interval_method) == ("", "bootstrap")
+
+
+def test_the_usual_interval_is_that_of_whole_clusters():
+    """Interval, band and summary without a method are those of the cluster bootstrap, and the summary names it."""
+    assert SPREAD.interval_method == "bootstrap"
+    assert SPREAD.interval("median") == SPREAD.interval("median", method="bootstrap")
+    assert SPREAD.interval("median") != SPREAD.interval("median", method="profile")
+    for usual, asked in zip(SPREAD.band([0.5, 1.0]), SPREAD.band([0.5, 1.0], method="bootstrap"), strict=True):
+        assert usual.tolist() == asked.tolist()
+    told = SPREAD.summary()
+    assert told["interval_method"] == "bootstrap"
+    assert told["median_95"] == list(SPREAD.interval("median"))
+    assert "whole clusters" in SPREAD.verdict
+    single = fit_lognormal(LEVELS, [0, 0, 1, 0, 1, 0, 1, 1, 1], clusters=range(9))
+    assert (single.interval_method, "cluster" in single.verdict) == ("profile", False)
+
+
+def test_a_bad_method_or_number_of_repetitions_is_refused():
+    """Nothing but the three methods, or none, and whole numbers of repetitions."""
+    for bad in ({"method": ""}, {"method": "exact"}, {"repetitions": 0}, {"repetitions": [1]}):
+        with pytest.raises(InvalidValueError):
+            SPREAD.interval("median", **bad)
+
+
+def test_errors_of_clusters_by_the_sum_over_single_clusters():
+    """The covariance is that of the textbook, H^-1 M H^-1, with M summed cluster by cluster from the likelihood."""
+    counts, scale = SPREAD.counts, Scale.of(SPREAD.counts)
+    curves, position = SPREAD.curves, scale.position(counts.levels)[None]
+    total = np.zeros((2, 2))
+    for failures, trials in zip(counts.cluster_failures, counts.cluster_trials, strict=True):
+        score = Probit(position, failures[None], (trials - failures)[None]).derivatives(curves.theta).gradient[0]
+        total += np.outer(score, score)
+    inverse = np.linalg.inv(curves.curvature[0])
+    made = with_cluster_errors(counts, scale, curves, counts.distinct_clusters[1][None])
+    np.testing.assert_allclose(np.linalg.inv(made.curvature[0]), inverse @ total @ inverse, rtol=1e-7)
+
+
+def test_a_hundred_thousand_clusters_are_drawn_by_their_outcomes():
+    """Clusters alike are drawn together: of 30 000 motions at nine levels only the ten outcomes are held."""
+    fit = study(np.exp(0.5 * np.random.default_rng(4).normal(size=30_000)))
+    assert fit.counts.distinct_clusters[1].sum() == 30_000
+    assert fit.counts.distinct_clusters[0].shape == (10, 18)
+    low, high = fit.interval("median")
+    assert low < 1.0 < high
+    # the median of 30 000 capacities of dispersion 0.5 is known to 0.5 sqrt(pi / 2) / sqrt(30 000) = 0.0036 at best
+    assert 0.005 < math.log(high / low) < 0.03
