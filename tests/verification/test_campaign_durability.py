@@ -54,10 +54,12 @@ def test_killed_workers_cost_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("variant", "sentence"), [("in-place", "cut short"), ("record-first", "is recorded, and has no shard")]
+    ("variant", "sentences"),
+    # recorded first, a shard is either missing at the kill or not yet whole
+    [("in-place", ("cut short",)), ("record-first", ("is recorded, and has no shard", "cut short"))],
 )
-def test_careless_campaigns_are_caught(tmp_path: Path, variant: str, sentence: str) -> None:
+def test_careless_campaigns_are_caught(tmp_path: Path, variant: str, sentences: tuple[str, ...]) -> None:
     """Negative control: shards written in place, and records that come before shards, fail the same check."""
     report = found(tmp_path, "--variant", variant, "--kills", 200, "--seed", 13)
     print(variant, report)
-    assert any(sentence in wrong for wrong in report["wrong"])
+    assert any(sentence in wrong for wrong in report["wrong"] for sentence in sentences)
