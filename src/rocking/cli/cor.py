@@ -29,7 +29,7 @@ def cor(
     identities: Annotated[
         bool, typer.Option("--identities", help="Also try the identities of mechanics on every model.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+    as_json: shared.AsJson = False,
     csv: Annotated[Path | None, typer.Option(help="Write the table for Excel.", rich_help_panel=_OUTPUT)] = None,
     picture: Annotated[
         Path | None,

@@ -65,14 +65,10 @@ def fragility(
     units: shared.Units = None,
     time_step: shared.TimeStep = None,
     component: shared.Component = None,
-    linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
-    engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
-    gravity: Annotated[
-        float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)
-    ] = None,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=_HOW)
-    ] = None,
+    linear: shared.Linear = False,
+    engine: shared.Engine = "auto",
+    gravity: shared.Gravity = None,
+    threads: shared.Threads = None,
     name: Annotated[
         str | None, typer.Option(help="Name of the body in the files; its kind if not given.", rich_help_panel=_OUTPUT)
     ] = None,
@@ -97,7 +93,7 @@ def fragility(
             rich_help_panel=_OUTPUT,
         ),
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+    as_json: shared.AsJson = False,
 ) -> None:
     """Print how likely a body is to rock or to overturn at a level of shaking, and how well that is known."""
     from rocking.cli import fragility_output, fragility_page_output

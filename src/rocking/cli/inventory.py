@@ -40,9 +40,7 @@ def inventory(
     seed: Annotated[
         int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=_SHAKING)
     ] = None,
-    restitution: Annotated[
-        str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")
-    ] = "ked",
+    restitution: shared.Restitution = "ked",
     encoding: Annotated[
         str, typer.Option(help="Encoding of the CSV file; cp1252 for some spreadsheets.")
     ] = "utf-8-sig",
@@ -54,7 +52,7 @@ def inventory(
         Path | None,
         typer.Option(help="Folder for the report: HTML, PDF, Excel, CSV, JSON.", rich_help_panel=_OUTPUT),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+    as_json: shared.AsJson = False,
 ) -> None:
     """Print which objects of a list stay standing at a level of shaking, the worst first, in plain words."""
     from rocking.cli import inventory_output

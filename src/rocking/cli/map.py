@@ -16,13 +16,9 @@ _AXIS = (
 
 
 def map(
-    body: Annotated[
-        str | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit; left out with --width.")
-    ] = None,
-    record: Annotated[
-        str | None, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")
-    ] = None,
-    motion: Annotated[str | None, typer.Option(help="The same, as an option.")] = None,
+    body: shared.BodyFile = None,
+    record: shared.Record = None,
+    motion: shared.Motion = None,
     x: Annotated[str, typer.Option(help=_AXIS)] = "frequency_ratio=0.5:10:100",
     y: Annotated[str, typer.Option(help="The same for the upright axis.")] = "amplitude_ratio=1:12:100",
     restitution: Annotated[
@@ -45,14 +41,10 @@ def map(
     component: shared.Component = None,
     vertical: shared.Vertical = None,
     vertical_file: shared.VerticalFile = None,
-    linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
-    engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
-    gravity: Annotated[
-        float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)
-    ] = None,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=_HOW)
-    ] = None,
+    linear: shared.Linear = False,
+    engine: shared.Engine = "auto",
+    gravity: shared.Gravity = None,
+    threads: shared.Threads = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw the first map (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
     ] = None,
@@ -60,7 +52,7 @@ def map(
     netcdf: Annotated[
         Path | None, typer.Option(help="Write everything, refined points too, as netCDF.", rich_help_panel=_OUTPUT)
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+    as_json: shared.AsJson = False,
 ) -> None:
     """Print how a body ends over two parameters: shares of each way to overturn, safe islands, and where it begins."""
     from rocking.cli import map_output, map_page_output

@@ -12,16 +12,10 @@ _OUTPUT = "Output"
 
 
 def minimum(
-    body: Annotated[
-        str | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit; left out with --width.")
-    ] = None,
-    record: Annotated[
-        str | None, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")
-    ] = None,
-    motion: Annotated[str | None, typer.Option(help="The same, as an option.")] = None,
-    restitution: Annotated[
-        str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")
-    ] = "ked",
+    body: shared.BodyFile = None,
+    record: shared.Record = None,
+    motion: shared.Motion = None,
+    restitution: shared.Restitution = "ked",
     lowest: Annotated[
         str | None, typer.Option(help="Where to begin: 0.1g, 1m/s2; what lifts the body if not given.")
     ] = None,
@@ -45,19 +39,15 @@ def minimum(
     component: shared.Component = None,
     vertical: shared.Vertical = None,
     vertical_file: shared.VerticalFile = None,
-    linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
-    engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
-    gravity: Annotated[
-        float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)
-    ] = None,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=_HOW)
-    ] = None,
+    linear: shared.Linear = False,
+    engine: shared.Engine = "auto",
+    gravity: shared.Gravity = None,
+    threads: shared.Threads = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw peak rotation over amplitude (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
     ] = None,
     csv: Annotated[Path | None, typer.Option(help="Write a line for every crossing.", rich_help_panel=_OUTPUT)] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+    as_json: shared.AsJson = False,
 ) -> None:
     """Print all peak ground accelerations at which a body begins or ceases to overturn, not the first alone."""
     from rocking.cli import minimum_output

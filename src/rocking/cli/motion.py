@@ -30,7 +30,7 @@ def motion(
         Path | None,
         typer.Option(help="Write time, acceleration, velocity, displacement.", rich_help_panel=_OUTPUT),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+    as_json: shared.AsJson = False,
 ) -> None:
     """Print what a record or a pulse is, its intensity measures and its response spectrum."""
     from rocking.cli import motion_output

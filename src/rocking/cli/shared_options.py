@@ -1,4 +1,4 @@
-"""Options that several commands share: the size of a body, and what a record file leaves open."""
+"""Options that several commands share: body and motion, what a record file leaves open, how it is computed."""
 
 from typing import Annotated
 
@@ -6,6 +6,8 @@ import typer
 
 _BODY = "Size, in place of a body file"
 _FILE = "What a record file leaves open"
+_HOW = "How it is computed"
+_OUTPUT = "Output"
 
 Width = Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)]
 Height = Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)]
@@ -30,3 +32,14 @@ Vertical = Annotated[str | None, typer.Option(help="Vertical component, by name.
 VerticalFile = Annotated[
     str | None, typer.Option(help="File of the vertical component, where it has its own.", rich_help_panel=_FILE)
 ]
+BodyFile = Annotated[
+    str | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit; left out with --width.")
+]
+Record = Annotated[str | None, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")]
+Motion = Annotated[str | None, typer.Option(help="The same, as an option.")]
+Restitution = Annotated[str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")]
+Linear = Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)]
+Engine = Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)]
+Gravity = Annotated[float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)]
+Threads = Annotated[int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=_HOW)]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)]

@@ -12,19 +12,13 @@ _OUTPUT = "Output"
 
 
 def simulate(
-    body: Annotated[
-        str | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit; left out with --width.")
-    ] = None,
-    record: Annotated[
-        str | None, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")
-    ] = None,
-    motion: Annotated[str | None, typer.Option(help="The same, as an option.")] = None,
+    body: shared.BodyFile = None,
+    record: shared.Record = None,
+    motion: shared.Motion = None,
     free: Annotated[
         float | None, typer.Option(help="No motion: let the body go at this share of its slenderness angle.")
     ] = None,
-    restitution: Annotated[
-        str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")
-    ] = "ked",
+    restitution: shared.Restitution = "ked",
     scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
     friction: Annotated[float, typer.Option(help="Coefficient of friction between body and ground.")] = 0.5,
     width: shared.Width = None,
@@ -40,11 +34,9 @@ def simulate(
     component: shared.Component = None,
     vertical: shared.Vertical = None,
     vertical_file: shared.VerticalFile = None,
-    linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
-    engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
-    gravity: Annotated[
-        float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)
-    ] = None,
+    linear: shared.Linear = False,
+    engine: shared.Engine = "auto",
+    gravity: shared.Gravity = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw the response (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
     ] = None,
@@ -56,7 +48,7 @@ def simulate(
     netcdf: Annotated[
         Path | None, typer.Option(help="Write samples and impacts as netCDF.", rich_help_panel=_OUTPUT)
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+    as_json: shared.AsJson = False,
 ) -> None:
     """Print how a body rocks under a ground motion, whether it overturns, and whether the model of impact decides."""
     from rocking.cli import simulate_json, simulate_output, simulate_page

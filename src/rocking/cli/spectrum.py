@@ -22,9 +22,7 @@ def spectrum(
     periods: Annotated[
         str, typer.Option(help="2 pi / p in s: FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C.")
     ] = "1:10:100",
-    restitution: Annotated[
-        str, typer.Option(help="Model as in rocking models, my_file.py:MyModel, or a coefficient.")
-    ] = "ked",
+    restitution: shared.Restitution = "ked",
     scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
     format: shared.Format = None,
     units: shared.Units = None,
@@ -32,20 +30,16 @@ def spectrum(
     component: shared.Component = None,
     vertical: shared.Vertical = None,
     vertical_file: shared.VerticalFile = None,
-    linear: Annotated[bool, typer.Option("--linear", help="Slender-linear equations.", rich_help_panel=_HOW)] = False,
-    engine: Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_panel=_HOW)] = "auto",
-    gravity: Annotated[
-        float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)
-    ] = None,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=_HOW)
-    ] = None,
+    linear: shared.Linear = False,
+    engine: shared.Engine = "auto",
+    gravity: shared.Gravity = None,
+    threads: shared.Threads = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw the spectra (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
     ] = None,
     csv: Annotated[Path | None, typer.Option(help="Write a line for every block.", rich_help_panel=_OUTPUT)] = None,
     netcdf: Annotated[Path | None, typer.Option(help="Write everything as netCDF.", rich_help_panel=_OUTPUT)] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)] = False,
+    as_json: shared.AsJson = False,
 ) -> None:
     """Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."""
     from rocking.cli import spectrum_output

@@ -21,9 +21,9 @@ _FIRST, _SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 class SampledRestitution(ImpactLaw):
     """A coefficient drawn once for every history: all its impacts share the draw, as if r were uncertain, not random.
 
-    The draw depends on the seed and on the number of the history, on nothing else. As a law of impact it is known to
-    the reference engine alone; `sampled` turns histories that carry it into histories for the fast engine. For
-    a new draw at every impact take `RandomRestitution`.
+    The draw depends on the seed and on the number of the history, on nothing else. Many histories at once draw before
+    they run, so that either engine serves; a single response with it runs on the reference engine. For a new draw at
+    every impact take `RandomRestitution`.
 
     Parameters
     ----------
