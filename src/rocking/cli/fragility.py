@@ -8,7 +8,6 @@ import typer
 from rocking.cli import shared_options as shared
 
 _SHAKING = "What shakes it"
-_HOW = "How it is computed"
 _OUTPUT = "Output"
 
 

@@ -7,7 +7,6 @@ import typer
 
 from rocking.cli import shared_options as shared
 
-_HOW = "How it is computed"
 _OUTPUT = "Output"
 _AXIS = (
     "NAME=FIRST:LAST:COUNT, with :log for equal ratios, or NAME=A,B,C; with units where the axis has one: "

@@ -7,7 +7,6 @@ import typer
 
 from rocking.cli import shared_options as shared
 
-_HOW = "How it is computed"
 _OUTPUT = "Output"
 
 

@@ -11,7 +11,7 @@ from rocking.dynamics.engine import RESULTS
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse
 from rocking.restitution import model
-from rocking.studies import Histories, MotionList, MotionSet, Product, Table, histories
+from rocking.studies import Histories, MotionList, MotionSet, Product, SampledRestitution, Table, histories
 from rocking.studies.motion_set import digest
 
 
@@ -113,7 +113,11 @@ def test_product_order():
 
 
 @pytest.mark.parametrize("size", [1, 7, 50])
-@pytest.mark.parametrize("law", [None, RandomRestitution.normal(0.9, 0.05, seed=3)])
+@pytest.mark.parametrize(
+    "law",
+    [None, RandomRestitution.normal(0.9, 0.05, seed=3), SampledRestitution.normal(0.9, 0.05, seed=3)],
+    ids=["constant", "per impact", "per history"],
+)
 def test_pieces_are_the_whole(size, law):
     """Pieces of any size, each history by its number alone, give the bits of the whole, random laws included."""
     made = product(law=law)
