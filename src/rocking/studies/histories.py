@@ -22,7 +22,8 @@ from rocking.studies.motion_set import MotionSet
 __all__ = ["Histories", "Product", "Table", "described_law", "hash_of", "part"]
 
 _ROWS_AT_ONCE = 32768
-_MOTIONS_AT_ONCE = 128
+MOTIONS_AT_ONCE = 128
+"""Motions made from a seed that are held at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,8 +161,8 @@ class Histories(ABC):
         for start in range(first, last, _ROWS_AT_ONCE):
             rows = self.rows(start, min(start + _ROWS_AT_ONCE, last))
             wanted, places = np.unique(rows.motion, return_inverse=True)
-            for low in range(0, len(wanted), _MOTIONS_AT_ONCE):
-                some = wanted[low : low + _MOTIONS_AT_ONCE]
+            for low in range(0, len(wanted), MOTIONS_AT_ONCE):
+                some = wanted[low : low + MOTIONS_AT_ONCE]
                 chosen = np.flatnonzero((places >= low) & (places < low + len(some)))
                 local = Rows(
                     {name: rows.values[name][chosen] for name in ROWS}, places[chosen].astype(np.int64) - low,

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rocking.studies.campaign.chunks import DEFAULT_CHUNK
+from rocking.dynamics import engine
+from rocking.studies.campaign.chunks import default_chunk
+from rocking.studies.histories import MOTIONS_AT_ONCE
 from rocking.studies.job.job import Job
 
 BYTES = 75
@@ -66,7 +68,8 @@ def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> Forecast
         Estimates; a motion that takes longer than others makes them wrong.
     """
     histories = job.study.histories
-    chunk = min(job.document.campaign.chunk or DEFAULT_CHUNK, histories.count)
+    usual = default_chunk(engine.chosen(histories.engine, histories.law))
+    chunk = min(job.document.campaign.chunk or usual, histories.count)
     chunks = -(-histories.count // chunk)
     rate = _trial(job)
     return Forecast(
@@ -102,7 +105,7 @@ def _motions(job: Job) -> int:
     """Return the room that motions take which are held in memory [bytes]."""
     motions = job.parts.motions
     if not motions.in_memory:
-        return 4096 * 8 * 8192
+        return MOTIONS_AT_ONCE * 8 * 8192
     samples = sum(np.size(getattr(motions[k], "acceleration", 0)) for k in range(len(motions)))
     return 3 * 8 * int(samples)
 
