@@ -17,6 +17,7 @@ import pytest
 from rocking.dynamics import engine
 
 DRIVER = Path(__file__).parent / "durability" / "kill_driver.py"
+ROUNDS = DRIVER.with_name("round_driver.py")
 KILLS = int(os.environ.get("ROCKING_KILLS", "30"))
 SHARES = {"serial": KILLS - KILLS // 2 - KILLS // 6, "fork": KILLS // 2, "spawn": KILLS // 6}
 
@@ -26,9 +27,9 @@ pytestmark = [
 ]
 
 
-def found(folder: Path, *arguments: object) -> Any:
+def found(folder: Path, *arguments: object, driver: Path = DRIVER) -> Any:
     """What the driver says."""
-    command = [sys.executable, str(DRIVER), str(folder), *map(str, arguments)]
+    command = [sys.executable, str(driver), str(folder), *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -51,6 +52,17 @@ def test_killed_workers_cost_nothing(tmp_path: Path) -> None:
     assert report["kills"] >= KILLS // 2
     assert report["wrong"] == []
     assert report["retries"] > 0
+
+
+def test_killed_rounds_lose_nothing(tmp_path: Path) -> None:
+    """A refined map, each of whose rounds follows from the last, dies at random instants; its polylines stay."""
+    report = found(tmp_path, "--kills", KILLS // 3, "--seed", 14, driver=ROUNDS)
+    print("rounds", report)
+    assert report["kills"] >= KILLS // 3
+    assert report["wrong"] == []
+    assert report["acknowledged, checked"] > 0
+    careless = found(tmp_path / "careless", "--kills", 200, "--variant", "in-place", driver=ROUNDS)
+    assert careless["wrong"]  # negative control: files cut short are seen
 
 
 @pytest.mark.parametrize(

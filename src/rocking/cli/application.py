@@ -12,6 +12,7 @@ from rocking.cli.minimum import minimum
 from rocking.cli.models import models
 from rocking.cli.motion import motion
 from rocking.cli.paper import paper
+from rocking.cli.serve import serve
 from rocking.cli.simulate import simulate
 from rocking.cli.spectrum import spectrum
 
@@ -33,7 +34,7 @@ def application() -> typer.Typer:
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(_root)
-    for command in (cor, simulate, map, minimum, spectrum, fragility, inventory, paper, models, motion, formats):
+    for command in (cor, simulate, map, minimum, spectrum, fragility, inventory, paper, models, motion, formats, serve):
         app.command()(command)
     app.add_typer(campaign, name="campaign")
     return app

@@ -93,18 +93,33 @@ def status(folder: Folder, as_json: AsJson = False) -> None:
 @campaign.command(epilog=_CODES)
 def export(
     folder: Folder,
-    to: Annotated[Path, typer.Option(help="File: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML.")],
+    to: Annotated[
+        Path,
+        typer.Option(
+            help="File: .nc, .parquet, .csv, .mat or .xlsx; .xml for NRML; of an inventory .html, .pdf, .xlsx, .csv, "
+            ".json, or a folder for all."
+        ),
+    ],
     what: Annotated[
-        str, typer.Option(help="histories, or of fragility campaigns: fragility, fema-p58 (.csv).")
-    ] = "histories",
+        str | None,
+        typer.Option(
+            help="histories; of fragility campaigns fragility, fema-p58 (.csv); of refined maps refined, boundary; of "
+            "minimum accelerations crossings, minima; of inventories report. What suits the kind if not given."
+        ),
+    ] = None,
     restitution: Annotated[
         str | None, typer.Option(help="Which restitution's fragility, where the job has several.")
+    ] = None,
+    crossing: Annotated[
+        str | None,
+        typer.Option(help="Fragility curves that cross: refuse, or common-dispersion; what the job says if not given."),
     ] = None,
     inputs: Inputs = None,
     as_json: AsJson = False,
 ) -> None:
     """Write the results of a finished campaign into a file, with where they come from."""
     from rocking.cli import campaign_output as output
+    from rocking.cli.campaign_export import write
 
     with output.codes():
-        output.write(folder, to, what, restitution, inputs, as_json)
+        write(folder, to, what, restitution=restitution, crossing=crossing, inputs=inputs, as_json=as_json)

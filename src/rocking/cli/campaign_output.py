@@ -1,6 +1,5 @@
 """What `rocking campaign` prints, shows while it computes, and exits with."""
 
-import hashlib
 import json
 import sys
 from collections.abc import Callable, Iterator
@@ -18,9 +17,8 @@ from rocking.studies.campaign import (
     DaskExecutor,
     Executor,
     Progress,
-    Status,
 )
-from rocking.studies.job import Job, JobFolder, export, forecast, status_of
+from rocking.studies.job import Job, JobFolder, JobStatus, forecast, status_of
 
 INTERRUPTED, STORAGE, BUSY = 3, 4, 5
 """Exit codes beside 0 (done) and 2 (bad input)."""
@@ -100,11 +98,11 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
         Whether to print JSON.
     """
     name = folder.job.document.campaign.name
-    with _bar(name, folder.campaign.plan.count, quiet=as_json) as tell:
-        done = folder.campaign.run(who[0], workers=who[1], progress=tell)
-    status = folder.campaign.status()
+    with bar(name, folder.campaign.plan.count, quiet=as_json) as tell:
+        done = folder.run(who[0], workers=who[1], progress=tell)
+    status = status_of(folder.path)
     told = {
-        **_facts(folder.path, name, folder.job.document.campaign.kind, status),
+        **_facts(status),
         "computed_chunks": done.computed,
         "resumed_chunks": done.resumed,
         "adopted_chunks": done.adopted,
@@ -115,10 +113,11 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
     if as_json:
         print(json.dumps(told, indent=1))
         return
-    print(_words(folder.path, name, status))
+    print(_words(status))
     for sentence in (*done.set_aside, *done.retries):
         print(f"note: {sentence}")
-    print(f"next: rocking campaign export {folder.path} --to result.nc")
+    target = "report.html" if folder.job.study.assess is not None else "result.nc"
+    print(f"next: rocking campaign export {folder.path} --to {target}")
 
 
 def show_status(folder: Path, as_json: bool) -> None:
@@ -133,9 +132,9 @@ def show_status(folder: Path, as_json: bool) -> None:
     """
     found = status_of(folder)
     if as_json:
-        print(json.dumps(_facts(folder, found.name, found.kind, found.status), indent=1))
+        print(json.dumps(_facts(found), indent=1))
         return
-    print(_words(folder, found.name, found.status))
+    print(_words(found))
     for sentence in found.status.damaged if found.status else ():
         print(f"note: {sentence}")
 
@@ -168,6 +167,7 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         "dimensions": dict(job.study.dims),
         "inputs": job.inputs,
         **vars(found),
+        **({"first_round_only": True} if job.document.is_adaptive else {}),
     }
     if as_json:
         print(json.dumps(told, indent=1))
@@ -175,6 +175,10 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         over = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
         print(f"{path}: {told['campaign']} ({told['kind']}), {len(job.inputs)} input files, no mistake found")
         print(f"  histories  {found.histories} = {over}, in {found.chunks} chunks of {found.chunk}")
+        if job.document.is_adaptive:
+            print(
+                "             in the first round, as are time, memory and disk; what it finds decides on later rounds"
+            )
         print(f"  time       about {_span(found.seconds)} with {workers} core(s): {found.rate:.0f} histories/s each")
         print(f"  memory     about {found.memory / 1e6:.0f} MB")
         free = "" if found.free is None else f", {found.free / 1e6:.0f} MB are free"
@@ -183,55 +187,14 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         raise CampaignStorageError(f"{out}: {found.disk / 1e6:.0f} MB are needed, {found.free / 1e6:.0f} MB are free")
 
 
-def write(folder: Path, to: Path, what: str, restitution: str | None, inputs: Path | None, as_json: bool) -> None:
-    """Write the results of a campaign into a file, and say so.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    to : Path
-        The file.
-    what : str
-        What of it.
-    restitution : str, optional
-        Which restitution's.
-    inputs : Path, optional
-        Where the files of the job are now.
-    as_json : bool
-        Whether to print JSON.
-    """
-    opened = JobFolder.open(folder, inputs)
-    total = opened.campaign.plan.count
-    with _bar(f"writing {to.name}", total, quiet=as_json) as tell:
-        done = 0
-
-        def step(count: int) -> None:
-            nonlocal done
-            done += count
-            tell(Progress(done, total, 0, 0, 0.0, None, 0.0, 0))
-
-        path = export(opened, to, what, restitution=restitution, progress=step)
-    with path.open("rb") as file:
-        told = {
-            "file": str(path),
-            "what": what,
-            "histories": total,
-            "bytes": path.stat().st_size,
-            "sha256": hashlib.file_digest(file, "sha256").hexdigest(),
-        }
-    print(
-        json.dumps(told, indent=1) if as_json else f"wrote {path} ({told['bytes']} bytes, {what} of {total} histories)"
-    )
-
-
-def _facts(folder: Path, name: str, kind: str, status: Status | None) -> dict[str, Any]:
+def _facts(found: JobStatus) -> dict[str, Any]:
     """Return how far a campaign is, under keys that stay the same."""
-    return {
-        "campaign": name,
-        "kind": kind,
-        "folder": str(folder),
-        "complete": status is not None and status.complete,
+    status = found.status
+    facts = {
+        "campaign": found.name,
+        "kind": found.kind,
+        "folder": str(found.path),
+        "complete": found.complete,
         "histories": None if status is None else status.histories,
         "histories_done": 0 if status is None else status.histories_done,
         "chunks": None if status is None else status.chunks,
@@ -242,21 +205,41 @@ def _facts(folder: Path, name: str, kind: str, status: Status | None) -> dict[st
         "damaged": [] if status is None else list(status.damaged),
         "software": None if status is None else status.software,
     }
+    return facts if found.rounds is None else facts | {"rounds_begun": found.rounds}
 
 
-def _words(folder: Path, name: str, status: Status | None) -> str:
+def _words(found: JobStatus) -> str:
+    status, name, folder = found.status, found.name, found.path
     if status is None:
         return f"{name}: nothing is computed yet; go on with: rocking campaign resume {folder}"
-    if status.complete:
-        return f"{name}: all {status.histories} histories ({status.chunks} chunks) are safe in {folder}"
+    if found.complete:
+        many = "" if found.rounds is None else f"{found.rounds} rounds, "
+        return f"{name}: all {status.histories} histories ({many}{status.chunks} chunks) are safe in {folder}"
     now = f"{status.running} runs it" if status.running else f"go on with: rocking campaign resume {folder}"
     share = f"{status.histories_done} of {status.histories} histories ({status.chunks_done} of {status.chunks} chunks)"
+    if found.rounds is not None:
+        share = f"round {found.rounds} has begun, how many follow is not known; of these rounds {share}"
     return f"{name}: {share} are safe in {folder}; {now}"
 
 
 @contextmanager
-def _bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], None]]:
-    """Show on a terminal how far it is, how fast, and how long it will take."""
+def bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], None]]:
+    """Show on a terminal how far it is, how fast, and how long it will take.
+
+    Parameters
+    ----------
+    what : str
+        What is done.
+    total : int
+        Histories, until a `Progress` says another number.
+    quiet : bool
+        Whether to show nothing.
+
+    Yields
+    ------
+    callable
+        To be told of every `Progress`.
+    """
     from rich.console import Console
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
@@ -266,13 +249,13 @@ def _bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress],
         TextColumn("{task.fields[rate]}"), TimeElapsedColumn(), TextColumn("{task.fields[left]}"),
     )  # fmt: skip
     hidden = quiet or not sys.stderr.isatty()
-    with Bar(*columns, console=Console(stderr=True), transient=True, disable=hidden) as bar:
-        task = bar.add_task(what.replace("[", "\\["), total=total, rate="", left="")
+    with Bar(*columns, console=Console(stderr=True), transient=True, disable=hidden) as shown:
+        task = shown.add_task(what.replace("[", "\\["), total=total, rate="", left="")
 
         def tell(progress: Progress) -> None:
             rate = f"{progress.rate:.0f} histories/s" if progress.rate else ""
             left = "" if progress.seconds_left is None else f"{_span(progress.seconds_left)} left"
-            bar.update(task, completed=progress.done_histories, rate=rate, left=left)
+            shown.update(task, completed=progress.done_histories, total=progress.total, rate=rate, left=left)
 
         yield tell
 

@@ -44,6 +44,7 @@ def cor(
     from rocking.cli.body_options import body_from
     from rocking.cli.model_options import models_from
     from rocking.conventions import g
+    from rocking.report.facts.impact import ImpactAnswer
 
     subject = body_from(
         body,
@@ -55,7 +56,7 @@ def cor(
         semi_diagonal=semi_diagonal,
         unit=unit,
     )
-    answer = cor_output.Answer.of(
+    answer = ImpactAnswer.of(
         subject,
         models_from(model),
         onto=onto,

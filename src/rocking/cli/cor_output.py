@@ -3,95 +3,22 @@
 import csv
 import json
 import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rocking import checks
-from rocking.bodies import Body
 from rocking.conventions import FEET, Foot
-from rocking.errors import InvalidValueError
-from rocking.evidence.coefficient_table import CoefficientRow, coefficient_table, default_models, outside_evidence
-from rocking.restitution import IdentityCheck, RestitutionModel, energy_ledger, identity_report
+from rocking.evidence.coefficient_table import CoefficientRow, outside_evidence
+from rocking.report.facts.impact import ImpactAnswer, impact_facts
+from rocking.restitution import energy_ledger
 
 
-@dataclass(frozen=True, slots=True)
-class Answer:
-    """The tables of one body, one for each foot that was asked for.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    tables : dict
-        Foot to rows.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    identities : dict of str to tuple of IdentityCheck
-        Model to its checks; empty if not asked for.
-    """
-
-    body: Body
-    tables: dict[Foot, tuple[CoefficientRow, ...]]
-    gravity: float
-    identities: dict[str, tuple[IdentityCheck, ...]]
-
-    @classmethod
-    def of(
-        cls,
-        body: Body,
-        models: list[RestitutionModel] | None,
-        *,
-        onto: str,
-        eta: float,
-        gravity: float,
-        identities: bool,
-    ) -> "Answer":
-        """Compute the tables.
-
-        Parameters
-        ----------
-        body : Body
-            The body.
-        models : list of RestitutionModel, optional
-            Models to show; all if none.
-        onto : str
-            ``"left"``, ``"right"`` or ``"both"``; both is one table where the sides are equal.
-        eta : float
-            Interface factor [-].
-        gravity : float
-            Acceleration of gravity [m/s2].
-        identities : bool
-            Whether to try the identities of mechanics.
-
-        Returns
-        -------
-        Answer
-            Everything that is printed.
-
-        Raises
-        ------
-        InvalidValueError
-            If `onto` or `gravity` is not allowed.
-        """
-        if onto not in (*FEET, "both"):
-            raise InvalidValueError(f'onto must be "left", "right" or "both", got {onto!r}')
-        gravity = checks.positive("gravity", gravity, "m/s2")
-        tables = {foot: coefficient_table(body, models, onto=foot, eta=eta) for foot in FEET if onto in (foot, "both")}
-        if len(tables) == 2 and _same(tables["left"], tables["right"]):
-            del tables["left"]
-        foot = next(reversed(tables))
-        tried = (models or default_models()) if identities else []
-        return cls(body, tables, gravity, {each.label: identity_report(body, each, onto=foot) for each in tried})
-
-
-def show(answer: Answer) -> None:
+def show(answer: ImpactAnswer) -> None:
     """Print body, tables and warnings.
 
     Parameters
     ----------
-    answer : Answer
-        What `Answer.of` computed.
+    answer : ImpactAnswer
+        What `ImpactAnswer.of` computed.
     """
     from rich.console import Console
 
@@ -122,49 +49,29 @@ def show(answer: Answer) -> None:
             console.print(f"  {check.sentence}", markup=False)
 
 
-def as_json(answer: Answer) -> str:
+def as_json(answer: ImpactAnswer) -> str:
     """Return everything as JSON.
 
     Parameters
     ----------
-    answer : Answer
-        What `Answer.of` computed.
+    answer : ImpactAnswer
+        What `ImpactAnswer.of` computed.
 
     Returns
     -------
     str
         One object; SI units, named in the keys where a quantity has one.
     """
-    body = answer.body
-    return json.dumps(
-        {
-            "body": {
-                "kind": type(body).__name__,
-                "mass_kg": body.mass,
-                "centre_m": body.centre,
-                "feet_m": body.feet,
-                "moment_of_inertia_kg_m2": body.moment_of_inertia,
-                "gravity_m_s2": answer.gravity,
-                "sides": {foot: _side_facts(answer, foot) for foot in FEET},
-            },
-            "ked_energy_shares": {foot: energy_ledger(body, onto=foot).shares for foot in answer.tables},
-            "coefficients": {foot: [row.as_dict() for row in rows] for foot, rows in answer.tables.items()},
-            "identities": {
-                name: {check.name: check.holds for check in report} for name, report in answer.identities.items()
-            },
-        },
-        indent=2,
-        allow_nan=False,
-    )
+    return json.dumps(impact_facts(answer), indent=2, allow_nan=False)
 
 
-def write_csv(answer: Answer, path: Path) -> None:
+def write_csv(answer: ImpactAnswer, path: Path) -> None:
     """Write the tables as one CSV file.
 
     Parameters
     ----------
-    answer : Answer
-        What `Answer.of` computed.
+    answer : ImpactAnswer
+        What `ImpactAnswer.of` computed.
     path : Path
         File to write.
     """
@@ -179,13 +86,13 @@ def write_csv(answer: Answer, path: Path) -> None:
         writer.writerows(records)
 
 
-def draw(answer: Answer, path: Path) -> None:
+def draw(answer: ImpactAnswer, path: Path) -> None:
     """Draw the body and its coefficients against the published measurements.
 
     Parameters
     ----------
-    answer : Answer
-        What `Answer.of` computed.
+    answer : ImpactAnswer
+        What `ImpactAnswer.of` computed.
     path : Path
         File to write; its suffix says the format.
     """
@@ -195,13 +102,13 @@ def draw(answer: Answer, path: Path) -> None:
     write(coefficient_picture(answer.body, rows, onto=foot), path)
 
 
-def draw_stages(answer: Answer, path: Path) -> None:
+def draw_stages(answer: ImpactAnswer, path: Path) -> None:
     """Draw the three stages of KED over the body.
 
     Parameters
     ----------
-    answer : Answer
-        What `Answer.of` computed.
+    answer : ImpactAnswer
+        What `ImpactAnswer.of` computed.
     path : Path
         File to write; its suffix says the format.
     """
@@ -210,23 +117,7 @@ def draw_stages(answer: Answer, path: Path) -> None:
     write(figure_2(answer.body, onto=next(reversed(answer.tables))), path)
 
 
-def _same(left: tuple[CoefficientRow, ...], right: tuple[CoefficientRow, ...]) -> bool:
-    pairs = zip(left, right, strict=True)
-    return all(math.isclose(a.coefficient, b.coefficient, rel_tol=1e-12, abs_tol=1e-15) for a, b in pairs)
-
-
-def _side_facts(answer: Answer, foot: Foot) -> dict[str, float]:
-    side = answer.body.side(foot, answer.gravity)
-    return {
-        "slenderness_ratio": side.slenderness_ratio,
-        "slenderness_angle_rad": side.slenderness_angle,
-        "semi_diagonal_m": side.semi_diagonal,
-        "frequency_parameter_rad_s": side.frequency_parameter,
-        "uplift_acceleration_m_s2": side.uplift_acceleration,
-    }
-
-
-def _body_lines(answer: Answer) -> list[str]:
+def _body_lines(answer: ImpactAnswer) -> list[str]:
     body = answer.body
     x, y = body.centre
     lines = [f"{type(body).__name__}: mass {body.mass:.4g} kg, centre of mass at x = {x:.4g} m, y = {y:.4g} m"]

@@ -35,6 +35,7 @@ def motion(
     """Print what a record or a pulse is, its intensity measures and its response spectrum."""
     from rocking.cli import motion_output
     from rocking.cli.motion_options import motion_from
+    from rocking.report.facts.motion import MotionAnswer
 
     subject = motion_from(
         record,
@@ -46,7 +47,7 @@ def motion(
         vertical_file=vertical_file,
         scale=scale,
     )
-    answer = motion_output.Answer.of(subject, motion_output.periods_from(periods), damping)
+    answer = MotionAnswer.of(subject, motion_output.periods_from(periods), damping)
     if csv is not None:
         motion_output.write_csv(answer, csv)
     if picture is not None:

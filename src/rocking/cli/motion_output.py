@@ -3,7 +3,6 @@
 import csv
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,68 +11,14 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import Measure, intensity_measures
+from rocking.motions.intensity import Measure
 from rocking.motions.kinematics import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
-from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
-from rocking.plots.traces import fine_samples, traces
+from rocking.plots.traces import traces
+from rocking.report.facts.motion import MotionAnswer, motion_facts, spectrum_facts
 
 _MOST_PERIODS = 1000
-
-
-@dataclass(frozen=True, slots=True)
-class Answer:
-    """One motion and what was measured on it.
-
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
-    samples : GroundMotion
-        Itself, or the pulse cut finely.
-    measures : dict of str to Measure
-        Intensity measures by short name.
-    spectrum : ResponseSpectrum
-        Response at the periods asked for.
-    """
-
-    motion: GroundMotion | Pulse
-    samples: GroundMotion
-    measures: dict[str, Measure]
-    spectrum: ResponseSpectrum
-
-    @classmethod
-    def of(cls, motion: GroundMotion | Pulse, periods: Sequence[float], damping: float) -> "Answer":
-        """Measure a motion.
-
-        Parameters
-        ----------
-        motion : GroundMotion or Pulse
-            The motion.
-        periods : sequence of float
-            Periods of the spectrum [s].
-        damping : float
-            Damping ratio of the spectrum, from 0 to below 1 [-].
-
-        Returns
-        -------
-        Answer
-            Everything that is printed.
-
-        Raises
-        ------
-        InvalidValueError
-            If the motion is zero throughout, or a period or the damping is outside its range.
-        """
-        samples = fine_samples(motion)
-        spectrum = response_spectrum(samples, list(periods), damping)
-        measures = intensity_measures(samples)
-        if isinstance(motion, Pulse):
-            # these three are known from the formulas, not only from samples
-            exact = {f"pg{name[0]}": abs(value) for name, (_, value) in traces(motion).peaks.items()}
-            measures |= {key: replace(measures[key], value=value) for key, value in exact.items()}
-        return cls(motion, samples, measures, spectrum)
 
 
 def periods_from(words: str) -> list[float]:
@@ -109,13 +54,13 @@ def periods_from(words: str) -> list[float]:
     return [checks.positive("periods", number, "s") for number in numbers]
 
 
-def show(answer: Answer) -> None:
+def show(answer: MotionAnswer) -> None:
     """Print what it is, its intensity measures and its spectrum.
 
     Parameters
     ----------
-    answer : Answer
-        What `Answer.of` computed.
+    answer : MotionAnswer
+        What `MotionAnswer.of` computed.
     """
     from rich.console import Console
 
@@ -137,53 +82,31 @@ def show(answer: Answer) -> None:
     console.print(_table(("T [s]", "PSA [m/s2]", "PSA [g]", "PSV [m/s]", "Sd [m]"), lines))
 
 
-def as_json(answer: Answer) -> str:
+def as_json(answer: MotionAnswer) -> str:
     """Return everything as JSON.
 
     Parameters
     ----------
-    answer : Answer
-        What `Answer.of` computed.
+    answer : MotionAnswer
+        What `MotionAnswer.of` computed.
 
     Returns
     -------
     str
         One object; SI units, named in the keys where a quantity has one.
     """
-    motion, spectrum = answer.motion, answer.spectrum
-    record = isinstance(motion, GroundMotion)
-    told = motion.metadata if isinstance(motion, GroundMotion) else {}
-    facts: dict[str, Any] = {
-        "kind": "record" if record else "pulse",
-        "name": motion.name,
-        **{key: told.get(key) for key in ("format", "event", "station", "component")},
-        "vertical_component": told.get("vertical component"),
-        "file_unit": told.get("unit"),
-        "samples": len(answer.samples) if record else None,
-        "time_step_s": answer.samples.time_step if record else None,
-        "duration_s": motion.duration,
-        "provenance": list(motion.provenance) if isinstance(motion, GroundMotion) else [repr(motion)],
-        "peak_vertical_acceleration_m_s2": None if answer.samples.vertical is None else answer.samples.peak_vertical,
-        "intensity": {f"{key}_{one.unit.replace('/', '_')}": one.value for key, one in answer.measures.items()},
-        "spectrum": {
-            "damping_ratio": spectrum.damping,
-            "period_s": spectrum.periods.tolist(),
-            "psa_m_s2": spectrum.pseudo_acceleration.tolist(),
-            "psv_m_s": spectrum.pseudo_velocity.tolist(),
-            "sd_m": spectrum.displacement.tolist(),
-            "absolute_acceleration_m_s2": spectrum.absolute_acceleration.tolist(),
-        },
-    }
+    facts = motion_facts(answer.motion, answer.samples, answer.measures)
+    facts["spectrum"] = spectrum_facts(answer.spectrum)
     return json.dumps(facts, indent=2, allow_nan=False)
 
 
-def write_csv(answer: Answer, path: Path) -> None:
+def write_csv(answer: MotionAnswer, path: Path) -> None:
     """Write time, acceleration, velocity and displacement at the samples, those of a pulse as its formulas give them.
 
     Parameters
     ----------
-    answer : Answer
-        What `Answer.of` computed.
+    answer : MotionAnswer
+        What `MotionAnswer.of` computed.
     path : Path
         File to write; SI units, named in the first line.
     """
@@ -202,13 +125,13 @@ def write_csv(answer: Answer, path: Path) -> None:
         writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
 
 
-def draw(answer: Answer, path: Path) -> None:
+def draw(answer: MotionAnswer, path: Path) -> None:
     """Draw the motion and its spectrum.
 
     Parameters
     ----------
-    answer : Answer
-        What `Answer.of` computed.
+    answer : MotionAnswer
+        What `MotionAnswer.of` computed.
     path : Path
         File to write; its suffix says the format.
     """
@@ -217,7 +140,7 @@ def draw(answer: Answer, path: Path) -> None:
     write(ground_motion_picture(answer.motion), path)
 
 
-def _facts(answer: Answer) -> list[tuple[str, str]]:
+def _facts(answer: MotionAnswer) -> list[tuple[str, str]]:
     motion = answer.motion
     if isinstance(motion, Pulse):
         return [("kind", "pulse, known at every instant"), ("duration", f"{motion.duration:.6g} s")]

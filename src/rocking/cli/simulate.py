@@ -11,6 +11,7 @@ _OUTPUT = "Output"
 
 
 def simulate(
+    context: typer.Context,
     body: shared.BodyFile = None,
     record: shared.Record = None,
     motion: shared.Motion = None,
@@ -50,41 +51,46 @@ def simulate(
     as_json: shared.AsJson = False,
 ) -> None:
     """Print how a body rocks under a ground motion, whether it overturns, and whether the model of impact decides."""
-    from rocking.cli import simulate_json, simulate_output, simulate_page
+    from rocking.cli import simulate_document, simulate_json, simulate_output, simulate_page
     from rocking.cli.body_options import body_from
-    from rocking.cli.simulate_question import Question, body_and_motion, motion_asked
+    from rocking.cli.simulate_question import body_and_motion, motion_asked, question_of
 
-    sized = any(value is not None for value in (width, height, angle, semi_diagonal))
-    file, word = body_and_motion(body, record, motion, sized=sized, free=free is not None)
     files = simulate_output.Files(picture, animation, csv, mat, netcdf)
-    subject = body_from(
-        file,
-        width=width,
-        height=height,
-        depth=depth,
-        density=density,
-        angle=angle,
-        semi_diagonal=semi_diagonal,
-        unit=unit,
-    )
-    told = {
-        "format": format,
-        "units": units,
-        "time_step": time_step,
-        "component": component,
-        "vertical": vertical,
-        "vertical_file": vertical_file,
-    }
-    question = Question.of(
-        subject,
-        motion_asked(word, told, scale),
-        free,
-        scale=scale,
-        gravity=gravity,
-        engine=engine,
-        linear=linear,
-    )
-    answer = simulate_output.Answer.of(question, restitution, friction)
+    document = simulate_document.path_of(context)
+    if document is not None:
+        answer = simulate_document.answer_of(document)
+    else:
+        sized = any(value is not None for value in (width, height, angle, semi_diagonal))
+        file, word = body_and_motion(body, record, motion, sized=sized, free=free is not None)
+        subject = body_from(
+            file,
+            width=width,
+            height=height,
+            depth=depth,
+            density=density,
+            angle=angle,
+            semi_diagonal=semi_diagonal,
+            unit=unit,
+        )
+        told = {
+            "format": format,
+            "units": units,
+            "time_step": time_step,
+            "component": component,
+            "vertical": vertical,
+            "vertical_file": vertical_file,
+        }
+        question = question_of(
+            subject,
+            motion_asked(word, told, scale),
+            free,
+            scale=scale,
+            gravity=gravity,
+            engine=engine,
+            linear=linear,
+            friction=friction,
+        )
+        answer = simulate_output.Answer.of(question, restitution)
     written = files.write(answer)
     if as_json:
         print(simulate_json.as_json(answer))

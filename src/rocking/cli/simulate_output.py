@@ -4,8 +4,8 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from rocking import checks
 from rocking.cli.simulate_question import Question, restitution_from
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
@@ -32,8 +32,8 @@ class Answer:
     others: dict[str, Response | str]
 
     @classmethod
-    def of(cls, question: Question, restitution: str, friction: float) -> "Answer":
-        """Compute the response and its rivals.
+    def of(cls, question: Question, restitution: str) -> "Answer":
+        """Compute the response, and what every model that needs no value makes of the same question.
 
         Parameters
         ----------
@@ -41,8 +41,6 @@ class Answer:
             Body, motion, and how to compute.
         restitution : str
             Model or coefficient.
-        friction : float
-            Coefficient of friction between body and ground, above zero [-].
 
         Returns
         -------
@@ -54,19 +52,46 @@ class Answer:
         RockingError
             If the response could not be computed.
         """
-        friction = checks.positive("--friction", friction)
-        response = question.answered_with(restitution_from(restitution))
-        if response.outcome is Outcome.FAILED:
-            raise RockingError(f"there is no response: {response.status.value}")
-        others: dict[str, Response | str] = {}
-        for model in default_models():
-            if model.label == response.rocker.label:
-                continue
-            try:
-                others[model.label] = question.answered_with(model)
-            except InvalidValueError as error:
-                others[model.label] = str(error)
-        return cls(response, friction, others)
+        response = _computed(question, restitution_from(restitution))
+        rivals = {model.label: model for model in default_models() if model.label != response.rocker.label}
+        return cls(response, question.friction, {name: _tried(question, model) for name, model in rivals.items()})
+
+    @classmethod
+    def of_choices(cls, question: Question) -> "Answer":
+        """Compute the response with the first restitution of a question, and with all others that it lists.
+
+        Parameters
+        ----------
+        question : Question
+            Body, motion, restitutions, and how to compute.
+
+        Returns
+        -------
+        Answer
+            Everything that is printed.
+
+        Raises
+        ------
+        RockingError
+            If the first response could not be computed.
+        """
+        (_, first), *rest = question.choices.items()
+        response = _computed(question, first)
+        return cls(response, question.friction, {name: _tried(question, choice) for name, choice in rest})
+
+
+def _computed(question: Question, restitution: Any) -> Response:
+    response = question.answered_with(restitution)
+    if response.outcome is Outcome.FAILED:
+        raise RockingError(f"there is no response: {response.status.value}")
+    return response
+
+
+def _tried(question: Question, restitution: Any) -> Response | str:
+    try:
+        return question.answered_with(restitution)
+    except InvalidValueError as error:
+        return str(error)
 
 
 @dataclass(frozen=True, slots=True)

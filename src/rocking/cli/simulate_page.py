@@ -7,11 +7,10 @@ from rocking.cli.simulate_output import Answer
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.motions.pulse import Pulse
+from rocking.report.facts.verdict import Verdict
 
 _FIRST = 10
 """Impacts that are printed."""
-
-_WORDS = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 
 
 def show(answer: Answer) -> None:
@@ -129,13 +128,7 @@ def _rivals(answer: Answer) -> Any:
 def _verdict(answer: Answer) -> str:
     found = {answer.response.rocker.label: answer.response}
     found |= {name: one for name, one in answer.others.items() if isinstance(one, Response)}
-    groups: dict[str, list[str]] = {}
-    for name, one in found.items():
-        groups.setdefault(_WORDS[one.outcome], []).append(name)
-    if len(groups) == 1:
-        (word,) = groups
-        return f"With every one of these models the body {word}."
-    return "The model decides: the body " + ", ".join(f"{word} with {', '.join(n)}" for word, n in groups.items()) + "."
+    return Verdict.of(found).sentence
 
 
 def _short(response: Response) -> str:

@@ -1,6 +1,5 @@
 """What `rocking simulate` was asked: a body, a motion or a first rotation, and how to compute."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -9,99 +8,62 @@ from rocking.bodies import Body
 from rocking.cli.model_options import models_from
 from rocking.cli.motion_options import motion_from
 from rocking.conventions import g
-from rocking.dynamics.histories import free_rocking, simulate
-from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.response import Motion
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
+from rocking.studies.job.response_question import ResponseQuestion
+
+Question = ResponseQuestion
+"""Everything that a response depends on."""
 
 
-@dataclass(frozen=True, slots=True)
-class Question:
-    """Everything but the coefficient of restitution.
+def question_of(
+    body: Body,
+    motion: Motion | None,
+    free: float | None,
+    *,
+    scale: float,
+    gravity: float | None,
+    engine: str,
+    linear: bool,
+    friction: float,
+) -> Question:
+    """Put the question together.
 
     Parameters
     ----------
     body : Body
         The body.
     motion : GroundMotion or Pulse, optional
-        The motion; None for free rocking.
-    rotation : float
-        Rotation at the start [rad].
+        The motion.
+    free : float, optional
+        First rotation over the slenderness angle of the side it leans to, for free rocking [-].
     scale : float
         Factor on the motion [-].
-    how : dict
-        gravity, engine, linear, as `simulate` takes them.
+    gravity : float, optional
+        Acceleration of gravity; the standard one if not given [m/s2].
+    engine : str
+        Which engine.
+    linear : bool
+        Whether to solve the slender-linear equations.
+    friction : float
+        Coefficient of friction between body and ground, above zero [-].
+
+    Returns
+    -------
+    Question
+        Checked as far as the engines do not check it.
+
+    Raises
+    ------
+    InvalidValueError
+        If `free`, `gravity` or `friction` is not allowed.
     """
-
-    body: Body
-    motion: Motion | None
-    rotation: float
-    scale: float
-    how: dict[str, Any]
-
-    @classmethod
-    def of(
-        cls,
-        body: Body,
-        motion: Motion | None,
-        free: float | None,
-        *,
-        scale: float,
-        gravity: float | None,
-        engine: str,
-        linear: bool,
-    ) -> "Question":
-        """Put the question together.
-
-        Parameters
-        ----------
-        body : Body
-            The body.
-        motion : GroundMotion or Pulse, optional
-            The motion.
-        free : float, optional
-            First rotation over the slenderness angle of the side it leans to, for free rocking [-].
-        scale : float
-            Factor on the motion [-].
-        gravity : float, optional
-            Acceleration of gravity; the standard one if not given [m/s2].
-        engine : str
-            Which engine.
-        linear : bool
-            Whether to solve the slender-linear equations.
-
-        Returns
-        -------
-        Question
-            Checked as far as the engines do not check it.
-
-        Raises
-        ------
-        InvalidValueError
-            If `free` or `gravity` is not allowed.
-        """
-        pull = g if gravity is None else checks.positive("--gravity", gravity, "m/s2")
-        rotation = 0.0
-        if free is not None:
-            share = checks.number("--free", free)
-            rotation = share * body.side("right" if share > 0.0 else "left", pull).slenderness_angle
-        return cls(body, motion, rotation, scale, {"gravity": pull, "engine": engine, "linear": linear})
-
-    def answered_with(self, restitution: Any) -> Response:
-        """Return the response with one coefficient of restitution.
-
-        Parameters
-        ----------
-        restitution : str, RestitutionModel or float
-            As `simulate` takes it.
-
-        Returns
-        -------
-        Response
-            The response.
-        """
-        if self.motion is None:
-            return free_rocking(self.body, self.rotation, restitution, **self.how)
-        return simulate(self.body, self.motion, restitution, scale=self.scale, **self.how)
+    pull = g if gravity is None else checks.positive("--gravity", gravity, "m/s2")
+    share = None if free is None else checks.number("--free", free)
+    settings = Settings(gravity=pull, linear=linear)
+    mu = checks.positive("--friction", friction)
+    return Question(body, motion, {}, settings, engine, friction=mu, free=share, scale=scale)
 
 
 def body_and_motion(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.collections import QuadMesh
     from matplotlib.figure import Figure
 
-_GRID = 260
+_GRID = 120
 _ARROWS = 7
 _WORDS = {
     "before": "before the impact",

@@ -1,11 +1,12 @@
 """The folder that an inventory is written to: HTML, PDF, spreadsheet, CSV, JSON."""
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from rocking.errors import MissingExtraError, RockingError
+from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.report.html import render_html
 from rocking.report.inventory_document import inventory_document
 from rocking.report.inventory_spreadsheet import write_spreadsheet
@@ -54,6 +55,43 @@ def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], l
         else:
             written.append(path)
     return written, left_out
+
+
+def write_inventory_file(assessment: Assessment, path: Path) -> Path:
+    """Write an assessment in one form, which is there as a whole or not at all.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        The inventory, assessed.
+    path : Path
+        The file; the end of its name says the form: .html, .pdf, .xlsx, .csv, .json.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such form.
+    RockingError
+        If the file cannot be written.
+    """
+    write = _WRITERS.get(path.suffix.lower().removeprefix("."))
+    if write is None:
+        forms = ", ".join(f".{suffix}" for suffix in _WRITERS)
+        raise InvalidValueError(f"an inventory can be written as {forms}, got {path.suffix!r:.40}")
+    unfinished = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    try:
+        write(assessment, unfinished)
+        unfinished.replace(path)
+    except OSError as error:
+        raise RockingError(f"cannot write {path}: {error.strerror}") from error
+    finally:
+        unfinished.unlink(missing_ok=True)
+    return path
 
 
 def inventory_json(assessment: Assessment) -> str:

@@ -80,6 +80,7 @@ def search_below(scan: Scan, points: int) -> None:
         scales = np.concatenate([s[0] * (s[-1] / s[0]) ** share for s in known.values()])
         found = scan.compute(np.repeat(np.array(list(known)), points), scales)
         scan.samples = scan.samples.joined(found)
-        for k, s in known.items():
-            news = found.falls & (found.body == k) & (found.scale < s[-2])
-            held[k] = 0 if news.any() else held.get(k, 0) + 1
+        least = np.full(1 + max(known), -np.inf)
+        least[list(known)] = [s[-2] for s in known.values()]
+        news = set(np.unique(found.body[found.falls & (found.scale < least[found.body])]).tolist())
+        held |= {k: 0 if k in news else held.get(k, 0) + 1 for k in known}

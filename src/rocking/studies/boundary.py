@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -136,26 +137,68 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
     >>> len(lines), lines[0].modes[0].tolist()
     (1, [-1, 0])
     """
+    plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
+    tolerance = checked(plane, by, tolerance)
+    lattice = Lattice(plane, levels, progress)
+    # refined by mode whatever is asked: a sliver of survival lies between two modes, long before its corners tell
+    return outlines(lattice, lattice.finest(lambda modes: modes), by, tolerance)
+
+
+def checked(plane: Plane, by: str, tolerance: float) -> float:
+    """Check what a boundary is asked with.
+
+    Parameters
+    ----------
+    plane : Plane
+        The question and its axes.
+    by : {"verdict", "mode"}
+        What is outlined.
+    tolerance : float
+        Width of the last brackets over the coordinate [-].
+
+    Returns
+    -------
+    float
+        The tolerance.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or an axis has one value only.
+    """
     if by not in {"verdict", "mode"}:
         raise InvalidValueError(f'by must be "verdict" or "mode", got {by!r:.60}')
-    tolerance = checks.within("tolerance", tolerance, 1e-15, 0.1)
-    plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
     for axis in (plane.x, plane.y):
         if axis.values.size < 2:
             raise InvalidValueError(f"{axis.name} must have at least 2 values to have a boundary between, got 1")
-    lattice = Lattice(plane, levels, progress)
-    # refined by mode whatever is asked: a sliver of survival lies between two modes, long before its corners tell
-    seeds = lattice.finest(lambda modes: modes)
+    return checks.within("tolerance", tolerance, 1e-15, 0.1)
+
+
+def outlines(lattice: Lattice, seeds: tuple[IntArray, IntArray], by: str, tolerance: float) -> list[Polyline]:
+    """Return the boundary on a lattice that has been refined.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        Refined by mode.
+    seeds : tuple of ndarray of int
+        Columns and rows of the finest cells whose corners differ, as `Lattice.finest` returns them.
+    by : {"verdict", "mode"}
+        Whether to outline all that overturns, or what overturns after each number of impacts for itself.
+    tolerance : float
+        Width of the last brackets over the coordinate [-].
+
+    Returns
+    -------
+    list of Polyline
+        As of `boundary`.
+    """
     if by == "verdict":
         return _outlined(lattice, verdicts, "overturned", tolerance, seeds)
     made: list[Polyline] = []
     for n in np.unique(lattice.modes[lattice.modes >= 0]).tolist():
-        made += _outlined(lattice, _exactly(n), f"overturned after {n} impacts", tolerance, seeds)
+        made += _outlined(lattice, partial(np.equal, n), f"overturned after {n} impacts", tolerance, seeds)
     return made
-
-
-def _exactly(mode: int) -> Inside:
-    return lambda modes: np.asarray(modes == mode)
 
 
 def _outlined(

@@ -1,26 +1,20 @@
 """Minimum overturning acceleration: every amplitude at which a body begins or ceases to overturn under a motion."""
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from rocking import checks, conventions
+from rocking import conventions
 from rocking.bodies import Body
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.engine import Arrays
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
-from rocking.motions.motion import GroundMotion
-from rocking.studies.below import below, search_below
 from rocking.studies.crossings import Crossings
-from rocking.studies.question import FAILED, Question, sides_of
-from rocking.studies.scan import Scan
-
-# range searched over the acceleration that lifts the body, and how far below it where a vertical part lightens it
-_FROM, _FROM_VERTICAL, _TO = 1.0, 0.1, 50.0
-_MOST_POINTS = 1_000_000
+from rocking.studies.minimum_search import Cases, Effort, searched
+from rocking.studies.question import Question, sides_of
 
 
 def minimum_overturning_acceleration(
@@ -152,69 +146,18 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
         raise InvalidValueError(f"bodies must be a sequence of at least one body, got {bodies!r:.60}")
     engine = settings.pop("engine", "auto")
     question = Question(bodies[0], motion, restitution, settings_of(gravity, settings), threads, engine)
-    _check(question, points, levels)
-    tolerance = checks.within("tolerance", tolerance, 0.0, 0.1)
+    effort = Effort(points, levels, tolerance)
     sides = sides_of([question.rocker_of(b) for b in bodies])
-    uplift, ends = _range(question, sides, lowest, highest)
-    grid = np.geomspace(ends[0], ends[1], points, axis=1) / motion.peak
-    scan = Scan(question, sides, grid, progress)
-    if isinstance(motion, GroundMotion):
-        search_below(scan, points)
-    for _ in range(levels):
-        scan.zoom()
-    scan.hunt()
-    return _crossings(scan, tolerance, uplift, ends, points)
+    cases = Cases.of(motion, sides, question.settings, lowest, highest)
 
+    def run(values: dict[str, FloatArray], body: IntArray) -> Arrays:
+        return question.run(values, np.ones(body.size), body, progress)[0]
 
-def _check(question: Question, points: object, levels: object) -> None:
-    for name, value, low, high in (("points", points, 2, _MOST_POINTS), ("levels", levels, 0, 12)):
-        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-            raise InvalidValueError(f"{name} must be a whole number in [{low}, {high}], got {value!r:.60}")
-    if not question.motion.peak > 0.0:
-        raise InvalidValueError(f"motion must have a peak above zero to be scaled, got {question.motion.name!r}")
-
-
-def _range(
-    question: Question, sides: dict[str, FloatArray], lowest: float | None, highest: float | None
-) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
-    """Return the accelerations that lift the bodies, and between which to look."""
-    gravity, linear, motion = question.settings.gravity, question.settings.linear, question.motion
-    both = np.stack([sides["alpha_right"], sides["alpha_left"]])
-    lifts = gravity * (both if linear else np.tan(both))
-    light = isinstance(motion, GroundMotion) and motion.vertical is not None
-    low = (_FROM_VERTICAL if light else _FROM) * lifts.min(axis=0)
-    high = _TO * lifts.max(axis=0)
-    if lowest is not None:
-        low = np.full_like(low, checks.positive("lowest", lowest, "m/s2"))
-    if highest is not None:
-        high = np.full_like(high, checks.positive("highest", highest, "m/s2"))
-    bad = np.flatnonzero(~(low < high))
-    if bad.size:
-        k = bad[0]
-        raise InvalidValueError(f"lowest must be below highest, got {low[k]:g} and {high[k]:g} m/s2 for body {k}")
-    return lifts.min(axis=0), (low, high)
-
-
-def _crossings(
-    scan: Scan, tolerance: float, uplift: FloatArray, ends: tuple[FloatArray, FloatArray], points: int
-) -> tuple[Crossings, ...]:
-    found, peak = scan.brackets(tolerance), scan.question.motion.peak
-    gaps = {k: each.gap for k, each in below(scan.samples.good).items()}
-    made = []
-    for k in range(uplift.size):
-        own, mine = found.body == k, scan.samples.body == k
-        modes = scan.samples.mode[mine]
-        good = modes[modes != FAILED]
-        if not good.size:
+    found = []
+    for k, each in enumerate(searched(cases, effort, run)):
+        if each is None:
             raise InvalidValueError(
                 f"no history of body {k} could be computed; is the range of accelerations too wide?"
             )
-        scale, low, high = found.ends[own].mean(axis=1), float(ends[0][k]), float(ends[1][k])
-        made.append(
-            Crossings(
-                scale * peak, scale * peak / uplift[k], scale, found.modes[own], np.diff(found.ends[own])[:, 0] * peak,
-                low, high, float(uplift[k]), (high / low) ** (1.0 / (points - 1)) - 1.0, bool(good[0] >= 0),
-                int(modes.size), int(np.sum(modes == FAILED)), gaps.get(k, math.nan),
-            )
-        )  # fmt: skip
-    return tuple(made)
+        found.append(each)
+    return tuple(found)

@@ -61,18 +61,39 @@ def refined(
     Refined
         All points; the map's own first, in its order.
     """
-    lattice = Lattice(plane, levels, progress)
+    return refine(Lattice(plane, levels, progress), modes, peaks)[0]
+
+
+def refine(lattice: Lattice, modes: IntArray, peaks: Any = None) -> tuple[Refined, tuple[IntArray, IntArray]]:
+    """Return a map that is known, refined on a lattice of which nothing is known yet, and its mixed finest cells.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        Between the values of the map; what is computed stays known to it.
+    modes : ndarray of int, shape (y, x)
+        Modes of the map.
+    peaks : ndarray, optional
+        Relative peaks of the map; NaN if not given [-].
+
+    Returns
+    -------
+    refined : Refined
+        All points; the map's own first, in its order.
+    cells : tuple of ndarray of int
+        Columns and rows of the finest cells whose corners differ: where `rocking.studies.boundary.outlines` begins.
+    """
     i, j = lattice.base()
     first = j * lattice.columns + i
     known = np.full(first.size, np.nan) if peaks is None else np.asarray(peaks, dtype=np.float64).ravel()
     lattice.learn(first, np.asarray(modes, dtype=np.int64).ravel(), known)
-    lattice.finest(_whole)
+    cells = lattice.finest(_whole)
     new = np.setdiff1d(lattice.keys, first)
     keys = np.concatenate([first, new])
     places = np.searchsorted(lattice.keys, keys)
     x, y = lattice.coordinates(keys % lattice.columns, keys // lattice.columns)
     base = np.arange(keys.size) < first.size
-    return Refined(x, y, lattice.modes[places], lattice.peaks[places], base)
+    return Refined(x, y, lattice.modes[places], lattice.peaks[places], base), cells
 
 
 def refined_map(

@@ -6,7 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.studies.question import FAILED, Question
+from rocking.dynamics.engine import Arrays
+from rocking.studies.question import FAILED
+
+Run = Callable[[dict[str, FloatArray], IntArray], Arrays]
+"""Takes sides and scales, and the numbers of the bodies; returns mode, side, peak_ratio and overturning_time."""
 
 # halvings after which neighbouring doubles have met, and the relative width at which a hunt is given up
 _MOST_ROUNDS, _GIVEN_UP = 70, 1e-9
@@ -159,28 +163,20 @@ class Brackets:
 
 
 class Scan:
-    """Histories of some bodies under one motion.
+    """Histories of some bodies, each under a motion of its own or all under one.
 
     Parameters
     ----------
-    question : Question
-        The motion and the settings.
+    run : callable
+        Computes histories.
     sides : dict of str to ndarray
         Sides of the bodies [rad, rad/s, -].
     scales : ndarray, shape (bodies, points)
         First factors on the motion, increasing [-].
-    progress : callable, optional
-        Called with the number of histories done since the last call.
     """
 
-    def __init__(
-        self,
-        question: Question,
-        sides: dict[str, FloatArray],
-        scales: FloatArray,
-        progress: Callable[[int], None] | None = None,
-    ) -> None:
-        self.question, self.sides, self.progress = question, sides, progress
+    def __init__(self, run: Run, sides: dict[str, FloatArray], scales: FloatArray) -> None:
+        self.run, self.sides = run, sides
         self.samples = self.compute(np.repeat(np.arange(len(scales)), scales.shape[1]), scales.ravel())
 
     def compute(self, body: IntArray, scale: FloatArray) -> Samples:
@@ -199,7 +195,7 @@ class Scan:
             In the order given.
         """
         values = {name: array[body] for name, array in self.sides.items()}
-        found, _ = self.question.run({**values, "scale": scale}, np.ones(scale.size), body, self.progress)
+        found = self.run({**values, "scale": scale}, body)
         return Samples(body, scale, *(found[n] for n in ("mode", "side", "peak_ratio", "overturning_time")))
 
     def zoom(self) -> None:

@@ -8,10 +8,11 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FEET, FloatArray, g
-from rocking.dynamics.engine import RESULTS
+from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.studies.histories import Product
 from rocking.studies.inventory.hazard import Hazard
@@ -82,30 +83,121 @@ def assess(
     >>> assess([vase], hazard).verdicts[0].light.word
     'green'
     """
-    given = inventory if isinstance(inventory, Inventory) else Inventory(tuple(inventory))
-    if not given.objects and not given.not_assessed:
-        raise InvalidValueError("an inventory must have at least one object, got none")
-    if isinstance(restitution, ImpactLaw):
-        raise InvalidValueError("restitution of an inventory must be a model or a coefficient, not a law of impacts")
-    gravity, limits = checks.positive("gravity", gravity, "m/s2"), thresholds or Thresholds()
-    other = "ked" if _is_housner(restitution) else "housner"
-    labels = _labels(restitution, other, gravity)
-    verdicts: list[Verdict] = []
-    refused = list(given.not_assessed)
-    for block in _blocks(given.objects, len(hazard.motions)):
-        bodies = _bodies(block, restitution, other, gravity)
-        refused += bodies.refused
-        for found in _verdicts(bodies, hazard, limits, gravity, threads, progress):
-            if isinstance(found, Verdict):
-                verdicts.append(found)
-            else:
-                refused.append(found)
-    verdicts.sort(key=lambda each: (each.worse.severity, -each.item.row), reverse=True)
-    refused.sort(key=lambda each: each.row)
-    return Assessment(
-        tuple(verdicts), tuple(refused), hazard, limits, *labels,
-        source=given.source, ignored=given.ignored, gravity=gravity,
-    )  # fmt: skip
+    asked = _Asked.of(inventory, hazard, restitution, thresholds, gravity)
+    found: list[Verdict | NotAssessed] = []
+    for block in _blocks(asked.inventory.objects, len(hazard.motions)):
+        bodies = asked.bodies(block)
+        found += bodies.refused
+        if bodies.items:
+            found += _verdicts(bodies, _run(asked.product(bodies), threads, progress), asked)
+    return asked.assessment(found)
+
+
+def assessment_plan(
+    inventory: Inventory | Sequence[InventoryObject],
+    hazard: Hazard,
+    *,
+    restitution: Any = "ked",
+    thresholds: Thresholds | None = None,
+    gravity: float = g,
+) -> tuple[Product, Callable[[Arrays], Assessment], tuple[InventoryObject, ...]]:
+    """Return the histories of an assessment, and what makes it of their results: for campaigns.
+
+    Parameters
+    ----------
+    inventory : Inventory or sequence of InventoryObject
+        The objects.
+    hazard : Hazard
+        The motions.
+    restitution : str, RestitutionModel, float or mapping
+        Model of impact.
+    thresholds : Thresholds, optional
+        What the lights mean.
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    histories : Product
+        Over motion, object and direction, one scale, and the two models of impact.
+    finish : callable
+        Takes the outcome and the peak_rotation of all histories; returns what `assess` does.
+    objects : tuple of InventoryObject
+        Those that are computed.
+
+    Raises
+    ------
+    InvalidValueError
+        If no object can be assessed.
+    """
+    asked = _Asked.of(inventory, hazard, restitution, thresholds, gravity)
+    bodies = asked.bodies(asked.inventory.objects)
+    if not bodies.items:
+        first = min([*asked.inventory.not_assessed, *bodies.refused], key=lambda each: each.row)
+        raise InvalidValueError(f"no object can be assessed; line {first.row}: {first.reason}")
+    product = asked.product(bodies)
+
+    def finish(results: Arrays) -> Assessment:
+        return asked.assessment([*bodies.refused, *_verdicts(bodies, _shaped(product, results), asked)])
+
+    return product, finish, tuple(bodies.items)
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What an assessment asks, checked."""
+
+    inventory: Inventory
+    hazard: Hazard
+    restitution: Any
+    comparison: str
+    thresholds: Thresholds
+    gravity: float
+
+    @classmethod
+    def of(
+        cls, inventory: Inventory | Sequence[InventoryObject], hazard: Hazard, restitution: Any,
+        thresholds: Thresholds | None, gravity: float,
+    ) -> "_Asked":  # fmt: skip
+        given = inventory if isinstance(inventory, Inventory) else Inventory(tuple(inventory))
+        if not given.objects and not given.not_assessed:
+            raise InvalidValueError("an inventory must have at least one object, got none")
+        if isinstance(restitution, ImpactLaw):
+            raise InvalidValueError(
+                "restitution of an inventory must be a model or a coefficient, not a law of impacts"
+            )
+        other = "ked" if _is_housner(restitution) else "housner"
+        gravity = checks.positive("gravity", gravity, "m/s2")
+        made = cls(given, hazard, restitution, other, thresholds or Thresholds(), gravity)
+        _ = made.labels  # a wrong word is the user's slip, not that of every row: it is refused here
+        return made
+
+    @property
+    def labels(self) -> tuple[str, str]:
+        """The two models, in words."""
+        from rocking.bodies import Block
+
+        block = Block(width=1.0, height=4.0)
+        first, second = (Rocker.of_body(block, r, self.gravity).label for r in (self.restitution, self.comparison))
+        return first, second
+
+    def bodies(self, objects: Sequence[InventoryObject]) -> _Bodies:
+        return _bodies(objects, self.restitution, self.comparison, self.gravity)
+
+    def product(self, bodies: _Bodies) -> Product:
+        settings = Settings(gravity=self.gravity)
+        return Product(MotionList(self.hazard.motions), _sides(bodies.pairs), np.ones(1), settings=settings)
+
+    def assessment(self, found: Sequence[Verdict | NotAssessed]) -> Assessment:
+        """Return what is said of all objects, in order."""
+        verdicts = [each for each in found if isinstance(each, Verdict)]
+        refused = [*self.inventory.not_assessed, *(each for each in found if isinstance(each, NotAssessed))]
+        verdicts.sort(key=lambda each: (each.worse.severity, -each.item.row), reverse=True)
+        refused.sort(key=lambda each: each.row)
+        return Assessment(
+            tuple(verdicts), tuple(refused), self.hazard, self.thresholds, *self.labels,
+            source=self.inventory.source, ignored=self.inventory.ignored, gravity=self.gravity,
+        )  # fmt: skip
 
 
 def _blocks(objects: Sequence[InventoryObject], motions: int) -> Iterator[Sequence[InventoryObject]]:
@@ -117,14 +209,6 @@ def _blocks(objects: Sequence[InventoryObject], motions: int) -> Iterator[Sequen
 
 def _is_housner(restitution: Any) -> bool:
     return restitution == "housner" or getattr(restitution, "name", None) == "housner"
-
-
-def _labels(restitution: Any, other: str, gravity: float) -> tuple[str, str]:
-    # a wrong word is the user's slip, not that of every row: it is refused here, with any body
-    from rocking.bodies import Block
-
-    block = Block(width=1.0, height=4.0)
-    return Rocker.of_body(block, restitution, gravity).label, Rocker.of_body(block, other, gravity).label
 
 
 def _bodies(objects: Sequence[InventoryObject], restitution: Any, other: str, gravity: float) -> _Bodies:
@@ -140,27 +224,14 @@ def _bodies(objects: Sequence[InventoryObject], restitution: Any, other: str, gr
     return bodies
 
 
-def _verdicts(
-    bodies: _Bodies,
-    hazard: Hazard,
-    limits: Thresholds,
-    gravity: float,
-    threads: int | None,
-    progress: Callable[[int], None] | None,
-) -> Iterator[Verdict | NotAssessed]:
+def _verdicts(bodies: _Bodies, tables: Mapping[str, np.ndarray], asked: _Asked) -> Iterator[Verdict | NotAssessed]:
     """Yield what is said of each object of a block."""
-    if not bodies.items:
-        return
-    tables = _run(bodies, hazard, threads, progress)
+    limits, gravity = asked.thresholds, asked.gravity
     for k, item in enumerate(bodies.items):
         yield _verdict(item, {name: values[:, 2 * k : 2 * k + 2] for name, values in tables.items()}, limits, gravity)
 
 
-def _run(
-    bodies: _Bodies, hazard: Hazard, threads: int | None, progress: Callable[[int], None] | None
-) -> Mapping[str, np.ndarray]:
-    """Return outcome and peak rotation over the slenderness angle, each by motion, body and model."""
-    product = Product(MotionList(hazard.motions), _sides(bodies.pairs), np.ones(1))
+def _run(product: Product, threads: int | None, progress: Callable[[int], None] | None) -> Mapping[str, np.ndarray]:
     kept = {name: np.empty(product.count, RESULTS[name]) for name in ("outcome", "peak_rotation")}
     for first in range(0, product.count, PIECE):
         last = min(first + PIECE, product.count)
@@ -169,10 +240,14 @@ def _run(
             values[first:last] = found[name]
         if progress is not None:
             progress(last - first)
+    return _shaped(product, kept)
+
+
+def _shaped(product: Product, results: Arrays) -> Mapping[str, np.ndarray]:
+    """Return outcome and peak rotation over the slenderness angle, each by motion, body and model."""
     motions, count, _, choices = product.shape
-    joined = {name: values.reshape(motions, count, choices) for name, values in kept.items()}
-    angle = np.array([[rocker.right.slenderness_angle for rocker in pair] for pair in bodies.pairs])
-    return {"outcome": joined["outcome"], "ratio": np.abs(joined["peak_rotation"]) / angle}
+    outcome, peak = (results[name].reshape(motions, count, choices) for name in ("outcome", "peak_rotation"))
+    return {"outcome": outcome, "ratio": np.abs(peak) / product.sides["alpha_right"]}
 
 
 def _sides(pairs: Sequence[Sequence[Rocker]]) -> dict[str, FloatArray]:

@@ -1,8 +1,21 @@
 """Jobs: a TOML file says what a campaign computes; its results become files with their provenance."""
 
-from rocking.studies.job.exporting import analyses, export
+from rocking.studies.job.exporting import export, exports_of
+from rocking.studies.job.findings import analyses, answer, assessment
 from rocking.studies.job.folder import JobFolder, JobStatus, status_of
 from rocking.studies.job.forecasting import Forecast, forecast
 from rocking.studies.job.job import Job
 
-__all__ = ["Forecast", "Job", "JobFolder", "JobStatus", "analyses", "export", "forecast", "status_of"]
+__all__ = [
+    "Forecast",
+    "Job",
+    "JobFolder",
+    "JobStatus",
+    "analyses",
+    "answer",
+    "assessment",
+    "export",
+    "exports_of",
+    "forecast",
+    "status_of",
+]

@@ -2,17 +2,29 @@
 
 import json
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from rocking.errors import InvalidValueError
-from rocking.studies.campaign import Campaign, CampaignDamagedError, CampaignMismatchError, Status, disk
+from rocking.studies.campaign import (
+    Campaign,
+    CampaignDamagedError,
+    CampaignMismatchError,
+    Executor,
+    Progress,
+    Status,
+    Summary,
+    disk,
+)
 from rocking.studies.campaign.identity import NAME
 from rocking.studies.job.inputs import Inputs, refuse_changes
 from rocking.studies.job.job import Job
 from rocking.studies.job.reading import document_of, located
+from rocking.studies.job.round_status import round_folder, status_of_rounds
+from rocking.studies.job.rounds import opened, run_rounds
 
 JOB, INPUTS, HISTORIES = "job.toml", "inputs.json", "histories"
 """Files of the folder, and its folder of results."""
@@ -101,11 +113,44 @@ class JobFolder:
 
     @cached_property
     def campaign(self) -> Campaign:
-        """The campaign; it is begun where a killed process had not come that far."""
-        where, histories = self.path / HISTORIES, self.job.study.histories
-        if (where / NAME).exists():
-            return Campaign.open(where, histories)
-        return Campaign.create(where, histories, self.job.document.campaign.chunk)
+        """The campaign, of an adaptive study its first round; begun where a killed process had not come that far."""
+        where = self.path / HISTORIES if self.job.study.search is None else round_folder(self.path, 0)
+        return opened(where, self.job.study.histories, self.job.document.campaign.chunk)
+
+    def run(
+        self, executor: str | Executor = "serial", *, workers: int | None = None,
+        progress: Callable[[Progress], object] | None = None, **options: Any,
+    ) -> Summary:  # fmt: skip
+        """Compute what is missing; of an adaptive study all rounds, one after another.
+
+        Parameters
+        ----------
+        executor : {"serial", "processes"} or Executor
+            Who computes.
+        workers : int, optional
+            Threads or processes.
+        progress : callable, optional
+            Called with a `Progress` at the start and after every chunk; of an adaptive study it tells of one round.
+        **options
+            ``start_method`` and ``order_seed`` of `Campaign.run`.
+
+        Returns
+        -------
+        Summary
+            What was done.
+
+        Raises
+        ------
+        CampaignMismatchError
+            If a round on disk is not the one that the job asks for.
+        CampaignInterrupted
+            If Ctrl-C or SIGTERM asked it to stop.
+        """
+        search = self.job.study.search
+        if search is None:
+            return self.campaign.run(executor, workers=workers, progress=progress, **options)
+        chunk = self.job.document.campaign.chunk
+        return run_rounds(search, self.path, chunk, executor, workers=workers, progress=progress, **options)
 
 
 @dataclass(frozen=True)
@@ -119,13 +164,20 @@ class JobStatus:
     name, kind : str
         Of the campaign, as the job says.
     status : Status or None
-        How far it is; None if it was killed before it had begun.
+        How far it is; None if it was killed before it had begun. Of an adaptive study it is of all rounds that have
+        begun.
+    complete : bool
+        Whether all is computed.
+    rounds : int or None
+        Rounds of an adaptive study that have begun; how many will follow is not known before they do. None of others.
     """
 
     path: Path
     name: str
     kind: str
     status: Status | None
+    complete: bool
+    rounds: int | None = None
 
 
 def status_of(folder: str | os.PathLike[str]) -> JobStatus:
@@ -144,9 +196,13 @@ def status_of(folder: str | os.PathLike[str]) -> JobStatus:
     path = Path(folder)
     text, content = _kept(path)
     with located(content["job_file"]):
-        told = document_of(text).campaign
-    begun = (path / HISTORIES / NAME).exists()
-    return JobStatus(path, told.name, told.kind, Campaign.status_of(path / HISTORIES) if begun else None)
+        document = document_of(text)
+    name, kind = document.campaign.name, document.campaign.kind
+    if document.is_adaptive:
+        status, begun, complete = status_of_rounds(path)
+        return JobStatus(path, name, kind, status, complete, begun)
+    found = Campaign.status_of(path / HISTORIES) if (path / HISTORIES / NAME).exists() else None
+    return JobStatus(path, name, kind, found, found is not None and found.complete)
 
 
 def _kept(path: Path) -> tuple[str, dict[str, Any]]:

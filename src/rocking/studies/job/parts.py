@@ -29,6 +29,7 @@ MOST_IN_MEMORY = 100_000
 """Synthetic motions that may be put into a list with others; a set of one family alone is made piece by piece."""
 
 _INLINE = "table"
+_OUTSIDE = ("units", "name", "note")
 
 
 @dataclass(frozen=True)
@@ -103,31 +104,60 @@ def _bodies(tables: list[dict[str, Any]], inputs: Inputs) -> list[Body]:
     made = []
     for k, table in enumerate(tables):
         with located(f"body[{k}]" if many else "body"):
-            made.append(_body(table, inputs))
+            made.append(body_of(table, inputs))
     return made
 
 
-def _body(table: dict[str, Any], inputs: Inputs) -> Body:
+def body_of(table: dict[str, Any], inputs: Inputs | None) -> Body:
+    """Return the body that a table describes.
+
+    Parameters
+    ----------
+    table : dict
+        Tables of a body file, the short form of a block (width, height), or ``file`` alone.
+    inputs : Inputs, optional
+        Takes note of the files; without it, a table cannot name files.
+
+    Returns
+    -------
+    Body
+        The body.
+
+    Raises
+    ------
+    InvalidValueError
+        If the table does not describe a body.
+    MissingExtraError
+        If it names a drawing, and what reads it is not installed.
+    """
     if "file" in table:
-        odd = sorted(set(table) - {"file"})
-        if odd:
-            raise InvalidValueError(f"file stands alone, without {', '.join(odd)}")
-        if not isinstance(table["file"], str):
-            raise InvalidValueError(f"file must be text, got {table['file']!r:.60}")
-        path = inputs.file(table["file"])
-        text, name, folder = path.read_text(encoding="utf-8-sig", errors="replace"), table["file"], path.parent
-        _note_outlines(text, str(Path(table["file"]).parent), inputs)
-        return body_from_toml(text, name=name, folder=folder)
-    short = {"width", "height"} & set(table)
-    full = {"units": table.get("units"), "block": {k: v for k, v in table.items() if k != "units"}} if short else table
-    text = "\n".join(f"{json.dumps(key)} = {_as_toml(value)}" for key, value in full.items() if value is not None)
-    _note_outlines(text, ".", inputs)
+        return _body_in_file(table, inputs)
+    if {"width", "height"} & set(table):
+        own = {key: value for key, value in table.items() if key not in _OUTSIDE}
+        table = {**{key: value for key, value in table.items() if key in _OUTSIDE}, "block": own}
+    text = "\n".join(f"{_quoted(key)} = {_as_toml(value)}" for key, value in table.items() if value is not None)
+    if inputs is not None:
+        _note_outlines(text, ".", inputs)
     try:
-        return body_from_toml(text, name=_INLINE, folder=inputs.folder)
+        return body_from_toml(text, name=_INLINE, folder=None if inputs is None else inputs.folder)
     except MissingExtraError:
         raise
     except RockingError as error:
         raise InvalidValueError(str(error).removeprefix(f"{_INLINE}: ")) from error
+
+
+def _body_in_file(table: dict[str, Any], inputs: Inputs | None) -> Body:
+    odd = sorted(set(table) - {"file"})
+    if odd:
+        raise InvalidValueError(f"file stands alone, without {', '.join(odd)}")
+    if not isinstance(table["file"], str):
+        raise InvalidValueError(f"file must be text, got {table['file']!r:.60}")
+    if inputs is None:
+        raise InvalidValueError(f"names the file {table['file']!r:.60}, but a body cannot name files here")
+    path = inputs.file(table["file"])
+    text, name, folder = path.read_text(encoding="utf-8-sig", errors="replace"), table["file"], path.parent
+    _note_outlines(text, str(Path(table["file"]).parent), inputs)
+    return body_from_toml(text, name=name, folder=folder)
 
 
 def _note_outlines(text: str, folder: str, inputs: Inputs) -> None:
@@ -142,15 +172,19 @@ def _note_outlines(text: str, folder: str, inputs: Inputs) -> None:
             inputs.file((Path(folder) / name).as_posix())
 
 
+def _quoted(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)  # the halves of a pair would be no TOML
+
+
 def _as_toml(value: Any) -> str:
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{json.dumps(k)} = {_as_toml(v)}" for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{_quoted(k)} = {_as_toml(v)}" for k, v in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(_as_toml(item) for item in value) + "]"
     if isinstance(value, float):
         return repr(value)
     try:
-        return json.dumps(value)
+        return _quoted(value)
     except TypeError:
         return str(value)  # dates: the body reader refuses them by name
 

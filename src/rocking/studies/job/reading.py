@@ -4,12 +4,15 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 
 if TYPE_CHECKING:
+    from rocking.studies.job.table import JobTable
     from rocking.studies.job.tables import Document
+
+    _Kind = TypeVar("_Kind", bound=JobTable)
 
 LARGEST_JOB = 16 * 2**20
 """Larger job files are refused [byte]."""
@@ -109,10 +112,34 @@ def document_of(text: str) -> "Document":
     rocking.errors.InvalidValueError: campaign.kind must be one of 'overturning-map', ... got 'stripe'; did you mean
     stripes? (and 1 more)
     """
+    from rocking.studies.job.tables import Document
+
+    return validated(Document, text)
+
+
+def validated(kind: "type[_Kind]", text: str) -> "_Kind":
+    """Return the tables of a text, checked for themselves.
+
+    Parameters
+    ----------
+    kind : type
+        What the tables are.
+    text : str
+        TOML.
+
+    Returns
+    -------
+    JobTable
+        Of that kind.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is not TOML, a key is unknown or missing, or a value is not of the kind or in the range of its key.
+    """
     from pydantic import ValidationError
 
     from rocking.bodies.formats.words import sentence
-    from rocking.studies.job.tables import Document
 
     try:
         given = tomllib.loads(text)
@@ -121,7 +148,7 @@ def document_of(text: str) -> "Document":
     except (ValueError, RecursionError) as error:
         raise InvalidValueError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
     try:
-        return Document.model_validate(given)
+        return kind.model_validate(given)
     except ValidationError as error:
         raise InvalidValueError(_nearest(sentence(error, None), error.errors(include_url=False)[0])) from error
 

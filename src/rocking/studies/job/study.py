@@ -9,6 +9,8 @@ import numpy as np
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories
+from rocking.studies.job.answer import Answer
+from rocking.studies.job.asked import Compute
 from rocking.studies.overturning_map import VARIABLES as OF_MAPS
 from rocking.studies.question import modes_of, peak_ratio
 
@@ -70,6 +72,11 @@ class Study:
         Takes the results of all histories and returns the fragility analysis of each restitution by label.
     rescale : callable, optional
         Takes first and last number of histories and their results, and changes those whose unit is not yet the user's.
+    search : callable, optional
+        Of an adaptive study: takes what computes a round of histories, asks for one round after another, and returns
+        what it has found. The histories of the study are then those of the first round.
+    assess : callable, optional
+        Takes outcome and peak_rotation of all histories and returns the assessment of an inventory.
 
     Raises
     ------
@@ -83,6 +90,8 @@ class Study:
     attributes: dict[str, Any] = field(default_factory=dict)
     finish: Callable[[Arrays], dict[str, Any]] | None = None
     rescale: Callable[[int, int, Arrays], Arrays] | None = None
+    search: Callable[[Compute], Answer] | None = None
+    assess: Callable[[Arrays], Any] | None = None
 
     def __post_init__(self) -> None:
         """Check the dimensions."""

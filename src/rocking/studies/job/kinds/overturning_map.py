@@ -1,10 +1,13 @@
 """Overturning maps as campaigns."""
 
+from dataclasses import replace
+
 from rocking.errors import InvalidValueError
 from rocking.studies.axes import axis_of
 from rocking.studies.axis import Axis
 from rocking.studies.body_axes import Restitution
 from rocking.studies.job.kinds.map_histories import MapHistories
+from rocking.studies.job.kinds.refined_map import MapSearch
 from rocking.studies.job.kinds.words import along, of_words
 from rocking.studies.job.parts import Parts
 from rocking.studies.job.reading import located
@@ -54,13 +57,14 @@ def map_study(parts: Parts) -> Study:
     if several:
         coordinates["restitution"] = of_words("restitution", parts.choices, "restitution")
     attributes = {"body": repr(parts.bodies[0]), "motion": parts.motions[0].name}
-    return Study(
+    study = Study(
         sampled(histories),
         several | {y.name: y.values.size, x.name: x.values.size},
         coordinates,
         attributes,
         rescale=histories.rescaled,
     )
+    return study if table.refine is None else replace(study, search=MapSearch.of(study, planes, table))
 
 
 def _axis(where: str, table: AxisTable) -> Axis:

@@ -1,0 +1,1 @@
+"""The JSON API of body, impact, records, motion and response."""

@@ -1,0 +1,134 @@
+"""One question under all its restitutions: responses, why some have none, and what they say together."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from rocking.app.api.curves import response_series
+from rocking.app.problems import TooLarge
+from rocking.app.question import Question
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.response import Response
+from rocking.errors import InvalidValueError
+from rocking.report.facts.body import body_facts, outline_facts
+from rocking.report.facts.response import moved_facts, response_facts
+from rocking.report.facts.verdict import Verdict
+
+MOST_CHOICES = 32
+"""Restitutions in one question."""
+
+MOST_SAMPLES = 500_000
+"""Samples of a response whose forces and energy are computed here."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResponseAnswers:
+    """What every restitution makes of one question.
+
+    Parameters
+    ----------
+    question : Question
+        The question.
+    found : dict of str to Response or str
+        By label: the response, or why there is none.
+    """
+
+    question: Question
+    found: dict[str, Response | str]
+
+    @classmethod
+    def of(cls, question: Question) -> "ResponseAnswers":
+        """Compute the responses.
+
+        Parameters
+        ----------
+        question : Question
+            The question.
+
+        Returns
+        -------
+        ResponseAnswers
+            At least one of them is there.
+
+        Raises
+        ------
+        InvalidValueError
+            If none of the restitutions has a response.
+        TooLarge
+            If there are more than 32 restitutions.
+        """
+        if len(question.choices) > MOST_CHOICES:
+            raise TooLarge(f"one question takes up to {MOST_CHOICES} restitutions, got {len(question.choices)}")
+        found = {label: _tried(question, choice) for label, choice in question.choices.items()}
+        reasons = [reason for reason in found.values() if isinstance(reason, str)]
+        if len(reasons) == len(found):
+            raise InvalidValueError(reasons[0])
+        return cls(question, found)
+
+    @property
+    def responses(self) -> dict[str, Response]:
+        """The responses that are there, by label."""
+        return {label: one for label, one in self.found.items() if isinstance(one, Response)}
+
+    def facts(self, points: int, name: str | None = None) -> dict[str, Any]:
+        """Return the answer of the API.
+
+        Parameters
+        ----------
+        points : int
+            How many samples of a curve.
+        name : str, optional
+            What the user calls the body.
+
+        Returns
+        -------
+        dict
+            ``answers``, ``verdict``, ``body`` and ``motion``.
+        """
+        asked, verdict = self.question, Verdict.of(self.responses)
+        return {
+            "answers": [
+                {"label": label, "error": one} if isinstance(one, str) else answer_facts(label, one, asked, points)
+                for label, one in self.found.items()
+            ],
+            "verdict": {"decides": verdict.decides, "sentence": verdict.sentence},
+            "body": {"name": name, **body_facts(asked.body, asked.settings.gravity), **outline_facts(asked.body)},
+            "motion": moved_facts(asked.motion, asked.scale),
+        }
+
+
+def answer_facts(label: str, response: Response, question: Question, points: int) -> dict[str, Any]:
+    """Return one response as the API tells it.
+
+    Parameters
+    ----------
+    label : str
+        Its restitution in words.
+    response : Response
+        The response.
+    question : Question
+        What was asked.
+    points : int
+        How many samples of a curve.
+
+    Returns
+    -------
+    dict
+        What `rocking.report.facts.response.response_facts` says, with ``label`` and ``series``.
+    """
+    facts = response_facts(response, question.friction)
+    return {"label": label, **facts, "series": response_series(response, points)}
+
+
+def _tried(question: Question, restitution: Any) -> Response | str:
+    try:
+        response = question.answered_with(restitution)
+    except InvalidValueError as error:
+        return str(error)
+    if response.outcome is Outcome.FAILED:
+        return f"there is no response: {response.status.value}"
+    if response.time.size > MOST_SAMPLES:
+        return (
+            f"the response has {response.time.size} samples, more than the {MOST_SAMPLES} that are shown here; "
+            "a motion with longer steps, a smaller body, or the command line"
+        )
+    return response

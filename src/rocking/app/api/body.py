@@ -1,0 +1,101 @@
+"""POST /api/body and /api/body/file: what a body is, from a document or from a file."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request
+
+from rocking.app.answers import JsonAnswer
+from rocking.app.api.uploads import OCTETS
+from rocking.app.question import body_from
+from rocking.app.schemas.body import BodyInput
+from rocking.app.schemas.inputs import BodyAsked
+from rocking.app.work import heavy
+from rocking.bodies import Body
+from rocking.bodies.formats.body_schema import UnitName
+from rocking.conventions import FEET, g, opposite
+from rocking.evidence.coefficient_table import outside_evidence
+from rocking.report.facts.body import body_facts, outline_facts
+
+router = APIRouter(prefix="/api", tags=["body"])
+
+_ABOUT = "The keys of `body` of `rocking cor --json`, the polygons that draw the body, and warnings in plain words."
+_FILE = """\
+The content of a DXF, WKT, GeoJSON or TOML file; `name` says by its ending which of them it is. `units` is needed for
+WKT and GeoJSON, and for a drawing that does not state its unit. `body` of the answer is what stands in the inputs."""
+
+
+@router.post("/body", summary="What a body is", description=_ABOUT, response_class=JsonAnswer)
+def body(asked: BodyAsked) -> JsonAnswer:
+    """Answer with the facts of a body.
+
+    Parameters
+    ----------
+    asked : BodyAsked
+        What the user chose.
+
+    Returns
+    -------
+    JsonAnswer
+        Facts, outline and warnings.
+    """
+    return JsonAnswer(described(body_from(asked.body), asked.settings.gravity or g, asked.body.name))
+
+
+@router.post(
+    "/body/file", summary="Read a body file", description=_FILE, response_class=JsonAnswer, openapi_extra=OCTETS
+)
+async def body_file(
+    request: Request,
+    name: Annotated[str, Query(max_length=500)],
+    units: UnitName | None = None,
+    density: Annotated[float | None, Query(gt=0.0, le=1e6, allow_inf_nan=False, description="kg/m3")] = None,
+) -> JsonAnswer:
+    """Answer with the body of a file as it stands in the inputs, and its facts.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    name : str
+        Name of the file.
+    units : str, optional
+        Unit of its coordinates.
+    density : float, optional
+        Density of what has none of its own [kg/m3].
+
+    Returns
+    -------
+    JsonAnswer
+        `body`, and the facts beside it.
+    """
+    content = await request.body()
+    return JsonAnswer(await heavy(request, _read, content, name, units, density))
+
+
+def described(body: Body, gravity: float, name: str | None) -> dict[str, Any]:
+    """Return what is said of a body.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    name : str, optional
+        What the user calls it.
+
+    Returns
+    -------
+    dict
+        Facts, outline and warnings.
+    """
+    found = [outside_evidence(body, opposite(foot)) for foot in FEET]
+    warnings = list(dict.fromkeys(sentence for sentence in found if sentence))
+    return {"name": name, **body_facts(body, gravity), **outline_facts(body), "warnings": warnings}
+
+
+def _read(content: bytes, name: str, units: str | None, density: float | None) -> dict[str, Any]:
+    from rocking.app.api.uploads import body_in_file
+
+    given: BodyInput = body_in_file(content, name, units, density)
+    return {"body": given.table(), **described(body_from(given), g, given.name)}

@@ -1,0 +1,139 @@
+"""What a record file holds, and what must still be told before it can be read."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from rocking.app.files import safe_name
+from rocking.conventions import ACCELERATION_UNITS
+from rocking.errors import RecordError
+from rocking.motions.formats import formats, read_record
+from rocking.motions.formats.record import Component, Record
+
+_STAND_IN = {"units": "m/s2", "time_step": 0.01}
+"""What stands for an answer that is missing, to find out what else is."""
+
+
+_ORDER = ("format", "units", "time_step", "component")
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a user says about a file.
+
+    Parameters
+    ----------
+    format, units : str, optional
+        Name of the format and unit of acceleration.
+    time_step : float, optional
+        Step between samples [s].
+    """
+
+    format: str | None = None
+    units: str | None = None
+    time_step: float | None = None
+
+
+@dataclass(frozen=True)
+class Looked:
+    """What was found in a file.
+
+    Parameters
+    ----------
+    record : Record or None
+        The file, read with stand-ins for what is missing; None if its format must be told first.
+    needs : list of str
+        What must still be told.
+    message : str
+        Why, in the reader's words.
+    """
+
+    record: Record | None
+    needs: list[str] = field(default_factory=list)
+    message: str = ""
+
+    @classmethod
+    def at(cls, content: bytes, name: str, told: Told) -> "Looked":
+        """Look at a file.
+
+        Parameters
+        ----------
+        content : bytes
+            The file.
+        name : str
+            Its name.
+        told : Told
+            What the user says about it.
+
+        Returns
+        -------
+        Looked
+            What it holds, what is missing.
+
+        Raises
+        ------
+        RecordError
+            If it cannot be read, whatever is told.
+        """
+        with TemporaryDirectory(prefix="rocking-") as folder:
+            path = Path(folder) / safe_name(name, "record")
+            path.write_bytes(content)
+            return cls._of(path, told)
+
+    @classmethod
+    def _of(cls, path: Path, told: Told) -> "Looked":
+        given: dict[str, Any] = {"format": told.format, "units": told.units, "time_step": told.time_step}
+        needs: list[str] = []
+        reasons: list[str] = []
+        while True:
+            try:
+                record = read_record(path, **given)
+            except RecordError as error:
+                missing = next((key for key in given if f"say {key}=" in str(error) and given[key] is None), None)
+                if missing is None:
+                    raise
+                needs.append(missing)
+                reasons.append(str(error))
+                if missing not in _STAND_IN:
+                    return cls(None, needs, reasons[0])
+                given[missing] = _STAND_IN[missing]
+            else:
+                if len(record.components) > 1:
+                    needs.append("component")
+                    names = ", ".join(part.name for part in record.components)
+                    reasons.append(f"the file has the components {names}: choose the horizontal one")
+                return cls(record, needs, reasons[0] if reasons else "")
+
+    def facts(self) -> dict[str, Any]:
+        """Return what was found, as the API tells it.
+
+        Returns
+        -------
+        dict
+            ``format``, ``components``, ``needs``, ``choices`` for them and ``message``.
+        """
+        parts = () if self.record is None else self.record.components
+        choices: dict[str, list[str]] = {
+            "format": list(formats()),
+            "units": list(ACCELERATION_UNITS),
+            "component": [part.name for part in parts],
+        }
+        return {
+            "format": None if self.record is None else self.record.format,
+            "components": [self._component(part) for part in parts],
+            "needs": sorted(self.needs, key=_ORDER.index),
+            "choices": {name: choices[name] for name in self.needs if name in choices},
+            "message": self.message,
+        }
+
+    def _component(self, part: Component) -> dict[str, Any]:
+        unit, step = "units" not in self.needs, "time_step" not in self.needs
+        return {
+            "name": part.name,
+            "samples": int(part.acceleration.size),
+            "unit": part.unit if unit else None,
+            "time_step_s": part.time_step if step else None,
+            "duration_s": (part.acceleration.size - 1) * part.time_step if step else None,
+            "peak_m_s2": part.peak * ACCELERATION_UNITS[part.unit] if unit else None,
+        }

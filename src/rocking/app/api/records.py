@@ -1,0 +1,100 @@
+"""The uploaded records: POST, GET and DELETE /api/records."""
+
+from dataclasses import asdict
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request
+from fastapi import Path as InPath
+
+from rocking.app.answers import JsonAnswer
+from rocking.app.api.record_file import Looked, Told
+from rocking.app.api.uploads import OCTETS
+from rocking.app.records import RecordStore
+from rocking.app.state import state_of
+from rocking.app.work import heavy
+
+router = APIRouter(prefix="/api/records", tags=["records"])
+
+_ABOUT = """\
+The content of a record file of any format. `record` of the answer is its SHA-256, by which the inputs name it; `needs`
+says what must still be told (`units`, `time_step`, `component`, `format`), `choices` what may be said. The same file
+can be sent again with what was missing; a file that no format can read is refused and not kept."""
+
+Word = Annotated[str | None, Query(min_length=1, max_length=200)]
+
+
+@router.post("", summary="Send a record file", description=_ABOUT, response_class=JsonAnswer, openapi_extra=OCTETS)
+async def add_record(
+    request: Request,
+    name: Annotated[str, Query(max_length=500)] = "record",
+    format: Word = None,
+    units: Word = None,
+    time_step: Annotated[float | None, Query(gt=0.0, allow_inf_nan=False, description="s")] = None,
+) -> JsonAnswer:
+    """Answer with what the file holds and what must still be told.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    name : str
+        Name of the file.
+    format, units : str, optional
+        What the user says about it.
+    time_step : float, optional
+        Step between samples, where the file does not state it [s].
+
+    Returns
+    -------
+    JsonAnswer
+        Facts of the file.
+    """
+    content, told = await request.body(), Told(format, units, time_step)
+    return JsonAnswer(await heavy(request, _added, state_of(request).records, content, name, told))
+
+
+@router.get("", summary="All record files", description="What is kept, the latest first.", response_class=JsonAnswer)
+def list_records(request: Request) -> JsonAnswer:
+    """Answer with what is kept, the latest first.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+
+    Returns
+    -------
+    JsonAnswer
+        A list.
+    """
+    return JsonAnswer([asdict(made) for made in state_of(request).records.stored()])
+
+
+@router.delete(
+    "/{record}", summary="Remove a record file", description="Gone, from memory too.", response_class=JsonAnswer
+)
+def delete_record(
+    request: Request, record: Annotated[str, InPath(min_length=1, max_length=200, description="SHA-256")]
+) -> JsonAnswer:
+    """Answer with the hash of what is no longer kept.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    record : str
+        SHA-256 of its bytes.
+
+    Returns
+    -------
+    JsonAnswer
+        The hash.
+    """
+    state_of(request).records.delete(record)
+    return JsonAnswer({"deleted": record})
+
+
+def _added(records: RecordStore, content: bytes, name: str, told: Told) -> dict[str, Any]:
+    records.check_upload(content)
+    looked = Looked.at(content, name, told)
+    return {**asdict(records.add(content, name)), **looked.facts()}

@@ -1,0 +1,68 @@
+"""Files that were sent: a body file becomes the body of the inputs."""
+
+import tomllib
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from rocking.app.files import safe_name
+from rocking.app.schemas.body import BodyInput
+from rocking.bodies.formats import read_body
+from rocking.bodies.formats.body_writer import body_to_toml
+from rocking.bodies.formats.source import blamed
+from rocking.errors import BodyFileError
+
+OCTETS: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+    }
+}
+"""What the schema of an endpoint says that takes a file."""
+
+
+def body_in_file(content: bytes, name: str, units: str | None, density: float | None) -> BodyInput:
+    """Return the body that a file describes.
+
+    Parameters
+    ----------
+    content : bytes
+        The file.
+    name : str
+        Its name, whose ending says the format.
+    units : str, optional
+        Unit of its coordinates, where it does not state it.
+    density : float, optional
+        Density of what has none of its own, in a drawing [kg/m3].
+
+    Returns
+    -------
+    BodyInput
+        As it stands in the inputs.
+
+    Raises
+    ------
+    RockingError
+        If it cannot be read as a body.
+    """
+    shown = safe_name(name, "body")
+    if shown.lower().endswith(".toml"):
+        return _toml(content, shown, units)
+    with TemporaryDirectory(prefix="rocking-") as folder:
+        path = Path(folder) / shown
+        path.write_bytes(content)
+        body = read_body(path, units=units, density=density)
+    return BodyInput.model_validate({**tomllib.loads(body_to_toml(body)), "name": Path(shown).stem})
+
+
+def _toml(content: bytes, name: str, units: str | None) -> BodyInput:
+    with blamed(name):
+        try:
+            given = tomllib.loads(content.decode("utf-8-sig"))
+        except (ValueError, RecursionError) as error:
+            raise BodyFileError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
+        if "body" in given and isinstance(given["body"], dict):
+            given = given["body"]
+        if units is not None and given.get("units", units) != units:
+            raise BodyFileError(f"states units = {given['units']!r:.20}, but units = {units!r} was asked for")
+    return BodyInput.model_validate(given)

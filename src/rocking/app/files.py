@@ -1,0 +1,62 @@
+"""Answers that a browser saves as a file."""
+
+import re
+import unicodedata
+
+from starlette.responses import Response
+
+_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+_LONGEST = 80
+
+
+def safe_name(name: str, fallback: str = "rocking") -> str:
+    """Return a file name that is harmless on every system: ASCII letters, digits, dot, dash and underscore.
+
+    Parameters
+    ----------
+    name : str
+        Any text.
+    fallback : str
+        What stands for a text of which nothing is left.
+
+    Returns
+    -------
+    str
+        At most 80 characters; never a hidden, reserved or empty name.
+
+    Examples
+    --------
+    >>> safe_name("../../Vase Nº 3 <b>.csv")
+    'Vase-No-3-b.csv'
+    """
+    plain = unicodedata.normalize("NFKD", name[:1000]).encode("ascii", "ignore").decode()
+    stem, dot, suffix = plain.rpartition(".")
+    if not dot or not re.fullmatch(r"[A-Za-z0-9]{1,8}", suffix):
+        stem, dot, suffix = plain, "", ""
+    stem = re.sub(r"[^A-Za-z0-9_-]+", "-", stem).strip("-_")
+    word = f"{stem[: _LONGEST - len(suffix) - 1] or fallback}{dot}{suffix}"
+    return f"{fallback}-{word}" if _RESERVED.fullmatch(word) else word
+
+
+def attachment(data: bytes, name: str, media_type: str) -> Response:
+    """Return an answer that a browser saves as a file and never shows as a page.
+
+    Parameters
+    ----------
+    data : bytes
+        Content of the file.
+    name : str
+        Its name, as anyone gave it.
+    media_type : str
+        Its type.
+
+    Returns
+    -------
+    Response
+        With a harmless file name.
+    """
+    headers = {
+        "Content-Disposition": f'attachment; filename="{safe_name(name)}"',
+        "X-Content-Type-Options": "nosniff",
+    }
+    return Response(data, media_type=media_type, headers=headers)

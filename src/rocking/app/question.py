@@ -1,0 +1,139 @@
+"""From the document of a user's choices to what is computed: body, motion, restitutions, settings."""
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from rocking.bodies import Body
+from rocking.bodies.formats.source import blamed
+from rocking.dynamics.response import Motion
+from rocking.errors import InvalidValueError, RockingError
+from rocking.studies.job.parts import body_of
+from rocking.studies.job.response import made_motion, question_from
+from rocking.studies.job.response_question import ResponseQuestion
+
+if TYPE_CHECKING:
+    from rocking.app.records import RecordStore
+    from rocking.app.schemas.body import BodyInput
+    from rocking.app.schemas.inputs import Inputs, MotionInput
+
+__all__ = ["Question", "body_from", "motion_from", "question_of"]
+
+Question = ResponseQuestion
+"""Body, motion, restitutions and settings, made and checked; `answered_with` gives the response."""
+
+
+def question_of(inputs: "Inputs", records: "RecordStore") -> Question:
+    """Return what a user asked, with everything read that it needs.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        What the user chose.
+    records : RecordStore
+        Uploaded records.
+
+    Returns
+    -------
+    Question
+        Ready to be answered.
+
+    Raises
+    ------
+    RockingError
+        If something that was chosen does not exist or is not allowed.
+    """
+    motion = None if inputs.motion is None else motion_from(inputs.motion, records)
+    return question_from(inputs, body_from(inputs.body), motion)
+
+
+def body_from(given: "BodyInput") -> Body:
+    """Return a body; one that was asked for lately is not made again.
+
+    Parameters
+    ----------
+    given : BodyInput
+        What the user chose.
+
+    Returns
+    -------
+    Body
+        The body.
+
+    Raises
+    ------
+    InvalidValueError
+        If the shapes do not describe a body.
+    """
+    return _body(_Hashed(given))
+
+
+def motion_from(given: "MotionInput", records: "RecordStore") -> Motion:
+    """Return a motion, not scaled.
+
+    Parameters
+    ----------
+    given : MotionInput
+        What the user chose.
+    records : RecordStore
+        Uploaded records.
+
+    Returns
+    -------
+    GroundMotion or Pulse
+        The motion; one that was asked for lately is not read or made again.
+
+    Raises
+    ------
+    RockingError
+        If it cannot be made or read.
+    """
+    if given.record is None:
+        with blamed("motion"):
+            return _made(given)
+    return records.motion(given.record, given.format, given.units, given.time_step, given.component, given.vertical)
+
+
+class _Hashed:
+    """A body in a request, as the key of a cache."""
+
+    def __init__(self, given: "BodyInput") -> None:
+        self.given = given
+        self.text = given.model_dump_json(exclude_none=True, exclude_unset=True)
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Hashed) and other.text == self.text
+
+
+@lru_cache(maxsize=32)
+def _body(key: _Hashed) -> Body:
+    with blamed("body"):
+        try:
+            return body_of(key.given.table(), None)
+        except InvalidValueError as error:
+            kind = type(error.__cause__) if isinstance(error.__cause__, RockingError) else InvalidValueError
+            raise kind(str(error)) from error
+
+
+def _made(given: "MotionInput") -> Motion:
+    if given.synthetic is None:
+        return made_motion(given)
+    return _synthetic(given.synthetic, given.seed, given.member, given.pga, given.pgv, given.time_step)
+
+
+@lru_cache(maxsize=16)
+def _synthetic(
+    family: str,
+    seed: int | None,
+    member: int | None,
+    pga: float | None,
+    pgv: float | None,
+    time_step: float | None,
+) -> Motion:
+    from rocking.studies.job.response_tables import OneMotionTable
+
+    return made_motion(
+        OneMotionTable(synthetic=family, seed=seed, member=member, pga=pga, pgv=pgv, time_step=time_step)
+    )

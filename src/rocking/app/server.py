@@ -1,0 +1,160 @@
+"""The server: lock, socket, link, and a clean end."""
+
+import contextlib
+import signal
+import socket
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from rocking.app.address import check_host, listen
+from rocking.app.application import create_app
+from rocking.app.folder import DataFolder
+from rocking.app.settings import DEFAULT_PORT, Settings
+
+_HEAD_SECONDS = 15.0
+_FIRST_PAGE_SECONDS = 0.5
+_CONNECTIONS = 512
+
+
+@dataclass(frozen=True)
+class Started:
+    """What a user needs to know of a server that has just started.
+
+    Parameters
+    ----------
+    url : str
+        Address of the page.
+    token : str
+        Signs one browser in, once.
+    port : int
+        Where it listens.
+    key_file : Path
+        File with the key for scripts.
+    """
+
+    url: str
+    token: str
+    port: int
+    key_file: Path
+
+    @property
+    def link(self) -> str:
+        """Return the link that signs a browser in.
+
+        Returns
+        -------
+        str
+            Address and token.
+        """
+        return f"{self.url}/#token={self.token}"
+
+
+def serve(settings: Settings, started: Callable[[Started], None], *, port: int | None = None) -> None:
+    """Serve until the process is told to stop.
+
+    Parameters
+    ----------
+    settings : Settings
+        Address, data folder and limits.
+    started : callable
+        Called once the first page can be opened.
+    port : int, optional
+        The port that must be free; without it the next free one from 8765 on serves.
+    """
+    check_host(settings.host, allow_remote=settings.allow_remote)
+    with DataFolder(settings.folder) as folder:
+        wanted = DEFAULT_PORT if port is None else port
+        with contextlib.closing(listen(settings.host, wanted, search=port is None)) as door:
+            _run(replace(settings, port=door.getsockname()[1]), folder, door, started)
+
+
+def _run(settings: Settings, folder: DataFolder, door: socket.socket, started: Callable[[Started], None]) -> None:
+    app = create_app(settings)
+    sessions = app.state.rocking.sessions
+    key_file = folder.publish(settings.origin, sessions.key)
+
+    def tell() -> None:
+        started(Started(settings.origin, sessions.first_link(), settings.port, key_file))
+        _later(_warm_up)
+
+    server = _Server(_config(app), tell)
+    with contextlib.suppress(KeyboardInterrupt), _ended_like_ctrl_c():  # the end that was asked for
+        server.run(sockets=[door])
+
+
+@contextlib.contextmanager
+def _ended_like_ctrl_c() -> Iterator[None]:
+    """Let SIGTERM end the server as Ctrl-C does, with the folder left tidy."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _config(app: Any) -> uvicorn.Config:
+    return uvicorn.Config(
+        app,
+        http=_PatientProtocol,
+        ws="websockets-sansio",
+        ws_max_size=1 << 16,
+        ws_per_message_deflate=False,
+        proxy_headers=False,
+        server_header=False,
+        access_log=False,
+        log_level="warning",
+        limit_concurrency=_CONNECTIONS,
+        timeout_keep_alive=30,
+        timeout_graceful_shutdown=3,
+        h11_max_incomplete_event_size=1 << 15,
+    )
+
+
+class _Server(uvicorn.Server):
+    """Says when the first page can be opened."""
+
+    def __init__(self, config: uvicorn.Config, tell: Callable[[], None]) -> None:
+        super().__init__(config)
+        self._tell = tell
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        if self.started:
+            self._tell()
+
+
+class _PatientProtocol(H11Protocol):
+    """Ends a connection on which the head of the first request does not arrive in time."""
+
+    def connection_made(self, transport: Any) -> None:
+        super().connection_made(transport)
+        self._patience = self.loop.call_later(_HEAD_SECONDS, self._lose_patience)
+
+    def _lose_patience(self) -> None:
+        cycle: object | None = self.cycle  # None until the head of a first request is whole
+        if cycle is None and not self.transport.is_closing():
+            self.transport.close()
+
+
+def _later(what: Callable[[], None]) -> None:
+    timer = threading.Timer(_FIRST_PAGE_SECONDS, what)
+    timer.daemon = True
+    timer.start()
+
+
+def _warm_up() -> None:
+    """Import what the first picture and the first fit would wait for."""
+    import importlib
+
+    for name in ("rocking.dynamics.response", "scipy.stats", "rocking.plots", "matplotlib.backends.backend_agg"):
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)

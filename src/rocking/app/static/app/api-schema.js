@@ -1,0 +1,123 @@
+/** An OpenAPI schema as lists that can be shown. Pure functions. */
+
+const METHODS = ["get", "post", "delete"];
+const BLOCK = { units: "m", width: 1, height: 4 };
+const EXAMPLES = {
+  body: { body: BLOCK },
+  impact: { body: BLOCK },
+  motion: { motion: { pulse: "sine:amplitude=3,period=0.8" } },
+  response: {
+    body: BLOCK,
+    motion: { pulse: "sine:amplitude=5,period=0.8" },
+    restitution: { models: ["ked", "housner"] },
+  },
+};
+
+/** Every operation of a schema, in its order. */
+export const operationsOf = (schema) =>
+  Object.entries(schema.paths).flatMap(([path, item]) =>
+    METHODS.filter((method) => item[method])
+      .map((method) => operationOf(schema, path, method, item[method])));
+
+/** Operations by their group: [[name, operations]]. */
+export const groupsOf = (operations) => {
+  const groups = new Map();
+  for (const each of operations) groups.set(each.group, [...(groups.get(each.group) ?? []), each]);
+  return [...groups];
+};
+
+/** The fields of an object, one row each: {name, type, required, about}. */
+export const fieldsOf = (schema, shape, depth = 0, prefix = "", seen = []) => {
+  const plain = resolved(schema, shape);
+  if (!plain?.properties || depth > 3) return [];
+  return Object.entries(plain.properties).flatMap(([name, each]) => {
+    const row = {
+      name: prefix + name,
+      type: typeOf(schema, each),
+      required: plain.required?.includes(name) ?? false,
+      about: aboutOf(resolved(schema, each), each),
+    };
+    const inner = innerOf(schema, each);
+    if (!inner || seen.includes(inner)) return [row];
+    return [row, ...fieldsOf(schema, inner, depth + 1, `${prefix}${name}.`, [...seen, inner])];
+  });
+};
+
+const operationOf = (schema, path, method, operation) => {
+  const contents = operation.requestBody?.content ?? {};
+  const json = contents["application/json"];
+  const kind = json ? "json" : Object.keys(contents).length ? "file" : null;
+  return {
+    id: `${method}${path.replace(/[^A-Za-z0-9]+/g, "-")}`,
+    path, method, kind,
+    group: operation.tags?.[0] ?? "general",
+    summary: operation.summary ?? "",
+    about: plainText(operation.description),
+    parameters: operation.parameters ?? [],
+    query: (operation.parameters ?? [])
+      .filter((each) => each.in === "query" && each.required).map((each) => each.name),
+    body: json?.schema ?? null,
+    answer: answerOf(operation),
+    download: downloadOf(path),
+    example: json ? exampleOf(schema, path, json) : null,
+  };
+};
+
+const answerOf = (operation) => {
+  const good = Object.entries(operation.responses ?? {}).find(([status]) => status.startsWith("2"));
+  return good?.[1].content?.["application/json"]?.schema ?? null;
+};
+
+const exampleOf = (schema, path, json) => {
+  const examples = Object.values(json.examples ?? {}).map((each) => each.value);
+  const given = json.example ?? examples[0] ?? resolved(schema, json.schema)?.examples?.[0];
+  if (given) return given;
+  const word = path.split("/")[2];
+  if (EXAMPLES[word]) return EXAMPLES[word];
+  const names = Object.keys(resolved(schema, json.schema)?.properties ?? {});
+  if (names.includes("body")) return EXAMPLES.response;
+  return Object.fromEntries(names.map((name) => [name, "VALUE"]));
+};
+
+const downloadOf = (path) => {
+  const last = path.split("/").at(-1);
+  return last.includes(".") ? last.replace(/[{}]/g, "") : null;
+};
+
+// The sentences before the table of parameters, which is shown as a table.
+const plainText = (text) => (text ?? "").split(/\n\s*(?:Parameters|Returns|Raises)\n\s*-+/)[0].trim();
+
+const resolved = (schema, shape) => {
+  if (!shape?.$ref) return shape;
+  return shape.$ref.split("/").slice(1).reduce((place, key) => place?.[key], schema);
+};
+
+const typeOf = (schema, shape) => {
+  if (shape.$ref) return typeOf(schema, resolved(schema, shape) ?? {});
+  const choices = shape.anyOf ?? shape.oneOf;
+  if (choices) return [...new Set(choices.map((each) => typeOf(schema, each)))].join(" or ");
+  if (shape.enum) return shape.enum.map((each) => JSON.stringify(each)).join(", ");
+  if (shape.const !== undefined) return JSON.stringify(shape.const);
+  if (shape.type === "array") return `list of ${typeOf(schema, shape.items ?? {})}`;
+  return { string: "text", object: "table", integer: "whole number" }[shape.type] ?? shape.type ?? "anything";
+};
+
+const innerOf = (schema, shape) => {
+  const choices = [shape, ...(shape.anyOf ?? []), ...(shape.items ? [shape.items] : [])];
+  return choices.map((each) => resolved(schema, each)).find((each) => each?.properties) ?? null;
+};
+
+const LIMITS = {
+  minimum: "≥", exclusiveMinimum: ">", maximum: "≤", exclusiveMaximum: "<",
+  maxLength: "length ≤", minLength: "length ≥",
+};
+
+const aboutOf = (plain, shape) => {
+  const numbers = [shape, ...(shape.anyOf ?? [])];
+  const limits = Object.entries(LIMITS).flatMap(([key, sign]) =>
+    numbers.filter((each) => each[key] !== undefined).map((each) => `${sign} ${each[key]}`));
+  const usual = shape.default ?? null;
+  const words = plainText(shape.description ?? plain?.description).replace(/\.$/, "");
+  const said = usual === null ? "" : `usually ${JSON.stringify(usual)}`;
+  return [words, ...limits, said].filter(Boolean).join("; ");
+};

@@ -1,0 +1,97 @@
+/** The one door to the server: JSON calls, calls where only the newest counts, and files to keep. */
+
+/** A refusal of the server, in its own words. */
+export class ApiError extends Error {
+  constructor(
+    status, { kind = "internal", message = "the server gave no answer", needs = [], ...more } = {},
+  ) {
+    super(message);
+    this.name = "ApiError";
+    Object.assign(this, more, { status, kind, needs });
+  }
+}
+
+/** Call the API; resolves to JSON, rejects with ApiError. */
+export const call = async (path, options = {}) => (await send(path, options)).json();
+
+/** Call by POST and let only the newest call of a key follow the one in flight. */
+export const latest = (key, path, json) =>
+  new Promise((resolve, reject) => {
+    const line = lines.get(key) ?? { busy: false, next: null };
+    lines.set(key, line);
+    line.next?.reject(new DOMException("a newer call took its place", "AbortError"));
+    line.next = { path, json, resolve, reject };
+    if (!line.busy) follow(line);
+  });
+
+/** Whether an error only says that a newer call took its place. */
+export const superseded = (error) => error?.name === "AbortError";
+
+/** Save the answer as a file; the server's file name wins over the fallback. */
+export const download = async (path, json, fallbackName) => {
+  const answer = await send(path, json === undefined ? { method: "GET" } : { json });
+  saveBlob(await answer.blob(), nameOf(answer) ?? fallbackName);
+};
+
+/** Save a blob under a name. */
+export const saveBlob = (blob, name) => {
+  const address = URL.createObjectURL(blob);
+  const anchor = Object.assign(document.createElement("a"), { href: address, download: name });
+  document.body.append(anchor);
+  anchor.click();
+  anchor.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 10_000);
+};
+
+const lines = new Map();
+
+const follow = async (line) => {
+  const { path, json, resolve, reject } = line.next;
+  line.next = null;
+  line.busy = true;
+  try {
+    resolve(await call(path, { json }));
+  } catch (error) {
+    reject(error);
+  } finally {
+    line.busy = false;
+    if (line.next) follow(line);
+  }
+};
+
+const send = async (path, { method, json, body, query, signal } = {}) => {
+  const content = json === undefined ? body : JSON.stringify(json);
+  const answer = await fetch(addressOf(path, query), {
+    method: method ?? (content === undefined ? "GET" : "POST"),
+    headers: content === undefined ? {} : { "Content-Type": typeOf(json) },
+    body: content,
+    signal,
+    credentials: "same-origin",
+  }).catch((error) => {
+    if (superseded(error)) throw error;
+    throw new ApiError(
+      0, { kind: "offline", message: "the server does not answer; is `rocking serve` still running?" },
+    );
+  });
+  if (answer.ok) return answer;
+  throw new ApiError(answer.status, await refusalOf(answer));
+};
+
+const typeOf = (json) => (json === undefined ? "application/octet-stream" : "application/json");
+
+const addressOf = (path, query) => {
+  const address = path.startsWith("/") ? path : `/api/${path}`;
+  const entries = Object.entries(query ?? {}).filter(([, value]) => value !== undefined && value !== null);
+  return entries.length ? `${address}?${new URLSearchParams(entries)}` : address;
+};
+
+const refusalOf = async (answer) => {
+  const told = await answer.json().catch(() => ({}));
+  if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
+  return { message: `the server answered ${answer.status}`, ...told.error };
+};
+
+const nameOf = (answer) => {
+  const header = answer.headers.get("Content-Disposition") ?? "";
+  return header.match(/filename="([^"]+)"/)?.[1];
+};

@@ -1,0 +1,29 @@
+/** Tables to the clipboard: tab-separated, every digit, as Excel takes them. */
+
+import { say } from "/app/say.js";
+
+/** Copy columns and rows as text; says so, or says why not. */
+export const copyTable = async (columns, rows) => {
+  const text = asText(columns, rows);
+  try {
+    await navigator.clipboard.writeText(text);
+    say(`Copied ${rows.length} rows; paste them into Excel or any table.`);
+  } catch {
+    say("This browser does not let the page copy; use the CSV button.", "warning");
+  }
+};
+
+/** The tab-separated text of a table. */
+export const asText = (columns, rows) =>
+  [columns.map(heading), ...rows.map((row) => row.map(cell))].map((line) => line.join("\t")).join("\r\n");
+
+const heading = (column) =>
+  cell(typeof column === "string" ? column : column.unit ? `${column.label} [${column.unit}]` : column.label);
+
+// A text that a spreadsheet would run as a formula gets an apostrophe before it.
+const cell = (value) => {
+  const plain = value instanceof Node ? value.textContent : value;
+  if (typeof plain === "number") return Number.isFinite(plain) ? String(plain) : "";
+  const text = String(plain ?? "").replace(/\s+/g, " ").trim();
+  return /^[=+\-@]/.test(text) && !/^[+-]?[\d.]+(e[+-]?\d+)?$/i.test(text) ? `'${text}` : text;
+};

@@ -1,0 +1,57 @@
+/** Building HTML and SVG from script: no markup is ever parsed from text. */
+
+const SVG = "http://www.w3.org/2000/svg";
+
+/** Make an HTML element: el("p", {class: "note"}, "text", child). */
+export const el = (tag, attributes, ...children) => furnish(
+  document.createElement(tag), attributes, children,
+);
+
+/** Make an SVG element in the same way. */
+export const svg = (tag, attributes, ...children) =>
+  furnish(document.createElementNS(SVG, tag), attributes, children);
+
+/** Replace everything inside a node. */
+export const fill = (node, ...children) => {
+  node.replaceChildren(...children.flat(Infinity).filter(shown).map(asNode));
+  return node;
+};
+
+/** Set attributes, properties and listeners on a node. */
+export const set = (node, attributes) => {
+  for (const [key, value] of Object.entries(attributes ?? {})) setOne(node, key, value);
+  return node;
+};
+
+let count = 0;
+
+/** A fresh id, to tie labels and descriptions to their fields. */
+export const freshId = (stem) => `${stem}-${(count += 1)}`;
+
+const PROPERTIES = new Set(["value", "checked", "disabled", "hidden", "indeterminate", "open", "readOnly"]);
+
+const shown = (child) => child !== null && child !== undefined && child !== false && child !== true;
+
+const asNode = (child) => (child instanceof Node ? child : document.createTextNode(String(child)));
+
+const furnish = (node, attributes, children) => {
+  set(node, attributes);
+  node.append(...children.flat(Infinity).filter(shown).map(asNode));
+  return node;
+};
+
+const setOne = (node, key, value) => {
+  if (typeof value === "function" && key.startsWith("on")) {
+    node.addEventListener(key.slice(2).toLowerCase(), value);
+  } else if (key === "dataset") {
+    Object.assign(node.dataset, value);
+  } else if (key === "style") {
+    Object.assign(node.style, value);
+  } else if (PROPERTIES.has(key) && key in node) {
+    node[key] = value;
+  } else if (value === null || value === undefined || value === false) {
+    node.removeAttribute(key);
+  } else {
+    node.setAttribute(key, value === true && !key.startsWith("aria-") ? "" : String(value));
+  }
+};

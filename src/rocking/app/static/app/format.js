@@ -1,0 +1,68 @@
+/** Numbers as people read them: a real minus sign, thin spaces, powers of ten. */
+
+const MINUS = "\u2212";
+const THIN = "\u202f";
+const NONE = "\u2013";
+const SUPERSCRIPTS = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
+
+/** A number with so many significant digits. */
+export const number = (value, digits = 4) => {
+  if (value === null || value === undefined || !Number.isFinite(Number(value))) return NONE;
+  const given = Number(value);
+  if (given === 0) return "0";
+  const size = Math.abs(given);
+  const text = size >= 1e6 || size < 1e-4 ? scientific(size, digits) : plain(size, digits);
+  return given < 0 ? MINUS + text : text;
+};
+
+/** A number and its unit; a pure number has the unit "" or "-". */
+export const quantity = (value, unit, digits = 4) => {
+  const text = number(value, digits);
+  if (text === NONE || !unit || unit === "-" || unit === "1") return text;
+  return unit === "%" || unit === "\u00b0" ? `${text}${THIN}${unit}` : `${text}\u00a0${pretty(unit)}`;
+};
+
+/** Share of one as a percentage. */
+export const percent = (share, digits = 3) => quantity(share * 100, "%", digits);
+
+/** A unit as it is printed: m/s2 becomes m/s with a raised 2. */
+export const pretty = (unit) => unit.replace(
+  /([a-z])(-?[0-9])\b/gi, (_, letter, power) => letter + raised(power),
+);
+
+/** What a person typed as a number, decimal comma allowed; null if it is none. */
+export const parseNumber = (text) => {
+  const clean = String(text).trim().replace(
+    /[\s\u202f\u00a0]/g, "",
+  ).replace(/\u2212/g, "-").replace(",", ".");
+  if (!/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(clean)) return null;
+  const value = Number(clean);
+  return Number.isFinite(value) ? value : null;
+};
+
+/** A number as it stands in an input box: every digit, nothing else. */
+export const editable = (value) => (value === null || value === undefined ? "" : String(value));
+
+/** Round away what only binary arithmetic left behind. */
+export const tidy = (value, digits = 12) => Number(Number(value).toPrecision(digits));
+
+const plain = (size, digits) => {
+  const [whole, fraction = ""] = expanded(size, digits).split(".");
+  const trimmed = fraction.replace(/0+$/, "");
+  const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, THIN) : whole;
+  return trimmed ? `${grouped}.${trimmed}` : grouped;
+};
+
+const expanded = (size, digits) => {
+  const decimals = digits - 1 - Math.floor(Math.log10(size));
+  return decimals > 0 ? size.toFixed(Math.min(decimals, 20)) : String(Math.round(size));
+};
+
+const scientific = (size, digits) => {
+  const [mantissa, power] = size.toExponential(digits - 1).split("e");
+  return `${String(Number(mantissa))}\u00d710${raised(String(Number(power)))}`;
+};
+
+const raised = (text) => [...text].map(
+  (each) => (each === "-" ? "\u207b" : SUPERSCRIPTS[Number(each)])
+).join("");

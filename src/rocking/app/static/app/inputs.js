@@ -1,0 +1,85 @@
+/** The one document of everything the user chose: frozen, watched, and carried by a link. */
+
+const KEPT = "rocking.inputs";
+
+const FIRST = {
+  body: { units: "m", width: 0.5, height: 2.0, depth: 0.5, density: 2400 },
+  motion: { pulse: "sine:amplitude=3,period=0.8" },
+  restitution: { models: ["ked", "housner"] },
+};
+
+/** The store of the inputs: get, set by path, subscribe, replace. */
+export const createInputs = (start) => {
+  let current = freeze(start ?? FIRST);
+  const watchers = new Set();
+  const become = (next, changed) => {
+    current = freeze(next);
+    keep(current);
+    for (const watcher of [...watchers]) watcher(current, changed);
+  };
+  return {
+    get: () => current,
+    set: (path, value) => {
+      const [top] = path.split(".");
+      const next = changedAt(current, path.split("."), value);
+      if (JSON.stringify(next[top]) !== JSON.stringify(current[top])) become(next, new Set([top]));
+    },
+    replace: (document) => become(document, new Set([...Object.keys(current), ...Object.keys(document)])),
+    subscribe: (watcher) => {
+      watchers.add(watcher);
+      return () => watchers.delete(watcher);
+    },
+  };
+};
+
+/** The inputs as a part of a link. */
+export const encode = (inputs) => {
+  const bytes = new TextEncoder().encode(JSON.stringify(inputs));
+  const text = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+  return text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+};
+
+/** The inputs of a link; null if the text is none. */
+export const decode = (text) => {
+  try {
+    const raw = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
+    const document = JSON.parse(new TextDecoder().decode(Uint8Array.from(raw, (each) => each.charCodeAt(0))));
+    return document && typeof document.body === "object" && document.body !== null ? document : null;
+  } catch {
+    return null;
+  }
+};
+
+/** What this browser tab held before it was reloaded. */
+export const kept = () => {
+  try {
+    return JSON.parse(sessionStorage.getItem(KEPT));
+  } catch {
+    return null;
+  }
+};
+
+const keep = (inputs) => {
+  try {
+    sessionStorage.setItem(KEPT, JSON.stringify(inputs));
+  } catch {
+    // A browser that keeps nothing still works; only a reload forgets.
+  }
+};
+
+const changedAt = (tree, [key, ...rest], value) => {
+  const next = { ...(tree ?? {}) };
+  if (rest.length) next[key] = changedAt(next[key], rest, value);
+  else if (value === undefined) delete next[key];
+  else next[key] = value;
+  return next;
+};
+
+const freeze = (value) => {
+  const copy = structuredClone(value);
+  const seal = (each) => {
+    if (each && typeof each === "object") Object.values(Object.freeze(each)).forEach(seal);
+    return each;
+  };
+  return seal(copy);
+};

@@ -1,0 +1,60 @@
+/** Okabe and Ito's colours, each with a dash of its own, so that grey print and any eye keep them apart. */
+
+const STYLES = {
+  housner: { colour: "#0072B2", dash: [6, 4] },
+  ked: { colour: "#D55E00", dash: [] },
+  "horizontal-momentum": { colour: "#009E73", dash: [8, 3, 2, 3] },
+  "shifted-impulse": { colour: "#CC79A7", dash: [2, 3] },
+  "distributed-impulse": { colour: "#56B4E9", dash: [8, 2, 2, 2, 2, 2] },
+  "plastic-winkler": { colour: "#E69F00", dash: [10, 4] },
+  calibrated: { colour: "#8A8A8A", dash: [] },
+};
+
+const SPARE = [
+  { colour: "#8C6BB1", dash: [4, 2] },
+  { colour: "#A6761D", dash: [12, 3] },
+  { colour: "#4D9221", dash: [3, 2, 8, 2] },
+];
+
+const WORDS = {
+  housner: "Housner",
+  ked: "KED",
+  "horizontal-momentum": "horizontal momentum (cos\u00b2\u03b1)",
+  "shifted-impulse": "shifted impulse",
+  "distributed-impulse": "distributed impulse",
+  "plastic-winkler": "plastic Winkler",
+  calibrated: "calibrated",
+  fixed: "given value",
+};
+
+const given = new Map();
+
+/** Colour and dash of a restitution model's label, such as "ked" or "0.98*shifted-impulse:k=0.6". */
+export const modelStyle = (label) => STYLES[family(label)] ?? spare(String(label));
+
+/** The model's name in words, with its parameter if it has one. */
+export const modelWords = (label) => {
+  const text = String(label);
+  const name = family(text);
+  const parameter = text.includes(":") ? `, ${text.split(":")[1].replace("=", "\u00a0=\u00a0")}` : "";
+  const factor = text.includes("*") ? `${text.split("*")[0]}\u00a0\u00d7\u00a0` : "";
+  return WORDS[name] ? `${factor}${WORDS[name]}${parameter}` : text;
+};
+
+/** Colour for the n-th of several curves that are no models. */
+export const seriesStyle = (index) => Object.values(STYLES)[index % Object.keys(STYLES).length];
+
+/** Marker and words of the groups of published measurements. */
+export const GROUPS = {
+  table1: { marker: "square", words: "literature (Table 1)" },
+  S: { marker: "down", words: "specimens S" },
+  M: { marker: "circle", words: "specimens M" },
+  L: { marker: "up", words: "specimens L" },
+};
+
+const family = (label) => String(label).split("*").at(-1).split(":")[0].trim();
+
+const spare = (label) => {
+  if (!given.has(label)) given.set(label, SPARE[given.size % SPARE.length]);
+  return given.get(label);
+};

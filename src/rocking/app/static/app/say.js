@@ -1,0 +1,23 @@
+/** The status line: what happened, in words, for eyes and for screen readers. */
+
+import { el, fill } from "/app/dom.js";
+
+const SIGNS = { info: "\u2713", warning: "!", error: "\u2715" };
+let timer = 0;
+
+/** Say something in the status line. */
+export const say = (text, kind = "info") => {
+  const line = document.getElementById("status");
+  fill(line, el("span", { class: "sign", "aria-hidden": "true" }, SIGNS[kind] ?? ""), el("span", {}, text));
+  line.dataset.kind = kind;
+  line.hidden = false;
+  clearTimeout(timer);
+  timer = setTimeout(hush, kind === "error" ? 12_000 : 5_000);
+};
+
+/** Take the status line away. */
+export const hush = () => {
+  const line = document.getElementById("status");
+  line.hidden = true;
+  fill(line);
+};

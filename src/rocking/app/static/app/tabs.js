@@ -1,0 +1,34 @@
+/** The six steps as tabs: arrow keys move between them, as the ARIA practice has it. */
+
+/** Wire tabs to panels; calls onShow(name) after a change, and returns {show, current}. */
+export const createTabs = (list, onShow) => {
+  const tabs = [...list.querySelectorAll("[role=tab]")];
+  const nameOf = (tab) => tab.dataset.view;
+  let current = null;
+  const show = (name, { focus = false } = {}) => {
+    const chosen = tabs.find((tab) => nameOf(tab) === name) ?? tabs[0];
+    if (nameOf(chosen) === current) return;
+    const before = current;
+    current = nameOf(chosen);
+    for (const tab of tabs) {
+      tab.setAttribute("aria-selected", String(tab === chosen));
+      tab.tabIndex = tab === chosen ? 0 : -1;
+      document.getElementById(`view-${nameOf(tab)}`).hidden = tab !== chosen;
+    }
+    if (focus) chosen.focus();
+    onShow(current, before);
+  };
+  const move = (event) => {
+    const at = tabs.indexOf(event.target.closest("[role=tab]"));
+    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: tabs.length - 1 }[event.key];
+    if (at < 0 || to === undefined) return;
+    event.preventDefault();
+    show(nameOf(tabs[(to + tabs.length) % tabs.length]), { focus: true });
+  };
+  list.addEventListener("click", (event) => {
+    const tab = event.target.closest("[role=tab]");
+    if (tab) show(nameOf(tab));
+  });
+  list.addEventListener("keydown", move);
+  return { show, current: () => current, names: tabs.map(nameOf) };
+};

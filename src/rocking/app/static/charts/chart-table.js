@@ -1,0 +1,26 @@
+/** The same chart as a table, thinned for reading and whole for copying. */
+
+import { el, fill } from "/app/dom.js";
+import { tableOf } from "/app/table.js";
+
+const MOST = 60;
+
+/** A "show as table" part under a chart; refresh() after new data. */
+export const chartTable = ({ title, x, y, series }, dataOf) => {
+  const place = el("div", {});
+  const element = el("details", { class: "chart-table" }, el("summary", {}, "Show as table"), place);
+  const columns = [x, ...series.map((each) => ({ label: each.label, unit: y.unit }))];
+  const rowsOf = (every) => {
+    const data = dataOf();
+    return data[0].map((_, index) => index).filter((index) => index % every === 0)
+      .map((index) => data.map((column) => column[index] ?? null));
+  };
+  const refresh = () => {
+    if (!element.open) return;
+    const every = Math.max(1, Math.ceil(dataOf()[0].length / MOST));
+    const caption = every > 1 ? `${title}: every ${every}th sample; copying takes them all` : title;
+    fill(place, tableOf(columns, rowsOf(every), { caption, copyRows: () => rowsOf(1) }));
+  };
+  element.addEventListener("toggle", refresh);
+  return { element, refresh };
+};

@@ -1,0 +1,171 @@
+/** Line charts: uPlot inside, the page's colours outside, a table for those who do not see curves. */
+
+import uPlot from "/vendor/uplot/uPlot.esm.js";
+import { chartTable } from "/charts/chart-table.js";
+import { saveable } from "/charts/save.js";
+import { axes, colour, onTheme } from "/charts/style.js";
+import { el, fill, freshId } from "/app/dom.js";
+import { number, pretty } from "/app/format.js";
+
+/** Draw curves over one abscissa; see the returned object for what it can do. */
+export const lineChart = (container, options) => {
+  const { title, x, y, height = 220, bands } = options;
+  const id = freshId("chart");
+  const stage = el("div", { class: "chart-stage" });
+  const figure = el("figure", { class: "chart" },
+    el("figcaption", { id }, title), legendOf(options.series), stage);
+  container.append(figure);
+  let data = [[], ...options.series.map(() => [])];
+  let marks = {};
+  let hook = null;
+  let aim = null;
+  const table = chartTable(options, () => data);
+  figure.append(table.element);
+
+  const shown = el("p", { class: "chart-readout", "aria-hidden": "true" });
+  stage.after(shown);
+  const readout = (self) => {
+    const at = self.cursor.idx;
+    const values = at === null || at === undefined ? [] : data.map((column) => column[at]);
+    fill(shown, values.length ? words(options, values) : "\u00a0");
+  };
+
+  const plot = new uPlot({
+    width: widthOf(stage), height, bands,
+    legend: { show: false },
+    cursor: {
+      sync: options.sync ? { key: options.sync } : undefined, points: { size: 7 },
+      drag: { x: true, y: false },
+    },
+    scales: { x: { time: false, distr: x.log ? 3 : 1 }, y: scaleOf(y) },
+    axes: axes(x, y),
+    series: [{ label: axisWords(x) }, ...options.series.map(seriesOf)],
+    hooks: {
+      setCursor: [(self) => {
+        readout(self);
+        if (
+          self.cursor.idx !== null && self.cursor.idx !== undefined
+        ) hook?.(self.cursor.idx, data[0][self.cursor.idx]);
+      }],
+      draw: [(self) => drawMarks(self, marks, aim)],
+    },
+  }, data, stage);
+
+  const resize = () => plot.setSize({ width: widthOf(stage), height });
+  const observer = new ResizeObserver(() => widthOf(stage) !== plot.width && resize());
+  observer.observe(stage);
+  const forget = onTheme(() => plot.redraw(false, true));
+  stage.setAttribute("role", "img");
+
+  return {
+    plot,
+    element: figure,
+    setData: (next) => {
+      data = next;
+      plot.setData(next);
+      stage.setAttribute("aria-label", summary(options, next));
+      table.refresh();
+    },
+    setCursorHook: (fn) => (hook = fn),
+    setMarks: (next) => {
+      marks = next;
+      plot.redraw(false, true);
+    },
+    setAim: (value) => {
+      aim = value;
+      plot.redraw(false, false);
+    },
+    resize,
+    destroy: () => {
+      observer.disconnect();
+      forget();
+      plot.destroy();
+      figure.remove();
+    },
+    toPng: () => saveable(plot.ctx.canvas, title),
+  };
+};
+
+const widthOf = (stage) => Math.max(200, Math.floor(stage.clientWidth));
+
+const axisWords = ({ label, unit }) => (unit && unit !== "-" ? `${label} [${pretty(unit)}]` : label);
+
+const scaleOf = (y) => {
+  if (y.log) return { distr: 3 };
+  return y.range ? { range: y.range } : {};
+};
+
+const seriesOf = ({ label, colour: paint, dash, width = 1.6, points = false }) => ({
+  label,
+  stroke: () => colour(paint),
+  width,
+  dash: dash?.length ? dash : undefined,
+  spanGaps: false,
+  points: { show: points, size: 5 },
+});
+
+const legendOf = (series) => {
+  if (series.length < 2) return null;
+  return el("ul", { class: "legend" }, series.map((each) => el("li", {}, legendKey(each), each.label)));
+};
+
+const legendKey = ({ colour: paint, dash }) => {
+  const key = el("span", { class: "legend-key", "aria-hidden": "true" });
+  key.style.borderTopColor = paint.startsWith("--") ? `var(${paint})` : paint;
+  key.style.borderTopStyle = dash?.length ? (dash[0] < 4 ? "dotted" : "dashed") : "solid";
+  return key;
+};
+
+const words = ({ x, y, series }, [at, ...values]) =>
+  [`${x.label} ${number(at)} ${pretty(x.unit ?? "")}`]
+    .concat(values.map((value, index) => `${series[index].label} ${number(value)} ${pretty(y.unit ?? "")}`))
+    .join(" \u00b7 ");
+
+const summary = ({ title, x, y, series }, [xs, ...columns]) => {
+  if (!xs.length) return `${title}: no data yet`;
+  const ranges = columns.map((column, index) => {
+    const [low, high] = extremes(column);
+    return `${series[index].label} from ${number(low)} to ${number(high)} ${y.unit ?? ""}`;
+  });
+  const span = `${number(xs[0])} to ${number(xs.at(-1))} ${x.unit ?? ""}`;
+  return `${title}, over ${x.label} from ${span}: ${ranges.join("; ")}`;
+};
+
+const extremes = (column) => {
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of column) {
+    if (value === null || value === undefined) continue;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return [low, high];
+};
+
+const drawMarks = (self, { vertical = [], horizontal = [] }, aim) => {
+  const { ctx } = self;
+  const { left, top, width, height } = self.bbox;
+  ctx.save();
+  ctx.lineWidth = devicePixelRatio;
+  const line = (paint, dash, ...ends) => {
+    ctx.strokeStyle = colour(paint);
+    ctx.setLineDash(dash.map((each) => each * devicePixelRatio));
+    ctx.beginPath();
+    ctx.moveTo(ends[0], ends[1]);
+    ctx.lineTo(ends[2], ends[3]);
+    ctx.stroke();
+  };
+  const inside = (place, from, span) => place >= from && place <= from + span;
+  for (const value of vertical) {
+    const at = self.valToPos(value, "x", true);
+    if (inside(at, left, width)) line("--mark", [2, 3], at, top, at, top + height);
+  }
+  for (const value of horizontal) {
+    const at = self.valToPos(value, "y", true);
+    if (inside(at, top, height)) line("--mark-strong", [6, 4], left, at, left + width, at);
+  }
+  if (aim !== null && aim !== undefined) {
+    const at = self.valToPos(aim, "x", true);
+    if (inside(at, left, width)) line("--accent", [], at, top, at, top + height);
+  }
+  ctx.restore();
+};

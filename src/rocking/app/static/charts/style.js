@@ -1,0 +1,44 @@
+/** The page's colours for canvases, and the look of the axes. */
+
+import { number, pretty } from "/app/format.js";
+
+const resolved = new Map();
+
+/** A colour as a canvas takes it; "--name" is a variable of the page. */
+export const colour = (paint) => {
+  if (!paint?.startsWith("--") && !paint?.startsWith("var(")) return paint ?? colour("--ink");
+  const name = paint.replace(/^var\(|\)$/g, "");
+  if (!resolved.has(name)) resolved.set(
+    name, getComputedStyle(document.documentElement).getPropertyValue(name).trim()
+  );
+  return resolved.get(name);
+};
+
+const listeners = new Set();
+document.addEventListener("rocking:theme", () => {
+  resolved.clear();
+  listeners.forEach((each) => each());
+});
+
+/** Run a function whenever the page turns light or dark; returns how to stop. */
+export const onTheme = (listener) => {
+  listeners.add(listener);
+  return () => listeners.delete(listener);
+};
+
+/** The two axes of a chart. */
+export const axes = (x, y) => [
+  { ...look(x), size: 44, space: 60 },
+  { ...look(y), size: 62, space: 34 },
+];
+
+const look = ({ label, unit, log }) => ({
+  label: unit && unit !== "-" ? `${label} [${pretty(unit)}]` : label,
+  labelSize: 18,
+  labelFont: "12px system-ui, sans-serif",
+  font: "12px system-ui, sans-serif",
+  stroke: () => colour("--ink-soft"),
+  grid: { stroke: () => colour("--grid"), width: 1 },
+  ticks: { stroke: () => colour("--grid"), width: 1, size: 4 },
+  values: (_, ticks) => ticks.map((each) => (each === null ? "" : number(each, log ? 1 : 6))),
+});

@@ -1,0 +1,89 @@
+/** The body to scale: outline, centre of mass, feet, slenderness angle and semi-diagonal. */
+
+import { svg } from "/app/dom.js";
+import { number, quantity } from "/app/format.js";
+import { pointsOf, regionPaths } from "/drawing/outline.js";
+import { arc, centreMark, footMark, groundLine, words } from "/drawing/symbols.js";
+import { boxOf, roundStep, viewport } from "/drawing/viewport.js";
+
+/** Draw a body from its facts; `plain` leaves out the words. */
+export const bodyPicture = (body, { width = 208, height = 360, plain = false } = {}) => {
+  const view = viewport(boxOf(everything(body)), {
+    width, height, margin: plain ? { bottom: 20 } : { left: 20, right: 20, top: 22, bottom: 56 },
+  });
+  const floor = view.y(groundOf(body));
+  return svg("svg", {
+    class: "picture body-picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
+    "aria-label": inWords(body), ...(plain ? {} : { "data-testid": "body-picture" }),
+  },
+    groundLine(6, width - 6, floor),
+    regionPaths(body.outline, view),
+    massDots(body.points ?? [], view),
+    plain ? null : sidesOf(body).map(([side, foot, sign]) => sideDrawing(body, side, foot, sign, view)),
+    body.feet_m.map((foot) => footMark(view.x(foot), floor)),
+    centreMark(view.x(body.centre_m[0]), view.y(body.centre_m[1])),
+    plain ? null : scaleBar(view, width, height));
+};
+
+/** The height on which the feet stand [m]. */
+export const groundOf = (body) => body.base?.ground ?? 0;
+
+const everything = (body) => [
+  ...pointsOf(body.outline), ...(body.points ?? []), body.centre_m, ...body.feet_m.map(
+    (foot) => [foot, groundOf(body)]
+  ),
+];
+
+/** Whether both feet see the same body, rounding aside. */
+export const sameSides = ({ left, right }) =>
+  Object.keys(left).every((key) => Math.abs(left[key] - right[key]) <= 1e-9 * Math.abs(right[key]));
+
+// Equal sides are drawn once, over the right foot.
+const sidesOf = ({ sides, feet_m: feet }) => {
+  const right = [sides.right, feet[1], -1];
+  return sameSides(sides) ? [right] : [[sides.left, feet[0], 1], right];
+};
+
+const sideDrawing = (body, side, foot, sign, view) => {
+  const [x, y] = [view.x(foot), view.y(groundOf(body))];
+  const centre = [view.x(body.centre_m[0]), view.y(body.centre_m[1])];
+  const rise = y - centre[1];
+  const radius = Math.max(18, Math.min(0.55 * rise, 90));
+  const outside = { "text-anchor": sign > 0 ? "end" : "start" };
+  const beside = x - sign * 12;
+  return svg("g", {},
+    svg("path", { class: "thin dashed", d: `M${x} ${y}V${centre[1] - 10}` }),
+    svg("path", { class: "accent-line", d: `M${x} ${y}L${centre[0]} ${centre[1]}` }),
+    arc(x, y, radius, sign * side.slenderness_angle_rad),
+    words(beside, y - radius - 8, `\u03b1 = ${degrees(side.slenderness_angle_rad)}`, outside),
+    words(beside, y - radius + 12, `R = ${quantity(side.semi_diagonal_m, "m")}`, outside));
+};
+
+const massDots = (points, view) => {
+  const heaviest = Math.max(...points.map((each) => each[2]));
+  return points.map(([x, y, mass]) =>
+    svg(
+      "circle",
+      { class: "region", cx: view.x(x), cy: view.y(y), r: Math.max(2, 9 * Math.sqrt(mass / heaviest)) },
+    ));
+};
+
+const degrees = (angle) => quantity((angle * 180) / Math.PI, "\u00b0");
+
+const scaleBar = (view, width, height) => {
+  const length = roundStep(width / view.scale, 5) / 2;
+  const span = length * view.scale;
+  const [x, y] = [width - 14 - span, height - 12];
+  return svg("g", { class: "scale-bar" },
+    svg("path", { class: "thin", d: `M${x} ${y - 4}v4h${span}v-4` }),
+    svg("text", { class: "soft", x: x - 6, y: y + 1, "text-anchor": "end" }, quantity(length, "m", 3)));
+};
+
+const inWords = (body) => {
+  const { left, right } = body.sides;
+  const [x, y] = body.centre_m;
+  const [leftAngle, rightAngle] = [left, right].map((side) => degrees(side.slenderness_angle_rad));
+  const feet = body.feet_m.map((each) => number(each)).join(" and ");
+  return `Body to scale: centre of mass at x ${number(x)} m, y ${number(y)} m, feet at ${feet} m, `
+    + `slenderness angle ${leftAngle} to the left and ${rightAngle} to the right.`;
+};

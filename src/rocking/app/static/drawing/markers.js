@@ -1,0 +1,16 @@
+/** Markers of the published measurements, the same shapes as in print. */
+
+import { svg } from "/app/dom.js";
+
+const SHAPES = {
+  square: (r) => `M${-r} ${-r}H${r}V${r}H${-r}Z`,
+  up: (r) => `M0 ${-1.2 * r}L${1.15 * r} ${0.9 * r}H${-1.15 * r}Z`,
+  down: (r) => `M0 ${1.2 * r}L${1.15 * r} ${-0.9 * r}H${-1.15 * r}Z`,
+  circle: (r) => `M${-r} 0A${r} ${r} 0 1 0 ${r} 0A${r} ${r} 0 1 0 ${-r} 0Z`,
+};
+
+/** A marker at a place. */
+export const marker = (shape, x, y, radius = 4.5, attributes = {}) =>
+  svg(
+    "path", { class: "marker", d: SHAPES[shape](radius), transform: `translate(${x} ${y})`, ...attributes },
+  );

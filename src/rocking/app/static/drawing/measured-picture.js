@@ -1,0 +1,54 @@
+/** The published measurements over slenderness, the models' curves, and where this body stands. */
+
+import { svg } from "/app/dom.js";
+import { number } from "/app/format.js";
+import { GROUPS, modelStyle, modelWords } from "/app/palette.js";
+import { axisOf, bottomAxis, leftAxis } from "/drawing/axis.js";
+import { marker } from "/drawing/markers.js";
+
+/** Draw {measured: [{slenderness_ratio, coefficient, low, high, group}], curves, rows, slenderness}. */
+export const measuredPicture = ({ measured, curves, rows, slenderness }, { width, height = 380 }) => {
+  const all = [...measured.map((each) => each.slenderness_ratio), slenderness];
+  const values = [...measured.map((each) => each.coefficient), ...rows.map((each) => each.value)];
+  const x = axisOf(0, Math.max(...all) * 1.06, 60, width - 14, width < 500 ? 5 : 8);
+  const y = axisOf(Math.max(0, Math.floor(Math.min(...values) * 10 - 0.3) / 10), 1.005, height - 48, 12, 6);
+  const frame = { left: 60, right: width - 14, top: 12, bottom: height - 48 };
+  return svg("svg", {
+    class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
+    "data-testid": "measured-picture",
+    "aria-label": `${measured.length} published measurements of the coefficient of restitution `
+      + `over slenderness, and this body at h/b ${number(slenderness)} under ${rows.length} models.`,
+  },
+    bottomAxis(x, { ...frame, label: "slenderness ratio h/b" }),
+    leftAxis(y, { ...frame, label: "coefficient of restitution r" }),
+    curves.map((each) => curve(each, x, y)),
+    svg("path", { class: "thin dashed", d: `M${x.at(slenderness)} ${frame.top}V${frame.bottom}` }),
+    measured.map((each) => point(each, x, y)),
+    rows.map(({ model, value }) => value < y.low ? null
+      : svg("circle", {
+        cx: x.at(slenderness), cy: y.at(value), r: 6, fill: modelStyle(model).colour, class: "dot-halo",
+      },
+        svg("title", {}, `${modelWords(model)}: ${number(value)}`))));
+};
+
+const curve = ({ model, slenderness_ratio: ratios, coefficient }, x, y) => {
+  const { colour, dash } = modelStyle(model);
+  const places = ratios.map((each, index) => [each, coefficient[index]])
+    .filter(([ratio, value]) => ratio <= x.high && value !== null && value >= y.low)
+    .map(([ratio, value]) => `${x.at(ratio)} ${y.at(value)}`);
+  return places.length < 2 ? null : svg("path", {
+    d: `M${places.join("L")}`, fill: "none", stroke: colour, "stroke-width": 1.75,
+    "stroke-dasharray": dash.join(" "),
+  });
+};
+
+const point = (each, x, y) => {
+  const { marker: shape, words } = GROUPS[each.group] ?? { marker: "circle", words: each.group };
+  const [px, py] = [x.at(each.slenderness_ratio), y.at(each.coefficient)];
+  const bar = each.low === undefined || each.low === null || each.low === each.high ? null
+    : svg(
+      "path", { class: "marker-bar", d: `M${px} ${y.at(each.low)}V${y.at(Math.min(each.high, y.high))}` },
+    );
+  return svg("g", {}, bar, marker(shape, px, py),
+    svg("title", {}, `${words}: h/b ${number(each.slenderness_ratio)}, r ${number(each.coefficient)}`));
+};

@@ -1,0 +1,24 @@
+/** Regions of a body as SVG paths. */
+
+import { svg } from "/app/dom.js";
+
+/** The path text of rings of points. */
+export const pathOf = (rings, view) =>
+  rings.map(
+    (ring) => `M${ring.map(([x, y]) => `${round(view.x(x))} ${round(view.y(y))}`).join("L")}Z`
+  ).join("");
+
+/** One path for each region; a lighter region is drawn fainter. */
+export const regionPaths = (regions, view, attributes = {}) => {
+  const densest = Math.max(...regions.map((each) => each.density ?? 1));
+  return regions.map(({ outline, holes = [], density }) =>
+    svg("path", {
+      class: "region", d: pathOf([outline, ...(holes ?? [])], view), "fill-rule": "evenodd",
+      "fill-opacity": round(0.45 + 0.55 * ((density ?? densest) / densest)), ...attributes,
+    }));
+};
+
+/** Every point of every outline. */
+export const pointsOf = (regions) => regions.flatMap((each) => each.outline);
+
+const round = (value) => Math.round(value * 100) / 100;

@@ -1,0 +1,57 @@
+/** One row for each model: a dot, its interval, and its value in figures. */
+
+import { svg } from "/app/dom.js";
+import { number } from "/app/format.js";
+import { modelStyle, modelWords } from "/app/palette.js";
+import { axisOf, bottomAxis } from "/drawing/axis.js";
+
+const ROW = 34;
+
+/** Rows {model, value, low?, high?} on one axis {low, high, label}; `extras(axis, frame)` draws beneath. */
+export const rowPicture = (
+  rows, { width, domain, label, testid, title, extras, extraHeight = 0, digits = 4 },
+) => {
+  const narrow = width < 560;
+  const left = narrow ? 8 : 208;
+  const each = narrow ? ROW + 18 : ROW;
+  const bottom = 12 + rows.length * each + extraHeight;
+  const height = bottom + 44;
+  const axis = axisOf(...domain, left + 8, width - (narrow ? 10 : 70), narrow ? 4 : 7);
+  const frame = { top: 8, bottom, left, width, rowsEnd: 12 + rows.length * each };
+  return svg("svg", {
+    class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "data-testid": testid,
+    "aria-label": `${title}: ${rows.map((row) => `${modelWords(row.model)} ${inWords(row)}`).join("; ")}`,
+  },
+    bottomAxis(axis, { top: frame.top, bottom, label }),
+    extras?.(axis, frame),
+    rows.map(
+      (row, index) => oneRow(
+        row, axis, { narrow, width, left, y: 12 + index * each + (narrow ? 34 : ROW / 2), digits },
+      )
+    ));
+};
+
+const oneRow = ({ model, value, low, high }, axis, { narrow, width, left, y, digits }) => {
+  const { colour, dash } = modelStyle(model);
+  const inside = (each) => axis.at(Math.min(axis.high, Math.max(axis.low, each)));
+  return svg("g", {},
+    svg(
+      "text", narrow ? { x: 8, y: y - 15 } : { x: left - 12, y: y + 4, "text-anchor": "end" },
+      modelWords(model),
+    ),
+    svg(
+      "text", { x: width - 4, y: narrow ? y - 15 : y + 4, "text-anchor": "end", class: "figure halo" },
+      number(value, digits),
+    ),
+    low === undefined ? null : svg("path", {
+      d: `M${inside(low)} ${y}H${inside(high)}`, stroke: colour, "stroke-width": 3,
+      "stroke-dasharray": dash.join(" "), fill: "none",
+    }),
+    low === undefined ? null : svg("path", {
+      d: `M${inside(low)} ${y - 5}v10M${inside(high)} ${y - 5}v10`, stroke: colour, "stroke-width": 1.5,
+    }),
+    svg("circle", { cx: inside(value), cy: y, r: 6, fill: colour, class: "dot-halo" }));
+};
+
+const inWords = ({ value, low, high }) =>
+  low === undefined ? number(value) : `${number(value)}, 95 % interval ${number(low)} to ${number(high)}`;

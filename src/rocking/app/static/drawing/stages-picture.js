@@ -1,0 +1,57 @@
+/** The three stages of KED: the same body with the velocities that each stage leaves. */
+
+import { el, svg } from "/app/dom.js";
+import { percent } from "/app/format.js";
+import { groundOf } from "/drawing/body-picture.js";
+import { pointsOf, regionPaths } from "/drawing/outline.js";
+import { arrow, footMark, groundLine } from "/drawing/symbols.js";
+import { boxOf, viewport } from "/drawing/viewport.js";
+
+export const STAGE_WORDS = {
+  before: ["Before", "turning about the old foot"],
+  "stage 1": ["Stage 1", "the vertical part is lost"],
+  "stage 2": ["Stage 2", "the part towards the new foot is lost"],
+  after: ["After", "the rest turns about the new foot"],
+};
+
+/** Draw panels for {points, stages: [{name, share, velocities}]}, all with one scale of arrows. */
+export const stagesPicture = (body, field, foot, { width }) => {
+  const columns = width < 520 ? 2 : 4;
+  const panel = Math.floor((width - (columns - 1) * 12) / columns) - 18;
+  const fastest = Math.max(
+    ...field.stages.flatMap((each) => each.velocities.map(([vx, vy]) => Math.hypot(vx, vy)))
+  );
+  const reach = 0.16 * Math.min(panel, 300);
+  return el("div", { class: `stages columns-${columns}`, "data-testid": "stages-picture" },
+    field.stages.map(
+      (stage) => onePanel(body, field.points, stage, foot, { width: panel, pixels: reach / (fastest || 1) })
+    ));
+};
+
+const onePanel = (body, points, { name, share, velocities }, foot, { width, pixels }) => {
+  const height = Math.min(320, Math.max(220, width * 1.3));
+  const view = viewport(boxOf(
+    [...pointsOf(body.outline), ...(body.points ?? []), ...body.feet_m.map((each) => [each, groundOf(body)])]
+  ), {
+    width, height, margin: { left: 26, right: 26, top: 26, bottom: 26 },
+  });
+  const floor = view.y(groundOf(body));
+  const [title, words] = STAGE_WORDS[name] ?? [name, ""];
+  const foothold = name === "before" ? body.feet_m[
+    foot === "right" ? 0 : 1,
+  ] : body.feet_m[foot === "right" ? 1 : 0];
+  return el("figure", { class: "stage" },
+    svg("svg", {
+      class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",
+      "aria-label": `${title}: ${words}; ${percent(share)} of the kinetic energy is there.`,
+    },
+      groundLine(4, width - 4, floor),
+      regionPaths(body.outline, view, { class: "region faint" }),
+      footMark(view.x(foothold), floor),
+      svg("g", { class: `stage-arrows ${name.replace(" ", "-")}` }, points.map(([x, y], index) =>
+        arrow(view.x(x), view.y(y), velocities[index][0] * pixels, -velocities[index][1] * pixels)))),
+    el(
+      "figcaption", {}, el("strong", {}, title), el("span", {}, words),
+      el("span", { class: "share" }, percent(share)),
+    ));
+};

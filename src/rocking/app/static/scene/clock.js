@@ -1,0 +1,42 @@
+/** The time of the animation: runs at a speed, stops at the end, goes where it is told. */
+
+const LONGEST_FRAME = 0.1;
+
+/** Seconds of the history, run by the seconds of the screen. */
+export class Clock {
+  constructor() {
+    this.now = 0;
+    this.end = 0;
+    this.speed = 1;
+    this.running = false;
+    this.before = -1;
+  }
+
+  /** Starts, from the beginning if it stood at the end. */
+  start() {
+    if (this.now >= this.end) this.now = 0;
+    this.running = this.end > 0;
+    this.before = -1;
+  }
+
+  /** Stops where it is. */
+  stop() {
+    this.running = false;
+  }
+
+  /** Goes on by the time between two frames [ms]; a page that was hidden does not jump. */
+  tick(stamp) {
+    if (this.before >= 0) this.now += Math.min((stamp - this.before) / 1000, LONGEST_FRAME) * this.speed;
+    this.before = stamp;
+    if (this.now >= this.end) {
+      this.now = this.end;
+      this.running = false;
+    }
+  }
+
+  /** Goes to an instant [s]. */
+  seek(instant) {
+    this.now = Math.min(Math.max(instant, 0), this.end);
+    this.before = -1;
+  }
+}

@@ -1,0 +1,100 @@
+/** Play, speed, scrubbing and what the ground does: the controls under the stage. */
+import { el, svg } from "/app/dom.js";
+
+const SPEEDS = [
+  ["2", "2\u00d7"],
+  ["1", "1\u00d7, real speed"],
+  ["0.5", "0.5\u00d7"],
+  ["0.1", "0.1\u00d7, slow motion"],
+  ["0.01", "0.01\u00d7"],
+];
+const GROUNDS = [
+  ["true", "as it moves"],
+  ["magnified", "larger, to be seen"],
+  ["ride", "ride with it"],
+];
+const PLAY = "M3 1.5v13l11-6.5z";
+const PAUSE = "M3 1.5h3.6v13H3zM9.4 1.5H13v13H9.4z";
+const DEGREES = 180 / Math.PI;
+
+const fixed = (value, digits) => {
+  const text = Math.abs(value).toFixed(digits);
+  return value < 0 && Number(text) > 0 ? `\u2212${text}` : text;
+};
+
+const choice = (label, options, value, testid, onChange) => {
+  const items = options.map(([key, text]) => el("option", { value: key }, text));
+  const select = el("select", { "data-testid": testid }, ...items);
+  select.value = value;
+  select.addEventListener("change", () => onChange(select.value));
+  return el("label", { class: "scene-choice" }, el("span", {}, label), select);
+};
+
+const playButton = (onToggle) => {
+  const path = svg("path", { d: PLAY, fill: "currentColor" });
+  const icon = svg("svg", { viewBox: "0 0 16 16", width: "16", height: "16", "aria-hidden": "true" }, path);
+  const words = el("span", {}, "Play");
+  const button = el(
+    "button",
+    { type: "button", class: "button primary scene-play", "data-testid": "scene-play", title: "Space" },
+    icon,
+    words,
+  );
+  button.addEventListener("click", onToggle);
+  const tellRunning = (running) => {
+    path.setAttribute("d", running ? PAUSE : PLAY);
+    words.textContent = running ? "Pause" : "Play";
+    button.dataset.running = String(running);
+  };
+  return [button, tellRunning];
+};
+
+const scrubber = (onSeek) => {
+  const range = el("input", {
+    type: "range",
+    class: "scene-time",
+    min: "0",
+    max: "1000",
+    step: "1",
+    value: "0",
+    "aria-label": "Instant of the animation",
+    "data-testid": "scene-time",
+  });
+  range.addEventListener("input", () => onSeek(Number(range.value) / 1000));
+  return range;
+};
+
+/** Returns the controls: their element, and how to tell them what is so. */
+export const controlsOf = ({ onToggle, onSeek, onSpeed, onGround }) => {
+  const [button, tellRunning] = playButton(onToggle);
+  const range = scrubber(onSeek);
+  const time = el("output", { class: "scene-now", "data-testid": "scene-now" }, "0.000 s");
+  const place = el("output", { class: "scene-place", "data-testid": "scene-rotation" });
+  const factor = el("span", { class: "scene-factor", "aria-live": "polite" });
+  const element = el(
+    "div",
+    { class: "scene-controls" },
+    el("div", { class: "scene-row" }, button, range),
+    el("div", { class: "scene-row scene-readout" }, time, place, factor),
+    el(
+      "div",
+      { class: "scene-row" },
+      choice("Speed", SPEEDS, "1", "scene-speed", (text) => onSpeed(Number(text))),
+      choice("Ground", GROUNDS, "true", "scene-ground", onGround),
+    ),
+  );
+  const tell = (now, end, rotation, share) => {
+    range.value = String(end > 0 ? (1000 * now) / end : 0);
+    time.textContent = `${now.toFixed(3)} s`;
+    place.textContent = `\u03b8 = ${fixed(rotation * DEGREES, 2)}\u00b0, ${fixed(share, 2)} of \u03b1`;
+    const degrees = fixed(rotation * DEGREES, 1);
+    range.setAttribute("aria-valuetext", `${now.toFixed(2)} seconds, ${degrees} degrees`);
+  };
+  const tellGround = (mode, times, rides) => {
+    const far = "the ground moves far: the picture rides with it";
+    const magnified = times === 1 ? "" : `ground and body shift ${times} times as far as in truth`;
+    const words = mode !== "ride" && rides ? far : magnified;
+    if (factor.textContent !== words) factor.textContent = words;
+  };
+  return { element, tell, tellRunning, tellGround };
+};

@@ -1,0 +1,20 @@
+/** Counts frames and what their script costs; tests and the curious read `window.rockingFrames`. */
+
+const meter = { count: 0, lastMs: 0, meanMs: 0, worstMs: 0 };
+window.rockingFrames = meter;
+
+/** Notes one frame that took so many milliseconds of script. */
+export const noteFrame = (milliseconds) => {
+  meter.count += 1;
+  meter.lastMs = milliseconds;
+  meter.meanMs += (milliseconds - meter.meanMs) / meter.count;
+  if (milliseconds > meter.worstMs) meter.worstMs = milliseconds;
+};
+
+/** Starts counting anew. */
+export const resetFrames = () => {
+  meter.count = 0;
+  meter.lastMs = 0;
+  meter.meanMs = 0;
+  meter.worstMs = 0;
+};

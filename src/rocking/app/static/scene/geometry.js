@@ -1,0 +1,64 @@
+/** Where the points of a rocking body are: positive rotation is clockwise, about the right foot. */
+
+/** Returns the turn [rad] after which a body that tips over its right (side 1) or left (-1) foot lies. */
+export const lyingAngle = (corners, foot, side) => {
+  let least = Math.PI;
+  for (const [x, y] of corners) {
+    const ahead = side * (x - foot);
+    const far = Math.hypot(ahead, y);
+    if (y > 1e-9 * far && far > 0) least = Math.min(least, Math.atan2(y, ahead));
+  }
+  return least;
+};
+
+/** Returns where a point of the body is once the body has turned about the foot that it stands on. */
+export const turned = (x, y, rotation, feet) => {
+  const pivot = rotation > 0 ? feet[1] : feet[0];
+  const c = Math.cos(rotation);
+  const s = Math.sin(rotation);
+  return [pivot + c * (x - pivot) + s * y, -s * (x - pivot) + c * y];
+};
+
+/** Returns every vertex and mass point of a shape, its feet and its centre, as [[x, y]]. */
+export const cornersOf = (shape) => {
+  const corners = shape.regions.flatMap((region) => region.outline);
+  const feet = shape.feet.map((x) => [x, 0]);
+  return [...corners, ...shape.points.map(([x, y]) => [x, y]), ...feet, shape.centre];
+};
+
+const DIRECTIONS = 48;
+
+/** Returns the few points of many that reach farthest, one for each of some directions. */
+export const farthest = (corners) => {
+  const found = new Set();
+  for (let k = 0; k < DIRECTIONS; k += 1) {
+    const c = Math.cos((2 * Math.PI * k) / DIRECTIONS);
+    const s = Math.sin((2 * Math.PI * k) / DIRECTIONS);
+    let best = corners[0];
+    for (const corner of corners) if (c * corner[0] + s * corner[1] > c * best[0] + s * best[1]) best = corner;
+    found.add(best);
+  }
+  return [...found];
+};
+
+const reached = (corners, rotations, feet, shifts) => {
+  const box = { left: Infinity, right: -Infinity, low: 0, high: -Infinity };
+  rotations.forEach((rotation, k) => {
+    for (const [x, y] of corners) {
+      const [X, Y] = turned(x, y, rotation, feet);
+      box.left = Math.min(box.left, X + shifts[k]);
+      box.right = Math.max(box.right, X + shifts[k]);
+      box.low = Math.min(box.low, Y);
+      box.high = Math.max(box.high, Y);
+    }
+  });
+  return box;
+};
+
+/** Returns the box {left, right, low, high} [m] that holds the body in all these poses. */
+export const boxOf = (shape, poses) => {
+  const corners = farthest(cornersOf(shape));
+  const rotations = [0, ...poses.map(({ rotation }) => rotation)];
+  const shifts = [0, ...poses.map(({ ground }) => ground)];
+  return reached(corners, rotations, shape.feet, shifts);
+};

@@ -1,0 +1,166 @@
+/** The player: stage, strip and controls, driven by one clock. */
+import { el } from "/app/dom.js";
+import { onTheme } from "/charts/style.js";
+import { Clock } from "/scene/clock.js";
+import { controlsOf } from "/scene/controls.js";
+import { noteFrame, resetFrames } from "/scene/frames.js";
+import { Stage } from "/scene/stage.js";
+import { Strip } from "/scene/strip.js";
+
+const READOUT_MS = 66;
+
+/** A rocking body that one can play, slow down and scrub. */
+export class Player {
+  constructor() {
+    this.clock = new Clock();
+    this.touched = false;
+    this.lead = 0;
+    this.groundMode = "true";
+    this.told = 0;
+    const seen = { role: "img", tabindex: "0", "data-testid": "scene-stage" };
+    const stage = el("canvas", { class: "scene-stage", ...seen });
+    const strip = el("canvas", { class: "scene-strip", "aria-hidden": "true" });
+    this.controls = controlsOf({
+      onToggle: () => this.toggle(),
+      onSeek: (share) => this.seek(share * this.clock.end),
+      onSpeed: (speed) => this.setSpeed(speed),
+      onGround: (mode) => {
+        this.setGround(mode);
+        this.draw();
+      },
+    });
+    this.stageCanvas = stage;
+    this.element = el("div", { class: "scene", "data-testid": "scene" }, stage, strip, this.controls.element);
+    this.stage = new Stage(stage);
+    this.strip = new Strip(strip, (instant) => this.seek(instant));
+    this.frame = this.frame.bind(this);
+    stage.addEventListener("keydown", (event) => this.onKey(event));
+    new ResizeObserver(() => this.resize()).observe(this.element);
+    onTheme(() => this.repaint());
+  }
+
+  /** Takes a new answer; what was being played goes on at the same instant. */
+  show(play, lead) {
+    this.play = play;
+    this.lead = lead;
+    this.clock.end = play.end;
+    if (!this.touched) this.clock.now = Math.min(play.rest, play.end);
+    this.clock.now = Math.min(this.clock.now, play.end);
+    this.setGround(this.groundMode);
+    this.strip.show(play, lead);
+    this.stageCanvas.setAttribute("aria-label", play.words);
+    this.draw();
+  }
+
+  /** Shows the ground as it moves, larger than it moves, or rides with it. */
+  setGround(mode) {
+    this.groundMode = mode;
+    if (!this.play) return;
+    this.stage.show(this.play, this.lead, mode);
+    this.controls.tellGround(mode, this.stage.factor, this.stage.rides);
+  }
+
+  /** Runs at so many seconds of the history in a second of the screen. */
+  setSpeed(speed) {
+    this.clock.speed = speed;
+    if (!this.clock.running) this.draw();
+  }
+
+  /** Starts or stops. */
+  toggle() {
+    if (this.clock.running) this.pause();
+    else this.start();
+  }
+
+  /** Starts; from the beginning the first time, whatever was shown to look at. */
+  start() {
+    if (!this.play) return;
+    if (!this.touched) this.clock.now = 0;
+    this.touched = true;
+    this.clock.start();
+    resetFrames();
+    this.controls.tellRunning(this.clock.running);
+    requestAnimationFrame(this.frame);
+  }
+
+  /** Stops. */
+  pause() {
+    this.clock.stop();
+    this.controls.tellRunning(false);
+    this.tell();
+  }
+
+  /** Goes to an instant [s] and stops there. */
+  seek(instant) {
+    this.touched = true;
+    this.clock.seek(instant);
+    this.pause();
+    this.draw();
+  }
+
+  /** Shows an instant that a pointer rests on elsewhere, unless the animation runs. */
+  glance(instant) {
+    if (this.clock.running || !this.play) return;
+    this.clock.seek(instant);
+    this.touched = true;
+    this.draw();
+  }
+
+  /** Draws one frame and asks for the next. */
+  frame(stamp) {
+    if (!this.clock.running) return;
+    const started = performance.now();
+    this.clock.tick(stamp);
+    this.stage.draw(this.clock.now, this.clock.speed);
+    this.strip.draw(this.clock.now);
+    if (stamp - this.told > READOUT_MS || !this.clock.running) {
+      this.told = stamp;
+      this.tell();
+    }
+    noteFrame(performance.now() - started);
+    if (this.clock.running) requestAnimationFrame(this.frame);
+    else this.controls.tellRunning(false);
+  }
+
+  /** Writes instant and rotation in numbers. */
+  tell() {
+    if (!this.play) return;
+    const { now, end } = this.clock;
+    const actor = this.play.actors[this.lead];
+    this.controls.tell(now, end, actor.rotation.at(now), actor.share.at(now));
+  }
+
+  draw() {
+    if (!this.play) return;
+    this.stage.draw(this.clock.now, this.clock.speed);
+    this.strip.draw(this.clock.now);
+    this.tell();
+  }
+
+  resize() {
+    this.stage.resize();
+    this.strip.resize();
+    this.draw();
+  }
+
+  repaint() {
+    this.stage.repaint();
+    this.strip.repaint();
+    this.draw();
+  }
+
+  /** Moves by keys while the stage has the focus. */
+  onKey(event) {
+    const { now, end, speed } = this.clock;
+    const stride = event.shiftKey ? 0.5 : Math.max(speed, 0.1) / 30;
+    const does = {
+      ArrowRight: () => this.seek(now + stride),
+      ArrowLeft: () => this.seek(now - stride),
+      Home: () => this.seek(0),
+      End: () => this.seek(end),
+    }[event.key];
+    if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    does();
+  }
+}

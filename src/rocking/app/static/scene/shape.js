@@ -1,0 +1,36 @@
+/** The body as the scene draws it: paths once, so that a frame only moves them. */
+
+const ringInto = (path, ring) => {
+  ring.forEach(([x, y], k) => (k ? path.lineTo(x, y) : path.moveTo(x, y)));
+  path.closePath();
+};
+
+const pathOf = (region) => {
+  const path = new Path2D();
+  ringInto(path, region.outline);
+  for (const hole of region.holes) ringInto(path, hole);
+  return path;
+};
+
+/**
+ * Returns the shape of a body of the API: regions with their shade, mass points, feet and centre in metres, the
+ * ground at y = 0 and the middle between the feet at x = 0.
+ */
+export const shapeOf = ({ outline, base, ground = 0, points = [], centre }) => {
+  const feet = Array.isArray(base[0]) ? base.map(([x]) => x) : base;
+  const middle = 0.5 * (feet[0] + feet[1]);
+  const moved = (ring) => ring.map(([x, y]) => [x - middle, y - ground]);
+  const densest = Math.max(...outline.map(({ density }) => density || 0), 0);
+  const heaviest = Math.max(...points.map(([, , mass]) => mass || 0), 0);
+  const regions = outline.map(({ outline: ring, holes, density }) => ({
+    outline: moved(ring),
+    holes: (holes || []).map(moved),
+    shade: densest > 0 ? (density || densest) / densest : 1,
+  }));
+  return {
+    regions: regions.map((region) => ({ ...region, path: pathOf(region) })),
+    points: points.map(([x, y, mass]) => [x - middle, y - ground, heaviest > 0 ? mass / heaviest : 1]),
+    feet: feet.map((x) => x - middle),
+    centre: [centre[0] - middle, centre[1] - ground],
+  };
+};

@@ -1,0 +1,109 @@
+/** The stage: a canvas on which the bodies rock about their feet on a ground that moves. */
+import { fit, newCamera, pixelOf } from "/scene/camera.js";
+import { boxOf } from "/scene/geometry.js";
+import { drawBody, drawFlash, drawGhost, drawGround } from "/scene/pictures.js";
+import { calm, readColours } from "/scene/theme.js";
+
+const POSES = 160;
+const FLASH = 0.4;
+const FAR = 1.5;
+const VISIBLE = 0.25;
+
+const posesOf = (actors, ground, factor, end) => {
+  const poses = [];
+  for (const { rotation } of actors) {
+    for (let k = 0; k <= POSES; k += 1) {
+      const instant = (end * k) / POSES;
+      poses.push({ rotation: rotation.at(instant), ground: factor * ground.at(instant) });
+    }
+  }
+  return poses;
+};
+
+/** Returns how much larger than true the ground has to move so that one sees it: 1, 2, 5, 10, ... */
+export const visibleFactor = (travel, size) => {
+  if (!(travel > 0)) return 1;
+  const wanted = (VISIBLE * size) / travel;
+  if (wanted <= 1) return 1;
+  const tens = 10 ** Math.floor(Math.log10(wanted));
+  return [5, 2, 1].find((one) => one * tens <= wanted) * tens;
+};
+
+/** Draws the scene of one instant. */
+export class Stage {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.pen = canvas.getContext("2d");
+    this.camera = newCamera();
+    this.colours = {};
+    this.play = null;
+    this.wide = 0;
+  }
+
+  /** Takes {shape, actors, ground, end}, which actor is solid, and how the ground is shown. */
+  show(play, lead, groundMode) {
+    this.play = play;
+    this.lead = lead;
+    const size = Math.max(...boxSize(boxOf(play.shape, [])));
+    const travel = play.ground.peak();
+    this.factor = groundMode === "magnified" ? visibleFactor(travel, size) : 1;
+    this.rides = groundMode === "ride" || this.factor * travel > FAR * size;
+    const poses = posesOf(play.actors, play.ground, this.rides ? 0 : this.factor, play.end);
+    this.box = boxOf(play.shape, poses);
+    this.resize();
+  }
+
+  /** Takes the size of the canvas as it is now. */
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (!this.play || !clientWidth) return;
+    const ratio = window.devicePixelRatio || 1;
+    readColours(this.canvas, this.colours);
+    this.canvas.width = Math.round(clientWidth * ratio);
+    this.canvas.height = Math.round(clientHeight * ratio);
+    fit(this.camera, this.box, clientWidth, clientHeight, ratio);
+    this.pen.font = "12px system-ui, sans-serif";
+    this.pen.lineJoin = "round";
+    this.wide = this.pen.measureText("r = 0.0000").width;
+    for (const actor of this.play.actors) {
+      actor.scaledDash = actor.dash.map((length) => length / this.camera.scale);
+    }
+  }
+
+  /** Reads the colours of the page again. */
+  repaint() {
+    readColours(this.canvas, this.colours);
+  }
+
+  /** Draws an instant [s]; flashes last as long for the eye at any speed. */
+  draw(now, speed) {
+    if (!this.play || !this.camera.width) return;
+    const { pen, camera, colours, play } = this;
+    const moved = this.factor * play.ground.at(now);
+    const ridden = this.rides ? moved : 0;
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    drawGround(pen, camera, colours, moved, ridden);
+    for (let k = 0; k < play.actors.length; k += 1) {
+      const actor = play.actors[k];
+      if (k !== this.lead) drawGhost(pen, camera, play.shape, actor, actor.rotation.at(now), moved, ridden);
+    }
+    const lead = play.actors[this.lead];
+    drawBody(pen, camera, play.shape, colours, lead.rotation.at(now), moved, ridden, lead.colour);
+    if (!calm()) this.flash(lead, now, moved, ridden, Math.max(FLASH * speed, 0.005));
+  }
+
+  /** Draws the ring of the last impact, if it is recent. */
+  flash(actor, now, moved, ridden, lasts) {
+    const times = actor.impactTimes;
+    let k = times.length - 1;
+    while (k >= 0 && times[k] > now) k -= 1;
+    if (k < 0 || now - times[k] > lasts) return;
+    const foot = this.play.shape.feet[actor.impactFeet[k]];
+    const x = pixelOf(this.camera, foot + moved, ridden);
+    const age = (now - times[k]) / lasts;
+    drawFlash(this.pen, this.camera, this.colours, x, age, actor.impactWords[k], this.wide);
+  }
+}
+
+const boxSize = (box) => [box.right - box.left, box.high - box.low];

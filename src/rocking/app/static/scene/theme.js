@@ -1,0 +1,15 @@
+/** Colours of the scene, from the custom properties of the page. */
+
+const NAMES = ["ink", "soft", "line", "body", "ground", "hatch", "impact", "fall"];
+
+/** Reads the colours into an object that the drawing keeps. */
+export const readColours = (element, into = {}) => {
+  const style = getComputedStyle(element);
+  for (const name of NAMES) into[name] = style.getPropertyValue(`--scene-${name}`).trim() || "#808080";
+  return into;
+};
+
+const reduced = window.matchMedia("(prefers-reduced-motion: reduce)");
+
+/** Whether the user asked for less motion on the screen. */
+export const calm = () => reduced.matches;

@@ -1,0 +1,92 @@
+/** The polygon editor: vertices that pointer and keyboard move alike, holes, densities, undo. */
+
+import { createCanvas } from "/views/body-editor-canvas.js";
+import * as model from "/views/body-editor-model.js";
+import { createPanel } from "/views/body-editor-panel.js";
+import { pastePart } from "/views/body-paste.js";
+import { card, el, fill, tidy } from "/views/body-parts.js";
+import { regionsOf, shapeOf } from "/views/body-shapes.js";
+import { METRES } from "/views/body-units.js";
+import { roundStep } from "/drawing/viewport.js";
+
+/** Put the editor in its place; follow() shows it for a polygon and takes it away for any other shape. */
+export const mountEditor = (place, app) => {
+  const editor = createEditor(app);
+  const parts = [createPanel(editor), createCanvas(editor)];
+  const [panel, canvas] = parts;
+  const board = card("Draw", panel.tools,
+    el("div", { class: "board-row" }, canvas.element, panel.details), pastePart(editor));
+  board.dataset.testid = "editor";
+  fill(place, board);
+  const follow = () => {
+    place.hidden = shapeOf(app.inputs.get().body) !== "section";
+    if (!place.hidden) for (const part of parts) part.follow();
+  };
+  editor.watch(follow);
+  app.inputs.subscribe((_, changed) => changed.has("body") && follow());
+  follow();
+  return { follow };
+};
+
+const createEditor = (app) => {
+  const history = model.createHistory();
+  const watchers = new Set();
+  const state = { place: { region: 0, ring: -1, vertex: 0 }, snap: true, step: null };
+  const body = () => app.inputs.get().body;
+  const regions = () => editable(body().section, app.body.get(), body().units);
+  const tell = () => watchers.forEach((each) => each());
+  const put = (next) => app.inputs.set("body.section.region", next);
+  const step = () => state.step ?? firstStep(regions());
+  const editor = {
+    state, history, regions, step,
+    units: () => body().units,
+    facts: () => app.body.get(),
+    metres: () => METRES[body().units],
+    watch: (watcher) => watchers.add(watcher),
+    change: (next, place = state.place) => {
+      history.keep(regions());
+      editor.adjust(next, place);
+    },
+    adjust: (next, place = state.place) => {
+      state.place = place;
+      put(next);
+      tell();
+    },
+    keep: () => history.keep(regions()),
+    select: (place) => {
+      state.place = place;
+      tell();
+    },
+    snapped: (point) => model.snapped(point, state.snap ? step() : 0, tidy),
+    travel: (direction) => {
+      const next = history[direction](regions());
+      if (next) editor.adjust(next, withinReach(next, state.place));
+    },
+    say: app.say,
+    tell,
+  };
+  return editor;
+};
+
+// Regions written as text (WKT) become points as soon as someone draws on them.
+const editable = (section, facts, units) => {
+  const given = section?.region ?? [];
+  return given.every((each) => each.outline) ? given : regionsOf(facts, units);
+};
+
+const firstStep = (regions) => {
+  const points = regions.flatMap((each) => each.outline);
+  if (!points.length) return 0.05;
+  const spans = [0, 1].map(
+    (axis) => Math.max(...points.map((each) => each[axis])) - Math.min(...points.map((each) => each[axis]))
+  );
+  return tidy(roundStep(Math.max(...spans), 80));
+};
+
+/** The nearest place that exists after a change. */
+export const withinReach = (regions, { region, ring, vertex }) => {
+  const atRegion = Math.min(region, regions.length - 1);
+  const atRing = Math.min(ring, (regions[atRegion].holes?.length ?? 0) - 1);
+  const points = model.ringAt(regions, { region: atRegion, ring: atRing });
+  return { region: atRegion, ring: atRing, vertex: Math.min(vertex, points.length - 1) };
+};

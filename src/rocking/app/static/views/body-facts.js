@@ -1,0 +1,47 @@
+/** The numbers of a body: one column, or one for each side where they differ. */
+
+import { note, number, quantity, tableOf } from "/views/body-parts.js";
+import { sameSides } from "/drawing/body-picture.js";
+
+/** The table of facts. */
+export const factsTable = (body, app) => {
+  const { left, right } = body.sides;
+  const differ = !sameSides(body.sides);
+  const sides = differ ? [left, right] : [right];
+  const columns = [
+    "Quantity", ...(differ ? ["Left", "Right"] : ["Value"]).map((label) => ({ label, digits: 5 })),
+    { label: "Unit", numeric: false, nowrap: true },
+  ];
+  const row = (label, unit, read) => [label, ...sides.map(read), unit];
+  const whole = (label, unit, value) => [label, ...sides.map(() => value), unit];
+  const rows = [
+    row("Slenderness h/b", "", (side) => side.slenderness_ratio),
+    row("Slenderness angle \u03b1", "rad", (side) => side.slenderness_angle_rad),
+    row("Slenderness angle \u03b1", "\u00b0", (side) => (side.slenderness_angle_rad * 180) / Math.PI),
+    row("Semi-diagonal R", "m", (side) => side.semi_diagonal_m),
+    row("Frequency parameter p", "rad/s", (side) => side.frequency_parameter_rad_s),
+    row("Uplift acceleration", "m/s\u00b2", (side) => side.uplift_acceleration_m_s2),
+    row("Uplift acceleration", "g", (side) => side.uplift_acceleration_m_s2 / body.gravity_m_s2),
+    ["Foot, x", ...(differ ? body.feet_m : [`${number(body.feet_m[0])}, ${number(body.feet_m[1])}`]), "m"],
+    whole("Centre of mass, x", "m", body.centre_m[0]),
+    whole("Centre of mass, y", "m", body.centre_m[1]),
+    whole("Mass", "kg", body.mass_kg),
+    whole("Moment of inertia", "kg m\u00b2", body.moment_of_inertia_kg_m2),
+  ];
+  return tableOf(columns, rows, {
+    caption: differ ? "By the foot that it rocks about" : "The same for both feet",
+    testid: "facts-table",
+    csv: () => app.download("table/body.csv", app.inputs.get(), "body.csv"),
+  });
+};
+
+/** Warnings in plain words, or what stands in their place. */
+export const warningsOf = (body) => {
+  const given = (body.warnings ?? []).map((each) => note(each, "warning"));
+  return given.length ? given : [note(`It uplifts at ${upliftWords(body)} of ground acceleration.`, "good")];
+};
+
+const upliftWords = ({ sides, gravity_m_s2: gravity }) => {
+  const least = Math.min(sides.left.uplift_acceleration_m_s2, sides.right.uplift_acceleration_m_s2);
+  return `${quantity(least, "m/s2", 3)} (${quantity(least / gravity, "g", 3)})`;
+};

@@ -1,0 +1,126 @@
+/** The form of a body: unit, shape, sizes, depth, density and feet. */
+
+import { el, fill, note, numberField, segmented, selectField, textField } from "/views/body-parts.js";
+import { asShape, pathOfShape, SHAPES, shapeOf, tableOfShape } from "/views/body-shapes.js";
+import { inUnits, METRES } from "/views/body-units.js";
+
+/** The form; follow() brings it up to date with the inputs. */
+export const createForm = (app) => {
+  const body = () => app.inputs.get().body;
+  const sizes = el("div", { class: "fields", "data-testid": "sizes" });
+  const kept = new Map();
+  const shape = selectField({
+    label: "Shape", options: choices(shapeOf(body())), value: shapeOf(body()),
+    onChange: (next) => {
+      const now = body();
+      kept.set(shapeOf(now), now);
+      const before = next === "section" ? null : kept.get(next);
+      app.inputs.set("body", before ? inUnits(before, now.units) : asShape(now, next, app.body.get()));
+    },
+  });
+  const units = segmented({
+    label: "Lengths in", value: body().units,
+    options: Object.keys(METRES).map((each) => ({ value: each, text: each })),
+    onChange: (next) => app.inputs.set("body", inUnits(body(), next)),
+  });
+  const name = textField({
+    label: "Name", value: body().name, placeholder: "optional", maxLength: 80,
+    onChange: (text) => app.inputs.set("body.name", text.trim() || undefined),
+  });
+  const feet = el("div", { class: "fields", "data-testid": "feet" });
+  let built = "";
+  let fields = [];
+  const follow = () => {
+    const now = body();
+    const key = `${shapeOf(now)} ${now.units}`;
+    shape.setOptions(choices(shapeOf(now)));
+    shape.value = shapeOf(now);
+    units.value = now.units;
+    name.value = now.name ?? "";
+    if (key !== built) {
+      fields = fieldsOf(app);
+      fill(sizes, shapeOf(now) === "mass_points" ? note("This body is a set of masses from a file.") : null,
+        fields.filter(([, , isFoot]) => !isFoot).map(([, field]) => field));
+      fill(feet, fields.filter(([, , isFoot]) => isFoot).map(([, field]) => field));
+      feet.hidden = !feet.childElementCount;
+      built = key;
+    }
+    const table = tableOfShape(now);
+    for (const [read, field] of fields) field.value = read(table) ?? null;
+  };
+  follow();
+  return { element: el("div", { class: "stack" }, shape, units, sizes, feet, name), follow };
+};
+
+const choices = (current) => {
+  const listed = Object.entries(SHAPES).map(([value, { words }]) => ({ value, text: words }));
+  return current === "mass_points" ? [
+    ...listed, { value: "mass_points", text: "Mass points (from a file)" }
+  ] : listed;
+};
+
+const fieldsOf = (app) => {
+  const body = app.inputs.get().body;
+  const { units } = body;
+  const put = (key, value) => {
+    const now = app.inputs.get().body;
+    if (key === "feet" && value && tableOfShape(now) === now) app.inputs.set("body", withFeet(now, value));
+    else app.inputs.set(`${pathOfShape(now)}.${key}`, value ?? undefined);
+  };
+  const shape = SHAPES[shapeOf(body)] ?? { fields: [] };
+  const own = shape.fields.map(
+    ([key, label, more = {}]) => sizeField(key, label, { unit: units, ...more }, put)
+  );
+  const isMassPoints = shapeOf(body) === "mass_points";
+  const common = isMassPoints ? [] : [
+    [(table) => table.depth, numberField({
+      label: "Depth", unit: units, optional: true, min: 0, onChange: (value) => put("depth", value),
+      help: "Out of the picture; only the mass needs it.",
+    })],
+  ];
+  const density = [(table) => table.density, numberField({
+    label: "Density", unit: "kg/m3", optional: true, min: 0, onChange: (value) => put("density", value),
+  })];
+  const hasDensity = !isMassPoints && shapeOf(body) !== "section";
+  return [
+    ...own, ...common, ...(hasDensity ? [density] : []), ...(isMassPoints ? [] : feetFields(app, units, put))
+  ];
+};
+
+const sizeField = (key, label, { whole, ...more }, put) => {
+  const field = numberField({
+    label, min: 0, ...more,
+    onChange: (value) => (
+      whole && !Number.isInteger(value) ? field.setError("A whole number is needed.") : put(key, value)
+    ),
+  });
+  return [(table) => table[key], field];
+};
+
+// Feet narrower than the outline, or two typed places; empty means: as wide as the base.
+const feetFields = (app, units, put) => {
+  const pair = [null, null];
+  const settled = (table) => {
+    if (table.feet) pair.splice(0, 2, ...table.feet);
+    else if (pair.every((each) => each !== null)) pair.fill(null);
+    return pair;
+  };
+  const take = (index) => (value) => {
+    pair[index] = value;
+    if (pair.every((each) => each === null)) put("feet", undefined);
+    else if (pair.every((each) => each !== null)) put("feet", [...pair]);
+  };
+  return ["Left foot", "Right foot"].map((label, index) => [
+    (table) => settled(table)[index],
+    numberField({
+      label, unit: units, optional: true, onChange: take(index),
+      help: index ? "Both empty: the edges of the base." : undefined,
+    }),
+    true,
+  ]);
+};
+
+// Feet of its own stand in a block's table; the short form has none.
+const withFeet = ({ units, name, ...block }, feet) => (
+  { units, ...(name ? { name } : {}), block: { ...block, feet } }
+);

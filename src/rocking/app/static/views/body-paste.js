@@ -1,0 +1,45 @@
+/** Points from a table: paste two columns, see how many were read, use them. */
+
+import { button, el, fill, freshId, toolbar } from "/views/body-parts.js";
+import * as model from "/views/body-editor-model.js";
+import { parsePoints } from "/views/body-points.js";
+
+/** The part of the editor that takes pasted points. */
+export const pastePart = (editor) => {
+  const id = freshId("paste");
+  const told = el("p", { id: `${id}-about`, class: "field-help", role: "status" });
+  const box = el("textarea", {
+    id, rows: 5, spellcheck: "false", placeholder: "0\t0\n0.6\t0\n0.4\t1.8",
+    "aria-describedby": `${id}-about`,
+    oninput: () => tell(parsePoints(box.value)),
+  });
+  const tell = ({ points, fault }) => {
+    told.classList.toggle("field-error", Boolean(fault));
+    fill(told, fault || `${points.length} points read, in ${editor.units()}.`);
+  };
+  const use = (make) => () => {
+    const read = parsePoints(box.value);
+    tell(read);
+    if (!read.fault) editor.change(...make(editor.regions(), read.points, editor.state.place));
+  };
+  const asOutline = (regions, points, { region }) => [
+    regions.with(region, { ...regions[region], outline: points }), { region, ring: -1, vertex: 0 },
+  ];
+  const asRegion = (regions, points) => [
+    model.withRegion(regions, points, regions.at(-1).density), {
+      region: regions.length, ring: -1, vertex: 0,
+    },
+  ];
+  const asHole = (regions, points, { region }) => [
+    model.withHole(regions, region, points), { region, ring: regions[region].holes?.length ?? 0, vertex: 0 },
+  ];
+  return el("details", { class: "paste" },
+    el("summary", {}, "Paste points from Excel or a file"),
+    el("div", { class: "stack" },
+      el("div", { class: "field" },
+        el("label", { for: id }, "Points, x and y on each line"), box, told),
+      toolbar(
+        button({ text: "Use as outline", kind: "primary", onClick: use(asOutline) }),
+        button({ text: "Add as region", onClick: use(asRegion) }),
+        button({ text: "Add as hole", onClick: use(asHole) }))));
+};

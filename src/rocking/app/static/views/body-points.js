@@ -1,0 +1,41 @@
+/** Points pasted from a table or a file: two columns, any usual separator, decimal commas too. */
+
+import { parseNumber } from "/app/format.js";
+
+/** Read points from text: {points, fault}. A first line of headings is passed over. */
+export const parsePoints = (text) => {
+  const points = [];
+  const lines = text.split(/\r?\n/).map(
+    (line, index) => [line.trim().replace(/[[\](){}]/g, " ").replace(/[,;]\s*$/, "").trim(), index + 1]
+  );
+  for (const [line, at] of lines) {
+    if (!line) continue;
+    const pair = pairOf(line);
+    if (pair) points.push(pair);
+    else if (points.length || /\d/.test(line)) return {
+      points: [], fault: `Line ${at}, \u201c${line.slice(0, 40)}\u201d, is not two numbers.`,
+    };
+  }
+  const ring = open(points);
+  return ring.length < 3 ? {
+    points: [], fault: `A polygon needs three points, found ${ring.length}.`,
+  } : { points: ring, fault: "" };
+};
+
+// What separates is asked from the surest sign to the least: a semicolon or tab, then space, then comma.
+const pairOf = (line) => {
+  for (const separator of [/\s*[;\t]\s*/, /,\s+|\s+/, /,/]) {
+    const parts = line.split(separator).filter(Boolean);
+    if (parts.length === 2) {
+      const pair = parts.map(parseNumber);
+      return pair.includes(null) ? null : pair;
+    }
+    if (parts.length > 2) return null;
+  }
+  return null;
+};
+
+const open = (points) => {
+  const [first, last] = [points[0], points.at(-1)];
+  return points.length > 1 && first[0] === last[0] && first[1] === last[1] ? points.slice(0, -1) : points;
+};

@@ -1,0 +1,85 @@
+/** The shapes that can be chosen: their fields, and a first size taken from the body before. */
+
+import { fromMetres } from "/views/body-units.js";
+
+/** Shapes with the fields of each; a field is a length unless it says otherwise. */
+export const SHAPES = {
+  block: { words: "Block", fields: [["width", "Width"], ["height", "Height"]] },
+  trapezoid: {
+    words: "Trapezoid",
+    fields: [
+      ["base", "Base"], ["top", "Top"], ["height", "Height"],
+      ["lean", "Lean", { min: null, help: "How far the top is shifted to the right." }],
+    ],
+  },
+  ellipse: {
+    words: "Ellipse",
+    fields: [
+      ["width", "Width"], ["height", "Height"],
+      ["sides", "Sides", { unit: "", min: 3, max: 100000, step: 1, whole: true }],
+    ],
+  },
+  regular_polygon: {
+    words: "Regular polygon",
+    fields: [["sides", "Sides", { unit: "", min: 3, max: 1000, step: 1, whole: true }], ["radius", "Radius"]],
+  },
+  section: { words: "Polygon", fields: [] },
+};
+
+/** Which shape an Inputs body is. */
+export const shapeOf = (body) => Object.keys(SHAPES).find((each) => body[each]) ?? (
+  body.mass_points ? "mass_points" : "block"
+);
+
+/** The table that holds the sizes: the body itself for a block in its short form. */
+export const tableOfShape = (body) => body[shapeOf(body)] ?? body;
+
+/** The path of the table in the inputs. */
+export const pathOfShape = (body) => (body[shapeOf(body)] ? `body.${shapeOf(body)}` : "body");
+
+/** The body in another shape of about the same size. */
+export const asShape = (body, shape, facts) => {
+  const { units, name } = body;
+  const from = tableOfShape(body);
+  const [width, height] = spans(facts, units);
+  const common = { depth: from.depth, density: from.density ?? firstDensity(body) };
+  const sizes = {
+    block: { width, height },
+    trapezoid: { base: width, top: round(width * 0.6), height, lean: 0 },
+    ellipse: { width, height, sides: 24 },
+    regular_polygon: { sides: 6, radius: round(height / 2) },
+    section: { region: regionsOf(facts, units), depth: common.depth },
+  };
+  const table = clean(shape === "section" ? sizes.section : { ...sizes[shape], ...common });
+  return clean(shape === "block" ? { units, name, ...table } : { units, name, [shape]: table });
+};
+
+/** The regions that the server drew, in a unit, as an editable section has them. */
+export const regionsOf = (facts, units) => {
+  const ring = (points) => points.map(([x, y]) => [fromMetres(x, units), fromMetres(y, units)]);
+  const regions = facts?.outline ?? [];
+  return regions.map(({ outline, holes, density }) =>
+    clean(
+      {
+        outline: ring(outline), holes: holes?.length ? holes.map(ring) : undefined,
+        density: density ?? undefined,
+      }
+    ));
+};
+
+const firstDensity = (body) => body.section?.region?.[0]?.density;
+
+const spans = (facts, units) => {
+  const points = (facts?.outline ?? []).flatMap((each) => each.outline);
+  if (!points.length) return [0.5, 2].map((each) => fromMetres(each, units));
+  return [0, 1].map((axis) => {
+    const values = points.map((each) => each[axis]);
+    return round(fromMetres(Math.max(...values) - Math.min(...values), units));
+  });
+};
+
+const round = (value) => Number(value.toPrecision(6));
+
+const clean = (table) => Object.fromEntries(
+  Object.entries(table).filter(([, value]) => value !== undefined && value !== null)
+);

@@ -1,0 +1,26 @@
+/** The implied impulse position of every model, drawn along the base. */
+
+import { svg } from "/app/dom.js";
+import { rowPicture } from "/drawing/row-picture.js";
+import { footMark } from "/drawing/symbols.js";
+
+/** Rows of models over the base. */
+export const impulseRows = (answer, foot, width) => {
+  const rows = answer.coefficients[foot].map((row) => ({ model: row.model, value: row.impulse_ratio_k }));
+  const values = rows.map((row) => row.value).filter((value) => value !== null);
+  const domain = [Math.min(0, ...values), Math.max(1.22, ...values)];
+  return rowPicture(rows.filter((row) => row.value !== null), {
+    width, domain, label: "impulse position k, over half the base", title: "Implied impulse position",
+    testid: "impulse-picture",
+    extras: base, extraHeight: 34,
+  });
+};
+
+const base = (axis, { top, rowsEnd }) => svg("g", {},
+  svg("path", { class: "axis", d: `M${axis.at(1)} ${top}V${rowsEnd}` }),
+  svg("path", { class: "base-bar", d: `M${axis.at(0)} ${rowsEnd + 12}H${axis.at(1)}` }),
+  footMark(axis.at(1), rowsEnd + 15),
+  svg(
+    "text", { x: axis.at(1) - 10, y: rowsEnd + 30, "text-anchor": "end", class: "soft" }, "foot it lands on",
+  ),
+  svg("text", { x: axis.at(0) + 2, y: rowsEnd + 30, class: "soft" }, "middle"));

@@ -1,0 +1,49 @@
+/** Small drawings of the pulses: acceleration over time, without numbers. */
+import { svg } from "/app/dom.js";
+
+const WIDE = 72;
+const TALL = 30;
+const SAMPLES = 96;
+const turn = 2 * Math.PI;
+// phase of type C1: its velocity and displacement end at zero
+const PHASE_C1 = 0.0697 * Math.PI;
+
+const ricker = (x) => (1 - x * x) * Math.exp(-0.5 * x * x);
+const antisymmetric = (x) => (x * (x * x - 3) * Math.exp(-0.5 * x * x)) / 1.38;
+
+const nearFault = (t) => {
+  const velocity = (s) => (1 + Math.cos((turn * s) / 1.5)) * Math.cos(turn * s);
+  return (velocity(t + 0.005) - velocity(t - 0.005)) / 0.11;
+};
+
+/** Shape of each pulse over its own duration, from 0 to 1; largest size about 1. */
+export const SHAPES = {
+  rectangular: () => 1,
+  "half-sine": (t) => Math.sin(0.5 * turn * t),
+  sine: (t) => Math.sin(turn * t),
+  "half-cosine": (t) => Math.cos(0.5 * turn * t),
+  cosine: (t) => Math.cos(turn * t),
+  "type-a": (t) => Math.sin(turn * t),
+  "type-b": (t) => Math.cos(turn * t),
+  "type-c": (t) => Math.cos(turn * t * (1.5 - PHASE_C1 / Math.PI) + PHASE_C1),
+  ricker: (t) => ricker(10 * (t - 0.5)),
+  "antisymmetric-ricker": (t) => antisymmetric(10 * (t - 0.5)),
+  "mavroeidis-papageorgiou": (t) => nearFault(1.5 * (t - 0.5)),
+  harmonic: (t) => Math.sin(4 * turn * t),
+};
+
+/** Returns a drawing of a pulse, or nothing if there is none of that name. */
+export const sketch = (name) => {
+  const shape = SHAPES[name];
+  if (!shape) return null;
+  const x = (t) => (3 + (WIDE - 6) * t).toFixed(1);
+  const y = (a) => (0.5 * TALL - 0.42 * TALL * a).toFixed(1);
+  const points = Array.from({ length: SAMPLES + 1 }, (_, k) => `${x(k / SAMPLES)},${y(shape(k / SAMPLES))}`);
+  const path = `M${x(0)},${y(0)}L${points.join("L")}L${x(1)},${y(0)}`;
+  return svg(
+    "svg",
+    { class: "pulse-sketch", viewBox: `0 0 ${WIDE} ${TALL}`, "aria-hidden": "true" },
+    svg("line", { x1: 0, x2: WIDE, y1: 0.5 * TALL, y2: 0.5 * TALL, class: "pulse-axis" }),
+    svg("path", { d: path, class: "pulse-line" }),
+  );
+};

@@ -1,0 +1,121 @@
+/** Rotation, angular velocity, energy and friction demand over time. */
+import { lineChart } from "/charts/line.js";
+import { el, fill } from "/app/dom.js";
+import { sharesOf } from "/scene/sampled.js";
+import { curveKey, styleOf, wordsOf } from "/views/response-labels.js";
+import { together } from "/views/response-series.js";
+
+const SYNC = "response";
+const TIME = { label: "time", unit: "s" };
+const MOST_FRICTION = 3;
+const FALL_SHOWN = 1.5;
+
+const held = (share) => Math.max(-FALL_SHOWN, Math.min(FALL_SHOWN, share));
+const shareOf = (answer) => sharesOf(answer.series.rotation, answer.body).map(held);
+
+const capped = (values) => values.map((value) => (value === null || value > MOST_FRICTION ? null : value));
+
+// the lines of +1 and -1 are in sight unless the rocking is small beside them
+const rotationRange = (_, low, high) => {
+  const most = Math.max(Math.abs(low ?? 0), Math.abs(high ?? 0));
+  const span = most > 0.25 ? Math.max(1.15, 1.05 * most) : 1.15 * most || 1;
+  return [-span, span];
+};
+
+const CURVES = [
+  {
+    key: "rotation",
+    title: "Rotation over slenderness angle",
+    y: { label: "\u03b8/\u03b1", unit: "-", range: rotationRange },
+    values: shareOf,
+  },
+  {
+    key: "velocity",
+    title: "Angular velocity",
+    y: { label: "", unit: "rad/s" },
+    values: (answer) => answer.series.velocity,
+  },
+  {
+    key: "friction",
+    title: "Friction that rocking without slip takes",
+    y: { label: "", unit: "-" },
+    values: (answer) => capped(answer.series.friction_demand),
+  },
+];
+const ENERGIES = [
+  { key: "kinetic", label: "kinetic", colour: "#0072B2", dash: [] },
+  { key: "potential", label: "potential", colour: "#009E73", dash: [8, 3, 2, 3] },
+  { key: "lost", label: "lost at impacts", colour: "#D55E00", dash: [6, 4] },
+  { key: "work", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
+];
+
+/** Returns the charts of a response; a pointer on one of them shows that instant in the animation. */
+export const chartsOf = (onInstant) => new ResponseCharts(onInstant);
+
+class ResponseCharts {
+  constructor(onInstant) {
+    this.onInstant = onInstant;
+    this.places = Object.fromEntries(["rotation", "velocity", "energy", "friction"].map(placeOf));
+    const places = Object.values(this.places);
+    this.about = el("p", { class: "field-help" });
+    const grid = el("div", { class: "response-charts", "data-testid": "response-charts" }, places);
+    this.element = el("div", {}, grid, this.about);
+    this.charts = {};
+  }
+
+  /** Draws these answers; energy and impacts are those of the model that is followed. */
+  show(answers, friction) {
+    if (!answers.length) return;
+    this.answers = answers;
+    this.friction = friction;
+    const labels = answers.map(({ label }) => curveKey(label)).join("|");
+    if (labels !== this.labels) this.rebuild(answers);
+    this.labels = labels;
+    for (const { key, values } of CURVES) this.charts[key].setData(together(answers, values));
+    this.charts.friction.setMarks({ horizontal: [friction] });
+    this.showFollowed();
+  }
+
+  /** Follows one model with energy and impacts. */
+  follow(label) {
+    this.wanted = curveKey(label);
+    this.showFollowed();
+  }
+
+  showFollowed() {
+    const answer = this.answers.find(({ label }) => curveKey(label) === this.wanted) || this.answers[0];
+    if (curveKey(answer.label) !== this.followed) this.rebuildEnergy(answer.label);
+    this.charts.energy.setData(energyOf(answer));
+    const vertical = answer.impacts.map(({ time_s: time }) => time);
+    this.charts.rotation.setMarks({ vertical, horizontal: [-1, 1] });
+    fill(this.about, `Dotted: impacts of ${wordsOf(answer.label)}; dashed: the slenderness angles.`);
+  }
+
+  rebuild(answers) {
+    for (const { key } of CURVES) this.charts[key]?.destroy();
+    const series = answers.map(({ label }) => {
+      return { label: wordsOf(label), ...styleOf(label), width: 1.6 };
+    });
+    // the friction that is given stays in sight
+    const range = (_, low, high) => [0, 1.1 * Math.max(high ?? 0, this.friction)];
+    for (const { key, title, y } of CURVES) {
+      this.place(key, { title, y: key === "friction" ? { ...y, range } : y, series });
+    }
+  }
+
+  rebuildEnergy(label) {
+    this.charts.energy?.destroy();
+    const series = ENERGIES.map((one) => ({ ...one, width: 1.6 }));
+    this.place("energy", { title: `Energy (${wordsOf(label)})`, y: { label: "", unit: "J" }, series });
+    this.followed = curveKey(label);
+  }
+
+  place(key, look) {
+    this.charts[key] = lineChart(this.places[key], { x: TIME, height: 220, sync: SYNC, ...look });
+    this.charts[key].setCursorHook((_, instant) => this.onInstant(instant));
+  }
+}
+
+const placeOf = (key) => [key, el("div", { class: "response-chart", "data-testid": `chart-${key}` })];
+
+const energyOf = ({ series }) => [series.time, ...ENERGIES.map(({ key }) => series[key])];

@@ -1,0 +1,23 @@
+/** Names and marks of the restitutions; every coefficient that was typed looks the same, whatever it is. */
+import { el } from "/app/dom.js";
+import { modelStyle, modelWords } from "/app/palette.js";
+
+const TYPED = "fixed";
+
+/** Returns the key under which a restitution keeps its curve: its label, or one key for typed numbers. */
+export const curveKey = (label) => (/^([0-9.]+(e-?[0-9]+)?$|left )/.test(label) ? TYPED : label);
+
+/** Returns colour and dash of a restitution. */
+export const styleOf = (label) => modelStyle(curveKey(label));
+
+/** Returns a restitution in words. */
+export const wordsOf = (label) => modelWords(curveKey(label));
+
+/** Returns a short line in the colour and dash of a restitution. */
+export const swatch = (label) => {
+  const { colour, dash } = styleOf(label);
+  const mark = el("span", { class: "swatch", "aria-hidden": "true" });
+  mark.style.borderTopColor = colour;
+  mark.style.borderTopStyle = dash.length ? (dash[0] < 4 ? "dotted" : "dashed") : "solid";
+  return mark;
+};

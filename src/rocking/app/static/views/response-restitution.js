@@ -1,0 +1,20 @@
+/** The table `restitution` of the inputs as the form shows it, and back. */
+
+const USUAL = ["ked", "housner"];
+
+/** Returns {models, value, feet} of a table; feet is [left, right] or null. */
+export const readRestitution = (table) => {
+  if (!table) return { models: USUAL, value: null, feet: null };
+  const feet = table.left === undefined ? null : [table.left, table.right];
+  const models = table.models ?? (table.model === undefined ? [] : [table.model]);
+  const value = table.values?.[0] ?? table.value ?? null;
+  return { models: [...models], value, feet };
+};
+
+/** Returns the table; null if nothing is chosen. */
+export const writeRestitution = ({ models, value, feet }) => {
+  if (feet) return { left: feet[0], right: feet[1] };
+  if (!models.length && value === null) return null;
+  if (!models.length) return { values: [value] };
+  return value === null ? { models } : { models, values: [value] };
+};

@@ -1,0 +1,33 @@
+/** Curves of several models on one axis of time, as the charts want them. */
+
+const straight = (time, values, grid) => {
+  const found = new Array(grid.length);
+  let k = 0;
+  for (let j = 0; j < grid.length; j += 1) {
+    const instant = grid[j];
+    if (instant > time[time.length - 1]) {
+      found[j] = null;
+      continue;
+    }
+    while (k < time.length - 2 && time[k + 1] < instant) k += 1;
+    const width = time[k + 1] - time[k];
+    const share = width > 0 ? (instant - time[k]) / width : 1;
+    const [first, second] = [values[k], values[k + 1]];
+    found[j] = first === null || second === null ? null : first + (second - first) * share;
+  }
+  return found;
+};
+
+/** Returns every instant of several histories once, in order [s]. */
+export const commonTime = (histories) => {
+  const all = Float64Array.from(histories.flatMap((time) => time)).sort();
+  const grid = [];
+  for (const instant of all) if (!grid.length || instant > grid[grid.length - 1]) grid.push(instant);
+  return grid;
+};
+
+/** Returns [time, values of the first answer, of the second, ...]; null after a history has ended. */
+export const together = (answers, valuesOf) => {
+  const grid = commonTime(answers.map((answer) => answer.series.time));
+  return [grid, ...answers.map((answer) => straight(answer.series.time, valuesOf(answer), grid))];
+};

@@ -1,0 +1,141 @@
+/** How the body rocks: verdict, animation, curves, impacts, for several restitution models at once. */
+import { el, fill } from "/app/dom.js";
+import { button, card, note } from "/app/fields.js";
+import { chartsOf } from "/views/response-charts.js";
+import { controlsOf } from "/views/response-controls.js";
+import { filesOf } from "/views/response-files.js";
+import { impactsOf } from "/views/response-impacts.js";
+import { sceneOf } from "/views/response-scene.js";
+import { verdictOf } from "/views/response-verdict.js";
+
+const KEYS = ["body", "motion", "restitution", "response", "settings"];
+
+/** Shows the view of the response in a section. */
+export const mount = (section, app) => {
+  const view = new ResponseView(app);
+  section.append(...view.parts);
+  view.mounted(section);
+  return { shown: () => view.shown(), hidden: () => view.hidden() };
+};
+
+class ResponseView {
+  constructor(app) {
+    this.app = app;
+    this.dirty = true;
+    this.asked = false;
+    this.verdict = verdictOf((label) => this.follow(label));
+    this.scene = sceneOf();
+    this.controls = controlsOf(app);
+    this.charts = chartsOf((instant) => this.scene.glance(instant));
+    this.impacts = impactsOf(app);
+    this.refusal = el("div", { "aria-live": "polite", "data-testid": "response-refusal" });
+    this.results = el("div", { class: "response-results" });
+    this.parts = [this.head(), this.refusal, this.verdict.element, this.stage(), this.details()];
+  }
+
+  head() {
+    const lead = "The same body and motion with several models of the impact: does the choice matter?";
+    return el("div", { class: "view-head" }, el("h1", {}, "Response"), el("p", { class: "lead" }, lead));
+  }
+
+  stage() {
+    const scene = card("The body on the ground", this.scene.element);
+    return el("div", { class: "columns response-columns" }, scene, this.controls.element);
+  }
+
+  details() {
+    const curves = card("Curves", this.charts.element);
+    const impacts = card("Impacts", this.impacts.element);
+    return fill(this.results, curves, impacts, filesOf(this.app));
+  }
+
+  mounted(section) {
+    this.app.inputs.subscribe((inputs, changed) => {
+      if (!KEYS.some((key) => changed.has(key))) return;
+      this.dirty = true;
+      this.controls.show(inputs);
+      if (this.visible) this.ask();
+    });
+    this.controls.show(this.app.inputs.get());
+    section.addEventListener("keydown", (event) => this.onKey(event));
+  }
+
+  /** Several changes of one moment are one question. */
+  ask() {
+    if (this.asked) return;
+    this.asked = true;
+    queueMicrotask(() => {
+      this.asked = false;
+      this.refresh();
+    });
+  }
+
+  async refresh() {
+    const { body, motion, restitution, response, settings } = this.app.inputs.get();
+    this.dirty = false;
+    const free = response?.free !== undefined && response?.free !== null;
+    if (!motion && !free) return this.nothingMoves();
+    const given = { body, motion: free ? undefined : motion, restitution, response, settings, points: 900 };
+    try {
+      this.show(await this.app.latest("response", "response", given));
+    } catch (error) {
+      if (!this.app.superseded(error)) this.refuse(error);
+    }
+    return undefined;
+  }
+
+  nothingMoves() {
+    const choose = button({ text: "Choose a motion", kind: "primary", onClick: () => this.app.go("motion") });
+    const lean = button({ text: "Let it go from a lean", onClick: () => this.controls.lean() });
+    const words = note("Nothing moves the body yet: choose a motion, or let it go from a lean.");
+    fill(this.refusal, words, el("div", { class: "toolbar" }, choose, lean));
+    this.hideResults(true);
+  }
+
+  refuse(error) {
+    fill(this.refusal, note(error.message, "error"));
+    this.hideResults(true);
+  }
+
+  hideResults(hidden) {
+    this.verdict.element.hidden = hidden;
+    this.results.hidden = hidden;
+    this.scene.element.hidden = hidden;
+  }
+
+  show(answer) {
+    this.answer = answer;
+    fill(this.refusal);
+    this.hideResults(false);
+    const shown = answer.answers.filter((one) => one.series);
+    this.verdict.show(answer);
+    this.scene.show(answer, shown);
+    this.charts.show(shown, this.app.inputs.get().response?.friction ?? 0.5);
+    this.impacts.show(shown);
+    this.results.dataset.drawn = String(Number(this.results.dataset.drawn || 0) + 1);
+  }
+
+  /** Makes one model the solid body of the animation. */
+  follow(label) {
+    this.scene.follow(label);
+    this.charts.follow(label);
+    this.impacts.choose(label);
+  }
+
+  onKey(event) {
+    if (event.key !== " " || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.target.closest("button, select, summary, a, input:not([type=range]), textarea")) return;
+    event.preventDefault();
+    this.scene.toggle();
+  }
+
+  shown() {
+    this.visible = true;
+    if (this.dirty) this.ask();
+  }
+
+  hidden() {
+    this.visible = false;
+    this.scene.pause();
+  }
+}

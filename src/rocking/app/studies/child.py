@@ -1,0 +1,104 @@
+"""The process of a study: `python -m rocking.app.studies.child FOLDER WORKERS`.
+
+It ends when the server does: its standard input is a pipe that nobody writes to, and whose end is the server's end.
+Exit codes: 0 done, 2 refused, 3 stopped (what is finished is safe).
+"""
+
+import contextlib
+import os
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+
+DONE, REFUSED, STOPPED = 0, 2, 3
+"""Exit codes."""
+
+GRACE = 0.4
+"""Time that a study has between the wish to stop and its end [s]."""
+
+_PATIENCE = 3.0
+
+
+def main(arguments: list[str]) -> int:
+    """Begin or go on with the campaign of a study.
+
+    Parameters
+    ----------
+    arguments : list of str
+        Folder of the study, and number of workers.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    _end_with_the_server()
+    _be_nice()
+    from rocking.errors import RockingError
+    from rocking.studies.campaign import CampaignInterrupted
+
+    try:
+        _compute(Path(arguments[0]), int(arguments[1]))
+    except (CampaignInterrupted, KeyboardInterrupt):
+        return STOPPED
+    except RockingError as error:
+        print(f"refused: {error}", file=sys.stderr, flush=True)
+        return REFUSED
+    return DONE
+
+
+def _compute(study: Path, workers: int) -> None:
+    from rocking.app.studies.opened import OpenStudy
+    from rocking.app.studies.results.kept import keep_result
+    from rocking.app.studies.study_folder import CAMPAIGN, JOB, StudyFolder
+    from rocking.dynamics import engine
+    from rocking.studies.campaign import CampaignBusyError
+    from rocking.studies.job import Job, JobFolder
+
+    campaign = study / CAMPAIGN
+    begun = (campaign / JOB).is_file()
+    folder = JobFolder.open(campaign, study) if begun else JobFolder.create(campaign, Job.read(study / JOB))
+    histories = folder.job.study.histories
+    # the fast engine has threads of its own; the reference engine needs processes to be quicker than one core
+    alone = workers == 1 or engine.chosen(histories.engine, histories.law) == "fast"
+    deadline = time.monotonic() + _PATIENCE
+    while True:
+        try:
+            folder.run("serial" if alone else "processes", workers=workers)
+        except CampaignBusyError:
+            # the process of a server that was killed lets go within a second
+            if time.monotonic() > deadline:
+                raise
+            time.sleep(0.1)
+        else:
+            break
+    keep_result(OpenStudy(study.name, StudyFolder(study), folder))
+
+
+def _be_nice() -> None:
+    with contextlib.suppress(OSError, AttributeError):
+        os.nice(10)
+
+
+def _end_with_the_server() -> None:
+    threading.Thread(target=_watch, daemon=True).start()
+
+
+def _watch() -> None:
+    with contextlib.suppress(OSError):
+        while os.read(0, 1):
+            pass
+    with contextlib.suppress(OSError):
+        os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(GRACE)
+    if sys.platform == "win32":
+        os._exit(STOPPED)
+    else:
+        # the workers too: the group is this process's own
+        os.killpg(os.getpgrp(), signal.SIGKILL) if os.getpgrp() == os.getpid() else os._exit(STOPPED)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

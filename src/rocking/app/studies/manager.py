@@ -1,0 +1,241 @@
+"""The studies of a server: in line, one after another, each in a process of its own."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from rocking.app.problems import NotFound, Refused, TooLarge
+from rocking.app.settings import Limits
+from rocking.app.studies.job_document import JobDocument
+from rocking.app.studies.line import Line
+from rocking.app.studies.names import new_id, shown
+from rocking.app.studies.opened import OpenStudies
+from rocking.app.studies.process import processors
+from rocking.app.studies.shelf import check_room, remove, studies_in
+from rocking.app.studies.study import Study
+from rocking.app.studies.study_folder import (
+    CANCELLED,
+    DONE,
+    FAILED,
+    INTERRUPTED,
+    RUNNING,
+    WAITING,
+    Meta,
+    Records,
+    StudyFolder,
+)
+
+_BYTES = 100
+"""Disk for a history, generously [byte]."""
+
+
+class StudyManager:
+    """Launches studies, watches them, stops them, and knows all that are on disk.
+
+    Parameters
+    ----------
+    folder : Path
+        Data folder of the server; the studies are in ``studies``.
+    limits : Limits
+        How much it takes on.
+    records : Records
+        Uploaded records.
+    workers : int, optional
+        Threads or processes for a study; as many as the processor has, if not given.
+    at_once : int
+        Studies that run at the same time [-].
+    """
+
+    def __init__(
+        self, folder: Path, limits: Limits, records: Records, *, workers: int | None = None, at_once: int = 1
+    ) -> None:
+        self._folder, self._limits, self._records = folder / "studies", limits, records
+        there = studies_in(self._folder)
+        self.opened = OpenStudies()
+        self._line = Line(there, workers or processors(), at_once, limits.studies_waiting)
+
+    def create(self, name: str | None, job: object) -> str:
+        """Put a new study in line.
+
+        Parameters
+        ----------
+        name : str, optional
+            What it is called; as the job says, if not given.
+        job : object
+            The job, as JSON; records are named by their hashes.
+
+        Returns
+        -------
+        str
+            Name of the study in addresses.
+
+        Raises
+        ------
+        TooLarge
+            If it has too many histories, or there is no room for its results.
+        """
+        document = JobDocument.of(job)
+        count = document.most
+        if count > self._limits.histories:
+            raise TooLarge(
+                f"the study has {count} histories; this server takes up to {self._limits.histories}: fewer values, "
+                "or `rocking campaign` on the command line, which has no limit"
+            )
+        return self._line.enter(lambda: self._made(name or document.name, document)).folder.id
+
+    def overview(self) -> list[dict[str, Any]]:
+        """Return all studies, the newest first; nothing is read for it.
+
+        Returns
+        -------
+        list of dict
+            Name, kind, state and progress of each.
+        """
+        return list(self._line.published.values())
+
+    def get(self, study: str) -> dict[str, Any]:
+        """Return one study.
+
+        Parameters
+        ----------
+        study : str
+            Its name in addresses.
+
+        Returns
+        -------
+        dict
+            Name, kind, state and progress.
+
+        Raises
+        ------
+        NotFound
+            If there is none.
+        """
+        found = self._line.published.get(study)
+        if found is None:
+            raise NotFound("there is no such study; it may have been deleted")
+        return found
+
+    def finished(self, study: str) -> StudyFolder:
+        """Return the folder of a study that is done.
+
+        Parameters
+        ----------
+        study : str
+            Its name in addresses.
+
+        Returns
+        -------
+        StudyFolder
+            The folder.
+
+        Raises
+        ------
+        Refused
+            If it is not done.
+        """
+        facts = self.get(study)
+        if facts["state"] != DONE:
+            share = f"{facts['histories_done']} of {facts['histories']} histories are finished"
+            raise Refused(f"the study is {facts['state']}, not done: {share}; its results can be seen when all are")
+        return self._line.study(study).folder
+
+    def cancel(self, study: str) -> None:
+        """Stop a study within a second; what is finished is safe, and it can be resumed.
+
+        Parameters
+        ----------
+        study : str
+            Its name in addresses.
+
+        Raises
+        ------
+        Refused
+            If it neither waits nor runs.
+        """
+        with self._line.lock:
+            found = self._line.study(study)
+            if found.meta.state not in {WAITING, RUNNING}:
+                raise Refused(f"the study is {found.meta.state}: only one that waits or runs can be cancelled")
+            found.cancelled, process = True, found.process
+            if process is None:
+                found.become(CANCELLED, "cancelled before it began")
+        if process is not None:
+            process.stop()
+            self._line.end(found)
+        self._line.changed()
+
+    def resume(self, study: str) -> None:
+        """Put a study in line again; it goes on where it stopped.
+
+        Parameters
+        ----------
+        study : str
+            Its name in addresses.
+
+        Raises
+        ------
+        Refused
+            If it waits, runs or is done.
+        """
+
+        def again() -> Study:
+            """Return the study, which waits again."""
+            with self._line.lock:
+                found = self._line.study(study)
+                if found.meta.state not in {CANCELLED, INTERRUPTED, FAILED}:
+                    raise Refused(f"the study is {found.meta.state}: there is nothing to resume")
+                found.cancelled = False
+                found.become(WAITING)
+                return found
+
+        self._line.enter(again)
+
+    def delete(self, study: str) -> None:
+        """Forget a study and all its results; one that runs is stopped.
+
+        Parameters
+        ----------
+        study : str
+            Its name in addresses.
+        """
+        found = self._line.leave(study)
+        if found.process is not None:
+            found.process.stop()
+            found.process.close()
+        self.opened.forget(study)
+        remove(found)
+        self._line.changed()
+
+    def subscribe(self, tell: Callable[[], None]) -> Callable[[], None]:
+        """Be told of every change, from whatever thread.
+
+        Parameters
+        ----------
+        tell : callable
+            Called without arguments; it must return at once.
+
+        Returns
+        -------
+        callable
+            Ends it.
+        """
+        return self._line.subscribe(tell)
+
+    @property
+    def watchers(self) -> int:
+        """How many are told of changes."""
+        return self._line.watchers
+
+    def close(self) -> None:
+        """Stop what runs, so that it can be resumed, and watch no longer."""
+        self._line.close()
+
+    def _made(self, name: str, document: JobDocument) -> Study:
+        check_room(self._folder, _BYTES * document.most, self._limits.studies_bytes)
+        folder = StudyFolder(self._folder / new_id())
+        created = datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
+        meta = Meta(shown(name), document.kind, created, document.histories)
+        folder.create(meta, document, self._records)
+        return Study(folder, meta)

@@ -1,0 +1,40 @@
+"""What the browser is told of a finished study, by its kind."""
+
+from collections.abc import Callable
+from typing import Any
+
+from rocking.app.studies.opened import OpenStudy
+from rocking.app.studies.results.fragility import fragility_result
+from rocking.app.studies.results.maps import map_result
+from rocking.app.studies.results.products import product_result
+from rocking.app.studies.results.spectra import spectrum_result
+from rocking.app.studies.results.tables import minimum_result
+
+_BY_KIND: dict[str, Callable[[OpenStudy], dict[str, Any]]] = {
+    "overturning-map": map_result,
+    "minimum-acceleration": minimum_result,
+    "rocking-spectrum": spectrum_result,
+    "stripes": fragility_result,
+    "incremental": fragility_result,
+    "cloud": fragility_result,
+    "histories": product_result,
+}
+
+
+def result_of(study: OpenStudy) -> dict[str, Any]:
+    """Return the result of a finished study.
+
+    Parameters
+    ----------
+    study : OpenStudy
+        The study.
+
+    Returns
+    -------
+    dict
+        Plain values and arrays, with None where there is no number.
+    """
+    document = study.job.job.document
+    kind = str(document.campaign.kind)
+    head = {"id": study.id, "kind": kind, "name": str(document.campaign.name)}
+    return {**head, "restitutions": list(study.job.job.parts.choices), **_BY_KIND[kind](study)}

@@ -1,0 +1,181 @@
+"""Endpoints of studies: launch, watch, cancel, resume, look at, take away."""
+
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, WebSocket
+from pydantic import BaseModel, ConfigDict, Field
+from starlette.background import BackgroundTask
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import FileResponse, Response
+
+from rocking.app.answers import JsonAnswer
+from rocking.app.files import safe_name
+from rocking.app.state import state_of
+from rocking.app.studies.exports import MEDIA_TYPES, Kind
+from rocking.app.studies.live import serve
+from rocking.app.studies.manager import StudyManager
+from rocking.app.work import heavy
+
+router = APIRouter(prefix="/api/studies", tags=["studies"])
+
+_JOB = """\
+The tables of a job file (`examples/jobs/*.toml`) as JSON. Records are named by the SHA-256 under which they were
+uploaded, `{"records": ["64 hexadecimal digits"]}`; bodies are given as they are, not by the names of files."""
+
+Whole = Annotated[int, Field(ge=0, le=10_000_000)]
+
+
+class StudyAsked(BaseModel):
+    """A study to launch."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+    name: Annotated[str | None, Field(max_length=200, description="what it is called; as the job says by default")] = (
+        None
+    )
+    job: Annotated[dict[str, Any], Field(description=_JOB)]
+
+
+class PointAsked(BaseModel):
+    """A point of the picture of a study: numbers of values along its axes."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    x: Whole = 0
+    y: Whole = 0
+    restitution: Whole = 0
+    motion: Annotated[Whole, Field(description="where the motion is no axis of the picture")] = 0
+    points: Annotated[int, Field(ge=10, le=20_000, description="samples of the curves")] = 1000
+
+
+@router.post("", status_code=202, summary="Launch a study", description=_JOB, name="create_study")
+async def _create_study(request: Request, asked: StudyAsked) -> JsonAnswer:
+    """Put a study in line."""
+    made = await heavy(request, _studies(request).create, asked.name, asked.job)
+    return JsonAnswer({"id": made}, status_code=202)
+
+
+@router.get("", summary="All studies", name="list_studies")
+async def _list_studies(request: Request) -> JsonAnswer:
+    """Return all studies, the newest first."""
+    return JsonAnswer({"studies": _studies(request).overview()})
+
+
+@router.websocket("/live", name="live_studies")
+async def _live_studies(socket: WebSocket) -> None:
+    """Push the list of studies whenever it changes."""
+    await serve(state_of(socket).studies, socket)
+
+
+@router.get("/{study}", summary="One study", name="get_study")
+async def _get_study(request: Request, study: str) -> JsonAnswer:
+    """Return state and progress of a study."""
+    return JsonAnswer(_studies(request).get(study))
+
+
+@router.post("/{study}/cancel", summary="Stop a study; it can be resumed", name="cancel_study")
+async def _cancel_study(request: Request, study: str) -> JsonAnswer:
+    """Stop a study within a second."""
+    await run_in_threadpool(_studies(request).cancel, study)
+    return JsonAnswer(_studies(request).get(study))
+
+
+@router.post("/{study}/resume", summary="Go on with a study", name="resume_study")
+async def _resume_study(request: Request, study: str) -> JsonAnswer:
+    """Put a study in line again."""
+    await run_in_threadpool(_studies(request).resume, study)
+    return JsonAnswer(_studies(request).get(study))
+
+
+@router.delete("/{study}", summary="Delete a study and its results", name="delete_study")
+async def _delete_study(request: Request, study: str) -> JsonAnswer:
+    """Forget a study."""
+    await run_in_threadpool(_studies(request).delete, study)
+    return JsonAnswer({"deleted": study})
+
+
+@router.get("/{study}/result", summary="What a study found, by its kind", name="study_result")
+async def _study_result(request: Request, study: str) -> Response:
+    """Return what a finished study found."""
+    manager = _studies(request)
+    manager.finished(study)
+    known = manager.opened.known((study, "result"))
+    data = known if known is not None else await heavy(request, _result, manager, study)
+    return Response(data, media_type="application/json")
+
+
+@router.get("/{study}/cell", summary="The history behind a point of its picture", name="study_cell")
+async def _study_cell(
+    request: Request,
+    study: str,
+    point: Annotated[PointAsked, Query()],
+) -> Response:
+    """Return inputs and response of one history of a finished study."""
+    manager = _studies(request)
+    manager.finished(study)
+    return Response(await heavy(request, _cell, manager, study, point), media_type="application/json")
+
+
+@router.get(
+    "/{study}/export.{kind}", summary="A finished study as a file", response_class=Response, name="export_study"
+)
+async def _export_study(
+    request: Request,
+    study: str,
+    kind: Kind,
+    what: Annotated[str | None, Query(max_length=40, description="as `rocking campaign export --what`")] = None,
+    restitution: Annotated[Whole, Query()] = 0,
+) -> Response:
+    """Return a finished study as a file."""
+    manager = _studies(request)
+    name = safe_name(f"{manager.get(study)['name']}.{kind}", "study")
+    path = await heavy(request, _file, manager, study, kind, what, restitution)
+    return FileResponse(
+        path,
+        media_type=MEDIA_TYPES[kind],
+        headers={"Content-Disposition": f'attachment; filename="{name}"', "X-Content-Type-Options": "nosniff"},
+        background=BackgroundTask(shutil.rmtree, path.parent, ignore_errors=True),
+    )
+
+
+def _studies(request: Request) -> StudyManager:
+    return state_of(request).studies
+
+
+def _result(manager: StudyManager, study: str) -> bytes:
+    from rocking.app.studies.results.kept import keep_result, kept_result
+
+    folder = manager.finished(study)
+    return manager.opened.answer(
+        (study, "result"), lambda: kept_result(folder) or keep_result(manager.opened.get(folder))
+    )
+
+
+def _cell(manager: StudyManager, study: str, point: PointAsked) -> bytes:
+    from rocking.app.studies.cells.cell import cell_of
+    from rocking.app.studies.cells.place import Place
+
+    opened = manager.opened.get(manager.finished(study))
+    found = Place.of(opened, point.x, point.y, point.restitution, point.motion)
+    key = (study, "cell", found.number, point.points)
+    return manager.opened.answer(key, lambda: _json(cell_of(opened, found, point.points)))
+
+
+def _file(manager: StudyManager, study: str, kind: Kind, what: str | None, restitution: int) -> Path:
+    from rocking.app.studies.exports import written
+
+    opened = manager.opened.get(manager.finished(study))
+    path = Path(tempfile.mkdtemp(prefix="rocking-export-")) / f"study.{kind}"
+    try:
+        written(opened, kind, path, what, restitution)
+    except BaseException:
+        shutil.rmtree(path.parent, ignore_errors=True)
+        raise
+    return path
+
+
+def _json(told: dict[str, Any]) -> bytes:
+    return bytes(JsonAnswer(told).body)

@@ -1,0 +1,231 @@
+"""A study on disk: what it is, the job, the records that it needs, and the campaign."""
+
+import json
+import os
+import shutil
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from rocking.app.studies.job_document import JobDocument
+from rocking.app.studies.names import file_name
+from rocking.errors import InvalidValueError, RockingError
+from rocking.studies.campaign import disk
+from rocking.studies.job.folder import status_of
+
+META, JOB, CAMPAIGN, RECORDS, LOG = "meta.json", "job.toml", "campaign", "records", "log.txt"
+"""Files and folders of a study."""
+
+WAITING, RUNNING, CANCELLED = "waiting", "running", "cancelled"
+INTERRUPTED, FAILED, DONE = "interrupted", "failed", "done"
+STATES = (WAITING, RUNNING, CANCELLED, INTERRUPTED, FAILED, DONE)
+"""What a study may be doing."""
+
+
+class Records(Protocol):
+    """Where uploaded records are kept."""
+
+    def path(self, sha256: str) -> Path:
+        """Return where a record is.
+
+        Parameters
+        ----------
+        sha256 : str
+            Its hash.
+        """
+
+
+@dataclass(frozen=True)
+class Meta:
+    """What is known of a study beside its campaign.
+
+    Parameters
+    ----------
+    name, kind : str
+        What it is called, fit to be shown, and what it computes.
+    created : str
+        When it was made, as of ISO 8601.
+    histories : int
+        How many it has.
+    state : str
+        One of `STATES`.
+    message : str
+        A sentence about how it ended; empty while there is none.
+    """
+
+    name: str
+    kind: str
+    created: str
+    histories: int
+    state: str = WAITING
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class StudyFolder:
+    """The folder of a study.
+
+    Parameters
+    ----------
+    path : Path
+        Where it is; its name is that of the study.
+    """
+
+    path: Path
+
+    @property
+    def id(self) -> str:
+        """Name of the study in addresses."""
+        return self.path.name
+
+    @property
+    def campaign(self) -> Path:
+        """Folder of the campaign."""
+        return self.path / CAMPAIGN
+
+    def create(self, meta: Meta, job: JobDocument, records: Records) -> None:
+        """Write what a study needs, so that it needs nothing else: a power cut leaves all of it or no `meta.json`.
+
+        Parameters
+        ----------
+        meta : Meta
+            What it is.
+        job : JobDocument
+            What it computes.
+        records : Records
+            Where the records are that it names.
+
+        Raises
+        ------
+        RockingError
+            If a record is not there, or something in the job is refused; nothing is left of the folder then.
+        InvalidValueError
+            If the job has another number of histories than was said.
+        """
+        from rocking.studies.job import Job
+
+        try:
+            disk.make_folder(self.path)
+            self.path.chmod(0o700)
+            kept = {sha256: self._keep(sha256, records.path(sha256)) for sha256 in job.records}
+            disk.write_new(self.path / JOB, job.toml(kept.__getitem__).encode())
+            if not job.needs_long:
+                with np.errstate(all="ignore"):  # what overflows is infinite, and refused by its name
+                    made = Job.read(self.path / JOB)  # everything is checked: bodies, motions, axes, levels
+                if made.study.histories.count != meta.histories:
+                    raise InvalidValueError(f"job has {made.study.histories.count} histories, not {meta.histories}")
+            self.write(meta)
+        except BaseException as error:
+            shutil.rmtree(self.path, ignore_errors=True)
+            if isinstance(error, RockingError):
+                raise type(error)(self.without_paths(str(error))) from error
+            raise
+
+    def _keep(self, sha256: str, source: Path) -> str:
+        """Copy a record into the study, by a link where the disk can, and return its path in the study."""
+        name = f"{RECORDS}/{sha256}/{file_name(source.name)}"
+        target = self.path / name
+        disk.make_folder(target.parent)
+        try:
+            target.hardlink_to(source)
+        except OSError:
+            shutil.copyfile(source, target)
+        return name
+
+    def write(self, meta: Meta) -> None:
+        """Write what is known of the study, as a whole or not at all.
+
+        Parameters
+        ----------
+        meta : Meta
+            What is known.
+        """
+        disk.write_new(self.path / META, (json.dumps(asdict(meta), indent=1) + "\n").encode())
+
+    def read(self) -> Meta | None:
+        """Return what is known of the study.
+
+        Returns
+        -------
+        Meta, optional
+            None where there is none, or none that can be read.
+        """
+        try:
+            told = json.loads((self.path / META).read_bytes())
+            made = Meta(**{item.name: told[item.name] for item in fields(Meta)})
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+        words = (made.name, made.kind, made.created, made.state, made.message)
+        sound = all(isinstance(word, str) for word in words) and isinstance(made.histories, int)
+        return made if sound and made.state in STATES else None
+
+    def status(self) -> tuple[int, int, bool]:
+        """Return how far the campaign is.
+
+        Returns
+        -------
+        histories, done : int
+            Of an adaptive study those of the rounds that have begun; 0 where nothing has [-].
+        complete : bool
+            Whether all is computed.
+        """
+        if not (self.campaign / JOB).is_file():
+            return 0, 0, False
+        found = status_of(self.campaign)
+        if found.status is None:
+            return 0, 0, False
+        return found.status.histories, found.status.histories_done, found.complete
+
+    def ended(self) -> Meta | None:
+        """Return what is known of a study that nobody runs: it cannot be waiting or running.
+
+        Returns
+        -------
+        Meta, optional
+            As it is on disk now; None where there is no study.
+        """
+        meta = self.read()
+        if meta is None or meta.state not in {WAITING, RUNNING}:
+            return meta
+        try:
+            complete = self.status()[2]
+        except RockingError:
+            complete = False
+        words = "" if complete else "the server ended before the study did; what was finished is safe, resume it"
+        meta = replace(meta, state=DONE if complete else INTERRUPTED, message=words)
+        self.write(meta)
+        return meta
+
+    def without_paths(self, words: str) -> str:
+        """Return a sentence without the paths of this machine in it, which are nobody's business.
+
+        Parameters
+        ----------
+        words : str
+            The sentence.
+
+        Returns
+        -------
+        str
+            With names relative to the study.
+        """
+        for folder in (self.campaign, self.path):
+            words = words.replace(f"{folder}{os.sep}", "").replace(str(folder), "the study")
+        return words.removeprefix(f"{JOB}: ")
+
+    def facts(self, meta: Meta) -> dict[str, Any]:
+        """Return what is known, as the answer of the application.
+
+        Parameters
+        ----------
+        meta : Meta
+            What is known.
+
+        Returns
+        -------
+        dict
+            Plain values.
+        """
+        return {"id": self.id, **asdict(meta)}

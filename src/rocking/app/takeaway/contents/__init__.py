@@ -1,0 +1,1 @@
+"""What stands in the tables: body, coefficients, motion, spectrum, measures, response, impacts."""

@@ -1,0 +1,102 @@
+"""A motion as tables: its curves, its intensity measures, its response spectrum."""
+
+import numpy as np
+
+from rocking.app.takeaway.sheets import Column, Sheet
+from rocking.dynamics.response import Motion
+from rocking.motions.kinematics import ground_displacement, ground_velocity
+from rocking.motions.motion import GroundMotion
+from rocking.motions.spectrum import SHORTEST_PERIOD, response_spectrum
+from rocking.plots.traces import fine_samples, traces
+from rocking.report.facts.motion import measures_of
+
+DAMPING = 0.05
+"""Damping ratio of the spectrum [-]."""
+
+_LONGEST, _SHORTEST, _COUNT = 10.0, 0.03, 100
+
+
+def motion_sheet(motion: Motion, about: dict[str, str]) -> Sheet:
+    """Return time, acceleration, velocity and displacement; those of a pulse as its formulas give them.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion, scaled.
+    about : dict of str to str
+        Provenance.
+
+    Returns
+    -------
+    Sheet
+        One sample a row.
+    """
+    if isinstance(motion, GroundMotion):
+        curves = {"acceleration": motion.acceleration, "velocity": ground_velocity(motion)}
+        curves |= {"displacement": ground_displacement(motion)}
+        time = motion.time
+    else:
+        fine = traces(motion)
+        time = fine.time
+        curves = {"acceleration": fine.acceleration, "velocity": fine.velocity, "displacement": fine.displacement}
+    units = {"acceleration": "m/s2", "velocity": "m/s", "displacement": "m"}
+    columns = [Column.of("time", "s", time), *(Column.of(name, units[name], each) for name, each in curves.items())]
+    if isinstance(motion, GroundMotion) and motion.vertical is not None:
+        columns.append(Column.of("vertical_acceleration", "m/s2", motion.vertical))
+    return Sheet("motion", columns, about)
+
+
+def measures_sheet(motion: Motion, about: dict[str, str]) -> Sheet:
+    """Return the intensity measures of a motion.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion, scaled.
+    about : dict of str to str
+        Provenance.
+
+    Returns
+    -------
+    Sheet
+        One measure a row.
+    """
+    found = measures_of(motion, fine_samples(motion))
+    columns = [
+        Column.of("motion", "", [motion.name] * len(found)),
+        Column.of("key", "", list(found)),
+        Column.of("measure", "", [one.name for one in found.values()]),
+        Column.of("value", "unit of its row", [one.value for one in found.values()]),
+        Column.of("unit", "", [one.unit for one in found.values()]),
+    ]
+    return Sheet("measures", columns, about)
+
+
+def spectrum_sheet(motion: Motion, about: dict[str, str]) -> Sheet:
+    """Return the response spectrum of a motion for 5 % damping.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion, scaled.
+    about : dict of str to str
+        Provenance.
+
+    Returns
+    -------
+    Sheet
+        One period a row.
+    """
+    samples = fine_samples(motion)
+    # the periods of the picture on the screen
+    shortest = max(_SHORTEST, SHORTEST_PERIOD * samples.time_step)
+    periods = np.geomspace(shortest, max(_LONGEST, 2.0 * shortest), _COUNT)
+    found = response_spectrum(samples, periods, DAMPING)
+    columns = [
+        Column.of("period", "s", found.periods),
+        Column.of("pseudo_acceleration", "m/s2", found.pseudo_acceleration),
+        Column.of("pseudo_velocity", "m/s", found.pseudo_velocity),
+        Column.of("displacement", "m", found.displacement),
+        Column.of("absolute_acceleration", "m/s2", found.absolute_acceleration),
+    ]
+    return Sheet("spectrum", columns, {**about, "damping ratio": repr(DAMPING)})

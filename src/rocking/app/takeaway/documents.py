@@ -1,0 +1,159 @@
+"""Documents to take away: the report, the animation, the inputs as a file, and such a file read again."""
+
+import datetime
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Request
+from starlette.responses import Response as Answer
+
+from rocking.app.answers import JsonAnswer
+from rocking.app.api.uploads import OCTETS
+from rocking.app.files import attachment
+from rocking.app.problems import NotFound, Refused
+from rocking.app.records import RecordStore
+from rocking.app.schemas.inputs import Inputs, ResponseInputs
+from rocking.app.state import state_of
+from rocking.app.takeaway.asked import Asked
+from rocking.app.takeaway.bundle import bundle_of
+from rocking.app.takeaway.film import MEDIA_TYPES, gif_of, page_of
+from rocking.app.takeaway.inputs_file import inputs_as_toml, inputs_from_toml, plain_inputs
+from rocking.app.takeaway.plain_text import record_file_name
+from rocking.app.takeaway.report import report_of
+from rocking.app.work import heavy
+
+router = APIRouter(prefix="/api", tags=["take away"])
+
+Place = Annotated[int | None, Query(ge=0, description="which response, counted from 0; the first if left out")]
+_DATE = "day that is printed on the report, as 2026-11-21; none if left out"
+
+
+@router.post("/report.pdf", response_class=Answer, summary="The report as PDF")
+async def report(
+    request: Request, inputs: ResponseInputs, date: Annotated[datetime.date | None, Query(description=_DATE)] = None
+) -> Answer:
+    """Return the report: body, coefficients, motion, responses, and how to do it again.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    inputs : ResponseInputs
+        What the user chose.
+    date : date, optional
+        Day that is printed.
+
+    Returns
+    -------
+    Response
+        A PDF.
+    """
+    asked = Asked(inputs, state_of(request).records)
+    day = "" if date is None else f"{date.day} {date:%B %Y}"
+    return attachment(await heavy(request, report_of, asked, day), _name(asked, "report.pdf"), "application/pdf")
+
+
+@router.post("/animation.{kind}", response_class=Answer, summary="The body in motion")
+async def animation(
+    request: Request, kind: Literal["html", "gif"], inputs: ResponseInputs, restitution: Place = None
+) -> Answer:
+    """Return one response in motion: a page that needs nothing else, or a GIF.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    kind : {"html", "gif"}
+        Format.
+    inputs : ResponseInputs
+        What the user chose.
+    restitution : int, optional
+        Place of the response.
+
+    Returns
+    -------
+    Response
+        The file.
+    """
+    asked = Asked(inputs, state_of(request).records)
+    make = page_of if kind == "html" else gif_of
+    data = await heavy(request, lambda: make(asked.chosen(restitution)))
+    return attachment(data, _name(asked, f"animation.{kind}"), MEDIA_TYPES[kind])
+
+
+@router.post("/inputs.toml", response_class=Answer, summary="The inputs as a file of the command line")
+async def inputs_file(request: Request, inputs: Inputs) -> Answer:
+    """Return the file that `rocking simulate` takes for the same result.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    inputs : Inputs
+        What the user chose.
+
+    Returns
+    -------
+    Response
+        TOML.
+    """
+    data = await heavy(request, inputs_as_toml, inputs)
+    return attachment(data.encode("utf-8"), "response.toml", "application/toml")
+
+
+@router.post("/inputs.zip", response_class=Answer, summary="The inputs with their record")
+async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
+    """Return an archive of the file of inputs, the record, and what to type.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    inputs : Inputs
+        What the user chose.
+
+    Returns
+    -------
+    Response
+        A ZIP file.
+    """
+    asked = Asked(inputs, state_of(request).records)
+    return attachment(await heavy(request, bundle_of, asked), _name(asked, "response.zip"), "application/zip")
+
+
+@router.post("/inputs/read", openapi_extra=OCTETS, summary="A file of inputs, read again", response_class=JsonAnswer)
+async def inputs_read(request: Request) -> JsonAnswer:
+    """Return the inputs that a file of inputs holds.
+
+    Parameters
+    ----------
+    request : Request
+        With the bytes of the file.
+
+    Returns
+    -------
+    JsonAnswer
+        The inputs.
+    """
+    data = await request.body()
+    return JsonAnswer(await heavy(request, _read, data, state_of(request).records))
+
+
+def _read(data: bytes, records: RecordStore) -> dict[str, Any]:
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise Refused(f"this is not a text file in UTF-8 (byte {error.start})") from error
+    return plain_inputs(inputs_from_toml(text, lambda word: _stored(word, records)))
+
+
+def _stored(word: str, records: RecordStore) -> str | None:
+    """Return the hash of an uploaded record, given that or its name; of several with one name, the latest."""
+    try:
+        return records.get(word).record
+    except NotFound:
+        named = (one.record for one in records.stored() if record_file_name(one.file_name) == record_file_name(word))
+        return next(named, None)
+
+
+def _name(asked: Asked, ending: str) -> str:
+    return f"{asked.name or 'rocking'} {ending}"

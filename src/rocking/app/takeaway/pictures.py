@@ -1,0 +1,133 @@
+"""Pictures of what the user sees: POST /api/picture/{what}.{kind}."""
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from fastapi import APIRouter, Query, Request
+from starlette.responses import Response as Answer
+
+from rocking.app.files import attachment
+from rocking.app.schemas.inputs import Inputs
+from rocking.app.state import state_of
+from rocking.app.takeaway.asked import Asked
+from rocking.app.takeaway.drawing import MEDIA_TYPES, PictureKind, drawn
+from rocking.app.work import heavy
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+What = Literal["body", "coefficients", "stages", "motion", "response"]
+Onto = Literal["left", "right", "both"]
+
+router = APIRouter(prefix="/api", tags=["take away"])
+
+
+@router.post("/picture/{what}.{kind}", response_class=Answer, summary="A picture")
+async def picture(
+    request: Request,
+    what: What,
+    kind: PictureKind,
+    inputs: Inputs,
+    onto: Annotated[Onto, Query(description="foot on which the body lands")] = "both",
+    restitution: Annotated[
+        int | None, Query(ge=0, description="only this response, counted from 0; all of them if left out")
+    ] = None,
+) -> Answer:
+    """Return a picture as a file: the body, its coefficients, the three stages, the motion, or the responses.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    what : str
+        Which picture.
+    kind : {"png", "svg"}
+        Format.
+    inputs : Inputs
+        What the user chose.
+    onto : {"left", "right", "both"}
+        Foot on which the body lands.
+    restitution : int, optional
+        Place of the response that is drawn alone.
+
+    Returns
+    -------
+    Response
+        The file.
+    """
+    asked = Asked(inputs, state_of(request).records, onto)
+    data = await heavy(request, drawn, lambda: named(figure_of(what, asked, restitution), what, asked.name), kind)
+    return attachment(data, f"{asked.name or 'rocking'} {what}.{kind}", MEDIA_TYPES[kind])
+
+
+def figure_of(what: str, asked: Asked, restitution: int | None = None) -> "Figure":
+    """Return a picture.
+
+    Parameters
+    ----------
+    what : str
+        body, coefficients, stages, motion or response.
+    asked : Asked
+        What the user chose.
+    restitution : int, optional
+        Place of the response that is drawn alone.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The picture.
+    """
+    from rocking.plots.body_picture import body_picture, coefficient_picture
+    from rocking.plots.figure_2 import figure_2
+    from rocking.plots.ground_motion import ground_motion_picture
+
+    if what == "motion":
+        return _scaled(ground_motion_picture(asked.motion), asked)
+    if what == "response":
+        return _responses(asked, restitution)
+    if what == "coefficients":
+        return coefficient_picture(asked.body, asked.impact.tables[asked.foot], onto=asked.foot)
+    if what == "stages":
+        return figure_2(asked.body, onto=asked.foot)
+    return body_picture(asked.body)
+
+
+def _responses(asked: Asked, restitution: int | None) -> "Figure":
+    from rocking.app.takeaway.comparison_picture import comparison_picture
+    from rocking.plots.response import response_picture
+
+    if restitution is None and len(asked.responses) > 1:
+        return comparison_picture(asked.responses)
+    return response_picture(asked.chosen(restitution), asked.question.friction)
+
+
+def named(figure: "Figure", what: str, name: str) -> "Figure":
+    """Write the name of the body over a picture that has no title of its own.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The picture.
+    what : str
+        Which one.
+    name : str
+        What the user calls the body.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The same.
+    """
+    return _titled(figure, name) if name and what in {"body", "coefficients", "stages"} else figure
+
+
+def _scaled(figure: "Figure", asked: Asked) -> "Figure":
+    """Say that a motion was scaled: its name speaks of the one that it was."""
+    scale = 1.0 if asked.inputs.motion is None else asked.inputs.motion.scale
+    return figure if scale == 1.0 else _titled(figure, f"{scale:g} times {asked.motion.name}")
+
+
+def _titled(figure: "Figure", title: str) -> "Figure":
+    from rocking.app.takeaway.comparison_picture import drawn_text
+
+    figure.suptitle(drawn_text(title, 80), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    return figure

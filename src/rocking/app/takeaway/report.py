@@ -1,0 +1,53 @@
+"""The report of the inputs as a PDF."""
+
+from functools import partial
+
+from rocking.app.takeaway.asked import Asked
+from rocking.app.takeaway.drawing import drawn
+from rocking.app.takeaway.inputs_file import commands, fingerprint, inputs_as_toml
+from rocking.app.takeaway.pictures import figure_of
+from rocking.app.takeaway.plain_text import plain_line
+from rocking.motions.intensity import Measure
+from rocking.plots.traces import fine_samples
+from rocking.report.facts.motion import measures_of
+from rocking.report.response_document import PICTURES, Found, response_pages
+from rocking.report.response_document import Asked as About
+from rocking.report.response_pdf import response_pdf
+
+
+def report_of(asked: Asked, date: str) -> bytes:
+    """Return the report as PDF.
+
+    Parameters
+    ----------
+    asked : Asked
+        What the user chose.
+    date : str
+        Day of the report, as the user's calendar says; perhaps empty.
+
+    Returns
+    -------
+    bytes
+        The file.
+    """
+    moved = asked.inputs.motion is not None
+    found = Found(
+        asked.impact,
+        asked.motion if moved else None,
+        _measures(asked) if moved else {},
+        asked.responses,
+        asked.refused,
+        asked.question.friction,
+    )
+    inputs, told = asked.inputs, asked.about
+    about = About(
+        asked.name, date, inputs_as_toml(inputs), [plain_line(each, 2000) for each in commands(inputs)],
+        fingerprint(inputs), told["software"],
+    )  # fmt: skip
+    stems = [stem for stem in PICTURES if moved or stem != "motion"]
+    pictures = {stem: drawn(partial(figure_of, stem, asked), "svg") for stem in stems}
+    return response_pdf(response_pages(about, found), pictures)
+
+
+def _measures(asked: Asked) -> dict[str, Measure]:
+    return measures_of(asked.motion, fine_samples(asked.motion))

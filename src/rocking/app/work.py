@@ -1,0 +1,93 @@
+"""Long computations: a few threads, a short line before them, and an honest answer when the line is full."""
+
+import asyncio
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any, ParamSpec, TypeVar
+
+from starlette.requests import HTTPConnection
+
+from rocking.app.problems import Busy
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+class WaitingLine:
+    """Threads for long computations, and a line of bounded length before them.
+
+    Parameters
+    ----------
+    at_once : int
+        Threads.
+    waiting : int
+        Computations that may wait.
+    """
+
+    def __init__(self, at_once: int, waiting: int) -> None:
+        self._threads = ThreadPoolExecutor(at_once, thread_name_prefix="heavy")
+        self._room = at_once + waiting
+        self._inside = 0
+        self._lock = threading.Lock()
+
+    def submit(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> "Future[T]":
+        """Put a computation in line.
+
+        Parameters
+        ----------
+        function : callable
+            What to compute.
+        *args, **kwargs
+            Its arguments.
+
+        Returns
+        -------
+        Future
+            Its result.
+
+        Raises
+        ------
+        Busy
+            If the line is full.
+        """
+        with self._lock:
+            if self._inside >= self._room:
+                raise Busy(f"{self._inside} computations run or wait already; try again in a moment", seconds=2)
+            self._inside += 1
+        try:
+            future = self._threads.submit(function, *args, **kwargs)
+        except BaseException:
+            self._leave()
+            raise
+        future.add_done_callback(self._leave)
+        return future
+
+    def close(self) -> None:
+        """Start nothing more; what runs ends by itself."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
+
+    def _leave(self, _: Any = None) -> None:
+        with self._lock:
+            self._inside -= 1
+
+
+async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
+    """Compute in a thread, with few others at once, so that light requests stay quick.
+
+    Parameters
+    ----------
+    request : HTTPConnection
+        The request it is for.
+    function : callable
+        What to compute.
+    *args, **kwargs
+        Its arguments.
+
+    Returns
+    -------
+    T
+        What the function returns.
+    """
+    line: WaitingLine = request.app.state.rocking.heavy
+    return await asyncio.wrap_future(line.submit(function, *args, **kwargs))

@@ -1,0 +1,101 @@
+"""`rocking serve`: the application in the browser."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from rocking.cli import shared_options as shared
+
+if TYPE_CHECKING:
+    from rocking.app.server import Started
+    from rocking.app.settings import Settings
+
+
+def serve(
+    port: Annotated[int | None, typer.Option(help="Port; 8765 or the next free one, if not given.")] = None,
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    allow_remote: Annotated[
+        bool, typer.Option("--allow-remote", help="Allow an address that other machines reach.")
+    ] = False,
+    data: Annotated[Path | None, typer.Option(help="Folder for records and studies.")] = None,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the link, open nothing.")] = False,
+    workers: Annotated[int | None, typer.Option(help="Processes for a study.", min=1, max=1024)] = None,
+    as_json: shared.AsJson = False,
+) -> None:
+    """Open the application: draw a body, drop a record, see it rock. Everything stays on this machine."""
+    from rocking.app.settings import Settings, default_folder
+
+    settings = Settings(
+        host=host,
+        folder=(data or default_folder()).expanduser().absolute(),
+        allow_remote=allow_remote,
+        workers=workers,
+    )
+    _serve(settings, port, quiet=no_browser or as_json, as_json=as_json)
+
+
+def _serve(settings: "Settings", port: int | None, *, quiet: bool, as_json: bool) -> None:
+    from rocking.errors import MissingExtraError
+
+    try:
+        from rocking.app.folder import FolderInUseError
+        from rocking.app.server import serve as run
+    except ImportError as error:
+        if isinstance(error, MissingExtraError) or (error.name or "rocking").startswith("rocking"):
+            raise
+        raise MissingExtraError(f"the application needs {error.name}: pip install 'rocking[web]'") from error
+
+    def started(server: "Started") -> None:
+        _show(server, as_json=as_json)
+        if not quiet:
+            _open(server.link)
+
+    try:
+        run(settings, started, port=port)
+    except FolderInUseError:
+        if port is not None or as_json or not _join(settings, quiet=quiet):
+            raise
+    else:
+        if not as_json:
+            print("stopped; what was computed is kept")
+
+
+def _show(server: "Started", *, as_json: bool) -> None:
+    import json
+
+    if as_json:
+        told = {"url": server.url, "token": server.token, "port": server.port, "key_file": str(server.key_file)}
+        print(json.dumps(told), flush=True)
+    else:
+        print(f"{server.link}   (works once; Ctrl-C stops the server)", flush=True)
+
+
+def _open(link: str) -> None:
+    import threading
+    import webbrowser
+
+    threading.Thread(target=webbrowser.open, args=(link,), daemon=True).start()
+
+
+def _join(settings: "Settings", *, quiet: bool) -> bool:
+    """Open the server that has the data folder already, if it answers."""
+    import json
+    from urllib.request import Request, urlopen
+
+    from rocking.app.folder import DataFolder
+
+    running = DataFolder(settings.folder).running()
+    if running is None:
+        return False
+    url, key = running
+    head = {"Authorization": f"Bearer {key}", "Origin": url}
+    try:
+        with urlopen(Request(f"{url}/api/session/link", method="POST", headers=head), timeout=3) as answer:
+            link = json.load(answer)["url"]
+    except (OSError, ValueError, KeyError):
+        return False
+    print(f"{link}   (a server runs already; this link works once)", flush=True)
+    if not quiet:
+        _open(link)
+    return True

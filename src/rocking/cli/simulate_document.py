@@ -1,0 +1,63 @@
+"""`rocking simulate FILE.toml`: one file that says body, motion, restitutions and settings."""
+
+from pathlib import Path
+
+import typer
+
+from rocking.cli.simulate_output import Answer
+from rocking.errors import InvalidValueError
+
+_OUTPUTS = {"body", "picture", "animation", "csv", "mat", "netcdf", "as_json"}
+
+
+def path_of(context: typer.Context) -> Path | None:
+    """Return the file that says everything, if the command was given one: a TOML file with a table [response].
+
+    Parameters
+    ----------
+    context : typer.Context
+        The command as it was typed.
+
+    Returns
+    -------
+    Path, optional
+        None if the first word is something else.
+
+    Raises
+    ------
+    InvalidValueError
+        If other options say what the file says.
+    """
+    from rocking.studies.job.response import is_response
+
+    word = context.params.get("body")
+    if word is None or not is_response(Path(word)):
+        return None
+    given = [name for name in context.params if name not in _OUTPUTS and _typed(context, name)]
+    if given:
+        names = ", ".join("a second word" if name == "record" else f"--{name.replace('_', '-')}" for name in given)
+        raise InvalidValueError(f"{word} has a table [response] and says everything itself, so it takes no {names}")
+    return Path(word)
+
+
+def answer_of(path: Path) -> Answer:
+    """Return the answer to what a file asks.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Answer
+        The response with the first restitution, and with the others that the file lists.
+    """
+    from rocking.studies.job.response import ResponseJob
+
+    return Answer.of_choices(ResponseJob.read(path).question)
+
+
+def _typed(context: typer.Context, name: str) -> bool:
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"

@@ -1,0 +1,150 @@
+"""A motion in plain values: what it is, its intensity measures and its response spectrum."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from rocking.motions.intensity import Measure, intensity_measures
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
+from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
+from rocking.plots.traces import Traces, fine_samples, traces
+
+
+@dataclass(frozen=True, slots=True)
+class MotionAnswer:
+    """One motion and what was measured on it.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion.
+    samples : GroundMotion
+        Itself, or the pulse cut finely.
+    measures : dict of str to Measure
+        Intensity measures by short name.
+    spectrum : ResponseSpectrum
+        Response at the periods asked for.
+    """
+
+    motion: GroundMotion | Pulse
+    samples: GroundMotion
+    measures: dict[str, Measure]
+    spectrum: ResponseSpectrum
+
+    @classmethod
+    def of(cls, motion: GroundMotion | Pulse, periods: Sequence[float], damping: float) -> "MotionAnswer":
+        """Measure a motion.
+
+        Parameters
+        ----------
+        motion : GroundMotion or Pulse
+            The motion.
+        periods : sequence of float
+            Periods of the spectrum [s].
+        damping : float
+            Damping ratio of the spectrum, from 0 to below 1 [-].
+
+        Returns
+        -------
+        MotionAnswer
+            Everything that is printed.
+
+        Raises
+        ------
+        InvalidValueError
+            If the motion is zero throughout, or a period or the damping is outside its range.
+        """
+        samples = fine_samples(motion)
+        spectrum = response_spectrum(samples, list(periods), damping)
+        return cls(motion, samples, measures_of(motion, samples), spectrum)
+
+
+def measures_of(
+    motion: GroundMotion | Pulse, samples: GroundMotion, curves: Traces | None = None
+) -> dict[str, Measure]:
+    """Return the intensity measures of a motion; those of a pulse that its formulas give come from these.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion.
+    samples : GroundMotion
+        Itself, or the pulse cut finely.
+    curves : Traces, optional
+        Curves of the motion, if they are there already.
+
+    Returns
+    -------
+    dict of str to Measure
+        By short name.
+
+    Raises
+    ------
+    InvalidValueError
+        If the motion is zero throughout.
+    """
+    measures = intensity_measures(samples)
+    if not isinstance(motion, Pulse):
+        return measures
+    # these three are known from the formulas, not only from samples
+    peaks = (traces(motion) if curves is None else curves).peaks
+    exact = {f"pg{name[0]}": abs(value) for name, (_, value) in peaks.items()}
+    return measures | {key: replace(measures[key], value=value) for key, value in exact.items()}
+
+
+def motion_facts(motion: GroundMotion | Pulse, samples: GroundMotion, measures: dict[str, Measure]) -> dict[str, Any]:
+    """Return what a motion is and how strong, as plain values.
+
+    Parameters
+    ----------
+    motion : GroundMotion or Pulse
+        The motion.
+    samples : GroundMotion
+        Itself, or the pulse cut finely.
+    measures : dict of str to Measure
+        Its intensity measures.
+
+    Returns
+    -------
+    dict
+        SI units, named in the keys where a quantity has one.
+    """
+    record = isinstance(motion, GroundMotion)
+    told = motion.metadata if isinstance(motion, GroundMotion) else {}
+    return {
+        "kind": "record" if record else "pulse",
+        "name": motion.name,
+        **{key: told.get(key) for key in ("format", "event", "station", "component")},
+        "vertical_component": told.get("vertical component"),
+        "file_unit": told.get("unit"),
+        "samples": len(samples) if record else None,
+        "time_step_s": samples.time_step if record else None,
+        "duration_s": motion.duration,
+        "provenance": list(motion.provenance) if isinstance(motion, GroundMotion) else [repr(motion)],
+        "peak_vertical_acceleration_m_s2": None if samples.vertical is None else samples.peak_vertical,
+        "intensity": {f"{key}_{one.unit.replace('/', '_')}": one.value for key, one in measures.items()},
+    }
+
+
+def spectrum_facts(spectrum: ResponseSpectrum) -> dict[str, Any]:
+    """Return a response spectrum as plain values.
+
+    Parameters
+    ----------
+    spectrum : ResponseSpectrum
+        The spectrum.
+
+    Returns
+    -------
+    dict
+        SI units, named in the keys where a quantity has one.
+    """
+    return {
+        "damping_ratio": spectrum.damping,
+        "period_s": spectrum.periods.tolist(),
+        "psa_m_s2": spectrum.pseudo_acceleration.tolist(),
+        "psv_m_s": spectrum.pseudo_velocity.tolist(),
+        "sd_m": spectrum.displacement.tolist(),
+        "absolute_acceleration_m_s2": spectrum.absolute_acceleration.tolist(),
+    }

@@ -1,0 +1,48 @@
+"""Whether the choice of the restitution model decides how a body ends, in one sentence."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.response import Response
+
+_WORDS = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What the models say together.
+
+    Parameters
+    ----------
+    decides : bool
+        Whether they end differently.
+    sentence : str
+        The same in words.
+    """
+
+    decides: bool
+    sentence: str
+
+    @classmethod
+    def of(cls, found: Mapping[str, Response]) -> "Verdict":
+        """Compare responses.
+
+        Parameters
+        ----------
+        found : mapping of str to Response
+            By model; none of them failed.
+
+        Returns
+        -------
+        Verdict
+            What they say together.
+        """
+        groups: dict[str, list[str]] = {}
+        for name, one in found.items():
+            groups.setdefault(_WORDS[one.outcome], []).append(name)
+        if len(groups) > 1:
+            parts = ", ".join(f"{word} with {', '.join(names)}" for word, names in groups.items())
+            return cls(True, f"The model decides: the body {parts}.")
+        (word,) = groups
+        return cls(False, f"With every one of these models the body {word}.")

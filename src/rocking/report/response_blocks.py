@@ -1,0 +1,147 @@
+"""The parts of which the report of a response is put together, as plain content."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from rocking.report.document import Cell, Paragraph, Table
+
+_NUMBER = frozenset("+-\N{MINUS SIGN}0123456789")
+
+
+@dataclass(frozen=True, slots=True)
+class Image:
+    """A picture.
+
+    Parameters
+    ----------
+    stem : str
+        Name of its file, without suffix.
+    caption : str
+        What it shows.
+    width : int
+        Share of the width of the page [%].
+    """
+
+    stem: str
+    caption: str
+    width: int = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A picture, and a table to its right.
+
+    Parameters
+    ----------
+    left : Image
+        The picture.
+    right : Table
+        The table.
+    share : int
+        Share of the picture in the width [%].
+    """
+
+    left: Image
+    right: Table
+    share: int = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """Text as a machine reads it.
+
+    Parameters
+    ----------
+    text : str
+        The text, line by line.
+    lead : str
+        Words before it.
+    """
+
+    text: str
+    lead: str = ""
+
+
+Block = Paragraph | Table | Image | Pair | Listing
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A section.
+
+    Parameters
+    ----------
+    title : str
+        Its title.
+    blocks : sequence of Block
+        Its content.
+    """
+
+    title: str
+    blocks: Sequence[Block]
+
+
+@dataclass(frozen=True, slots=True)
+class Pages:
+    """The whole report.
+
+    Parameters
+    ----------
+    title, subtitle : str
+        Title, and a line below it.
+    verdict : sequence of Paragraph
+        What matters most.
+    parts : sequence of Part
+        The content.
+    footer : str
+        Small print of every page.
+    """
+
+    title: str
+    subtitle: str
+    verdict: Sequence[Paragraph]
+    parts: Sequence[Part]
+    footer: str = field(default="")
+
+    def plain(self) -> dict[str, Any]:
+        """Return everything as plain values, for the template.
+
+        Returns
+        -------
+        dict
+            Text, lists and dicts.
+        """
+        return {
+            "title": self.title,
+            "subtitle": self.subtitle,
+            "footer": self.footer,
+            "verdict": [_plain(each) for each in self.verdict],
+            "sections": [
+                {"title": part.title, "blocks": [_plain(each) for each in part.blocks]} for part in self.parts
+            ],
+        }
+
+
+def _plain(block: Block) -> dict[str, Any]:
+    if isinstance(block, Paragraph):
+        return {"kind": "paragraph", "lead": block.lead, "text": block.text, "mark": block.mark}
+    if isinstance(block, Image):
+        return {"kind": "picture", "file": f"{block.stem}.svg", "caption": block.caption, "width": block.width}
+    if isinstance(block, Pair):
+        return {"kind": "pair", "left": _plain(block.left), "right": _plain(block.right), "share": block.share}
+    if isinstance(block, Listing):
+        return {"kind": "listing", "text": block.text, "lead": block.lead}
+    return {
+        "kind": "table",
+        "caption": block.caption,
+        "header": list(block.header),
+        "rows": [[{"text": each.text, "mark": each.mark} for each in row] for row in block.rows],
+        "numbers": [_numeric([row[k] for row in block.rows]) for k in range(len(block.header))],
+        "note": block.note,
+    }
+
+
+def _numeric(cells: Sequence[Cell]) -> bool:
+    """Tell whether a column holds numbers, which are set flush right."""
+    return bool(cells) and all(not each.text or each.text[0] in _NUMBER for each in cells)

@@ -1,0 +1,211 @@
+"""The report of one body under one motion: what it is, what an impact costs, how it rocks, and how to do it again."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rocking.bodies import Body
+from rocking.conventions import FEET, g
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.response import Motion, Response
+from rocking.motions.intensity import Measure
+from rocking.report.document import Paragraph, Table, cell
+from rocking.report.facts.body import side_facts
+from rocking.report.facts.impact import ImpactAnswer
+from rocking.report.facts.verdict import Verdict
+from rocking.report.response_blocks import Block, Image, Listing, Pages, Pair, Part
+from rocking.report.response_tables import (
+    coefficients_table,
+    impacts_table,
+    measures_table,
+    outcomes_table,
+    restitution_words,
+)
+
+_MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
+_KINDS = {"Block": "A rocking block", "MassPoints": "Rocking point masses"}
+_LONGEST_LISTING = 12_000
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a report is about.
+
+    Parameters
+    ----------
+    name : str
+        What the user calls the body; perhaps empty.
+    date : str
+        Day of the report; perhaps empty.
+    toml : str
+        The inputs as a file of the command line.
+    commands : sequence of str
+        What to type for the same result.
+    fingerprint : str
+        SHA-256 of the inputs.
+    software : str
+        Name and version.
+    """
+
+    name: str
+    date: str
+    toml: str
+    commands: Sequence[str]
+    fingerprint: str
+    software: str
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was computed.
+
+    Parameters
+    ----------
+    impact : ImpactAnswer
+        Body and coefficients.
+    motion : GroundMotion or Pulse, optional
+        The motion, scaled; None for free rocking.
+    measures : dict of str to Measure
+        Its intensity measures.
+    responses : mapping of str to Response
+        By label of the restitution; at least one.
+    refused : mapping of str to str
+        By label: why there is none.
+    friction : float
+        Coefficient of friction between body and ground [-].
+    """
+
+    impact: ImpactAnswer
+    motion: Motion | None
+    measures: dict[str, Measure]
+    responses: Mapping[str, Response]
+    refused: Mapping[str, str]
+    friction: float
+
+
+PICTURES = ("body", "coefficients", "motion", "response")
+"""Stems of the pictures of a report; ``motion`` is left out for free rocking."""
+
+
+def response_pages(asked: Asked, found: Found) -> Pages:
+    """Return the report.
+
+    Parameters
+    ----------
+    asked : Asked
+        What it is about.
+    found : Found
+        What was computed.
+
+    Returns
+    -------
+    Pages
+        Its content.
+    """
+    body = found.impact.body
+    title = asked.name or _KINDS.get(type(body).__name__, "A rocking body")
+    parts = [
+        Part(
+            "The body", [Pair(Image("body", "The body on its feet O and O', with its centre of mass C"), _body(found))]
+        ),
+        Part("What an impact costs", _impact(found)),
+        Part("The ground", _ground(found)),
+        Part("The response", _response(found)),
+        Part("To do it again", _again(asked, next(iter(found.responses.values())))),
+    ]
+    about = f"{asked.software}, inputs {asked.fingerprint[:16]}"
+    return Pages(title, _subtitle(asked, found), _verdict(found), parts, about)
+
+
+def _subtitle(asked: Asked, found: Found) -> str:
+    first = next(iter(found.responses.values()))
+    ground = "let go, the ground at rest" if found.motion is None else f"under {found.motion.name}"
+    if first.scale != 1.0:
+        ground = f"{ground}, scaled by {first.scale:g}"
+    return ground[:1].upper() + ground[1:] + (f". {asked.date}" if asked.date else "")
+
+
+def _verdict(found: Found) -> list[Paragraph]:
+    label, first = next(iter(found.responses.items()))
+    words = first.summary[:1].upper() + first.summary[1:] + "."
+    made = [Paragraph(words, f"With {restitution_words(label)}:", _MARKS.get(first.outcome, "plain"))]
+    verdict = Verdict.of(found.responses)
+    if len(found.responses) > 1:
+        made.append(Paragraph(verdict.sentence, "", "fair" if verdict.decides else "plain"))
+    return made
+
+
+def _body(found: Found) -> Table:
+    body, gravity = found.impact.body, found.impact.gravity
+    x, y = body.centre
+    rows = [
+        ("mass", f"{body.mass:.5g} kg"),
+        ("centre of mass", f"x = {x:.4g} m, y = {y:.4g} m"),
+        ("feet", f"x = {body.feet[0]:.4g} m and {body.feet[1]:.4g} m"),
+        ("moment of inertia", f"{body.moment_of_inertia:.5g} kg m\N{SUPERSCRIPT TWO} about the centre"),
+        *_sides(body, gravity),
+        ("gravity", f"{gravity:.6g} m/s\N{SUPERSCRIPT TWO}"),
+    ]
+    return Table("", ["quantity", "value"], [[cell(name), cell(value)] for name, value in rows])
+
+
+def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:
+    rows: list[tuple[str, str]] = []
+    for foot in FEET if not body.is_symmetric else FEET[-1:]:
+        side = side_facts(body, foot, gravity)
+        on = "" if body.is_symmetric else f", {foot} foot"
+        angle, uplift = side["slenderness_angle_rad"], side["uplift_acceleration_m_s2"]
+        rows += [
+            (f"slenderness h/b{on}", f"{side['slenderness_ratio']:.4g}"),
+            (f"slenderness angle{on}", f"{angle:.5g} rad = {math.degrees(angle):.4g}\N{DEGREE SIGN}"),
+            (f"semi-diagonal R{on}", f"{side['semi_diagonal_m']:.5g} m"),
+            (f"frequency parameter p{on}", f"{side['frequency_parameter_rad_s']:.5g} rad/s"),
+            (f"lifts from{on}", f"{uplift:.4g} m/s\N{SUPERSCRIPT TWO} = {uplift / g:.3g} g"),
+        ]
+    return rows
+
+
+def _impact(found: Found) -> list[Block]:
+    tables = [coefficients_table(found.impact, foot) for foot in found.impact.tables]
+    rows = [row for table in found.impact.tables.values() for row in table]
+    said = dict.fromkeys(f"{row.name}: {warning}" for row in rows for warning in row.warnings)
+    picture = Image("coefficients", "Every model for this body, and where it lies among the published measurements")
+    return [picture, *tables, *(Paragraph(words, "", "fair") for words in said)]
+
+
+def _ground(found: Found) -> list[Block]:
+    if found.motion is None:
+        return [Paragraph("Free rocking: the body is let go, and the ground stays at rest.")]
+    caption = "Acceleration, velocity and displacement of the ground, and the response spectrum for 5 % damping"
+    return [Image("motion", caption, 74), measures_table(found.measures)]
+
+
+def _response(found: Found) -> list[Block]:
+    several = len(found.responses) > 1
+    caption = "The models over one another" if several else "Rotation, velocity, energy and the friction that is taken"
+    first_label, first = next(iter(found.responses.items()))
+    blocks: list[Block] = [Image("response", caption, 80), outcomes_table(found.responses, found.friction)]
+    blocks += [Paragraph(why, f"{restitution_words(label)}:", "fair") for label, why in found.refused.items()]
+    for label, response in found.responses.items():
+        blocks += [
+            Paragraph(words, f"{restitution_words(label)}:", "fair")
+            for words in response.contact.warnings(found.friction)
+        ]
+    return [*blocks, impacts_table(first_label, first)] if first.impacts.size else blocks
+
+
+def _again(asked: Asked, first: Response) -> list[Block]:
+    toml = asked.toml
+    if len(toml) > _LONGEST_LISTING:
+        toml = toml[:_LONGEST_LISTING] + "\n# ... cut off here: the file itself has all of it"
+    return [
+        Listing(toml.rstrip("\n"), "This file, saved as response.toml beside the record if there is one:"),
+        Listing("\n".join(asked.commands), "gives the same numbers on the command line:"),
+        Paragraph(f"{asked.software}; SHA-256 of the inputs: {asked.fingerprint}.", "Made with"),
+        Paragraph(_how(first), "Computed with"),
+    ]
+
+
+def _how(first: Response) -> str:
+    told = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in vars(first.settings).items())
+    return f"engine {first.engine}; {told}; energy adds up to {first.energy.closure:.1e} of its largest."

@@ -1,0 +1,53 @@
+"""The report of a response as a PDF, set by Typst."""
+
+import json
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from rocking.errors import MissingExtraError
+from rocking.report.response_blocks import Pages
+
+
+def response_pdf(pages: Pages, pictures: Mapping[str, bytes]) -> bytes:
+    """Return the report as PDF.
+
+    Parameters
+    ----------
+    pages : Pages
+        The content.
+    pictures : mapping of str to bytes
+        SVG file of every picture by its stem.
+
+    Returns
+    -------
+    bytes
+        The file; the same for the same content.
+
+    Raises
+    ------
+    MissingExtraError
+        If typst is not installed.
+    """
+    try:
+        import typst
+    except ImportError as error:
+        raise MissingExtraError("the PDF report needs typst: pip install 'rocking[report]'") from error
+    with TemporaryDirectory(prefix="rocking-report-") as made:
+        folder = Path(made)
+        for stem, data in pictures.items():
+            (folder / f"{stem}.svg").write_bytes(data)
+        source = folder / "response.typ"
+        source.write_bytes(files("rocking.report").joinpath("response.typ").read_bytes())
+        content = {"document": json.dumps(pages.plain())}
+        # its words in any script come from the fonts of the system; those of the pictures are always there
+        pdf = typst.compile(str(source), root=made, sys_inputs=content, font_paths=_fonts())
+        assert isinstance(pdf, bytes)
+        return pdf
+
+
+def _fonts() -> list[str]:
+    from matplotlib import get_data_path
+
+    return [str(Path(get_data_path()) / "fonts" / "ttf")]

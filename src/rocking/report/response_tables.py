@@ -1,0 +1,182 @@
+"""Tables of the report of a response."""
+
+import math
+from collections.abc import Mapping
+
+from rocking.conventions import Foot, g
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.response import Response
+from rocking.evidence.coefficient_table import CALIBRATED, CoefficientRow
+from rocking.motions.intensity import Measure
+from rocking.report.document import Cell, Table, cell
+from rocking.report.facts.impact import ImpactAnswer
+from rocking.report.facts.response import outcome_facts
+
+MOST_IMPACTS = 24
+"""Impacts that are printed."""
+
+_MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
+_SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
+
+
+def restitution_words(label: str) -> str:
+    """Return what a restitution is called in a sentence.
+
+    Parameters
+    ----------
+    label : str
+        Its label: a model, or a coefficient.
+
+    Returns
+    -------
+    str
+        A coefficient with its symbol, a model as it is.
+
+    Examples
+    --------
+    >>> restitution_words("0.9"), restitution_words("ked")
+    ('r = 0.9', 'ked')
+    """
+    try:
+        float(label)
+    except ValueError:
+        return label
+    return f"r = {label}"
+
+
+def coefficients_table(answer: ImpactAnswer, foot: Foot) -> Table:
+    """Return the coefficients of a body under every model.
+
+    Parameters
+    ----------
+    answer : ImpactAnswer
+        Tables by foot.
+    foot : {"left", "right"}
+        The foot on which it lands.
+
+    Returns
+    -------
+    Table
+        One model a row.
+    """
+    header = ["model", "r [-]", "95 % interval", "impulse k [-]", "energy lost", "friction needed [-]", "notes"]
+    rows = [_coefficient(row) for row in answer.tables[foot]]
+    note = (
+        "r: velocity after the impact over velocity before. The interval is that of one measured body, from each "
+        "model's misfit to the published measurements. k: place of the impulse over half the base."
+    )
+    where = f", landing on the {foot} foot" if len(answer.tables) > 1 else ""
+    return Table(f"Coefficient of restitution{where}", header, rows, note)
+
+
+def measures_table(measures: Mapping[str, Measure]) -> Table:
+    """Return intensity measures.
+
+    Parameters
+    ----------
+    measures : mapping of str to Measure
+        The measures.
+
+    Returns
+    -------
+    Table
+        One measure a row.
+    """
+    rows = [[cell(one.name), cell(f"{one.value:.5g}"), cell(one.unit), cell(_in_g(one))] for one in measures.values()]
+    return Table("Intensity of the motion", ["measure", "value", "unit", "in g"], rows)
+
+
+def outcomes_table(responses: Mapping[str, Response], friction: float) -> Table:
+    """Return how the body ends under every restitution.
+
+    Parameters
+    ----------
+    responses : mapping of str to Response
+        By label of the restitution.
+    friction : float
+        Coefficient of friction between body and ground [-].
+
+    Returns
+    -------
+    Table
+        One restitution a row.
+    """
+    header = [
+        "restitution", "r left", "r right", "outcome", "peak [deg]", "peak / \N{GREEK SMALL LETTER ALPHA} [-]",
+        "impacts", "friction taken [-]", "friction at impacts [-]",
+    ]  # fmt: skip
+    rows = [_outcome(label, response, friction) for label, response in responses.items()]
+    note = (
+        "A peak beyond 1 means that the centre of mass passed the foot and came back. Friction taken: largest ratio of "
+        f"horizontal to vertical force while the body stands on one foot; {friction:g} was given."
+    )
+    return Table("How it ends", header, rows, note)
+
+
+def impacts_table(label: str, response: Response) -> Table:
+    """Return the impacts of a response.
+
+    Parameters
+    ----------
+    label : str
+        Its restitution.
+    response : Response
+        The response.
+
+    Returns
+    -------
+    Table
+        One impact a row, at most 24.
+    """
+    header = ["impact", "time [s]", "velocity before [rad/s]", "after [rad/s]", "r [-]", "onto"]
+    shown = response.impacts[:MOST_IMPACTS].tolist()
+    rows = [
+        [cell(k), cell(f"{time:.6f}"), cell(_signed(before)), cell(_signed(after)), cell(f"{r:.6f}"), cell(onto)]
+        for k, (time, before, after, r, onto) in enumerate(shown, start=1)
+    ]
+    rest = response.impacts.size - len(shown)
+    note = f"{rest} more, smaller and smaller; the table of impacts has them all." if rest > 0 else ""
+    return Table(f"Impacts with {restitution_words(label)}", header, rows, note)
+
+
+def _coefficient(row: CoefficientRow) -> list[Cell]:
+    fact = row.implication
+    return [
+        cell(row.name),
+        cell(f"{row.coefficient:.5f}"),
+        cell(f"{row.low:.3f} to {row.high:.3f}"),
+        cell(f"{fact.impulse_ratio:.3f}"),
+        cell(f"{100.0 * fact.energy_loss:.2f} %"),
+        cell(f"{fact.friction_demand:.3f}"),
+        cell("see below" if row.warnings else ("fitted" if row.name == CALIBRATED else ""), "fair"),
+    ]
+
+
+def _outcome(label: str, response: Response, friction: float) -> list[Cell]:
+    facts, contact = outcome_facts(response), response.contact
+    fell = response.outcome is Outcome.OVERTURNED
+    word = _SHORT[response.outcome] + (f" to the {facts['overturned_to']}" if fell else "")
+    return [
+        cell(restitution_words(label)),
+        cell(f"{response.rocker.left.coefficient:.4f}"),
+        cell(f"{response.rocker.right.coefficient:.4f}"),
+        cell(word, _MARKS.get(response.outcome, "plain")),
+        cell("-" if fell else f"{math.degrees(response.peak_rotation):.4g}"),
+        cell("-" if fell else f"{facts['peak_rotation_over_alpha']:.4g}"),
+        cell(response.impacts.size),
+        _friction(contact.friction_of_motion, friction),
+        _friction(contact.friction_of_impacts, friction),
+    ]
+
+
+def _friction(value: float, given: float) -> Cell:
+    words = f"{value:.3f}" if math.isfinite(value) else "no surface has it"
+    return cell(words, "bad" if value > given else "plain")
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.6f}".replace("-", "\N{MINUS SIGN}")
+
+
+def _in_g(measure: Measure) -> str:
+    return f"{measure.value / g:.4g}" if measure.unit == "m/s2" else ""

@@ -1,0 +1,100 @@
+"""What an adaptive study has found: tables of any length, beside or in place of its histories."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Parameters
+    ----------
+    values : ndarray
+        Numbers or words; NaN where there is nothing.
+    unit, words : str
+        Unit and meaning.
+    variable : str, optional
+        Its name in netCDF files, where it differs.
+    """
+
+    values: np.ndarray
+    unit: str = "1"
+    words: str = ""
+    variable: str | None = None
+
+    @property
+    def is_words(self) -> bool:
+        """Whether the values are words."""
+        return self.values.dtype.kind not in "iufb"
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table.
+
+    Parameters
+    ----------
+    dim : str
+        Dimension of its rows in netCDF files.
+    columns : mapping of str to Column
+        The columns by name, all of one length.
+    """
+
+    dim: str
+    columns: Mapping[str, Column]
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return int(next(iter(self.columns.values())).values.size)
+
+    def header(self) -> list[str]:
+        """Return the names of the columns with their units.
+
+        Returns
+        -------
+        list of str
+            As ``name [unit]``; without unit where there is none.
+        """
+        return [name if each.unit == "1" else f"{name} [{each.unit}]" for name, each in self.columns.items()]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What an adaptive study has found.
+
+    Parameters
+    ----------
+    value : Any
+        What the Python call returns.
+    sheets : mapping of str to Sheet
+        The same as tables, by what `export` calls them.
+    attributes : dict
+        What more is to be said of it, as plain values.
+    """
+
+    value: Any
+    sheets: Mapping[str, Sheet]
+    attributes: dict[str, Any] = field(default_factory=dict)
+
+
+def words_of(values: list[str]) -> np.ndarray:
+    """Return words as an array.
+
+    Parameters
+    ----------
+    values : list of str
+        The words.
+
+    Returns
+    -------
+    ndarray
+        Of objects.
+    """
+    made = np.empty(len(values), dtype=object)
+    made[:] = values
+    return made

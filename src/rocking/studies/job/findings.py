@@ -1,0 +1,119 @@
+"""What the studies of finished campaigns have found, as the Python calls return it."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.errors import InvalidValueError
+from rocking.studies.campaign import CampaignIncompleteError
+from rocking.studies.job.answer import Answer
+from rocking.studies.job.folder import JobFolder
+from rocking.studies.job.round_status import status_of_rounds
+from rocking.studies.job.rounds import replayed
+
+if TYPE_CHECKING:
+    from rocking.studies.inventory.verdict import Assessment
+
+
+def refuse_unfinished(folder: JobFolder) -> None:
+    """Refuse a campaign that is not finished.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign.
+
+    Raises
+    ------
+    CampaignIncompleteError
+        If there is something left to do.
+    """
+    if folder.job.study.search is None:
+        status, complete, many = folder.campaign.status(), folder.campaign.status().complete, ""
+    else:
+        known, begun, complete = status_of_rounds(folder.path)
+        status, many = known or folder.campaign.status(), f" of the first {max(begun, 1)} rounds"
+    if complete:
+        return
+    share = f"{status.chunks_done} of {status.chunks} chunks"
+    raise CampaignIncompleteError(
+        f"nothing to export because {share}{many} of {folder.path} are finished; "
+        f"go on with: rocking campaign resume {folder.path}"
+    )
+
+
+def analyses(folder: JobFolder) -> dict[str, Any]:
+    """Return the fragility analyses of a finished campaign.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign.
+
+    Returns
+    -------
+    dict
+        By label of the restitution: what `multiple_stripes`, `cloud` or `incremental` return.
+
+    Raises
+    ------
+    InvalidValueError
+        If the kind of the campaign has none.
+    """
+    study = folder.job.study
+    if study.finish is None:
+        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no fragility')
+    return study.finish(folder.campaign.results())
+
+
+def answer(folder: JobFolder) -> Answer:
+    """Return what an adaptive study has found, from its rounds on disk.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign of a refined map, or of minimum accelerations.
+
+    Returns
+    -------
+    Answer
+        What the Python call returns, and tables of it.
+
+    Raises
+    ------
+    InvalidValueError
+        If the kind of the campaign has no rounds.
+    CampaignIncompleteError
+        If it is not finished.
+    """
+    search = folder.job.study.search
+    if search is None:
+        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no rounds')
+    return replayed(search, folder.path)
+
+
+def assessment(folder: JobFolder) -> "Assessment":
+    """Return the assessment of an inventory from a finished campaign.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign.
+
+    Returns
+    -------
+    Assessment
+        What `rocking.studies.inventory.assess` returns.
+
+    Raises
+    ------
+    InvalidValueError
+        If the campaign is not of an inventory.
+    """
+    assess = folder.job.study.assess
+    if assess is None:
+        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no assessment')
+    refuse_unfinished(folder)
+    results = {name: np.concatenate(list(folder.campaign.column(name))) for name in ("outcome", "peak_rotation")}
+    found: Assessment = assess(results)
+    return found

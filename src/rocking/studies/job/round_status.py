@@ -1,0 +1,90 @@
+"""How far the rounds of an adaptive study are, as their folders say."""
+
+import json
+from pathlib import Path
+
+from rocking.studies.campaign import Campaign, CampaignDamagedError, Status
+from rocking.studies.campaign.identity import NAME
+from rocking.studies.campaign.lock import holder
+
+FINISHED = "finished.json"
+"""Written when a study has asked for its last round: how many there were, and of how many histories."""
+
+
+def round_folder(folder: Path, number: int) -> Path:
+    """Return the folder of a round.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign of the job.
+    number : int
+        Number of the round, from 0.
+
+    Returns
+    -------
+    Path
+        The folder; it may not be there yet.
+    """
+    return folder / f"round-{number:03}"
+
+
+def status_of_rounds(folder: Path) -> tuple[Status | None, int, bool]:
+    """Return how far the rounds are that have begun; how many will follow is not known before they do.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign of the job.
+
+    Returns
+    -------
+    status : Status or None
+        Of all rounds that have begun; None if none has.
+    begun : int
+        How many.
+    finished : bool
+        Whether the last one was asked for, and all are complete.
+    """
+    found: list[Status] = []
+    while (round_folder(folder, len(found)) / NAME).exists():
+        found.append(Campaign.status_of(round_folder(folder, len(found))))
+    if not found:
+        return None, 0, False
+    sums = {
+        name: sum(getattr(each, name) for each in found)
+        for name in ("histories", "histories_done", "chunks", "chunks_done", "seconds", "retries")
+    }
+    damaged = tuple(word for each in found for word in each.damaged)
+    status = Status(folder, running=holder(folder), damaged=damaged, software=found[0].software, **sums)
+    told = finished_rounds(folder)
+    whole = told is not None and told["rounds"] == len(found) and status.complete
+    return status, len(found), whole
+
+
+def finished_rounds(folder: Path) -> dict[str, int] | None:
+    """Return what was noted when the last round was through.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign of the job.
+
+    Returns
+    -------
+    dict or None
+        rounds and histories; None if nothing was noted yet.
+
+    Raises
+    ------
+    CampaignDamagedError
+        If the note is not what was written.
+    """
+    try:
+        told = json.loads((folder / FINISHED).read_bytes())
+        return {name: int(told[name]) for name in ("rounds", "histories")}
+    except FileNotFoundError:
+        return None
+    except (ValueError, KeyError, TypeError) as error:
+        advice = f"remove it, and go on with: rocking campaign resume {folder}"
+        raise CampaignDamagedError(f"{folder / FINISHED} is damaged ({error}); {advice}") from error

@@ -1,0 +1,246 @@
+"""Rounds of an adaptive study on disk: each is a campaign of its own, and is not computed again by whoever goes on."""
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from rocking.dynamics.engine import Arrays
+from rocking.studies.campaign import (
+    Campaign,
+    CampaignDamagedError,
+    CampaignIncompleteError,
+    CampaignInterrupted,
+    Executor,
+    Progress,
+    Summary,
+    disk,
+)
+from rocking.studies.campaign.identity import NAME
+from rocking.studies.campaign.interruption import Interruption
+from rocking.studies.campaign.lock import FolderLock
+from rocking.studies.histories import Histories
+from rocking.studies.job.answer import Answer
+from rocking.studies.job.asked import Compute
+from rocking.studies.job.round_status import FINISHED, finished_rounds, round_folder
+
+_SAFE = "nothing that was recorded before is lost"
+
+Search = Callable[[Compute], Answer]
+
+
+@dataclass
+class Rounds:
+    """The rounds that a study asks for, one after another.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign of the job.
+    chunk : int, optional
+        Histories of a chunk.
+    advance : callable, optional
+        Computes what is missing of a round; without it nothing is computed.
+    asked_to_stop : callable
+        Whether to stop before the next round.
+    """
+
+    folder: Path
+    chunk: int | None = None
+    advance: Callable[[Campaign], object] | None = None
+    asked_to_stop: Callable[[], bool] = lambda: False
+    number: int = field(default=0, init=False)
+    histories: int = field(default=0, init=False)
+
+    def compute(self, histories: Histories) -> Arrays:
+        """Return the results of the next round; as they were, if it was computed before.
+
+        Parameters
+        ----------
+        histories : Histories
+            The round.
+
+        Returns
+        -------
+        dict of str to ndarray
+            The keys of `rocking.dynamics.engine.RESULTS`.
+
+        Raises
+        ------
+        CampaignIncompleteError
+            If it is not there and shall not be computed.
+        CampaignMismatchError
+            If another one is there: the job, the seed or an earlier round is not what it was.
+        CampaignDamagedError
+            If it is damaged and shall not be computed again.
+        CampaignInterrupted
+            If it was asked to stop.
+        """
+        path = round_folder(self.folder, self.number)
+        if self.asked_to_stop():
+            raise CampaignInterrupted(_stopped(path))
+        if self.advance is None and not (path / NAME).exists():
+            raise CampaignIncompleteError(f"{path} is missing; go on with: rocking campaign resume {self.folder}")
+        campaign = opened(path, histories, self.chunk)
+        found = self._results(campaign)
+        self.number += 1
+        self.histories += histories.count
+        return found
+
+    def _results(self, campaign: Campaign) -> Arrays:
+        if self.advance is None:
+            return campaign.results()
+        if campaign.status().complete:
+            try:
+                return campaign.results()
+            except CampaignDamagedError:  # what is damaged is set aside, said, and computed again
+                pass
+        self.advance(campaign)
+        return campaign.results()
+
+
+def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
+    """Return a campaign, begun where it is not.
+
+    Parameters
+    ----------
+    path : Path
+        Its folder.
+    histories : Histories
+        What it computes.
+    chunk : int, optional
+        Histories of a chunk.
+
+    Returns
+    -------
+    Campaign
+        With all that is finished.
+    """
+    if (path / NAME).exists():
+        return Campaign.open(path, histories)
+    return Campaign.create(path, histories, chunk)
+
+
+def replayed(search: Search, folder: Path) -> Answer:
+    """Return what a finished study has found, from its rounds on disk; nothing is computed.
+
+    Parameters
+    ----------
+    search : callable
+        The study.
+    folder : Path
+        The campaign of the job.
+
+    Returns
+    -------
+    Answer
+        The tables.
+
+    Raises
+    ------
+    CampaignIncompleteError
+        If it is not finished.
+    CampaignDamagedError
+        If there are other rounds than those that were finished.
+    """
+    told = finished_rounds(folder)
+    if told is None:
+        raise CampaignIncompleteError(f"{folder}: not finished; go on with: rocking campaign resume {folder}")
+    rounds = Rounds(folder)
+    answer = search(rounds.compute)
+    if told != _facts(rounds):
+        raise CampaignDamagedError(f"{folder / FINISHED} tells of {told}, and there are {_facts(rounds)}")
+    return replace(
+        answer, attributes={**answer.attributes, "rounds": told["rounds"], "all_histories": told["histories"]}
+    )
+
+
+class _Run:
+    """One run of the rounds that are missing; what it did is summed up."""
+
+    def __init__(
+        self, who: str | Executor, workers: int | None, progress: Callable[[Progress], object] | None, **options: Any
+    ) -> None:
+        self.who, self.workers, self.progress, self.options = who, workers, progress, options
+        self.done: list[Summary] = []
+        self.between = Interruption()
+
+    def advance(self, campaign: Campaign) -> None:
+        # a round of one chunk has work for one only: others would be started for nothing
+        alone = campaign.plan.chunks == 1
+        who, workers = ("serial", 1) if alone else (self.who, self.workers)
+        options = {"order_seed": self.options["order_seed"]} if alone else self.options
+        self.between.__exit__()  # within a round Ctrl-C and SIGTERM are its campaign's, which knows how to stop
+        if self.between.asked():
+            raise CampaignInterrupted(_stopped(campaign.folder))
+        self.done.append(campaign.run(who, workers=workers, progress=self.progress, **options))
+        self.between = Interruption().__enter__()
+
+    def asked_to_stop(self) -> bool:
+        return self.between.asked()
+
+    @contextmanager
+    def watched(self) -> Iterator[None]:
+        """Note Ctrl-C and SIGTERM that come between the rounds."""
+        self.between.__enter__()
+        try:
+            yield
+        finally:
+            self.between.__exit__()
+
+    def summary(self) -> Summary:
+        counts = {name: sum(getattr(each, name) for each in self.done) for name in ("computed", "resumed", "adopted")}
+        set_aside = tuple(word for each in self.done for word in each.set_aside)
+        retries = tuple(word for each in self.done for word in each.retries)
+        return Summary(**counts, set_aside=set_aside, retries=retries, seconds=sum(each.seconds for each in self.done))
+
+
+def run_rounds(
+    search: Search, folder: Path, chunk: int | None, executor: str | Executor = "serial", *,
+    workers: int | None = None, progress: Callable[[Progress], object] | None = None, **options: Any,
+) -> Summary:  # fmt: skip
+    """Compute what is missing of all rounds; those that are finished are read.
+
+    Parameters
+    ----------
+    search : callable
+        The study.
+    folder : Path
+        The campaign of the job.
+    chunk : int, optional
+        Histories of a chunk.
+    executor : {"serial", "processes"} or Executor
+        Who computes; rounds of one chunk are computed by this process.
+    workers : int, optional
+        Threads or processes.
+    progress : callable, optional
+        Called with a `Progress` of the round at its start and after each of its chunks.
+    **options
+        As `Campaign.run` takes them.
+
+    Returns
+    -------
+    Summary
+        What was done in the rounds that were not finished before.
+    """
+    run = _Run(executor, workers, progress, **{"order_seed": None, **options})
+    rounds = Rounds(folder, chunk, run.advance, run.asked_to_stop)
+    with ExitStack() as stack:
+        with disk.guarded(folder, lambda: _SAFE):
+            stack.enter_context(FolderLock(folder))
+            disk.remove_unfinished(folder)
+        with run.watched():
+            search(rounds.compute)
+        with disk.guarded(folder, lambda: _SAFE):
+            disk.write_new(folder / FINISHED, (json.dumps(_facts(rounds), indent=1) + "\n").encode())
+    return run.summary()
+
+
+def _stopped(path: Path) -> str:
+    return f"stopped before {path}; {_SAFE}; run the campaign again to go on"
+
+
+def _facts(rounds: Rounds) -> dict[str, int]:
+    return {"rounds": rounds.number, "histories": rounds.histories}

@@ -1,0 +1,140 @@
+"""Tables of adaptive studies as files: CSV, Parquet, Excel, and variables of a netCDF file."""
+
+import csv
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.dynamics.export import extra
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.tables import safe_cell
+from rocking.studies.job.answer import Column, Sheet
+from rocking.studies.job.rows import MOST_ROWS_OF_EXCEL
+
+Attributes = Mapping[str, Any]
+
+
+def sheet_to_csv(sheet: Sheet, path: Path, attributes: Attributes) -> None:
+    """Write a table as comma-separated values, all digits kept; what is no finite number is left empty.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The table.
+    path : Path
+        The file.
+    attributes : mapping
+        Not used: where it comes from is written beside it.
+    """
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(sheet.header())
+        writer.writerows(zip(*map(_cells, sheet.columns.values()), strict=True))
+
+
+def sheet_to_parquet(sheet: Sheet, path: Path, attributes: Attributes) -> None:
+    """Write a table as Parquet; units are in the metadata of the columns.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The table.
+    path : Path
+        The file.
+    attributes : mapping
+        Where it comes from.
+    """
+    pa: Any = extra("pyarrow", "Parquet")
+    parquet: Any = extra("pyarrow.parquet", "Parquet")
+    arrays = [
+        pa.array(each.values.tolist(), pa.string()) if each.is_words else pa.array(each.values)
+        for each in sheet.columns.values()
+    ]
+    fields = [
+        pa.field(name, array.type, metadata={"units": each.unit, "long_name": each.words})
+        for (name, each), array in zip(sheet.columns.items(), arrays, strict=True)
+    ]
+    told = {name: value if isinstance(value, str) else json.dumps(value) for name, value in attributes.items()}
+    schema = pa.schema(fields, metadata=told)
+    parquet.write_table(pa.table(arrays, schema=schema), path)
+
+
+def sheet_to_excel(sheet: Sheet, path: Path, attributes: Attributes) -> None:
+    """Write a table as a workbook: one sheet of rows, one that says where they come from.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The table.
+    path : Path
+        The file.
+    attributes : mapping
+        Where it comes from.
+
+    Raises
+    ------
+    InvalidValueError
+        If a sheet has not that many rows.
+    """
+    if sheet.rows > MOST_ROWS_OF_EXCEL:
+        raise InvalidValueError(
+            f"a sheet of Excel has {MOST_ROWS_OF_EXCEL} rows, these are {sheet.rows}; take .parquet or .csv"
+        )
+    openpyxl: Any = extra("openpyxl", "Excel")
+    book = openpyxl.Workbook(write_only=True)
+    page = book.create_sheet(sheet.dim)
+    page.append(sheet.header())
+    for row in zip(*map(_cells, sheet.columns.values()), strict=True):
+        page.append(row)
+    page = book.create_sheet("provenance")
+    for name, value in attributes.items():
+        page.append([name, safe_cell(str(value)[:32_000])])
+    book.save(path)
+
+
+SHEET_FORMATS: dict[str, Callable[[Sheet, Path, Attributes], None]] = {
+    ".csv": sheet_to_csv,
+    ".parquet": sheet_to_parquet,
+    ".xlsx": sheet_to_excel,
+}
+"""What writes a table, by the end of the file's name."""
+
+
+def sheets_to_netcdf(sheets: Mapping[str, Sheet], path: Path, attributes: Attributes) -> None:
+    """Write tables as variables of a netCDF file, which is made or, where it is there, added to.
+
+    Parameters
+    ----------
+    sheets : mapping of str to Sheet
+        The tables; each has a dimension of its own.
+    path : Path
+        The file.
+    attributes : mapping
+        Where they come from.
+    """
+    h5py: Any = extra("h5py", "netCDF")
+    h5netcdf: Any = extra("h5netcdf", "netCDF")
+    with h5netcdf.File(path, "a") as file:
+        for name, value in attributes.items():
+            file.attrs[name] = value
+        for sheet in sheets.values():
+            file.dimensions[sheet.dim] = sheet.rows
+            for name, each in sheet.columns.items():
+                _variable(file, sheet, each.variable or name, each, h5py.string_dtype())
+
+
+def _variable(file: Any, sheet: Sheet, name: str, column: Column, words: Any) -> None:
+    made = file.create_variable(name, (sheet.dim,), dtype=words if column.is_words else column.values.dtype)
+    if sheet.rows:
+        made[...] = column.values
+    made.attrs["units"], made.attrs["long_name"] = column.unit, column.words
+
+
+def _cells(column: Column) -> list[Any]:
+    cells = column.values.tolist()
+    if column.is_words:
+        return [safe_cell(word) for word in cells]
+    return cells if np.all(np.isfinite(column.values)) else [cell if np.isfinite(cell) else None for cell in cells]

@@ -1,0 +1,157 @@
+"""A real server, a real Chromium, and a recorder that forgives nothing."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api")
+
+CHROMIUM = os.environ.get("ROCKING_CHROMIUM", "/usr/bin/chromium")
+WIDE = {"width": 1360, "height": 900}
+
+
+@dataclass(frozen=True)
+class Served:
+    """Where the server of a test listens."""
+
+    url: str
+    token: str
+    port: int
+    folder: Path
+    key: str
+
+    def api(self, path: str, **options: Any) -> Any:
+        """Call the API as a script does, past the browser."""
+        import httpx
+
+        headers = {"Authorization": f"Bearer {self.key}", "Origin": self.url}
+        answer = httpx.request(options.pop("method", "POST"), f"{self.url}/api/{path}", headers=headers, **options)
+        answer.raise_for_status()
+        return answer.json()
+
+
+@dataclass
+class Record:
+    """What the pages of one test did that they must not do."""
+
+    faults: list[str] = field(default_factory=list)
+    requests: list[str] = field(default_factory=list)
+
+    def watch(self, page: Any, origin: str) -> None:
+        """Listen to a page."""
+        page.on("console", self._console)
+        page.on("pageerror", lambda error: self.faults.append(f"uncaught: {error}"))
+        page.on("request", lambda request: self._request(request.url, origin))
+
+    def _console(self, message: Any) -> None:
+        text = message.text
+        # Chromium logs every refused call; that a refusal is shown to the user is what the tests look at.
+        refused = text.startswith("Failed to load resource") and "/api/" in message.location.get("url", "")
+        violation = "Content Security Policy" in text or "Content-Security-Policy" in text
+        if violation or (message.type == "error" and not (refused and "status of 4" in text)):
+            self.faults.append(f"console: {text} {message.location}")
+
+    def _request(self, url: str, origin: str) -> None:
+        self.requests.append(url)
+        if not url.startswith((origin + "/", "blob:", "data:")):
+            self.faults.append(f"request to {url}")
+
+
+@pytest.fixture(scope="session")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """Start `rocking serve` as a process of its own and stop it afterwards."""
+    folder = tmp_path_factory.mktemp("data")
+    command = [sys.executable, "-m", "rocking", "serve", "--json", "--no-browser", "--port", "0", "--data", str(folder)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        try:
+            told = json.loads(process.stdout.readline())
+            key = Path(told["key_file"]).read_text(encoding="utf-8").strip()
+            yield Served(told["url"].rstrip("/"), told["token"], told["port"], folder, key)
+        finally:
+            process.terminate()
+            process.wait(timeout=20)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """Start the system's Chromium once."""
+    with playwright.sync_playwright() as driver:
+        launched = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield launched
+        launched.close()
+
+
+@pytest.fixture(scope="session")
+def signed_in(browser: Any, served: Served) -> Any:
+    """Open the link once and keep its cookie for every test."""
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto(f"{served.url}/#token={served.token}")
+    page.wait_for_selector("#view-body[data-ready=true]")
+    state = context.storage_state()
+    context.close()
+    return {"cookies": state["cookies"], "origins": []}
+
+
+@pytest.fixture
+def record() -> Iterator[Record]:
+    """Fail the test at its end if a page did what it must not."""
+    seen = Record()
+    yield seen
+    assert seen.faults == []
+
+
+@pytest.fixture(scope="session")
+def new_record() -> Callable[[], Record]:
+    """Make a recorder that fails nothing by itself, for negative controls."""
+    return Record
+
+
+@pytest.fixture
+def open_page(browser: Any, served: Served, signed_in: Any, record: Record) -> Iterator[Callable[..., Any]]:
+    """Open pages of a signed-in user; `open_page(fragment="", view="body", **context options)`."""
+    contexts = []
+
+    def opened(
+        fragment: str = "", *, view: str | None = None, viewport: dict[str, int] | None = None, **more: Any
+    ) -> Any:
+        context = browser.new_context(storage_state=signed_in, viewport=viewport or WIDE, accept_downloads=True, **more)
+        context.grant_permissions(["clipboard-read", "clipboard-write"], origin=served.url)
+        contexts.append(context)
+        page = context.new_page()
+        record.watch(page, served.url)
+        page.goto(f"{served.url}/#{fragment or (f'view={view}' if view else '')}")
+        page.wait_for_selector("main section[data-ready=true]:not([hidden])")
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+
+
+@pytest.fixture
+def page(open_page: Callable[..., Any]) -> Any:
+    """Open the first page."""
+    return open_page()
+
+
+@pytest.fixture(scope="session")
+def shot(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
+    """Save screenshots, to the folder given by ROCKING_SHOTS or a temporary one."""
+    folder = Path(os.environ.get("ROCKING_SHOTS") or tmp_path_factory.mktemp("shots"))
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def taken(page: Any, name: str, *, full_page: bool = True) -> Path:
+        target = folder / f"{name}.png"
+        page.screenshot(path=str(target), full_page=full_page)
+        return target
+
+    return taken

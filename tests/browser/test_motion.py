@@ -1,0 +1,230 @@
+"""The view of the motion, used as a person uses it: files dropped, pulses chosen, sliders moved."""
+
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rocking.motions.formats import write_motion
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulses import catalogue, pulse
+
+STEP, COUNT = 0.01, 801
+PHONE = {"width": 360, "height": 740}
+DROP = """([name, text]) => {
+  const transfer = new DataTransfer();
+  transfer.items.add(new File([text], name));
+  const zone = document.querySelector("[data-testid=record-drop]");
+  for (const kind of ["dragover", "drop"]) {
+    zone.dispatchEvent(new DragEvent(kind, { dataTransfer: transfer, bubbles: true, cancelable: true }));
+  }
+}"""
+
+
+def shaking() -> GroundMotion:
+    """Return a decaying wave whose peak is known: 2.5 m/s2 at 1.0 s."""
+    time = STEP * np.arange(COUNT)
+    wave = np.sin(2.0 * np.pi * 1.25 * time) * np.exp(-0.4 * np.abs(time - 1.0))
+    return GroundMotion(2.5 * wave / np.abs(wave).max(), STEP, vertical=0.5 * np.roll(wave, 7), name="test wave")
+
+
+def inputs(page: Any) -> dict[str, Any]:
+    """Return the inputs that the page keeps."""
+    found: dict[str, Any] = page.evaluate("JSON.parse(sessionStorage.getItem('rocking.inputs'))")
+    return found
+
+
+def way(page: Any, text: str) -> None:
+    """Choose where the motion comes from."""
+    page.locator("#view-motion .segment", has_text=text).first.click()
+
+
+def fact(page: Any, word: str) -> str:
+    """Return one of the facts of the motion."""
+    text: str = page.locator(f"[data-testid=motion-facts] dt:text-is('{word}') + dd").inner_text()
+    return text
+
+
+def pasted(page: Any) -> str:
+    """Return what a user pastes after copying."""
+    page.evaluate("document.body.append(Object.assign(document.createElement('textarea'), { id: 'paste' }))")
+    page.locator("#paste").focus()
+    page.keyboard.press("Control+V")
+    text: str = page.locator("#paste").input_value()
+    return text
+
+
+@pytest.fixture
+def view(open_page: Callable[..., Any]) -> Any:
+    """Open the view with the first motion measured."""
+    page = open_page(view="motion")
+    page.get_by_test_id("measures-table").wait_for()
+    return page
+
+
+def test_a_record_that_says_all_is_read_at_once(view: Any, tmp_path: Path, shot: Callable[..., Path]) -> None:
+    """A PEER file names unit and step: chosen, it is measured, and its peak is the one that was written."""
+    path = tmp_path / "wave.AT2"
+    write_motion(GroundMotion(shaking().acceleration, STEP, name="test wave"), path, "peer")
+    way(view, "Record file")
+    view.get_by_test_id("record-file").set_input_files(path)
+    view.get_by_test_id("record-held").get_by_text("wave.AT2").wait_for()
+    view.get_by_test_id("motion-facts").filter(has_text="2.5").wait_for()
+    assert fact(view, "Peak acceleration").startswith("2.5")
+    assert fact(view, "Duration").startswith("8")
+    assert len(inputs(view)["motion"]["record"]) == 64
+    shot(view, "motion-record")
+
+
+def test_what_a_file_does_not_say_is_asked_for(view: Any, shot: Callable[..., Path]) -> None:
+    """A dropped table of two columns in g is asked for its unit; the answer makes the peak 0.25 g, not 0.25 m/s2."""
+    rows = [f"{STEP * k:.3f},{0.25 * math.sin(0.25 * math.pi * k):.9f}" for k in range(201)]
+    way(view, "Record file")
+    view.evaluate(DROP, ["site.csv", "\n".join(rows) + "\n"])
+    needs = view.get_by_test_id("record-needs")
+    needs.get_by_label("Unit of the accelerations").wait_for()
+    shot(view, "motion-needs")
+    needs.get_by_label("Unit of the accelerations").select_option("g")
+    needs.get_by_role("button", name="Read it so").click()
+    view.get_by_test_id("motion-facts").filter(has_text="0.25").wait_for()
+    assert "(0.25\u00a0g)" in fact(view, "Peak acceleration")
+    assert inputs(view)["motion"]["units"] == "g"
+
+
+def test_components_are_chosen_and_the_vertical_one_is_drawn(view: Any, tmp_path: Path) -> None:
+    """A file of two components asks which is horizontal; with the other as vertical one a fourth curve stands there."""
+    path = tmp_path / "two.csv"
+    write_motion(shaking(), path, "columns")
+    way(view, "Record file")
+    view.get_by_test_id("record-file").set_input_files(path)
+    needs = view.get_by_test_id("record-needs")
+    needs.get_by_label("Unit of the accelerations").select_option("m/s2")
+    needs.get_by_label("Horizontal component").select_option("column 2")
+    needs.get_by_role("button", name="Read it so").click()
+    held = view.get_by_test_id("record-held")
+    held.get_by_label("Vertical component").select_option("column 3")
+    view.locator("[data-testid=motion-traces] figcaption", has_text="Vertical acceleration").wait_for()
+    assert inputs(view)["motion"]["vertical"] == "column 3"
+
+
+def test_a_file_that_is_no_record_is_refused_in_words(view: Any) -> None:
+    """Of a file that is no record the server's sentence is shown, and the motion stays as it was."""
+    before = inputs_or_first(view)
+    way(view, "Record file")
+    view.evaluate(DROP, ["letter.AT2", "Dear friend,\nthis is no record.\n"])
+    told = view.locator("[data-testid=record-answer] .note.error")
+    told.wait_for()
+    assert "letter.AT2" in told.inner_text()
+    assert inputs_or_first(view) == before
+
+
+def inputs_or_first(page: Any) -> Any:
+    """Return what the page keeps; nothing before the first change."""
+    return page.evaluate("sessionStorage.getItem('rocking.inputs')")
+
+
+def test_a_pulse_follows_its_slider_and_its_number(view: Any, shot: Callable[..., Path]) -> None:
+    """A pulse chosen by keyboard and typed to 4 m/s2 and 0.5 s has a_p T / pi as the peak of its velocity."""
+    view.locator(".pulse-card input[value=sine]").focus()
+    view.keyboard.press("ArrowRight")
+    assert inputs(view)["motion"]["pulse"].startswith("cosine:")
+    view.keyboard.press("ArrowLeft")
+    fields = view.get_by_test_id("pulse-parameters")
+    fields.get_by_label("Peak acceleration, exactly").fill("4")
+    fields.get_by_label("Period, exactly").fill("0.5")
+    assert inputs(view)["motion"]["pulse"] == "sine:amplitude=4,period=0.5"
+    wanted = f"{4.0 * 0.5 / math.pi:.4g}"
+    view.locator("[data-testid=measures-table] tr", has_text="peak ground velocity").get_by_text(wanted).wait_for()
+    slider = fields.locator("input[type=range]").first
+    slider.focus()
+    slider.press("ArrowRight")
+    assert inputs(view)["motion"]["pulse"] != "sine:amplitude=4,period=0.5"
+    shot(view, "motion-pulse")
+
+
+def test_scaling_scales(view: Any) -> None:
+    """Typed as one half, the factor halves the peak of 3 m/s2; nought is refused beside the field."""
+    factor = view.get_by_label("Factor", exact=False)
+    factor.fill("0.5")
+    view.get_by_test_id("motion-facts").filter(has_text="1.5").wait_for()
+    assert fact(view, "Peak acceleration").startswith("1.5")
+    factor.fill("0")
+    view.get_by_text("nothing would move").wait_for()
+    assert inputs(view)["motion"]["scale"] == 0.5
+
+
+def test_another_synthetic_motion_and_its_level(view: Any, shot: Callable[..., Path]) -> None:
+    """Another member is another motion, and scaled to a PGA of 2 m/s2 it has that peak."""
+    way(view, "Synthetic")
+    view.get_by_test_id("motion-name").filter(has_text="pulse-like").wait_for()
+    first = fact(view, "Peak acceleration")
+    view.get_by_role("button", name="Another one").click()
+    view.get_by_test_id("motion-facts").filter(has_not_text=first).wait_for()
+    assert inputs(view)["motion"]["member"] == 1
+    way(view, "To a PGA")
+    view.get_by_label("Peak ground acceleration").fill("2")
+    view.get_by_test_id("motion-facts").filter(has_text=re.compile(r"acceleration2\s*m")).wait_for()
+    assert inputs(view)["motion"]["pga"] == 2
+    shot(view, "motion-synthetic")
+
+
+def test_measures_are_copied_with_every_digit(view: Any) -> None:
+    """The table goes to the clipboard with tabs and more digits than are shown, and to a CSV file."""
+    block = view.get_by_test_id("motion-measures")
+    block.get_by_role("button", name="Copy table").click()
+    text = pasted(view)
+    row = next(line for line in text.splitlines() if line.startswith("peak ground velocity"))
+    assert math.isclose(float(row.split("\t")[1]), 3.0 * 0.8 / math.pi, rel_tol=1e-9)
+    with view.expect_download() as waiting:
+        block.get_by_role("button", name="CSV").click()
+    assert "peak ground velocity" in Path(waiting.value.path()).read_text(encoding="utf-8-sig").lower()
+
+
+@pytest.mark.parametrize("kind", ["png", "svg"])
+def test_the_picture_is_saved(view: Any, kind: str) -> None:
+    """The picture of the motion comes as a file of the kind asked for."""
+    with view.expect_download() as waiting:
+        view.get_by_test_id("motion-result").get_by_role("button", name=kind.upper()).click()
+    starts = Path(waiting.value.path()).read_bytes()[:200]
+    assert starts.startswith(b"\x89PNG") if kind == "png" else b"<svg" in starts or b"<?xml" in starts
+
+
+SKETCH = """async ([name, places]) => {
+  const { SHAPES } = await import("/views/motion-sketch.js");
+  return places.map((place) => SHAPES[name](place));
+}"""
+WINDOWS = {
+    "ricker": (10.0 / (math.sqrt(2.0) * math.pi), 4.0),
+    "antisymmetric-ricker": (5.0 * math.sqrt(3.0) / math.pi, 5.0),
+}
+ARGUMENTS = {
+    "rectangular": "amplitude=1,duration=1",
+    "mavroeidis-papageorgiou": "velocity=1,period=1",
+    "harmonic": "amplitude=1,period=1,cycles=4",
+}
+
+
+def test_sketches_show_the_pulses(page: Any) -> None:
+    """The small drawing of every pulse has the shape of its acceleration; turned round it would not."""
+    places = np.linspace(0.02, 0.98, 97)
+    for name in catalogue():
+        drawn = np.array(page.evaluate(SKETCH, [name, places.tolist()]))
+        real = pulse(f"{name}:{ARGUMENTS.get(name, 'amplitude=1,period=1')}")
+        # wavelets are drawn without their flat ends
+        width, whole = WINDOWS.get(name, (real.duration, real.duration))
+        truth = real.acceleration(0.5 * whole + width * (places - 0.5))
+        truth = truth / np.abs(truth).max()
+        assert np.abs(drawn - truth).max() < 0.05, name
+        assert np.abs(drawn + truth).max() > 0.5, name
+
+
+def test_it_fits_a_phone(open_page: Callable[..., Any], shot: Callable[..., Path]) -> None:
+    """At 360 px nothing is wider than the screen."""
+    page = open_page(view="motion", viewport=PHONE)
+    page.get_by_test_id("measures-table").wait_for()
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    shot(page, "motion-phone")

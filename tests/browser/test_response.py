@@ -1,0 +1,353 @@
+"""The view of the response, used as a person uses it: models ticked, sliders moved, the animation played."""
+
+import base64
+import json
+import math
+import re
+import statistics
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rocking.bodies import Block
+from rocking.dynamics.histories import free_rocking, simulate
+from rocking.dynamics.response import Response
+from rocking.motions.pulses import pulse
+
+PHONE = {"width": 360, "height": 740}
+BODY = {"units": "m", "width": 0.5, "height": 2.0}
+GENTLE, DECISIVE = "sine:amplitude=3,period=0.8", "cosine:amplitude=7.25,period=0.6"
+MODELS = ["ked", "housner"]
+
+SLIDE = """async ([words, count]) => {
+  const labels = [...document.querySelectorAll("#view-response label")];
+  const label = labels.find((one) => one.textContent === words);
+  const slider = document.getElementById(label.htmlFor);
+  const results = document.querySelector(".response-results");
+  const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
+  const times = [];
+  for (let k = 0; k < count; k += 1) {
+    const before = results.dataset.drawn;
+    const started = performance.now();
+    slider.value = String(Number(slider.min) + (slider.max - slider.min) * (0.5 + 0.01 * (k + 1)));
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+    while (results.dataset.drawn === before) await frame();
+    times.push(performance.now() - started);
+  }
+  return times;
+}"""
+COLOURED = """(canvas) => {
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  const [r, g, b] = getComputedStyle(canvas).getPropertyValue("--scene-impact").match(/[0-9a-f]{2}/gi)
+    .map((two) => parseInt(two, 16));
+  let found = 0;
+  for (let k = 0; k < data.length; k += 4) {
+    if (Math.abs(data[k] - r) + Math.abs(data[k + 1] - g) + Math.abs(data[k + 2] - b) < 12) found += 1;
+  }
+  return found;
+}"""
+
+
+def link(motion: str | None = GENTLE, **more: Any) -> str:
+    """Return the fragment of a permanent link."""
+    inputs = {"body": BODY, "restitution": {"models": MODELS}, **more}
+    if motion is not None:
+        inputs["motion"] = {"pulse": motion}
+    text = base64.urlsafe_b64encode(json.dumps(inputs).encode()).decode().rstrip("=")
+    return f"in={text}&view=response"
+
+
+def response(motion: str, restitution: Any) -> Response:
+    """Return the response of the same body in Python."""
+    return simulate(Block(width=0.5, height=2.0), pulse(motion), restitution)
+
+
+def card(page: Any, label: str) -> Any:
+    """Return the card of a model's outcome."""
+    return page.get_by_test_id(f"outcome-{label}")
+
+
+def pasted(page: Any) -> str:
+    """Return what a user pastes after copying."""
+    page.evaluate("document.body.append(Object.assign(document.createElement('textarea'), { id: 'paste' }))")
+    page.locator("#paste").focus()
+    page.keyboard.press("Control+V")
+    text: str = page.locator("#paste").input_value()
+    return text
+
+
+@pytest.fixture
+def answered(open_page: Callable[..., Any]) -> Callable[..., Any]:
+    """Open the view by a link and wait for its answer."""
+
+    def opened(fragment: str | None = None, **more: Any) -> Any:
+        page = open_page(fragment or link(), **more)
+        page.locator(".response-results[data-drawn]").wait_for()
+        return page
+
+    return opened
+
+
+def test_the_verdict_is_that_of_python(answered: Callable[..., Any], shot: Callable[..., Path]) -> None:
+    """Outcome, coefficient, peak and number of impacts of every model are what `simulate` finds."""
+    page = answered()
+    assert page.get_by_test_id("verdict").get_attribute("data-kind") == "rocks"
+    for label in MODELS:
+        found = response(GENTLE, label)
+        text = card(page, label).inner_text()
+        ratio = found.peak_rotation / found.rocker.right.slenderness_angle
+        assert f"r = {found.rocker.right.coefficient:.4g}" in text
+        assert f"peak {ratio:.3g}" in text
+        assert f"{found.impacts.size} impacts" in text
+    shot(page, "response-light")
+
+
+def test_one_sees_that_the_model_decides(answered: Callable[..., Any], shot: Callable[..., Path]) -> None:
+    """Where one model overturns the body and the other does not, the banner says so in words."""
+    assert response(DECISIVE, "ked").outcome != response(DECISIVE, "housner").outcome
+    page = answered(link(DECISIVE))
+    verdict = page.get_by_test_id("verdict")
+    assert verdict.get_attribute("data-kind") == "differs"
+    assert "ked" in verdict.inner_text()
+    assert card(page, "ked").get_attribute("data-outcome") == "overturned"
+    assert card(page, "housner").get_attribute("data-outcome") == "rocked"
+    shot(page, "response-decides")
+    page.get_by_role("checkbox", name="Housner").uncheck()
+    page.locator("[data-testid=verdict][data-kind=falls]").wait_for()
+
+
+def test_a_body_that_overturns_comes_to_lie_and_stays(answered: Callable[..., Any], shot: Callable[..., Path]) -> None:
+    """At the end of the animation the block that overturned has turned by a quarter and lies on its side."""
+    page = answered(link(DECISIVE))
+    page.get_by_test_id("scene-time").focus()
+    page.keyboard.press("End")
+    assert "90.00\u00b0" in page.get_by_test_id("scene-rotation").inner_text()
+    shot(page, "response-overturned")
+
+
+def test_a_coefficient_of_ones_own(answered: Callable[..., Any]) -> None:
+    """A typed coefficient joins the models under its own card and curve."""
+    page = answered()
+    page.get_by_label("A coefficient of my own").check()
+    slider = page.get_by_label("Coefficient of restitution r")
+    slider.focus()
+    slider.press("Home")
+    page.locator("[data-testid=outcomes] .outcome", has_text=re.compile(r"given value.*r = 0 \u00b7")).wait_for()
+    assert page.get_by_test_id("outcomes").locator(".outcome").count() == 3
+    page.get_by_test_id("chart-rotation").locator(".legend li").nth(2).wait_for()
+
+
+def test_free_rocking_and_back(answered: Callable[..., Any]) -> None:
+    """Let go from half its angle the block rocks as `free_rocking` says; switched back it is shaken again."""
+    page = answered()
+    page.get_by_label("Let it go from a lean instead").check()
+    found = free_rocking(Block(width=0.5, height=2.0), 0.5 * math.atan(0.25), "ked")
+    card(page, "ked").filter(has_text=f"{found.impacts.size} impacts").wait_for()
+    assert "peak 0.5" in card(page, "ked").inner_text()
+    page.get_by_label("Let it go from a lean instead").uncheck()
+    card(page, "ked").filter(has_text=f"{response(GENTLE, 'ked').impacts.size} impacts").wait_for()
+
+
+def test_without_a_motion_it_says_what_to_do(open_page: Callable[..., Any]) -> None:
+    """A link without a motion leads to two buttons, of which one lets the body go."""
+    page = open_page(link(None))
+    page.get_by_role("button", name="Let it go from a lean").click()
+    page.locator(".response-results[data-drawn]").wait_for()
+
+
+def test_size_is_turned(answered: Callable[..., Any]) -> None:
+    """The slider of the size makes every length larger and keeps the shape: p falls with the root of the size."""
+    page = answered()
+    page.get_by_label("Size of the body, all lengths").focus()
+    page.keyboard.press("End")
+    page.wait_for_timeout(300)
+    body = page.evaluate("JSON.parse(sessionStorage.getItem('rocking.inputs')).body")
+    assert (body["width"], body["height"]) == (2.5, 10.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "wanted"),
+    [
+        (
+            {"units": "cm", "trapezoid": {"base": 50.0, "top": 30.0, "height": 90.0, "lean": 4.0, "density": 2600.0}},
+            {"units": "cm", "trapezoid": {"base": 100.0, "top": 60.0, "height": 180.0, "lean": 8.0, "density": 2600.0}},
+        ),
+        (
+            {
+                "units": "m",
+                "section": {"region": [{"outline": [[0, 0], [1, 0], [0, 2]], "density": 2.0}], "feet": [0, 1]},
+            },
+            {
+                "units": "m",
+                "section": {"region": [{"outline": [[0, 0], [2, 0], [0, 4]], "density": 2.0}], "feet": [0, 2]},
+            },
+        ),
+        (
+            {"units": "m", "mass_points": {"points": [[0, 1]], "masses": [3.0], "feet": [-1, 1]}},
+            {"units": "m", "mass_points": {"points": [[0, 2]], "masses": [24.0], "feet": [-2, 2]}},
+        ),
+        (
+            {"units": "m", "regular_polygon": {"sides": 6, "radius": 0.5}},
+            {"units": "m", "regular_polygon": {"sides": 6, "radius": 1.0}},
+        ),
+    ],
+)
+def test_every_kind_of_body_is_scaled(page: Any, body: dict[str, Any], wanted: dict[str, Any]) -> None:
+    """Twice as large means every length times two, masses times eight, densities, units and counts as they were."""
+    script = "async (body) => (await import('/views/response-size.js')).scaledBody(body, 2)"
+    assert page.evaluate(script, body) == wanted
+
+
+def test_impacts_are_those_of_python(answered: Callable[..., Any]) -> None:
+    """The table copies every impact with every digit."""
+    page = answered()
+    page.get_by_test_id("impacts").get_by_role("button", name="Copy table").click()
+    rows = [line.split("\t") for line in pasted(page).splitlines()]
+    found = response(GENTLE, "ked").impacts
+    assert len(rows) == found.size + 1
+    assert [float(row[1]) for row in rows[1:]] == found["time"].tolist()
+    assert [row[5] for row in rows[1:]] == found["onto"].tolist()
+
+
+@pytest.mark.parametrize(
+    "words", ["Scale of the motion", "Size of the body, all lengths", "Coefficient of restitution r"]
+)
+def test_a_slider_redraws_within_150_ms(answered: Callable[..., Any], words: str) -> None:
+    """From the move of a slider to redrawn curves and scene of five restitutions: below 150 ms at the median of 30."""
+    models = ["ked", "housner", "horizontal-momentum", "shifted-impulse"]
+    page = answered(link(GENTLE, restitution={"models": models, "values": [0.9]}))
+    page.evaluate(SLIDE, [words, 3])
+    times = page.evaluate(SLIDE, [words, 30])
+    print(f"{words}: median {statistics.median(times):.1f} ms, largest {max(times):.1f} ms")
+    assert len(times) == 30
+    assert statistics.median(times) < 150.0, times
+
+
+def test_sixty_frames_a_second(answered: Callable[..., Any]) -> None:
+    """Played in slow motion, at least 55 frames a second are drawn, and the script of one takes below 4 ms."""
+    page = answered()
+    page.get_by_test_id("scene-speed").select_option("0.1")
+    page.get_by_test_id("scene-play").click()
+    page.wait_for_timeout(300)
+    script = """async () => {
+      const first = rockingFrames.count, started = performance.now();
+      await new Promise((resolve) => setTimeout(resolve, 2000));
+      return [(rockingFrames.count - first) / (performance.now() - started) * 1000, rockingFrames.meanMs];
+    }"""
+    rate, script_ms = page.evaluate(script)
+    print(f"{rate:.1f} frames a second, {script_ms:.2f} ms of script each")
+    assert rate >= 55.0
+    assert script_ms < 4.0
+
+
+def test_space_plays_and_the_speed_is_true(answered: Callable[..., Any]) -> None:
+    """Space starts and stops; at real speed the animation keeps time with the wall clock, else a tenth of it."""
+    page = answered()
+    now = page.get_by_test_id("scene-now")
+    page.get_by_test_id("scene-stage").focus()
+    for speed in (1.0, 0.1):
+        page.get_by_test_id("scene-speed").select_option(f"{speed:g}")
+        page.get_by_test_id("scene-stage").focus()
+        page.keyboard.press("Home")
+        page.keyboard.press(" ")
+        page.wait_for_timeout(1000)
+        page.keyboard.press(" ")
+        seconds = float(now.inner_text().split()[0])
+        assert 0.75 * speed < seconds < 1.5 * speed
+        page.wait_for_timeout(150)
+        assert float(now.inner_text().split()[0]) == seconds
+
+
+def test_scrubbing_shows_the_rotation_of_that_instant(answered: Callable[..., Any]) -> None:
+    """Moved by keys to an instant, the picture names the rotation that `Response.at` has there."""
+    page = answered()
+    page.get_by_test_id("scene-time").focus()
+    found = response(GENTLE, "ked")
+    for key in ("Home", *("PageUp",) * 3):
+        page.keyboard.press(key)
+    instant = float(page.get_by_test_id("scene-now").inner_text().split()[0])
+    shown = page.get_by_test_id("scene-rotation").inner_text().split()[2].rstrip("\u00b0,").replace("\u2212", "-")
+    assert instant > 1.0
+    assert abs(float(shown) - math.degrees(found.at(instant).item())) < 0.02
+
+
+@pytest.mark.parametrize("motion", ["no-preference", "reduce"])
+def test_impacts_flash_unless_less_motion_is_wanted(answered: Callable[..., Any], motion: str) -> None:
+    """Just after an impact its ring is on the canvas, and is not where the system asks for reduced motion."""
+    page = answered(reduced_motion=motion)
+    time = float(response(GENTLE, "ked").impacts["time"][1])
+    script = """async (time) => {
+      const stage = document.querySelector("[data-testid=scene-stage]");
+      stage.focus();
+      const key = (name, shiftKey = false) =>
+        stage.dispatchEvent(new KeyboardEvent("keydown", { key: name, shiftKey, bubbles: true }));
+      key("Home");
+      const now = () => parseFloat(document.querySelector("[data-testid=scene-now]").textContent);
+      while (now() < time) key("ArrowRight");
+    }"""
+    page.evaluate(script, time)
+    painted = page.get_by_test_id("scene-stage").evaluate(COLOURED)
+    assert painted > 30 if motion == "no-preference" else painted == 0
+
+
+def test_bodies_turn_as_in_python(page: Any) -> None:
+    """The points of a turned body are those of the package itself, for both feet; with the other sign they are not."""
+    from rocking.plots.animation_scene import Shape
+
+    shape = Shape.of(Block(width=0.5, height=2.0))
+    corners = shape.corners
+    script = """async ([corners, rotation, feet]) => {
+      const { turned } = await import("/scene/geometry.js");
+      return corners.map(([x, y]) => turned(x, y, rotation, feet));
+    }"""
+    for rotation in (0.2, -0.3):
+        drawn = page.evaluate(script, [corners.tolist(), rotation, list(shape.feet)])
+        assert drawn == pytest.approx(shape.turned(corners, rotation), abs=1e-12)
+        assert drawn != pytest.approx(shape.turned(corners, -rotation), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("corners", "foot", "side", "degrees"),
+    [
+        ([[-0.25, 0], [0.25, 0], [0.25, 2], [-0.25, 2]], 0.25, 1, 90.0),
+        ([[-0.25, 0], [0.25, 0], [1.25, 1], [-1.25, 1]], 0.25, 1, 45.0),
+        ([[-0.25, 0], [0.25, 0], [1.25, 1], [-1.25, 1]], -0.25, -1, 45.0),
+    ],
+)
+def test_where_a_body_lies(page: Any, corners: list[list[float]], foot: float, side: int, degrees: float) -> None:
+    """A block lies after a quarter turn, a body that leans out by 45 degrees after an eighth."""
+    script = "async (given) => (await import('/scene/geometry.js')).lyingAngle(...given)"
+    assert page.evaluate(script, [corners, foot, side]) == pytest.approx(math.radians(degrees), abs=1e-12)
+
+
+def test_tracks_are_straight_between_samples(page: Any) -> None:
+    """A track asked forwards, backwards and beyond its ends answers as linear interpolation does."""
+    script = """async ([time, values, asked]) => {
+      const { Track } = await import("/scene/track.js");
+      const track = new Track(time, values);
+      return asked.map((instant) => track.at(instant));
+    }"""
+    time, values = [0.0, 0.1, 0.4, 0.5, 2.0], [1.0, -1.0, 5.0, 5.0, 2.0]
+    asked = [-1.0, 0.0, 0.05, 0.25, 0.45, 1.25, 3.0, 0.3, 0.02]
+    wanted = [1.0, 1.0, 0.0, 2.0, 5.0, 3.5, 2.0, 3.0, 0.6]
+    assert page.evaluate(script, [time, values, asked]) == pytest.approx(wanted, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["Picture, PNG", "Picture, SVG", "Curves, CSV", "Animation, page"])
+def test_files_are_saved(answered: Callable[..., Any], name: str) -> None:
+    """Every button of the part to take away gives a file that is not empty."""
+    page = answered()
+    with page.expect_download() as waiting:
+        page.get_by_role("button", name=name).click()
+    assert Path(waiting.value.path()).stat().st_size > 1000
+
+
+def test_dark_and_phone(answered: Callable[..., Any], shot: Callable[..., Path]) -> None:
+    """In the dark, and at 360 px, everything is there and nothing is wider than the screen."""
+    for name, options in (("dark", {"color_scheme": "dark"}), ("phone", {"viewport": PHONE})):
+        page = answered(link(DECISIVE), **options)
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        page.get_by_test_id("scene-ground").select_option("magnified")
+        shot(page, f"response-{name}")

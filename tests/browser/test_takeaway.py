@@ -1,0 +1,112 @@
+"""Take away: every file of the inputs, the link, and the TOML."""
+
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+INPUTS = {
+    "body": {"units": "cm", "width": 50, "height": 200},
+    "motion": {"pulse": "sine:amplitude=3.2,period=0.8"},
+    "restitution": {"models": ["ked", "housner"]},
+}
+MAGIC = {
+    "png": b"\x89PNG", "svg": b"<?xml", "csv": b"\xef\xbb\xbf", "xlsx": b"PK", "mat": b"MATLAB", "nc": b"\x89HDF",
+    "pdf": b"%PDF", "zip": b"PK", "html": b"<!doctype html", "gif": b"GIF8", "toml": b"",
+}  # fmt: skip
+PICTURES, SHEETS = (
+    "body coefficients stages motion response".split(),
+    "body coefficients measures spectrum impacts".split(),
+)
+FILES = [
+    *(f"picture-{what}-{kind}" for what in PICTURES for kind in ("png", "svg")),
+    "animation-html", "animation-gif", "take-toml", "take-zip", "take-report",
+    *(f"table-{what}-{kind}" for what in SHEETS for kind in ("csv", "xlsx")),
+    "table-motion-csv", "table-motion-mat", "table-response-csv", "table-response-mat", "table-response-nc",
+]  # fmt: skip
+
+
+@pytest.fixture
+def takeaway(open_page: Callable[..., Any]) -> Any:
+    """Open the step Take away with a block and a pulse."""
+    from base64 import urlsafe_b64encode
+    from urllib.parse import urlencode
+
+    packed = urlsafe_b64encode(json.dumps(INPUTS).encode()).decode().rstrip("=")
+    return open_page(urlencode({"in": packed, "view": "takeaway"}))
+
+
+def saved(page: Any, testid: str, folder: Path) -> Path:
+    """Press a button and keep its file."""
+    with page.expect_download(timeout=60_000) as download:
+        page.get_by_test_id(testid).click()
+    target = folder / download.value.suggested_filename
+    download.value.save_as(target)
+    return target
+
+
+def test_every_file(takeaway: Any, tmp_path: Path, shot: Any) -> None:
+    """Every button saves a file that begins as its kind does."""
+    shot(takeaway, "takeaway")
+    for testid in FILES:
+        found = saved(takeaway, testid, tmp_path)
+        kind = found.suffix[1:]
+        assert kind == {"take-toml": "toml", "take-zip": "zip", "take-report": "pdf"}.get(
+            testid, testid.rsplit("-")[-1]
+        )
+        assert found.read_bytes().lower().startswith(MAGIC[kind].lower()), testid
+        assert found.stat().st_size > 60, testid
+
+
+def test_the_toml_on_the_command_line(takeaway: Any, tmp_path: Path, served: Any) -> None:
+    """The saved TOML gives on the command line the numbers of the application, to the last digit."""
+    path = saved(takeaway, "take-toml", tmp_path)
+    done = subprocess.run(
+        [sys.executable, "-m", "rocking", "simulate", str(path), "--json"], capture_output=True, text=True, check=True
+    )
+    told = json.loads(done.stdout)
+    answer = served.api("response", json=INPUTS)["answers"][0]
+    assert told["peak_rotation_rad"] == answer["peak_rotation_rad"]
+    assert told["impacts"] == answer["impacts"]
+    assert (
+        served.api("response", json={**INPUTS, "motion": {"pulse": "sine:amplitude=3.1,period=0.8"}})["answers"][0][
+            "impacts"
+        ]
+        != told["impacts"]
+    )
+
+
+def test_the_link_opens_the_same_inputs(takeaway: Any, open_page: Callable[..., Any]) -> None:
+    """The permanent link, opened elsewhere, has the same inputs."""
+    link = takeaway.get_by_test_id("permanent-link").input_value()
+    takeaway.get_by_test_id("copy-link").click()
+    takeaway.get_by_text("The link is on the clipboard.").wait_for()
+    other = open_page(link.partition("#")[2])
+    other.get_by_role("tab", name="Take away").click()
+    again = other.get_by_test_id("permanent-link").input_value()
+    assert re.search("in=([^&]+)", again)[1] == re.search("in=([^&]+)", link)[1]  # type: ignore[index]
+
+
+def test_a_toml_comes_back(takeaway: Any, tmp_path: Path) -> None:
+    """A TOML of other inputs, chosen as a file, becomes the inputs of the page."""
+    path = tmp_path / "other.toml"
+    path.write_text(
+        '[response]\n[body]\nunits = "cm"\nwidth = 40\nheight = 160\n[motion]\npulse = "ricker:amplitude=4,period=0.5"\n'
+    )
+    before = takeaway.get_by_test_id("permanent-link").input_value()
+    takeaway.get_by_test_id("read-toml").set_input_files(path)
+    takeaway.wait_for_function(
+        "before => document.querySelector('[data-testid=permanent-link]').value !== before", arg=before
+    )
+
+
+def test_phone(open_page: Callable[..., Any], shot: Any) -> None:
+    """The step fits a phone."""
+    page = open_page(view="takeaway", viewport={"width": 360, "height": 740}, color_scheme="dark")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    shot(page, "takeaway-phone-dark")

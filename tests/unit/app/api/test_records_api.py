@@ -1,0 +1,157 @@
+"""Uploaded records: what must be told, what is kept, and motions as the library measures them."""
+
+import hashlib
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.app.problems import NotFound, TooLarge
+from rocking.app.records import RecordStore
+from rocking.app.settings import Limits
+from rocking.errors import RecordError
+
+OCTETS = {"Content-Type": "application/octet-stream"}
+WAVE = 0.3 * np.sin(2.0 * np.pi * np.arange(800) * 0.01) * np.exp(-0.3 * np.arange(800) * 0.01)
+COLUMNS = "\n".join(f"{k * 0.01:.2f} {value:.6f}" for k, value in enumerate(WAVE)).encode()
+BARE = "\n".join(f"{value:.6f}" for value in WAVE).encode()
+
+
+def sent(client, content, name="a.txt", **query):
+    """Answer to an upload."""
+    return client.post("/api/records", params={"name": name, **query}, content=content, headers=OCTETS)
+
+
+def test_what_a_file_does_not_say_is_asked_for(client):
+    """Numbers alone need a unit and a step; with both told, nothing more is needed."""
+    asked = sent(client, BARE).json()
+    assert asked["needs"] == ["units", "time_step"]
+    assert "gal" in asked["choices"]["units"]
+    assert asked["components"][0]["peak_m_s2"] is None
+    told = sent(client, BARE, units="g", time_step=0.01).json()
+    assert told["needs"] == []
+    assert np.isclose(told["components"][0]["peak_m_s2"], np.abs(np.round(WAVE, 6)).max() * 9.80665)
+    assert told["record"] == asked["record"] == hashlib.sha256(BARE).hexdigest()
+
+
+def test_several_components_are_asked_for(client):
+    """A file of three columns has two components, of which one must be chosen."""
+    rows = "\n".join(f"{k * 0.01:.2f} {a:.6f} {0.5 * a:.6f}" for k, a in enumerate(WAVE)).encode()
+    asked = sent(client, rows, units="m/s2").json()
+    assert asked["needs"] == ["component"]
+    assert asked["choices"]["component"] == ["column 2", "column 3"]
+    motion = {"record": asked["record"], "units": "m/s2", "component": "column 2", "vertical": "column 3"}
+    answer = client.post("/api/motion", json={"motion": motion}).json()
+    assert np.isclose(answer["peak_vertical_acceleration_m_s2"], 0.5 * np.abs(WAVE).max(), atol=1e-6)
+    assert "vertical" in answer["series"]
+
+
+def test_records_are_listed_and_removed(client):
+    """What was sent is listed under a harmless name, and gone when removed, from memory too."""
+    made = sent(client, COLUMNS, "../../=cmd|' /C calc'!A0<b>.csv", units="g").json()
+    assert made["file_name"] == "cmd-C-calc-A0-b.csv"
+    assert [one["record"] for one in client.get("/api/records").json()] == [made["record"]]
+    motion = {"motion": {"record": made["record"], "units": "g"}}
+    assert client.post("/api/motion", json=motion).status_code == 200
+    assert client.delete(f"/api/records/{made['record']}").status_code == 200
+    assert client.delete(f"/api/records/{made['record']}").status_code == 404
+    assert client.post("/api/motion", json=motion).status_code == 404
+    assert client.get("/api/records").json() == []
+
+
+@pytest.mark.parametrize("content", [b"", b" \n", b"\x00\x01\x02", b"hello world\n" * 9])
+def test_what_is_no_record_is_refused_and_not_kept(client, content):
+    """Empty, binary or wordy files are refused with a sentence, and nothing is stored."""
+    answer = sent(client, content)
+    assert answer.status_code == 422
+    assert answer.json()["error"]["kind"] == "record"
+    assert "/tmp" not in answer.text
+    assert client.get("/api/records").json() == []
+
+
+def test_a_motion_has_the_numbers_of_the_library(client):
+    """Intensity measures and spectrum of the scaled record equal those of the library to the last digit."""
+    record = sent(client, COLUMNS, units="g").json()["record"]
+    answer = client.post("/api/motion", json={"motion": {"record": record, "units": "g", "scale": -1.7}}).json()
+    acceleration = np.array([float(line.split()[1]) for line in COLUMNS.decode().splitlines()]) * rk.conventions.g
+    motion = rk.GroundMotion(acceleration, 0.01).scaled(-1.7)
+    assert answer["peak_acceleration_m_s2"] == motion.peak
+    from rocking.motions.intensity import arias_intensity
+    from rocking.motions.spectrum import response_spectrum
+
+    values = {one["name"]: one["value"] for one in answer["measures"]}
+    assert values["arias"] == arias_intensity(motion)
+    periods = np.array(answer["spectrum"]["period"])
+    assert answer["spectrum"]["acceleration"] == response_spectrum(motion, periods, 0.05).pseudo_acceleration.tolist()
+
+
+def test_series_of_a_motion_keep_the_peaks(client):
+    """With 40 points the largest acceleration of 800 samples is still there."""
+    record = sent(client, COLUMNS, units="m/s2").json()["record"]
+    series = client.post(
+        "/api/motion", json={"motion": {"record": record, "units": "m/s2"}, "points": 40, "spectrum": False}
+    ).json()["series"]
+    assert series["shown"] == len(series["time"]) <= 40 < series["of"]
+    assert np.isclose(np.abs(series["acceleration"]).max(), np.abs(WAVE).max(), atol=1e-6)
+
+
+def test_synthetic_motions_depend_on_seed_and_member_alone(client):
+    """The same family, seed and member are the same motion; another member is another; a level is met."""
+
+    def peak(**more):
+        answer = client.post("/api/motion", json={"motion": {"synthetic": "pulse-like", **more}, "spectrum": False})
+        return answer.json()["peak_acceleration_m_s2"]
+
+    assert peak(seed=3, member=2) == peak(seed=3, member=2) != peak(seed=3, member=1)
+    assert np.isclose(peak(seed=3, member=2, pga=4.0), 4.0)
+
+
+@pytest.fixture
+def store(tmp_path):
+    """A store with room for two kilobytes."""
+    return RecordStore(tmp_path, Limits(upload_bytes=20_000, records_bytes=30_000))
+
+
+def test_the_store_has_room_for_so_much(store):
+    """Files beyond the limits are refused with a sentence; the same bytes twice take room once."""
+    store.add(COLUMNS, "a.txt")
+    store.add(COLUMNS, "b.txt")
+    assert [one.file_name for one in store.stored()] == ["b.txt"]
+    with pytest.raises(TooLarge, match="more than 20000"):
+        store.add(b"1" * 20_001, "c.txt")
+    store.add(b"1 2\n" * 4000, "d.txt")
+    with pytest.raises(TooLarge, match="delete some"):
+        store.add(b"2 3\n" * 4000, "e.txt")
+
+
+def test_a_motion_is_read_once(store):
+    """The second motion of the same file and options is the same object; another option is not."""
+    sha = store.add(COLUMNS, "a.txt").record
+    assert store.motion(sha, units="g") is store.motion(sha, units="g")
+    assert store.motion(sha, units="gal") is not store.motion(sha, units="g")
+
+
+def test_a_file_that_changed_on_disk_is_not_read(store):
+    """Bytes that are not those of the hash are refused: the answer would not be what the link says."""
+    sha = store.add(COLUMNS, "a.txt").record
+    store.path(sha).write_bytes(COLUMNS + b"\n")
+    with pytest.raises(RecordError, match="changed"):
+        store.motion(sha, units="g")
+
+
+@pytest.mark.parametrize("name", ["..", "/etc/passwd", "A" * 64, "0" * 63, ""])
+def test_what_is_no_hash_names_nothing(store, name):
+    """A path, a short or an upper-case word finds no file and touches none."""
+    for ask in (store.path, store.delete, store.motion):
+        with pytest.raises(NotFound):
+            ask(name)
+
+
+def test_files_are_private_and_a_strange_note_is_ignored(store):
+    """Folder and files are of this user alone; a note that someone else wrote with a path in it is not followed."""
+    sha = store.add(COLUMNS, "a.txt").record
+    assert store.folder.stat().st_mode & 0o777 == 0o700
+    assert store.path(sha).stat().st_mode & 0o777 == 0o600
+    note = store.folder / f"{sha}.json"
+    note.write_text(note.read_text().replace("a.txt", "../../x.txt"))
+    assert store.stored() == []

@@ -1,0 +1,155 @@
+"""POST /api/response: facts as the library has them, curves that hold to mechanics, refusals in words."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+
+BODY = {"units": "cm", "width": 50, "height": 200, "depth": 40, "density": 700, "name": "cabinet"}
+BLOCK = rk.Block(width=50 * 0.01, height=200 * 0.01, depth=40 * 0.01, density=700.0)
+PULSE = {"pulse": "sine:amplitude=3.2,period=0.8"}
+MOTION = rk.pulses.sine(3.2, 0.8)
+
+
+def asked(client, **changes):
+    """Answer to a question about the cabinet."""
+    document = {"body": BODY, "motion": PULSE, "restitution": {"models": ["ked", "housner"]}, **changes}
+    answer = client.post("/api/response", json=document)
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def test_each_restitution_has_an_answer_in_order(client):
+    """Models, values and parameters are answered in the order they were chosen, with the library's own numbers."""
+    found = asked(client, restitution={"models": ["ked", "0.97*housner"], "values": [0.9]})["answers"]
+    for answer, choice in zip(found, ("ked", "0.97*housner", 0.9), strict=True):
+        response = rk.simulate(BLOCK, MOTION, choice)
+        assert answer["peak_rotation_rad"] == response.peak_rotation
+        assert [each["time_s"] for each in answer["impacts"]] == response.impacts["time"].tolist()
+        assert answer["summary"] == response.summary
+    assert [answer["label"] for answer in found] == ["ked", "0.97*housner", "0.9"]
+
+
+def test_curves_have_impacts_and_extremes(client):
+    """Every impact instant is a sample with rotation zero; peaks of the samples survive a hard thinning."""
+    response = rk.simulate(BLOCK, MOTION, "ked")
+    series = asked(client, points=60)["answers"][0]["series"]
+    time, rotation = np.array(series["time"]), np.array(series["rotation"])
+    assert np.all(np.diff(time) > 0.0)
+    assert time.size <= 60 + response.impacts.size
+    at = np.searchsorted(time, response.impacts["time"])
+    assert np.array_equal(time[at], response.impacts["time"])
+    assert not rotation[at].any()
+    assert np.array_equal(np.array(series["velocity"])[at], response.impacts["velocity_before"])
+    assert (rotation.max(), rotation.min()) == (response.rotation.max(), response.rotation.min())
+    assert (series["shown"], series["of"]) == (time.size, response.time.size)
+    assert {len(values) for values in series.values() if isinstance(values, list)} == {time.size}
+
+
+def test_energy_adds_up_at_every_point(client):
+    """Kinetic, potential and lost energy less work are what there was at the start, at the impacts too."""
+    series = asked(client, motion=None, response={"free": 0.6}, points=200)["answers"][0]["series"]
+    kinetic, potential, lost, work = (np.array(series[name]) for name in ("kinetic", "potential", "lost", "work"))
+    stored = kinetic + potential
+    assert np.abs(stored + lost - work - stored[0]).max() < 1e-9 * stored.max()
+    assert np.all(np.diff(lost) >= -1e-9 * stored.max())
+
+
+def test_state_before_an_impact_is_that_of_free_flight(client):
+    """Before the first impact of a body let go, the kinetic energy is the potential that it had: nothing is lost."""
+    answer = asked(client, motion=None, response={"free": 0.6})["answers"][0]
+    series, first = answer["series"], answer["impacts"][0]["time_s"]
+    k = series["time"].index(first)
+    assert series["lost"][k] == 0.0
+    assert math.isclose(series["kinetic"][k], series["potential"][0], rel_tol=1e-10)
+    alpha, inertia = BLOCK.slenderness_angle, BLOCK.side("right").moment_of_inertia
+    fall = BLOCK.mass * rk.conventions.g * BLOCK.semi_diagonal * (math.cos(0.4 * alpha) - math.cos(alpha))
+    assert math.isclose(series["kinetic"][k], fall, rel_tol=1e-9)
+    assert math.isclose(0.5 * inertia * series["velocity"][k] ** 2, fall, rel_tol=1e-9)
+
+
+def test_ground_displacement_is_that_of_the_pulse(client):
+    """The ground moves as the formula of the scaled pulse says, and stays where the pulse ends."""
+    answer = asked(client, motion={**PULSE, "scale": 0.9})
+    series = answer["answers"][0]["series"]
+    time = np.minimum(series["time"], 0.8)
+    omega = 2.0 * math.pi / 0.8
+    expected = 0.9 * 3.2 / omega * (time - np.sin(omega * time) / omega)
+    assert np.allclose(series["ground_displacement"], expected, rtol=1e-9, atol=1e-12)
+    assert answer["motion"]["scale"] == 0.9
+
+
+def test_verdict_says_whether_the_model_decides(client):
+    """r = 1 overturns under a pulse that r = 0.3 survives: the verdict says so; one value alone decides nothing."""
+    answer = asked(client, restitution={"values": [1.0, 0.3]}, motion={"pulse": "sine:amplitude=3.2,period=1.2"})
+    outcomes = {one["outcome"] for one in answer["answers"]}
+    assert answer["verdict"]["decides"] is (len(outcomes) > 1)
+    alone = asked(client, restitution={"value": 0.3})["verdict"]
+    assert alone["decides"] is False
+    assert alone["sentence"].startswith("With every one of these models the body ")
+
+
+def test_a_restitution_that_creates_energy_has_an_error_of_its_own(client):
+    """Where one choice has no response, the others still answer; where none has, the question is refused."""
+    found = asked(client, restitution={"models": ["ked"], "values": [1.2]})["answers"]
+    assert "would create energy" in found[1]["error"]
+    refused = client.post("/api/response", json={"body": BODY, "motion": PULSE, "restitution": {"value": 1.2}})
+    assert refused.status_code == 422
+    assert "would create energy" in refused.json()["error"]["message"]
+
+
+REFUSED = {
+    "nothing moves": ({"motion": None}, "what moves the body?"),
+    "both": ({"response": {"free": 0.5}}, "not both"),
+    "nan": ({"motion": {**PULSE, "scale": 1e400}}, "larger than float64 holds"),
+    "zero scale": ({"motion": {**PULSE, "scale": 0.0}}, "nothing would move"),
+    "unknown key": ({"moton": PULSE}, "did you mean motion?"),
+    "two sources": ({"motion": {**PULSE, "synthetic": "pulse-like"}}, "exactly one of pulse, record, synthetic"),
+    "no such record": ({"motion": {"record": "0" * 64}}, "upload the file once more"),
+    "path": ({"motion": {"record": "../../etc/passwd"}}, "motion.record"),
+    "file": ({"body": {"file": "/etc/passwd"}}, "reads no file by its name"),
+    "dxf": ({"body": {"units": "m", "section": {"region": [{"dxf": "/etc/x.dxf"}]}}}, "reads no file by its name"),
+    "geojson": ({"body": {"units": "m", "section": {"region": [{"geojson": "a.json"}]}}}, "reads no file by its name"),
+    "model": ({"restitution": {"model": "best"}}, "no restitution model named 'best'"),
+    "model in a file": ({"restitution": {"model": "/tmp/x.py"}}, "no restitution model named"),
+    "drawn per history": (
+        {"restitution": {"distribution": {"mean": 0.9, "deviation": 0.01, "each": "history"}}},
+        'must be "impact"',
+    ),
+    "points": ({"points": 5}, "points"),
+    "two bodies": ({"body": {**BODY, "block": {"width": 1, "height": 2}}}, "exactly one of"),
+    "half a size": ({"body": {"units": "m", "width": 1}}, "height is missing"),
+    "no unit": ({"body": {"width": 1, "height": 2}}, "units is missing"),
+    "geometry": ({"body": {"units": "m", "section": {"region": [{"outline": [[0, 0], [1, 1], [1, 0], [0, 1]]}]}}}, ""),
+    "text": ({"body": {**BODY, "width": "50"}}, "must be a number"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_refusals_are_sentences(client, case):
+    """What cannot be computed is refused with a 400-range status and one sentence that says what to do."""
+    changes, words = REFUSED[case]
+    text = json.dumps({"body": BODY, "motion": PULSE, **changes}).replace("Infinity", "1e400")
+    answer = client.post("/api/response", content=text, headers={"Content-Type": "application/json"})
+    assert answer.status_code in {404, 422}
+    error = answer.json()["error"]
+    assert words in error["message"]
+    assert "Traceback" not in answer.text
+
+
+def test_too_many_restitutions_are_refused(client):
+    """More than 32 restitutions in one question are too large a question."""
+    document = {"body": BODY, "motion": PULSE, "restitution": {"values": [0.01 * k for k in range(33)]}}
+    answer = client.post("/api/response", json=document)
+    assert (answer.status_code, answer.json()["error"]["kind"]) == (413, "too-large")
+
+
+def test_a_response_of_millions_of_samples_is_refused_in_words(client):
+    """A body of ten thousand kilometres rocks for more samples than can be shown: told in a sentence."""
+    body = {"units": "m", "width": 1e7, "height": 2.0}
+    answer = client.post("/api/response", json={"body": body, "motion": PULSE, "restitution": {"value": 0.5}})
+    assert answer.status_code == 422
+    assert "samples" in answer.json()["error"]["message"]

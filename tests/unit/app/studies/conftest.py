@@ -1,0 +1,71 @@
+"""Studies that are computed here, without a server and its processes."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rocking.app.records import RecordStore
+from rocking.app.settings import Limits
+from rocking.app.studies.job_document import JobDocument
+from rocking.app.studies.manager import StudyManager
+from rocking.app.studies.names import new_id
+from rocking.app.studies.opened import OpenStudy
+from rocking.app.studies.study_folder import Meta, StudyFolder
+from rocking.studies.job import Job, JobFolder
+
+Tables = dict[str, Any]
+
+
+@pytest.fixture
+def map_job() -> Callable[..., Tables]:
+    """Return a function that makes the job of a small map, with some tables replaced."""
+
+    def make(count: int = 6, **tables: Any) -> Tables:
+        return {
+            "campaign": {"name": "a small map", "kind": "overturning-map"},
+            "body": {"units": "m", "width": 0.5, "height": 2.0},
+            "motions": {"pulse": "sine:amplitude=3,period=0.6"},
+            "restitution": {"models": ["ked", "housner"]},
+            "map": {
+                "x": {"axis": "frequency_ratio", "from": 1, "to": 6, "count": count},
+                "y": {"axis": "amplitude_ratio", "from": 1, "to": 8, "count": count},
+            },
+        } | tables
+
+    return make
+
+
+@pytest.fixture
+def long_job(map_job: Callable[..., Tables]) -> Tables:
+    """Return a job that takes some ten seconds in small chunks."""
+    return map_job(1000, campaign={"name": "long", "kind": "overturning-map", "chunk": 4096},
+                   settings={"longest_step": 0.02})  # fmt: skip
+
+
+@pytest.fixture
+def records(tmp_path: Path) -> RecordStore:
+    return RecordStore(tmp_path, Limits())
+
+
+@pytest.fixture
+def computed(tmp_path: Path, records: RecordStore) -> Callable[[Tables], OpenStudy]:
+    """Return a function that computes a job as the process of a study does, and opens it."""
+
+    def compute(job: Tables) -> OpenStudy:
+        document = JobDocument.of(job)
+        folder = StudyFolder(tmp_path / "studies" / new_id())
+        meta = Meta(document.name, document.kind, "2026-01-01T00:00:00Z", document.histories)
+        folder.create(meta, document, records)
+        JobFolder.create(folder.campaign, Job.read(folder.path / "job.toml")).run(workers=1)
+        return OpenStudy.of(folder)
+
+    return compute
+
+
+@pytest.fixture
+def manager(tmp_path: Path, records: RecordStore) -> Iterator[StudyManager]:
+    made = StudyManager(tmp_path, Limits(), records, workers=1)
+    yield made
+    made.close()

@@ -1,0 +1,138 @@
+"""Jobs that browsers send: what is refused before anything is opened, and what is written of the others."""
+
+import json
+import time
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rocking.app.problems import TooLarge
+from rocking.app.studies.job_document import KINDS, JobDocument
+from rocking.errors import InvalidValueError
+from rocking.studies.job import Job
+
+EXAMPLES = Path(__file__).parents[4] / "examples" / "jobs"
+LAUNCHED = [
+    path for path in sorted(EXAMPLES.glob("*.toml")) if tomllib.loads(path.read_text())["campaign"]["kind"] in KINDS
+]
+SHA = "ab" * 32
+
+REGION = {"outline": [[0, 0], [1, 0], [1, 2]]}
+HOSTILE: dict[str, dict[str, Any]] = {
+    "a body file": {"body": {"file": "/etc/passwd"}},
+    "a body file beside sizes": {"body": {"units": "m", "width": 1.0, "height": 2.0, "file": "x.toml"}},
+    "a drawing": {"body": {"units": "m", "section": {"region": [{"dxf": "/etc/passwd"}]}}},
+    "a map of outlines": {"body": {"units": "m", "section": {"region": [REGION, {"geojson": "http://x/a"}]}}},
+    "bodies in a list": {"body": [{"file": "a"}]},
+    "an absolute record": {"motions": {"records": "/etc/passwd"}},
+    "a record above": {"motions": {"records": ["../../x.AT2"]}},
+    "a pattern of records": {"motions": {"records": ["*.AT2"]}},
+    "an address of a record": {"motions": [{"records": ["http://127.0.0.1/x"]}]},
+    "a hash with more behind it": {"motions": {"records": [SHA + "/../x"]}},
+    "a hash in capitals": {"motions": {"records": [SHA.upper()]}},
+    "a hash and a line": {"motions": {"records": [SHA + "\n"]}},
+    "a record that is a number": {"motions": {"records": [1]}},
+    "an inventory": {"campaign": {"name": "x", "kind": "inventory"}, "inventory": {"objects": "/etc/passwd"}},
+    "an unknown kind": {"campaign": {"name": "x", "kind": "shell"}},
+    "no campaign": {"campaign": None},
+    "an unknown table": {"exec": {"command": "id"}},
+    "an unknown key": {"settings": {"plugin": "os"}},
+    "an infinite number": {"settings": {"gravity": float("inf")}},
+    "no number": {"settings": {"gravity": float("nan")}},
+    "a truth value for a number": {"settings": {"gravity": True}},
+    "a word for a number": {"settings": {"gravity": "9.81"}},
+    "no motion": {"motions": []},
+    "a name that is too long": {"campaign": {"name": "x" * 300, "kind": "overturning-map"}},
+}
+
+
+@pytest.mark.parametrize("tables", HOSTILE.values(), ids=HOSTILE)
+def test_hostile_jobs_are_refused(tables: dict[str, Any], map_job: Callable[..., dict[str, Any]]) -> None:
+    """What names a file, or is no job, is refused in one sentence; the job without it is not."""
+    with pytest.raises(InvalidValueError) as caught:
+        JobDocument.of(map_job(**tables))
+    assert "\n" not in str(caught.value)
+    assert "/etc/passwd" not in str(caught.value) or len(str(caught.value)) < 300
+    JobDocument.of(map_job())
+
+
+@pytest.mark.parametrize("given", [None, 1, "x", [], [{}]])
+def test_what_is_no_object_is_refused(given: object) -> None:
+    """A job is an object of tables."""
+    with pytest.raises(InvalidValueError, match="job must be an object"):
+        JobDocument.of(given)
+
+
+def test_what_is_nested_too_deep_or_too_long_is_refused(map_job: Callable[..., dict[str, Any]]) -> None:
+    """Neither recursion nor memory is at the mercy of a document."""
+    deep: Any = 1
+    for _ in range(10_000):
+        deep = [deep]
+    with pytest.raises(InvalidValueError, match="nested"):
+        JobDocument.of(map_job(body={"units": "m", "x": deep}))
+    with pytest.raises(InvalidValueError, match="500000 values"):
+        JobDocument.of(map_job(body={"points": [0.0] * 600_000}))
+
+
+@pytest.mark.parametrize("path", LAUNCHED, ids=lambda path: path.stem)
+def test_a_job_sent_as_json_is_the_job_of_the_file(path: Path) -> None:
+    """Every example goes through JSON and comes back as a job file with the same histories, told by their key."""
+    job = JobDocument.of(json.loads(json.dumps(tomllib.loads(path.read_text()))))
+    text = job.toml(lambda sha256: sha256)
+    mine, theirs = Job.of_text(text).study.histories, Job.read(path).study.histories
+    assert mine.key() == theirs.key()
+    assert job.histories == theirs.count <= job.most
+
+
+def test_records_become_paths_in_the_study(map_job: Callable[..., dict[str, Any]]) -> None:
+    """Each record stands in the job file under the path that it has in the study."""
+    job = JobDocument.of(map_job(motions=[{"records": [SHA], "units": "g"}, {"records": SHA}]))
+    told = tomllib.loads(job.toml(lambda sha256: f"records/{sha256}/a.txt"))
+    assert [table["records"] for table in told["motions"]] == [[f"records/{SHA}/a.txt"]] * 2
+    assert job.records == [SHA]
+
+
+def test_names_survive_the_job_file(map_job: Callable[..., dict[str, Any]]) -> None:
+    """Quotes, line breaks and signs of TOML in words stay words."""
+    name = 'a"b\\ \n[campaign]\nkind = "x" \x7f \u202e \U0001f600'
+    job = JobDocument.of(map_job(campaign={"name": name, "kind": "overturning-map"}))
+    assert tomllib.loads(job.toml(str))["campaign"]["name"] == name
+
+
+MANY: dict[str, dict[str, Any]] = {
+    "restitutions": {"restitution": {"values": [k / 100 for k in range(65)]}},
+    "states": {
+        "campaign": {"name": "x", "kind": "stripes"}, "map": None,
+        "fragility": {"levels": [1.0], "states": [k / 100 for k in range(1, 22)]},
+    },
+    "motions": {
+        "campaign": {"name": "x", "kind": "cloud"}, "map": None, "fragility": {},
+        "motions": {"synthetic": "pulse-like", "count": 2001},
+    },
+    "blocks times restitutions": {
+        "campaign": {"name": "x", "kind": "rocking-spectrum"}, "map": None, "body": None,
+        "spectrum": {"slenderness_angles": [0.1, 0.2], "periods": {"from": 1, "to": 9, "count": 25_001}},
+    },
+    "bodies": {
+        "campaign": {"name": "x", "kind": "histories"}, "map": None,
+        "body": [{"units": "m", "width": 0.5, "height": 2.0}] * 1001,
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", MANY)
+def test_what_takes_long_to_be_made_is_too_large(what: str, map_job: Callable[..., dict[str, Any]]) -> None:
+    """Few histories may still be much work for the server: that is refused with the number, at once."""
+    begun = time.perf_counter()
+    with pytest.raises(TooLarge, match=f"the job has [0-9]+ {what}"):
+        JobDocument.of(map_job(**MANY[what]))
+    assert time.perf_counter() - begun < 2.0
+
+
+def test_numbers_beyond_all_numbers_are_refused(map_job: Callable[..., dict[str, Any]]) -> None:
+    """A whole number that no float64 holds is a refusal, not an accident."""
+    with pytest.raises(InvalidValueError, match=r"settings\.gravity"):
+        JobDocument.of(map_job(settings={"gravity": 10**400}))

@@ -1,0 +1,289 @@
+"""Studies in line: begun, watched, cancelled, resumed, deleted, found again."""
+
+import json
+import os
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rocking.app.answers import JsonAnswer
+from rocking.app.problems import Busy, NotFound, Refused, TooLarge
+from rocking.app.records import RecordStore
+from rocking.app.settings import Limits
+from rocking.app.studies.manager import StudyManager
+from rocking.app.studies.opened import OpenStudy
+from rocking.app.studies.results import result_of
+from rocking.app.studies.results.kept import kept_result
+from rocking.errors import InvalidValueError
+from rocking.studies.job import Job, JobFolder
+
+Tables = dict[str, Any]
+
+
+def _wait(manager: StudyManager, study: str, *states: str, done: int = 0) -> dict[str, Any]:
+    """Return the facts of a study once it is in one of the states, with some histories finished."""
+    deadline = time.monotonic() + 60.0
+    while True:
+        facts = manager.get(study)
+        if facts["state"] in states and facts["histories_done"] >= done:
+            return facts
+        assert time.monotonic() < deadline, facts
+        time.sleep(0.02)
+
+
+def _idle(tmp_path: Path, records: RecordStore, **limits: Any) -> StudyManager:
+    """Return a manager that runs nothing."""
+    return StudyManager(tmp_path, Limits(**limits), records, workers=1, at_once=0)
+
+
+def test_a_study_is_computed_in_a_process(manager: StudyManager, map_job: Callable[..., Tables]) -> None:
+    """It is launched, runs, is done, and says how many histories it has."""
+    study = manager.create("  My\n study ", map_job())
+    assert manager.get(study)["name"] == "My study"
+    facts = _wait(manager, study, "done")
+    assert facts["histories"] == facts["histories_done"] == 72
+    assert facts["message"] == ""
+    folder = manager.finished(study)
+    assert kept_result(folder) == bytes(JsonAnswer(result_of(OpenStudy.of(folder))).body)
+
+
+def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager: StudyManager, long_job: Tables) -> None:
+    """What was finished when it was cancelled is not computed again; no process is left."""
+    study = manager.create(None, long_job)
+    _wait(manager, study, "running", done=1)
+    child = manager._line.study(study).process
+    assert child is not None
+    begun = time.monotonic()
+    manager.cancel(study)
+    assert time.monotonic() - begun < 1.0
+    facts = manager.get(study)
+    assert facts["state"] == "cancelled"
+    assert 0 < facts["histories_done"] < facts["histories"]
+    with pytest.raises(ProcessLookupError):
+        os.killpg(child._process.pid, 0)
+    before = {path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("*.shard")}
+    manager.resume(study)
+    _wait(manager, study, "running", done=facts["histories_done"] + 1)
+    manager.cancel(study)
+    after = {path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("*.shard")}
+    assert before.items() <= after.items()
+    assert len(after) > len(before)
+
+
+def test_a_study_that_does_not_listen_is_killed(
+    manager: StudyManager, long_job: Tables, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the signal is lost the group is killed soon after, and nothing that was finished is lost."""
+    study = manager.create(None, long_job)
+    done = _wait(manager, study, "running", done=1)["histories_done"]
+    monkeypatch.setattr(subprocess.Popen, "send_signal", lambda *_: None)
+    begun = time.monotonic()
+    manager.cancel(study)
+    assert 0.3 < time.monotonic() - begun < 1.0
+    assert manager.get(study)["histories_done"] >= done
+
+
+def test_one_runs_and_the_others_wait(manager: StudyManager, long_job: Tables, map_job: Callable[..., Tables]) -> None:
+    """The second begins when the first is out of the way; one that waits is cancelled at once."""
+    first, second, third = (manager.create(None, job) for job in (long_job, map_job(), map_job()))
+    _wait(manager, first, "running")
+    assert [manager.get(each)["state"] for each in (second, third)] == ["waiting", "waiting"]
+    manager.cancel(second)
+    assert manager.get(second)["state"] == "cancelled"
+    manager.delete(first)
+    _wait(manager, third, "done")
+    with pytest.raises(NotFound):
+        manager.get(first)
+    assert not (manager._folder / first).exists()
+
+
+def test_a_closed_server_leaves_studies_to_resume(
+    tmp_path: Path, records: RecordStore, long_job: Tables, map_job: Callable[..., Tables]
+) -> None:
+    """What ran and what waited is interrupted, and is that after the next start."""
+    manager = StudyManager(tmp_path, Limits(), records, workers=1)
+    studies = [manager.create(None, job) for job in (long_job, map_job())]
+    done = _wait(manager, studies[0], "running", done=1)["histories_done"]
+    manager.close()
+    again = StudyManager(tmp_path, Limits(), records, workers=1)
+    facts = [again.get(study) for study in studies]
+    assert [each["state"] for each in facts] == ["interrupted", "interrupted"]
+    assert all("resume" in each["message"] for each in facts)
+    assert facts[0]["histories_done"] >= done
+    again.resume(studies[1])
+    assert _wait(again, studies[1], "done")["histories_done"] == 72
+    again.close()
+
+
+def test_a_server_that_was_killed_finds_its_studies(
+    tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]
+) -> None:
+    """Running is interrupted at the next start, but done where all is finished; what was half made or deleted goes."""
+    manager = _idle(tmp_path, records)
+    running, complete, torn = (manager.create(None, map_job()) for _ in range(3))
+    for study in (running, complete):
+        path = tmp_path / "studies" / study / "meta.json"
+        path.write_text(json.dumps(json.loads(path.read_text()) | {"state": "running"}))
+    folder = manager._line.study(complete).folder
+    JobFolder.create(folder.campaign, Job.read(folder.path / "job.toml")).run(workers=1)
+    (tmp_path / "studies" / torn / "meta.json").unlink()
+    (tmp_path / "studies" / ".deleted-x").mkdir()
+    again = _idle(tmp_path, records)
+    assert {each["id"]: each["state"] for each in again.overview()} == {running: "interrupted", complete: "done"}
+    assert again.get(complete)["histories_done"] == 72
+    assert sorted(path.name for path in (tmp_path / "studies").iterdir()) == sorted([running, complete])
+
+
+def test_links_and_strange_names_are_no_studies(tmp_path: Path, records: RecordStore) -> None:
+    """A link in the folder of studies is not followed, nor removed with what it points to."""
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "kept").write_text("x")
+    studies = tmp_path / "studies"
+    studies.mkdir()
+    (studies / ("0" * 16)).symlink_to(outside)
+    (studies / "something").mkdir()
+    assert _idle(tmp_path, records).overview() == []
+    assert (outside / "kept").exists()
+
+
+def test_too_many_histories_are_refused_with_the_number(
+    tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]
+) -> None:
+    """The limit itself is allowed, one more is not; refinement counts, and nothing is made of what is refused."""
+    manager = _idle(tmp_path, records, histories=72)
+    manager.create(None, map_job())
+    with pytest.raises(TooLarge, match="98 histories; this server takes up to 72"):
+        manager.create(None, map_job(7))
+    refined = map_job(restitution={"model": "ked"})
+    refined["map"]["refine"] = 12
+    with pytest.raises(TooLarge, match="histories"):
+        manager.create(None, refined)
+    huge = map_job()
+    huge["map"]["x"]["count"] = huge["map"]["y"]["count"] = 10_000_000
+    begun = time.monotonic()
+    with pytest.raises(TooLarge, match="200000000000000 histories"):
+        manager.create(None, huge)
+    assert time.monotonic() - begun < 1.0
+    assert len(list((tmp_path / "studies").iterdir())) == 1
+
+
+def test_only_so_many_wait(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+    """The line has an end; a place that is given up can be taken."""
+    manager = _idle(tmp_path, records, studies_waiting=2)
+    first, _ = manager.create(None, map_job()), manager.create(None, map_job())
+    with pytest.raises(Busy) as caught:
+        manager.create(None, map_job())
+    assert caught.value.seconds
+    manager.cancel(first)
+    manager.create(None, map_job())
+    with pytest.raises(Busy):
+        manager.resume(first)
+
+
+def test_the_disk_has_a_limit(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+    """A study whose results do not fit is refused with both sizes, before anything is written."""
+    manager = _idle(tmp_path, records, studies_bytes=20_000)
+    manager.create(None, map_job())
+    with pytest.raises(TooLarge, match=r"0\.2 MB, and there is room for 0\.0 MB"):
+        manager.create(None, map_job(30))
+    assert len(list((tmp_path / "studies").iterdir())) == 1
+
+
+def test_what_is_refused_leaves_nothing(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+    """A job whose axes do not fit, or whose record is unknown, is refused without a path, and its folder is gone."""
+    manager = _idle(tmp_path, records)
+    both = {"axis": "pga", "values": [1.0, 2.0]}
+    with pytest.raises(InvalidValueError, match="map: x and y must set different things") as caught:
+        manager.create(None, map_job(map={"x": both, "y": both}))
+    assert str(tmp_path) not in str(caught.value)
+    with pytest.raises(NotFound, match="upload"):
+        manager.create(None, map_job(motions={"records": ["0" * 64]}))
+    assert list((tmp_path / "studies").iterdir()) == []
+    assert manager.create(None, map_job())
+
+
+def test_a_study_needs_nobody_elses_files(
+    manager: StudyManager, records: RecordStore, map_job: Callable[..., Tables]
+) -> None:
+    """A record may be deleted from the store once a study has it."""
+    text = "\n".join(f"{0.01 * k:.2f} {(-1) ** (k // 20) * 3.0}" for k in range(200)).encode()
+    record = records.add(text, "a b?.txt").record
+    motions = {"records": [record], "units": "m/s2"}
+    axes = {"x": {"axis": "width", "values": [0.3, 0.6]}, "y": {"axis": "scale", "values": [0.5, 2.0]}}
+    study = manager.create(None, map_job(motions=motions, map=axes))
+    records.delete(record)
+    assert _wait(manager, study, "done", "failed")["state"] == "done"
+
+
+def test_a_failure_is_told_in_a_sentence(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+    """Where a process ends on its own, its sentence is told without a path; once it is mended, a resume goes on."""
+    idle = _idle(tmp_path, records)
+    study = idle.create(None, map_job())
+    idle.close()
+    job = tmp_path / "studies" / study / "job.toml"
+    whole = job.read_text()
+    job.write_text(whole.replace("0.5", "-0.5"))
+    manager = StudyManager(tmp_path, Limits(), records, workers=1)
+    manager.resume(study)
+    message = _wait(manager, study, "failed", "done")["message"]
+    assert message.startswith("body: ")
+    assert "-0.5" in message
+    assert str(tmp_path) not in message
+    job.write_text(whole)
+    manager.resume(study)
+    assert _wait(manager, study, "failed", "done")["message"] == ""
+    manager.close()
+
+
+@pytest.mark.parametrize("act", ["cancel", "resume", "delete", "get", "finished"])
+def test_unknown_studies_are_not_there(act: str, manager: StudyManager) -> None:
+    """Whatever is asked of them, also by names that are paths."""
+    for name in ("0" * 16, "../x", ".."):
+        with pytest.raises(NotFound):
+            getattr(manager, act)(name)
+
+
+def test_what_is_over_cannot_be_cancelled(manager: StudyManager, map_job: Callable[..., Tables]) -> None:
+    """A study that is done is neither cancelled nor resumed; one that runs has no results yet."""
+    study = manager.create(None, map_job())
+    _wait(manager, study, "done")
+    with pytest.raises(Refused, match="done"):
+        manager.cancel(study)
+    with pytest.raises(Refused, match="nothing to resume"):
+        manager.resume(study)
+
+
+def test_listeners_are_told_until_they_leave(tmp_path: Path, records: RecordStore,
+                                             map_job: Callable[..., Tables]) -> None:  # fmt: skip
+    """A change is told once to everybody who still listens."""
+    manager, told = _idle(tmp_path, records), []
+    leave = manager.subscribe(lambda: told.append(1))
+    study = manager.create(None, map_job())
+    manager._line.publish()
+    assert len(told) == 1
+    leave()
+    manager.cancel(study)
+    assert len(told) == 1
+    assert manager.watchers == 0
+    manager.close()
+
+
+def test_nothing_is_finished_that_is_not(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+    """Results of a study that waits are refused with how far it is."""
+    manager = _idle(tmp_path, records)
+    study = manager.create(None, map_job())
+    with pytest.raises(Refused, match="waiting, not done: 0 of 72 histories"):
+        manager.finished(study)
+
+
+def test_folders_are_private(tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]) -> None:
+    """Nobody else on this machine reads studies."""
+    manager = _idle(tmp_path, records)
+    study = manager.create(None, map_job())
+    assert (tmp_path / "studies").stat().st_mode & 0o077 == 0
+    assert (tmp_path / "studies" / study).stat().st_mode & 0o077 == 0

@@ -1,0 +1,72 @@
+"""Attacks on the websocket by its handshake: a foreign page, name or person hears nothing."""
+
+import warnings
+from pathlib import Path
+
+import pytest
+from starlette.websockets import WebSocketDisconnect
+
+from rocking.app.application import create_app
+from rocking.app.security import gate
+from rocking.app.settings import Settings
+
+with warnings.catch_warnings():  # it says that another client than httpx is coming
+    warnings.simplefilter("ignore")
+    from fastapi.testclient import TestClient
+
+OWN = "http://127.0.0.1:8765"
+
+
+class Page:
+    """Our own page in a browser that is signed in, and what an attacker may know of it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.app = create_app(Settings(folder=folder))
+        self.client = TestClient(self.app, base_url=OWN)
+        sessions = self.app.state.rocking.sessions
+        value = sessions.sign_in(sessions.first_link())
+        self.known = {"token": sessions.first_link(), "key": sessions.key}
+        self.head = {"host": "127.0.0.1:8765", "origin": OWN, "cookie": f"rocking-8765={value}"}
+
+
+@pytest.fixture
+def page(tmp_path: Path) -> Page:
+    return Page(tmp_path)
+
+
+SOCKETS: dict[str, dict[str, str | None]] = {
+    "foreign origin": {"origin": "http://evil.example"},
+    "no origin": {"origin": None},
+    "null origin": {"origin": "null"},
+    "another port of this machine": {"origin": "http://localhost:3000"},
+    "rebinding": {"host": "evil.example:8765", "origin": "http://evil.example:8765"},
+    "no session": {"cookie": None},
+    "wrong session": {"cookie": "rocking-8765=" + "A" * 43},
+    "token in the query": {"cookie": None, "query": "token={token}&key={key}"},
+    "cross-site": {"sec-fetch-site": "cross-site"},
+    "key as a protocol": {"cookie": None, "sec-websocket-protocol": "bearer, {key}"},
+}
+
+
+def shakes_hands(page: Page, changed: dict[str, str | None]) -> bool:
+    head = {**page.head, **changed}
+    query = (head.pop("query", None) or "").format(**page.known)
+    told = {name: value.format(**page.known) for name, value in head.items() if value is not None}
+    try:
+        with page.client.websocket_connect(f"/api/studies/live?{query}", headers=told):
+            return True
+    except WebSocketDisconnect:
+        return False
+
+
+@pytest.mark.parametrize("name", SOCKETS)
+def test_websocket_is_not_hijacked(page: Page, name: str) -> None:
+    """A handshake from another page, name or person is refused before anything is said."""
+    assert not shakes_hands(page, SOCKETS[name])
+
+
+def test_without_the_checks_the_websocket_is_hijacked(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Negative control: our own page shakes hands, and without the check of Origin a foreign one does."""
+    assert shakes_hands(page, {})
+    monkeypatch.delitem(gate.CHECKS, "origin")
+    assert shakes_hands(page, SOCKETS["foreign origin"])

@@ -1,0 +1,168 @@
+"""The API under requests that nobody planned: made from its own schema, and valid ones with damage."""
+
+import json
+import os
+import warnings
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from rocking.app.application import create_app
+from rocking.app.settings import Limits, Settings
+
+schemathesis = pytest.importorskip("schemathesis")
+with warnings.catch_warnings():  # it says that another client than httpx is coming
+    warnings.simplefilter("ignore")
+    from fastapi.testclient import TestClient
+
+REQUESTS = int(os.environ.get("ROCKING_WEB_FUZZ", "600"))
+"""Requests of each of the two kinds; `make fuzz-web` sends 5,000 of each."""
+
+HEAVY = ("report.pdf", "animation", "picture", "table", "inputs.zip", "export")
+INPUTS: dict[str, Any] = {
+    "body": {"units": "cm", "width": 50, "height": 200},
+    "motion": {"pulse": "sine:amplitude=3.2,period=0.8", "scale": 1.0},
+    "restitution": {"models": ["ked", "housner"]},
+    "response": {"friction": 0.5},
+    "settings": {"engine": "auto"},
+}
+ODD = [
+    None,
+    True,
+    -1,
+    0,
+    1e308,
+    -1e-300,
+    2**70,
+    "",
+    "\x00",
+    "=cmd|' /C calc'!A0",
+    "../../etc/passwd",
+    [],
+    {},
+    [[]],
+    "\u202e",
+    "nan",
+]
+
+
+@pytest.fixture
+def script(tmp_path: Path) -> Iterator[TestClient]:
+    """Return a script with the key, and an application with small limits."""
+    told = Settings(folder=tmp_path, limits=Limits(histories=2000, studies_waiting=2, upload_bytes=1 << 20))
+    app = create_app(told)
+    head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": told.origin}
+    with TestClient(app, base_url=told.origin, headers=head, raise_server_exceptions=False) as client:
+        yield client
+
+
+def damaged(draw: Any, document: Any) -> Any:
+    """Return a document with one place replaced, added or removed."""
+    if isinstance(document, dict) and document and draw(st.integers(0, 4)):
+        key = draw(st.sampled_from(sorted(document)))
+        rest = {name: value for name, value in document.items() if name != key}
+        return rest if draw(st.integers(0, 5)) == 0 else {**rest, key: damaged(draw, document[key])}
+    if isinstance(document, dict):
+        return {
+            **document,
+            draw(st.sampled_from(["file", "dxf", "name", "x", "scale", "width"])): draw(st.sampled_from(ODD)),
+        }
+    if isinstance(document, list) and document and draw(st.booleans()):
+        return [damaged(draw, document[0]), *document[1:]]
+    if isinstance(document, float | int) and not isinstance(document, bool) and draw(st.booleans()):
+        return draw(st.floats(-1e6, 1e6))
+    return draw(st.sampled_from(ODD))
+
+
+def run(examples: int, test: Any, *strategies: Any) -> None:
+    """Run a property without shrinking: what it found is in its words."""
+    quiet = settings(
+        max_examples=examples,
+        deadline=None,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+        database=None,
+    )
+    quiet(given(*strategies)(test))()
+
+
+def judged(answer: Any, sent: str, seen: Counter[int]) -> None:
+    """Refuse an answer of the 500 range, a traceback, and a number that is none."""
+    seen[answer.status_code] += 1
+    assert answer.status_code < 500, f"{sent}: {answer.status_code} {answer.text[:300]}"
+    assert "Traceback" not in answer.text[:4000]
+    if answer.headers.get("content-type", "").startswith("application/json") and answer.content:
+        json.loads(answer.content, parse_constant=lambda word: pytest.fail(f"{sent}: {word} in the answer"))
+
+
+def sent(script: TestClient, case: Any) -> Any:
+    """Send what schemathesis made, past its own transport, so that the gate sees our headers."""
+    body = case.body if isinstance(case.body, bytes) else b""
+    if case.media_type == "application/json":
+        body = json.dumps(case.body, default=str).encode("utf-8", "surrogatepass")
+    head = {"Content-Type": case.media_type} if case.media_type else {}
+    return script.request(case.method, case.formatted_path, params=dict(case.query or {}), content=body, headers=head)
+
+
+def test_requests_from_the_schema(script: TestClient) -> None:
+    """Requests that schemathesis makes from the API's own schema never get a 5xx."""
+    schema = schemathesis.openapi.from_dict(script.get("/api/openapi.json").json())
+    found = [each.ok() for each in schema.get_all_operations()]
+    assert len(found) >= 25
+    seen: Counter[int] = Counter()
+    light = [each for each in found if not any(word in each.path for word in HEAVY)]
+    rest = [each for each in found if each not in light]
+    share = {id(each): max(8, REQUESTS // len(light)) for each in light} | {id(each): 8 for each in rest}
+    for operation in found:
+
+        def ask(case: Any) -> None:
+            judged(sent(script, case), f"{case.method} {case.formatted_path}", seen)
+
+        run(share[id(operation)], ask, operation.as_strategy())
+    print(f"{sum(seen.values())} requests from the schema: {dict(seen)}")
+    assert sum(seen.values()) >= 0.8 * REQUESTS  # an operation without parameters has few different requests
+
+
+def test_damaged_documents(script: TestClient) -> None:
+    """Valid inputs with damage are answered or refused, never with a 5xx, and both happen."""
+    seen: Counter[int] = Counter()
+    light = {
+        "body": ("body", "settings"), "impact": ("body", "settings"), "motion": ("motion", "settings"),
+        "response": tuple(INPUTS), "inputs.toml": tuple(INPUTS),
+    }  # fmt: skip
+
+    def ask(data: Any) -> None:
+        path = data.draw(st.sampled_from(sorted(light)))
+        document = {key: INPUTS[key] for key in light[path]}
+        for _ in range(data.draw(st.sampled_from([0, 1, 1, 1, 2]))):
+            document = damaged(data.draw, document)
+        answer = script.post(f"/api/{path}", content=json.dumps(document), headers={"Content-Type": "application/json"})
+        judged(answer, f"{path} {document}", seen)
+
+    run(REQUESTS, ask, st.data())
+    print(f"{sum(seen.values())} damaged documents: {dict(seen)}")
+    assert seen[200] > REQUESTS // 20
+    assert seen[422] > REQUESTS // 5
+
+
+def test_a_server_that_fails_is_seen(script: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Negative control: an endpoint that raises is reported by the same judgement, and shows no traceback."""
+    from rocking.app import question
+
+    def broken(*_: Any) -> None:
+        raise RuntimeError("secret place")
+
+    monkeypatch.setattr(question, "question_of", broken)
+    from rocking.app.api import response
+
+    monkeypatch.setattr(response, "question_of", broken)
+    answer = script.post("/api/response", json=INPUTS)
+    assert answer.status_code == 500
+    assert "secret" not in answer.text
+    with pytest.raises(AssertionError, match="500"):
+        judged(answer, "response", Counter())

@@ -1,0 +1,92 @@
+"""Fifty users at once while a campaign runs, on a real server."""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+
+SECONDS = float(os.environ.get("ROCKING_WEB_LOAD", "8"))
+USERS = 50
+LIGHT = ("info", "body", "impact", "studies", "session")
+"""What must answer quickly, whoever computes what meanwhile."""
+
+BODY = {"body": {"units": "cm", "width": 50, "height": 200}}
+INPUTS = {**BODY, "motion": {"pulse": "sine:amplitude=3.2,period=0.8"}, "restitution": {"models": ["ked", "housner"]}}
+JOB = {
+    "campaign": {"name": "beside the users", "kind": "stripes"},
+    "body": BODY["body"],
+    "motions": [{"synthetic": "ordinary-motions", "count": 2000, "seed": 1}],
+    "fragility": {"measure": "pga", "levels": {"from": 1.0, "to": 12.0, "count": 100}},
+}
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
+    """Start `rocking serve` as a process of its own."""
+    folder = tmp_path_factory.mktemp("load")
+    command = [sys.executable, "-m", "rocking", "serve", "--json", "--no-browser", "--port", "0", "--data", str(folder)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        try:
+            told = json.loads(process.stdout.readline())
+            key = Path(told["key_file"]).read_text(encoding="utf-8").strip()
+            head = {"Authorization": f"Bearer {key}", "Origin": told["url"].rstrip("/")}
+            yield {"url": told["url"].rstrip("/"), "head": head}
+        finally:
+            process.terminate()
+            process.wait(timeout=20)
+
+
+def one_user(served: dict[str, Any], number: int, until: float, seen: list[tuple[str, float, int]]) -> None:
+    """Ask for this and that until time is up, with the pauses of a person who moves sliders."""
+    draw = np.random.default_rng(number)
+    with httpx.Client(base_url=served["url"], headers=served["head"], timeout=60.0) as client:
+        while time.perf_counter() < until:
+            what = draw.choice([*LIGHT, "response", "motion"])
+            start = time.perf_counter()
+            if what in {"info", "studies", "session"}:
+                answer = client.get(f"/api/{what}")
+            else:
+                width = float(draw.integers(30, 80))
+                document = {**INPUTS, "body": {"units": "cm", "width": width, "height": 200}}
+                needed = {"body": ("body",), "impact": ("body",), "motion": ("motion",)}.get(what, tuple(INPUTS))
+                answer = client.post(f"/api/{what}", json={key: document[key] for key in needed})
+            seen.append((what, time.perf_counter() - start, answer.status_code))
+            time.sleep(draw.uniform(0.3, 1.2))
+
+
+def test_fifty_users_and_a_campaign(served: dict[str, Any]) -> None:
+    """No 5xx; the light endpoints answer 99 of 100 times within 300 ms; the campaign goes on."""
+    client = httpx.Client(base_url=served["url"], headers=served["head"], timeout=60.0)
+    families = client.get("/api/info").json()["families"]
+    JOB["motions"][0]["synthetic"] = families[0]["name"]  # type: ignore[index]
+    study = client.post("/api/studies", json={"name": "beside", "job": JOB})
+    assert study.status_code == 202, study.text
+    client.post("/api/response", json=INPUTS)
+    seen: list[tuple[str, float, int]] = []
+    until = time.perf_counter() + SECONDS
+    users = [threading.Thread(target=one_user, args=(served, k, until, seen)) for k in range(USERS)]
+    for user in users:
+        user.start()
+    for user in users:
+        user.join()
+    state = client.get(f"/api/studies/{study.json()['id']}").json()
+    light = np.array([seconds for what, seconds, _ in seen if what in LIGHT])
+    middle, slow = np.quantile(light, [0.5, 0.99])
+    print(f"{len(seen)} requests; light: median {1e3 * middle:.0f} ms, p99 {1e3 * slow:.0f} ms; {state['state']}")
+    assert max(status for _, _, status in seen) < 500
+    assert len(seen) > 5 * USERS
+    assert slow < 0.3
+    assert state["state"] in {"running", "done"}
+    assert state["histories_done"] > 0
+    client.post(f"/api/studies/{study.json()['id']}/cancel")
+    client.close()
