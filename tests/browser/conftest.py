@@ -120,10 +120,8 @@ def open_page(browser: Any, served: Served, signed_in: Any, record: Record) -> I
     """Open pages of a signed-in user; `open_page(fragment="", view="body", **context options)`."""
     contexts = []
 
-    def opened(
-        fragment: str = "", *, view: str | None = None, viewport: dict[str, int] | None = None, **more: Any
-    ) -> Any:
-        context = browser.new_context(storage_state=signed_in, viewport=viewport or WIDE, accept_downloads=True, **more)
+    def opened(fragment: str = "", *, view: str | None = None, **options: Any) -> Any:
+        context = browser.new_context(storage_state=signed_in, **{"viewport": WIDE, **options})
         context.grant_permissions(["clipboard-read", "clipboard-write"], origin=served.url)
         contexts.append(context)
         page = context.new_page()

@@ -63,7 +63,8 @@ def test_impulse_positions_stand_where_they_are_said_to_be(impact: Any) -> None:
         """() => {
           const picture = document.querySelector('[data-testid=impulse-picture]');
           const centre = each => { const b = each.getBoundingClientRect(); return b.left + b.width / 2; };
-          const dots = Object.fromEntries([...picture.querySelectorAll('g')].filter(g => g.querySelector(':scope > circle'))
+          const dots = Object.fromEntries([...picture.querySelectorAll('g')]
+            .filter(g => g.querySelector(':scope > circle'))
             .map(g => [g.querySelector('text').textContent, centre(g.querySelector('circle'))]));
           const base = picture.querySelector('.base-bar').getBoundingClientRect();
           return { dots, left: base.left, right: base.right };

@@ -157,11 +157,14 @@ def test_no_width_overflows(open_page: Callable[..., Any], view: str, viewport: 
 def test_contrast_is_aa(open_page: Callable[..., Any], scheme: str) -> None:
     """Words on their ground reach 4.5 to 1 in both themes, and a grey on grey is found out."""
     page = open_page(color_scheme=scheme)
-    pairs = [
-        ("--ink", "--surface"), ("--ink", "--paper"), ("--ink-soft", "--surface"), ("--ink-soft", "--paper"),
-        ("--ink-soft", "--surface-2"), ("--accent", "--surface"), ("--accent", "--accent-soft"), ("--accent-ink", "--accent"),
-        ("--good", "--good-soft"), ("--warning", "--warning-soft"), ("--error", "--error-soft"), ("--error", "--surface"),
-    ]  # fmt: skip
+    grounds = {
+        "--surface": ["--ink", "--ink-soft", "--accent", "--error"],
+        "--paper": ["--ink", "--ink-soft"],
+        "--surface-2": ["--ink-soft"],
+        "--accent": ["--accent-ink"],
+        **{f"--{kind}-soft": [f"--{kind}"] for kind in ("accent", "good", "warning", "error")},
+    }
+    pairs = [(ink, ground) for ground, inks in grounds.items() for ink in inks]
     read = "name => getComputedStyle(document.documentElement).getPropertyValue(name)"
     ratios = {pair: _contrast(*(page.evaluate(read, name) for name in pair)) for pair in pairs}
     assert min(ratios.values()) >= 4.5, ratios
@@ -186,8 +189,9 @@ def test_numbers_are_written_and_read_as_people_do(page: Any) -> None:
     found = page.evaluate(
         """async () => {
           const { number, parseNumber, quantity } = await import('/app/format.js');
-          return [number(-0.5), number(12345.6, 6), number(1.25e-7), number(2e9), number(0), number(null), number(NaN),
-            quantity(9.81, 'm/s2'), parseNumber('1,5'), parseNumber('\u22122.5e-3'), parseNumber('1.5 m'), parseNumber(''),
+          return [number(-0.5), number(12345.6, 6), number(1.25e-7), number(2e9), number(0), number(null),
+            number(NaN), quantity(9.81, 'm/s2'), parseNumber('1,5'), parseNumber('\u22122.5e-3'),
+            parseNumber('1.5 m'), parseNumber(''),
             parseNumber('1e999')];
         }"""
     )
@@ -217,9 +221,41 @@ def test_only_the_newest_call_follows_the_one_in_flight(page: Any) -> None:
         """async () => {
           const { latest } = await import('/app/api.js');
           const calls = Array.from({ length: 20 }, (_, k) =>
-            latest('probe', 'body', { body: { units: 'm', width: 1 + k, height: 4 } }).then(() => k, (error) => error.name));
+            latest('probe', 'body', { body: { units: 'm', width: 1 + k, height: 4 } })
+              .then(() => k, (error) => error.name));
           return Promise.all(calls);
         }"""
     )
     assert outcome == [0, *["AbortError"] * 18, 19]
     assert [each["body"]["width"] for each in counted] == [1, 20]
+
+
+def test_a_chart_is_words_and_table_too(page: Any) -> None:
+    """A line chart says its range to a screen reader, shows a table on request, and saves itself as PNG."""
+    page.evaluate(
+        """async () => {
+          const { lineChart } = await import('/charts/line.js');
+          const box = document.createElement('div');
+          document.querySelector('#view-body').prepend(box);
+          const chart = lineChart(box, { title: 'Probe',
+            x: { label: 'time', unit: 's' }, y: { label: 'angle', unit: 'rad' },
+            series: [{ label: 'first', colour: '#0072B2' }, { label: 'second', colour: '--accent', dash: [4, 2] }] });
+          chart.setData([[0, 1, 2, 3], [0, 2, -1, 0], [0, null, 1, 1.5]]);
+          chart.setMarks({ vertical: [1.5], horizontal: [1, -1] });
+          window.probe = chart;
+        }"""
+    )
+    stage = page.locator(".chart-stage").first
+    words = stage.get_attribute("aria-label")
+    assert "Probe, over time from 0 to 3 s" in words
+    assert "first from \u22121 to 2 rad" in words
+    assert "second from 0 to 1.5 rad" in words
+    page.get_by_text("Show as table").click()
+    assert page.locator(".chart-table tbody tr").count() == 4
+    with page.expect_download() as saved:
+        page.evaluate("void window.probe.toPng()")
+    assert saved.value.suggested_filename == "probe.png"
+    assert saved.value.path().read_bytes().startswith(b"\x89PNG")
+    page.get_by_role("button", name="Switch between light and dark").click()
+    page.evaluate("window.probe.destroy()")
+    assert page.locator(".chart").count() == 0

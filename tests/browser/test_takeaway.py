@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from playwright.sync_api import expect
 
 INPUTS = {
     "body": {"units": "cm", "width": 50, "height": 200},
@@ -20,8 +21,8 @@ MAGIC = {
     "pdf": b"%PDF", "zip": b"PK", "html": b"<!doctype html", "gif": b"GIF8", "toml": b"",
 }  # fmt: skip
 PICTURES, SHEETS = (
-    "body coefficients stages motion response".split(),
-    "body coefficients measures spectrum impacts".split(),
+    ["body", "coefficients", "stages", "motion", "response"],
+    ["body", "coefficients", "measures", "spectrum", "impacts"],
 )
 FILES = [
     *(f"picture-{what}-{kind}" for what in PICTURES for kind in ("png", "svg")),
@@ -95,14 +96,11 @@ def test_the_link_opens_the_same_inputs(takeaway: Any, open_page: Callable[..., 
 def test_a_toml_comes_back(takeaway: Any, tmp_path: Path) -> None:
     """A TOML of other inputs, chosen as a file, becomes the inputs of the page."""
     path = tmp_path / "other.toml"
-    path.write_text(
-        '[response]\n[body]\nunits = "cm"\nwidth = 40\nheight = 160\n[motion]\npulse = "ricker:amplitude=4,period=0.5"\n'
-    )
+    body, motion = 'units = "cm"\nwidth = 40\nheight = 160', 'pulse = "ricker:amplitude=4,period=0.5"'
+    path.write_text(f"[response]\n[body]\n{body}\n[motion]\n{motion}\n", encoding="utf-8")
     before = takeaway.get_by_test_id("permanent-link").input_value()
     takeaway.get_by_test_id("read-toml").set_input_files(path)
-    takeaway.wait_for_function(
-        "before => document.querySelector('[data-testid=permanent-link]').value !== before", arg=before
-    )
+    expect(takeaway.get_by_test_id("permanent-link")).not_to_have_value(before)
 
 
 def test_phone(open_page: Callable[..., Any], shot: Any) -> None:

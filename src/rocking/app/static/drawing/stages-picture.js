@@ -37,9 +37,8 @@ const onePanel = (body, points, { name, share, velocities }, foot, { width, pixe
   });
   const floor = view.y(groundOf(body));
   const [title, words] = STAGE_WORDS[name] ?? [name, ""];
-  const foothold = name === "before" ? body.feet_m[
-    foot === "right" ? 0 : 1,
-  ] : body.feet_m[foot === "right" ? 1 : 0];
+  const lands = foot === "right" ? 1 : 0;
+  const foothold = body.feet_m[name === "before" ? 1 - lands : lands];
   return el("figure", { class: "stage" },
     svg("svg", {
       class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",

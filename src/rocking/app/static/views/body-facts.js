@@ -9,7 +9,7 @@ export const factsTable = (body, app) => {
   const differ = !sameSides(body.sides);
   const sides = differ ? [left, right] : [right];
   const columns = [
-    "Quantity", ...(differ ? ["Left", "Right"] : ["Value"]).map((label) => ({ label, digits: 5 })),
+    "Quantity", ...(differ ? ["Left", "Right"] : ["Value"]).map((label) => ({ label, digits: 5, numeric: true })),
     { label: "Unit", numeric: false, nowrap: true },
   ];
   const row = (label, unit, read) => [label, ...sides.map(read), unit];

@@ -10,63 +10,79 @@ const KEYS = ["body", "motion", "restitution", "response", "settings"];
 
 /** Panel of one cell: show(aim, k), open() in the step Response. */
 export const cellHistory = (app, study) => {
-  const title = el("h3", {}, "History of a cell");
-  const words = el("p", { class: "quiet", "data-testid": "cell-words" }, "Point at a cell of the map.");
-  const chartPlace = el("div", { hidden: true });
-  let chart = null;
-  let inputs = null;
-  let busy = false;
-  let next = null;
+    const title = el("h3", {}, "History of a cell");
+    const words = el("p", { class: "quiet", "data-testid": "cell-words" }, "Point at a cell of the map.");
+    const chartPlace = el("div", { hidden: true });
+    let chart = null;
+    let inputs = null;
+    let busy = false;
+    let next = null;
 
-  const open = () => {
-    if (!inputs) return;
-    for (const key of KEYS) app.inputs.set(key, inputs[key] ?? null);
-    app.go("response");
-  };
-  const go = button({ text: "Open in Response", kind: "primary", onClick: open });
-  go.disabled = true;
+    const open = () => {
+        if (!inputs) return;
+        for (const key of KEYS) app.inputs.set(key, inputs[key] ?? null);
+        app.go("response");
+    };
+    const go = button({ text: "Open in Response", kind: "primary", onClick: open });
+    go.disabled = true;
 
-  const draw = ({ answer }) => {
-    chartPlace.hidden = false;
-    chart ??= lineChart(chartPlace, {
-      title: "Rotation", x: { label: "time", unit: "s" }, y: { label: "rotation / \u03b1", unit: "" }, height: 200,
-      series: [{ label: "rotation / \u03b1", colour: "--accent" }],
-    });
-    chart.setData([answer.series.time, shareOf(answer).map((share) => (Math.abs(share) > MOST ? null : share))]);
-  };
-  const ask = async () => {
-    if (busy || !next) return;
-    busy = true;
-    const { aim, k } = next;
-    next = null;
-    try {
-      const found = await app.call(`/api/studies/${study.id}/cell`, { method: "GET", query: { x: aim.ix, y: aim.iy, restitution: k } });
-      inputs = found.inputs;
-      go.disabled = !inputs;
-      fill(words, wordsOf(found));
-      if (found.answer) draw(found);
-      else chartPlace.hidden = true;
-    } catch (error) {
-      fill(words, error.message);
-      go.disabled = true;
-    }
-    busy = false;
-    ask();
-  };
-  return {
-    node: el("div", { class: "cell-history", "data-testid": "cell-history" }, title, words, chartPlace, el("div", { class: "toolbar" }, go)),
-    show: (aim, k) => ((next = { aim, k }), ask()),
-    open,
-    destroy: () => chart?.destroy(),
-  };
+    const draw = ({ answer }) => {
+        chartPlace.hidden = false;
+        chart ??= lineChart(chartPlace, {
+            title: "Rotation",
+            x: { label: "time", unit: "s" },
+            y: { label: "rotation / \u03b1", unit: "" },
+            height: 200,
+            series: [{ label: "rotation / \u03b1", colour: "--accent" }],
+        });
+        chart.setData([
+            answer.series.time,
+            shareOf(answer).map((share) => (Math.abs(share) > MOST ? null : share)),
+        ]);
+    };
+    const ask = async () => {
+        if (busy || !next) return;
+        busy = true;
+        const { aim, k } = next;
+        next = null;
+        try {
+            const found = await app.call(`/api/studies/${study.id}/cell`, {
+                method: "GET",
+                query: { x: aim.ix, y: aim.iy, restitution: k },
+            });
+            inputs = found.inputs;
+            go.disabled = !inputs;
+            fill(words, wordsOf(found));
+            if (found.answer) draw(found);
+            else chartPlace.hidden = true;
+        } catch (error) {
+            fill(words, error.message);
+            go.disabled = true;
+        }
+        busy = false;
+        ask();
+    };
+    return {
+        node: el(
+            "div",
+            { class: "cell-history", "data-testid": "cell-history" },
+            title,
+            words,
+            chartPlace,
+            el("div", { class: "toolbar" }, go),
+        ),
+        show: (aim, k) => ((next = { aim, k }), ask()),
+        open,
+        destroy: () => chart?.destroy(),
+    };
 };
 
 const wordsOf = ({ stored, answer, note }) => {
-  const impacts = `${number(stored.impacts)} impact${stored.impacts === 1 ? "" : "s"}`;
-  return [answer ? `${answer.summary}.` : `${impacts}.`, note ? `${note}.` : ""].join(" ");
+    const impacts = `${number(stored.impacts)} impact${stored.impacts === 1 ? "" : "s"}`;
+    return [answer ? `${answer.summary}.` : `${impacts}.`, note ? `${note}.` : ""].join(" ");
 };
 
 const shareOf = (answer) => {
-  const [left, right] = ["left", "right"].map((foot) => answer.body.sides[foot].slenderness_angle_rad);
-  return answer.series.rotation.map((theta) => theta / (theta > 0 ? right : left));
+    const [left, right] = ["left", "right"].map((foot) => answer.body.sides[foot].slenderness_angle_rad);
+    return answer.series.rotation.map((theta) => theta / (theta > 0 ? right : left));
 };

@@ -5,57 +5,68 @@ import { greek } from "/views/studies-words.js";
 import { motionsOf, rangeFields } from "/views/studies-form-parts.js";
 
 const USUAL = {
-  frequency_ratio: [0.5, 8],
-  amplitude_ratio: [1, 10],
-  scale: [0.25, 4],
-  pga: [1, 12],
-  pgv: [0.1, 2],
-  period: [0.2, 3],
-  duration: [0.5, 5],
-  semi_diagonal: [0.25, 4],
-  slenderness_ratio: [2, 8],
-  slenderness_angle: [0.1, 0.4],
-  width: [0.2, 2],
-  height: [0.5, 6],
-  restitution: [0.7, 1],
+    frequency_ratio: [0.5, 8],
+    amplitude_ratio: [1, 10],
+    scale: [0.25, 4],
+    pga: [1, 12],
+    pgv: [0.1, 2],
+    period: [0.2, 3],
+    duration: [0.5, 5],
+    semi_diagonal: [0.25, 4],
+    slenderness_ratio: [2, 8],
+    slenderness_angle: [0.1, 0.4],
+    width: [0.2, 2],
+    height: [0.5, 6],
+    restitution: [0.7, 1],
 };
 
 /** Form of a map; `tables` gives the tables of its job. */
 export function mapQuestion(app) {
-  const pulse = Boolean(app.inputs.get().motion && app.inputs.get().motion.pulse);
-  const axes = app.info.axes;
-  const chosen = pulse ? { x: "frequency_ratio", y: "amplitude_ratio" } : { x: "scale", y: "semi_diagonal" };
-  const ranges = {};
-  const node = el("div", { class: "map-question" });
+    const pulse = Boolean(app.inputs.get().motion && app.inputs.get().motion.pulse);
+    const axes = app.info.axes;
+    const chosen = pulse
+        ? { x: "frequency_ratio", y: "amplitude_ratio" }
+        : { x: "scale", y: "semi_diagonal" };
+    const ranges = {};
+    const node = el("div", { class: "map-question" });
 
-  const side = (which, words) => {
-    const place = el("div", {});
-    const change = (name) => {
-      chosen[which] = name;
-      const axis = axes.find((each) => each.name === name);
-      const [from, to] = USUAL[name] || [1, 2];
-      ranges[which] = rangeFields({ name: `${words}, values`, unit: axis.unit === "1" ? "" : axis.unit, from, to, count: 50 });
-      place.replaceChildren(ranges[which].node);
+    const side = (which, words) => {
+        const place = el("div", {});
+        const change = (name) => {
+            chosen[which] = name;
+            const axis = axes.find((each) => each.name === name);
+            const [from, to] = USUAL[name] || [1, 2];
+            ranges[which] = rangeFields({
+                name: `${words}, values`,
+                unit: axis.unit === "1" ? "" : axis.unit,
+                from,
+                to,
+                count: 50,
+            });
+            place.replaceChildren(ranges[which].node);
+        };
+        const select = selectField({
+            label: words,
+            options: axes.map((axis) => ({ value: axis.name, text: greek(axis.words) })),
+            value: chosen[which],
+            onChange: change,
+        });
+        change(chosen[which]);
+        node.append(select, place);
     };
-    const select = selectField({
-      label: words,
-      options: axes.map((axis) => ({ value: axis.name, text: greek(axis.words) })),
-      value: chosen[which],
-      onChange: change,
-    });
-    change(chosen[which]);
-    node.append(select, place);
-  };
-  side("x", "Across");
-  side("y", "Up");
+    side("x", "Across");
+    side("y", "Up");
 
-  return {
-    node,
-    name: () => "overturning map",
-    tables: (inputs) => {
-      if (!inputs.body) throw new Error("A map needs a body: choose one in the step Body.");
-      const map = { x: { axis: chosen.x, ...ranges.x.range() }, y: { axis: chosen.y, ...ranges.y.range() } };
-      return { kind: "overturning-map", job: { body: inputs.body, motions: motionsOf(inputs), map } };
-    },
-  };
+    return {
+        node,
+        name: () => "overturning map",
+        tables: (inputs) => {
+            if (!inputs.body) throw new Error("A map needs a body: choose one in the step Body.");
+            const map = {
+                x: { axis: chosen.x, ...ranges.x.range() },
+                y: { axis: chosen.y, ...ranges.y.range() },
+            };
+            return { kind: "overturning-map", job: { body: inputs.body, motions: motionsOf(inputs), map } };
+        },
+    };
 }

@@ -6,82 +6,94 @@ import { lineChart } from "/charts/line.js";
 
 /** Show fragility curves inside a place; returns how to clear up. */
 export const showFragility = (place, app, study, found) => {
-  const box = el("div", { class: "study-result" });
-  let charts = [];
-  const draw = (k) => {
-    charts.forEach((chart) => chart.destroy());
-    fill(box);
-    charts = drawAnalysis(box, found, found.analyses[k]);
-  };
-  if (found.analyses.length > 1) {
-    const options = found.analyses.map(({ restitution }, value) => ({ value, text: restitution }));
-    place.append(selectField({ label: "Restitution", options, value: 0, onChange: draw }));
-  }
-  place.append(box);
-  draw(0);
-  return () => charts.forEach((chart) => chart.destroy());
+    const box = el("div", { class: "study-result" });
+    let charts = [];
+    const draw = (k) => {
+        charts.forEach((chart) => chart.destroy());
+        fill(box);
+        charts = drawAnalysis(box, found, found.analyses[k]);
+    };
+    if (found.analyses.length > 1) {
+        const options = found.analyses.map(({ restitution }, value) => ({ value, text: restitution }));
+        place.append(selectField({ label: "Restitution", options, value: 0, onChange: draw }));
+    }
+    place.append(box);
+    draw(0);
+    return () => charts.forEach((chart) => chart.destroy());
 };
 
 const drawAnalysis = (box, found, analysis) => {
-  const unit = found.measure.unit === "1" ? "" : found.measure.unit;
-  const x = { label: found.measure.words, unit };
-  const charts = Object.entries(analysis.curves).map(([state, curve], index) =>
-    drawCurve(box, { state, curve, points: analysis.points[state] }, index, x));
-  if (analysis.resurrection) box.append(note(analysis.resurrection, "info"));
-  for (const sentence of analysis.sentences) box.append(note(sentence, "info"));
-  if (found.definition) box.append(el("p", { class: "quiet" }, found.definition));
-  const rows = Object.entries(analysis.fits).map(([state, fit]) => rowOf(state, fit));
-  box.append(tableOf(columnsOf(unit), rows, { caption: "Lognormal fits", testid: "fragility-fits" }));
-  return charts;
+    const unit = found.measure.unit === "1" ? "" : found.measure.unit;
+    const x = { label: found.measure.words, unit };
+    const charts = Object.entries(analysis.curves).map(([state, curve], index) =>
+        drawCurve(box, { state, curve, points: analysis.points[state] }, index, x),
+    );
+    if (analysis.resurrection) box.append(note(analysis.resurrection, "info"));
+    for (const sentence of analysis.sentences) box.append(note(sentence, "info"));
+    if (found.definition) box.append(el("p", { class: "quiet" }, found.definition));
+    const rows = Object.entries(analysis.fits).map(([state, fit]) => rowOf(state, fit));
+    box.append(tableOf(columnsOf(unit), rows, { caption: "Lognormal fits", testid: "fragility-fits" }));
+    return charts;
 };
 
 const drawCurve = (box, { state, curve, points }, index, x) => {
-  const { colour } = seriesStyle(index);
-  const stage = el("div", { "data-testid": "fragility-chart" });
-  box.append(stage);
-  const chart = lineChart(stage, {
-    title: `Probability: ${state}`, x, height: 260,
-    y: { label: "probability", unit: "", range: [0, 1] },
-    series: [
-      { label: "most likely", colour, width: 2.2 },
-      { label: "95 % band, low", colour, dash: [3, 3], width: 1 },
-      { label: "95 % band, high", colour, dash: [3, 3], width: 1 },
-      { label: "share of the motions", colour: "--ink-soft", width: 0, points: true },
-    ],
-    bands: [{ series: [3, 2], fill: `${colour}22` }],
-  });
-  chart.setData(joined(curve, points));
-  return chart;
+    const { colour } = seriesStyle(index);
+    const stage = el("div", { "data-testid": "fragility-chart" });
+    box.append(stage);
+    const chart = lineChart(stage, {
+        title: `Probability: ${state}`,
+        x,
+        height: 260,
+        y: { label: "probability", unit: "", range: [0, 1] },
+        series: [
+            { label: "most likely", colour, width: 2.2 },
+            { label: "95 % band, low", colour, dash: [3, 3], width: 1 },
+            { label: "95 % band, high", colour, dash: [3, 3], width: 1 },
+            { label: "share of the motions", colour: "--ink-soft", width: 0, points: true },
+        ],
+        bands: [{ series: [3, 2], fill: `${colour}22` }],
+    });
+    chart.setData(joined(curve, points));
+    return chart;
 };
 
 /** One abscissa for the curve and its points: null where one of them has no value. */
 const joined = (curve, points) => {
-  const onCurve = curve.x.map((at, k) => [at, ...NAMES.map((name) => curve[name]?.[k] ?? null), null]);
-  const onPoints = points.x.map((at, k) => [at, ...between(curve, at), points.share[k]]);
-  const all = [...onCurve, ...onPoints].sort((a, b) => a[0] - b[0]);
-  return [0, 1, 2, 3, 4].map((column) => all.map((row) => row[column]));
+    const onCurve = curve.x.map((at, k) => [at, ...NAMES.map((name) => curve[name]?.[k] ?? null), null]);
+    const onPoints = points.x.map((at, k) => [at, ...between(curve, at), points.share[k]]);
+    const all = [...onCurve, ...onPoints].sort((a, b) => a[0] - b[0]);
+    return [0, 1, 2, 3, 4].map((column) => all.map((row) => row[column]));
 };
 
 const NAMES = ["probability", "low", "high"];
 
 const between = (curve, at) => {
-  const k = curve.x.findIndex((value) => value >= at);
-  if (k < 1) return [null, null, null];
-  const share = (at - curve.x[k - 1]) / (curve.x[k] - curve.x[k - 1]);
-  return NAMES.map((name) => (curve[name] ? curve[name][k - 1] + share * (curve[name][k] - curve[name][k - 1]) : null));
+    const k = curve.x.findIndex((value) => value >= at);
+    if (k < 1) return [null, null, null];
+    const share = (at - curve.x[k - 1]) / (curve.x[k] - curve.x[k - 1]);
+    return NAMES.map((name) =>
+        curve[name] ? curve[name][k - 1] + share * (curve[name][k] - curve[name][k - 1]) : null,
+    );
 };
 
 const columnsOf = (unit) => [
-  "State", { label: "median", unit }, { label: "its 95 % interval", unit }, "dispersion", "its 95 % interval",
+    "State",
+    { label: "median", unit },
+    { label: "its 95 % interval", unit },
+    "dispersion",
+    "its 95 % interval",
 ];
 
 const rowOf = (state, fit) => {
-  const pair = ([low, high]) => (low == null && high == null ? "\u2013" : `${shown(low)} to ${shown(high)}`);
-  return [
-    state,
-    fit.median ?? "\u2013", pair(fit.median_95),
-    fit.dispersion ?? "\u2013", pair(fit.dispersion_95),
-  ];
+    const pair = ([low, high]) =>
+        low == null && high == null ? "\u2013" : `${shown(low)} to ${shown(high)}`;
+    return [
+        state,
+        fit.median ?? "\u2013",
+        pair(fit.median_95),
+        fit.dispersion ?? "\u2013",
+        pair(fit.dispersion_95),
+    ];
 };
 
 const shown = (value) => (value == null ? "unbounded" : Number(value.toPrecision(4)).toString());

@@ -10,76 +10,96 @@ const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDo
 
 /** Show a map inside a place; returns how to clear up. */
 export const showMap = (place, app, study, found) => {
-  const canvas = el("canvas", {
-    class: "map-canvas", tabindex: "0", role: "application", "data-testid": "map-canvas",
-    "aria-label": `Map of ${found.x.words} and ${found.y.words}; arrow keys move from cell to cell, Enter opens the history`,
-  });
-  const stage = el("div", { class: "map-stage" }, canvas);
-  const legend = el("ul", { class: "map-legend" });
-  const told = el("p", { class: "map-told", "aria-live": "polite", "data-testid": "map-told" }, "Point at a cell, or walk with the arrow keys.");
-  const choices = el("div", { class: "map-choices" });
-  const history = cellHistory(app, study);
-  const state = { k: 0, layer: "verdict", aim: null };
-  const grid = createGrid(canvas, found.x, found.y);
-  let layers = [];
+    const canvas = el("canvas", {
+        class: "map-canvas",
+        tabindex: "0",
+        role: "application",
+        "data-testid": "map-canvas",
+        "aria-label": `Map of ${found.x.words} and ${found.y.words}; arrow keys move from cell to cell, Enter opens the history`,
+    });
+    const stage = el("div", { class: "map-stage" }, canvas);
+    const legend = el("ul", { class: "map-legend" });
+    const told = el(
+        "p",
+        { class: "map-told", "aria-live": "polite", "data-testid": "map-told" },
+        "Point at a cell, or walk with the arrow keys.",
+    );
+    const choices = el("div", { class: "map-choices" });
+    const history = cellHistory(app, study);
+    const state = { k: 0, layer: "verdict", aim: null };
+    const grid = createGrid(canvas, found.x, found.y);
+    let layers = [];
 
-  const draw = () => {
-    const layer = layers.find((each) => each.value === state.layer) ?? layers[0];
-    grid.draw(layer.paint, state.aim, linesOf(found, state.k));
-    fill(legend, layer.legend.map(({ paint, words }) => {
-      const key = el("span", { class: "map-key", "aria-hidden": "true" });
-      key.style.backgroundColor = paint;
-      return el("li", {}, key, words);
-    }));
-  };
-  const choose = () => {
-    const several = found.restitutions.length > 1;
-    layers = layersOf(found, state.k, several ? (state.k === 0 ? 1 : 0) : null);
-    fill(choices,
-      several ? selectField({
-        label: "Restitution", value: state.k,
-        options: found.restitutions.map((text, value) => ({ value, text })),
-        onChange: (value) => ((state.k = value), choose(), state.aim && aimAt(state.aim)),
-      }) : null,
-      segmented({
-        label: "Show", options: layers.map(({ value, text }) => ({ value, text })), value: state.layer,
-        onChange: (value) => ((state.layer = value), draw()),
-      }));
-    draw();
-  };
-  const aimAt = (aim) => {
-    state.aim = aim;
-    draw();
-    fill(told, cellWords(found, state.k, aim));
-    history.show(aim, state.k);
-  };
-  const walk = (event) => {
-    if (event.key === "Enter" && state.aim) return history.open();
-    const step = STEPS[event.key];
-    if (!step) return undefined;
-    event.preventDefault();
-    const from = state.aim ?? { ix: -step[0], iy: -step[1] };
-    const within = (value, count) => Math.min(count - 1, Math.max(0, value));
-    return aimAt({ ix: within(from.ix + step[0], found.x.values.length), iy: within(from.iy + step[1], found.y.values.length) });
-  };
-  const hover = (event) => {
-    const aim = grid.cellAt(event);
-    if (aim && (aim.ix !== state.aim?.ix || aim.iy !== state.aim?.iy)) aimAt(aim);
-  };
-  canvas.addEventListener("pointermove", hover);
-  canvas.addEventListener("pointerdown", hover);
-  canvas.addEventListener("keydown", walk);
-  place.append(el("div", { class: "map" }, choices, stage, legend, told), history.node);
-  grid.fit();
-  choose();
-  const observer = new ResizeObserver(() => (grid.fit(), draw()));
-  observer.observe(stage);
-  const forget = onTheme(draw);
-  return () => {
-    observer.disconnect();
-    forget();
-    history.destroy();
-  };
+    const draw = () => {
+        const layer = layers.find((each) => each.value === state.layer) ?? layers[0];
+        grid.draw(layer.paint, state.aim, layer.value === "difference" ? [] : linesOf(found, state.k));
+        fill(
+            legend,
+            layer.legend.map(({ paint, words }) => {
+                const key = el("span", { class: "map-key", "aria-hidden": "true" });
+                key.style.backgroundColor = paint;
+                return el("li", {}, key, words);
+            }),
+        );
+    };
+    const choose = () => {
+        const several = found.restitutions.length > 1;
+        layers = layersOf(found, state.k, several ? (state.k === 0 ? 1 : 0) : null);
+        fill(
+            choices,
+            several
+                ? selectField({
+                      label: "Restitution",
+                      value: state.k,
+                      options: found.restitutions.map((text, value) => ({ value, text })),
+                      onChange: (value) => ((state.k = value), choose(), state.aim && aimAt(state.aim)),
+                  })
+                : null,
+            segmented({
+                label: "Show",
+                options: layers.map(({ value, text }) => ({ value, text })),
+                value: state.layer,
+                onChange: (value) => ((state.layer = value), draw()),
+            }),
+        );
+        draw();
+    };
+    const aimAt = (aim) => {
+        state.aim = aim;
+        draw();
+        fill(told, cellWords(found, state.k, aim));
+        history.show(aim, state.k);
+    };
+    const walk = (event) => {
+        if (event.key === "Enter" && state.aim) return history.open();
+        const step = STEPS[event.key];
+        if (!step) return undefined;
+        event.preventDefault();
+        const from = state.aim ?? { ix: -step[0], iy: -step[1] };
+        const within = (value, count) => Math.min(count - 1, Math.max(0, value));
+        return aimAt({
+            ix: within(from.ix + step[0], found.x.values.length),
+            iy: within(from.iy + step[1], found.y.values.length),
+        });
+    };
+    const hover = (event) => {
+        const aim = grid.cellAt(event);
+        if (aim && (aim.ix !== state.aim?.ix || aim.iy !== state.aim?.iy)) aimAt(aim);
+    };
+    canvas.addEventListener("pointermove", hover);
+    canvas.addEventListener("pointerdown", hover);
+    canvas.addEventListener("keydown", walk);
+    place.append(el("div", { class: "map" }, choices, stage, legend, told), history.node);
+    grid.fit();
+    choose();
+    const observer = new ResizeObserver(() => (grid.fit(), draw()));
+    observer.observe(stage);
+    const forget = onTheme(draw);
+    return () => {
+        observer.disconnect();
+        forget();
+        history.destroy();
+    };
 };
 
 const linesOf = (found, k) => (found.contours?.[k] ?? []).map((line) => line.points ?? line);

@@ -3,90 +3,213 @@ import { el } from "/app/dom.js";
 import { button, card } from "/app/fields.js";
 
 const PICTURES = [
-  ["body", "Body"], ["coefficients", "Coefficients against the measurements"], ["stages", "KED's three stages"],
-  ["motion", "Motion and spectrum", "motion"], ["response", "Response", "response"],
+    ["body", "Body"],
+    ["coefficients", "Coefficients against the measurements"],
+    ["stages", "KED's three stages"],
+    ["motion", "Motion and spectrum", "motion"],
+    ["response", "Response", "response"],
 ];
 const TABLES = [
-  ["body", "Body", ["csv", "xlsx"]],
-  ["coefficients", "Coefficients of every model", ["csv", "xlsx"]],
-  ["measures", "Intensity measures", ["csv", "xlsx"], "motion"],
-  ["motion", "Motion: a, v, d", ["csv", "mat", "xlsx"], "motion"],
-  ["spectrum", "Response spectrum", ["csv", "xlsx"], "motion"],
-  ["response", "Response, every sample", ["csv", "mat", "nc"], "response"],
-  ["impacts", "Impacts", ["csv", "xlsx"], "response"],
+    ["body", "Body", ["csv", "xlsx"]],
+    ["coefficients", "Coefficients of every model", ["csv", "xlsx"]],
+    ["measures", "Intensity measures", ["csv", "xlsx"], "motion"],
+    ["motion", "Motion: a, v, d", ["csv", "mat", "xlsx"], "motion"],
+    ["spectrum", "Response spectrum", ["csv", "xlsx"], "motion"],
+    ["response", "Response, every sample", ["csv", "mat", "nc"], "response"],
+    ["impacts", "Impacts", ["csv", "xlsx"], "response"],
 ];
-const NAMES = { csv: "CSV", xlsx: "Excel", mat: "MATLAB", nc: "netCDF", png: "PNG", svg: "SVG", html: "Web page", gif: "GIF" };
+const NAMES = {
+    csv: "CSV",
+    xlsx: "Excel",
+    mat: "MATLAB",
+    nc: "netCDF",
+    png: "PNG",
+    svg: "SVG",
+    html: "Web page",
+    gif: "GIF",
+    toml: "TOML",
+    zip: "ZIP with the record",
+    pdf: "PDF",
+};
 
 /** Build the view inside its section. */
 export const mount = (section, app) => {
-  const needing = [];
-  const fileButton = (path, suffix, name, needs, testid) => {
-    const node = button({
-      text: NAMES[suffix] ?? suffix, label: `${name} as ${NAMES[suffix] ?? suffix}`, testid,
-      onClick: async () => {
-        node.setAttribute("aria-busy", "true");
-        await app.download(path, app.inputs.get(), `rocking.${suffix}`);
-        node.removeAttribute("aria-busy");
-      },
+    const needing = [];
+    const fileButton = (path, suffix, name, needs, testid) => {
+        const node = button({
+            text: NAMES[suffix] ?? suffix,
+            label: `${name} as ${NAMES[suffix] ?? suffix}`,
+            testid,
+            onClick: async () => {
+                node.setAttribute("aria-busy", "true");
+                await app.download(path, app.inputs.get(), `rocking.${suffix}`);
+                node.removeAttribute("aria-busy");
+            },
+        });
+        if (needs) needing.push({ node, needs });
+        return node;
+    };
+    const row = (name, ...buttons) =>
+        el("li", { class: "take-row" }, el("span", {}, name), el("div", { class: "toolbar" }, buttons));
+
+    const link = el("input", {
+        type: "text",
+        id: "permanent-link",
+        readonly: true,
+        "data-testid": "permanent-link",
+        onfocus: () => link.select(),
     });
-    if (needs) needing.push({ node, needs });
-    return node;
-  };
-  const row = (name, ...buttons) => el("li", { class: "take-row" }, el("span", {}, name), el("div", { class: "toolbar" }, buttons));
+    const copied = async () => {
+        try {
+            await navigator.clipboard.writeText(link.value);
+            app.say("The link is on the clipboard.");
+        } catch {
+            link.select();
+            app.say("Press Ctrl+C to copy the link.");
+        }
+    };
+    const refresh = () => {
+        const inputs = app.inputs.get();
+        link.value = app.inputs.link();
+        const there = {
+            motion: Boolean(inputs.motion),
+            response: Boolean(inputs.motion) || inputs.response?.free != null,
+        };
+        for (const { node, needs } of needing) node.disabled = !there[needs];
+    };
 
-  const link = el("input", { type: "text", id: "permanent-link", readonly: true, "data-testid": "permanent-link", onfocus: () => link.select() });
-  const copied = async () => {
-    try {
-      await navigator.clipboard.writeText(link.value);
-      app.say("The link is on the clipboard.");
-    } catch {
-      link.select();
-      app.say("Press Ctrl+C to copy the link.");
-    }
-  };
-  const refresh = () => {
-    const inputs = app.inputs.get();
-    link.value = app.inputs.link();
-    const there = { motion: Boolean(inputs.motion), response: Boolean(inputs.motion) || inputs.response?.free != null };
-    for (const { node, needs } of needing) node.disabled = !there[needs];
-  };
+    const words = el(
+        "div",
+        { class: "takeaway-part" },
+        card(
+            "Link",
+            el(
+                "p",
+                { class: "quiet" },
+                "It holds all inputs. Whoever runs rocking on a computer of their own sees the same with it; records travel by their hash, so send the file along, or take the ZIP.",
+            ),
+            el(
+                "div",
+                { class: "field" },
+                el("label", { for: "permanent-link" }, "Permanent link of the inputs"),
+                link,
+            ),
+            el(
+                "div",
+                { class: "toolbar" },
+                button({ text: "Copy link", kind: "primary", onClick: copied, testid: "copy-link" }),
+            ),
+        ),
+        card(
+            "For the command line, and for colleagues",
+            el(
+                "p",
+                { class: "quiet" },
+                "The same numbers, to the last digit, with: rocking simulate response.toml",
+            ),
+            el(
+                "div",
+                { class: "toolbar" },
+                fileButton("/api/inputs.toml", "toml", "Inputs", null, "take-toml"),
+                fileButton("/api/inputs.zip", "zip", "Inputs with the record", null, "take-zip"),
+                button({ text: "Read a TOML \u2026", onClick: () => chooser.click() }),
+            ),
+        ),
+        card(
+            "Report",
+            el(
+                "p",
+                { class: "quiet" },
+                "Body, coefficients against the measurements, motion, response and impacts, with where every number comes from.",
+            ),
+            el(
+                "div",
+                { class: "toolbar" },
+                fileButton("/api/report.pdf", "pdf", "Report", "response", "take-report"),
+            ),
+        ),
+        card(
+            "Pictures",
+            el(
+                "ul",
+                {},
+                PICTURES.map(([what, name, needs]) =>
+                    row(
+                        name,
+                        ["png", "svg"].map((suffix) =>
+                            fileButton(
+                                `/api/picture/${what}.${suffix}`,
+                                suffix,
+                                name,
+                                needs,
+                                `picture-${what}-${suffix}`,
+                            ),
+                        ),
+                    ),
+                ),
+                row(
+                    "Animation",
+                    ["html", "gif"].map((suffix) =>
+                        fileButton(
+                            `/api/animation.${suffix}`,
+                            suffix,
+                            "Animation",
+                            "response",
+                            `animation-${suffix}`,
+                        ),
+                    ),
+                ),
+            ),
+        ),
+    );
+    const tables = el(
+        "div",
+        { class: "takeaway-part" },
+        card(
+            "Tables",
+            el(
+                "ul",
+                {},
+                TABLES.map(([what, name, suffixes, needs]) =>
+                    row(
+                        name,
+                        suffixes.map((suffix) =>
+                            fileButton(
+                                `/api/table/${what}.${suffix}`,
+                                suffix,
+                                name,
+                                needs,
+                                `table-${what}-${suffix}`,
+                            ),
+                        ),
+                    ),
+                ),
+            ),
+        ),
+    );
+    section.append(el("div", { class: "takeaway" }, words, tables));
 
-  section.append(el("div", { class: "takeaway" },
-    card("Link",
-      el("p", { class: "quiet" }, "It holds all inputs. Whoever runs rocking on a computer of their own sees the same with it; records travel by their hash, so send the file along, or take the ZIP."),
-      el("div", { class: "field" }, el("label", { for: "permanent-link" }, "Permanent link of the inputs"), link),
-      el("div", { class: "toolbar" }, button({ text: "Copy link", kind: "primary", onClick: copied, testid: "copy-link" }))),
-    card("For the command line, and for colleagues",
-      el("p", { class: "quiet" }, "The same numbers, to the last digit, with: rocking simulate response.toml"),
-      el("div", { class: "toolbar" },
-        fileButton("/api/inputs.toml", "toml", "Inputs", null, "take-toml"),
-        fileButton("/api/inputs.zip", "zip", "Inputs with the record", null, "take-zip"),
-        button({ text: "Read a TOML \u2026", onClick: () => chooser.click() }))),
-    card("Report",
-      el("p", { class: "quiet" }, "Body, coefficients against the measurements, motion, response and impacts, with where every number comes from."),
-      el("div", { class: "toolbar" }, fileButton("/api/report.pdf", "pdf", "Report", "response", "take-report"))),
-    card("Pictures", el("ul", {}, PICTURES.map(([what, name, needs]) =>
-      row(name, ["png", "svg"].map((suffix) => fileButton(`/api/picture/${what}.${suffix}`, suffix, name, needs, `picture-${what}-${suffix}`)))),
-      row("Animation", ["html", "gif"].map((suffix) => fileButton(`/api/animation.${suffix}`, suffix, "Animation", "response", `animation-${suffix}`))))),
-    card("Tables", el("ul", {}, TABLES.map(([what, name, suffixes, needs]) =>
-      row(name, suffixes.map((suffix) => fileButton(`/api/table/${what}.${suffix}`, suffix, name, needs, `table-${what}-${suffix}`)))))),
-  ));
-
-  const chooser = el("input", { type: "file", accept: ".toml", hidden: true, "aria-label": "TOML file of inputs", "data-testid": "read-toml" });
-  chooser.addEventListener("change", async () => {
-    const [file] = chooser.files;
-    chooser.value = "";
-    if (!file) return;
-    try {
-      const found = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
-      app.inputs.replace(found.inputs ?? found);
-      app.say(`The inputs of ${file.name} are loaded.`);
-    } catch (error) {
-      app.say(error.message, "error");
-    }
-  });
-  section.append(chooser);
-  app.inputs.subscribe(refresh);
-  refresh();
-  return { shown: refresh };
+    const chooser = el("input", {
+        type: "file",
+        accept: ".toml",
+        hidden: true,
+        "aria-label": "TOML file of inputs",
+        "data-testid": "read-toml",
+    });
+    chooser.addEventListener("change", async () => {
+        const [file] = chooser.files;
+        chooser.value = "";
+        if (!file) return;
+        try {
+            const found = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
+            app.inputs.replace(found.inputs ?? found);
+            app.say(`The inputs of ${file.name} are loaded.`);
+        } catch (error) {
+            app.say(error.message, "error");
+        }
+    });
+    section.append(chooser);
+    app.inputs.subscribe(refresh);
+    refresh();
+    return { shown: refresh };
 };

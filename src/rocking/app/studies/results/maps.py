@@ -65,8 +65,9 @@ def contours_of(inside: np.ndarray, x: FloatArray, y: FloatArray) -> list[list[l
     Examples
     --------
     >>> inside = np.array([[False, False, False], [False, True, False], [False, False, False]])
-    >>> contours_of(inside, np.arange(3.0), np.arange(3.0))
-    [[[1.0, 0.5], [1.5, 1.0], [1.0, 1.5], [0.5, 1.0], [1.0, 0.5]]]
+    >>> (ring,) = contours_of(inside, np.arange(3.0), np.arange(3.0))
+    >>> ring[0] == ring[-1], sorted(ring[1:])
+    (True, [[0.5, 1.0], [1.0, 0.5], [1.0, 1.5], [1.5, 1.0]])
     """
     if min(inside.shape) < 2:
         return []
