@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test lint engine campaign fuzz durability bench gallery lock clean
+.PHONY: help demo test lint engine campaign fuzz fuzz-web durability bench gallery lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -14,6 +14,7 @@ help:
 	@echo "make gallery  run every example         make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
 	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"
+	@echo "make fuzz-web thousands of damaged requests to the web application, 50 users at once"
 	@echo "make clean    remove what was made"
 
 $(VENV)/created:
@@ -70,6 +71,10 @@ test: lint
 
 fuzz: $(VENV)/dev
 	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py -q
+
+fuzz-web: $(VENV)/dev $(ENGINE)
+	ROCKING_WEB_FUZZ=5000 ROCKING_WEB_LOAD=60 $(BIN)/python -m pytest tests/verification/test_web_fuzz.py \
+		tests/verification/test_web_load.py -q -rP
 
 durability: $(VENV)/dev $(ENGINE)
 	ROCKING_KILLS=300 $(BIN)/python -m pytest tests/verification/test_campaign_durability.py -q -rP
