@@ -66,8 +66,10 @@ lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/lint-imports
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
 
+# What measures time, or drives a browser, runs alone; the rest on two processes.
 test: lint
-	$(BIN)/python -m pytest --cov --cov-report=term
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not timed" --cov --cov-report=
+	$(BIN)/python -m pytest -m timed --cov --cov-append --cov-report=term
 
 fuzz: $(VENV)/dev
 	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py -q

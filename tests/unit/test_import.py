@@ -9,6 +9,8 @@ import pytest
 
 import rocking as rk
 
+pytestmark = pytest.mark.timed
+
 HEAVY = ("scipy", "shapely", "matplotlib", "pydantic", "pandas", "sympy", "typer", "rich")
 
 

@@ -1,10 +1,10 @@
 """Fifty users at once while a campaign runs, on a real server."""
 
+import asyncio
 import json
 import os
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +13,8 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
+
+pytestmark = pytest.mark.timed
 
 SECONDS = float(os.environ.get("ROCKING_WEB_LOAD", "8"))
 USERS = 50
@@ -46,38 +48,46 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]
             process.wait(timeout=20)
 
 
-def one_user(served: dict[str, Any], number: int, until: float, seen: list[tuple[str, float, int]]) -> None:
+async def one_user(client: httpx.AsyncClient, number: int, until: float) -> list[tuple[str, float, int]]:
     """Ask for this and that until time is up, with the pauses of a person who moves sliders."""
     draw = np.random.default_rng(number)
-    with httpx.Client(base_url=served["url"], headers=served["head"], timeout=60.0) as client:
-        while time.perf_counter() < until:
-            what = draw.choice([*LIGHT, *LIGHT, "impact", "response", "motion"])
-            start = time.perf_counter()
-            if what in {"info", "studies", "session"}:
-                answer = client.get(f"/api/{what}")
-            else:
-                width = float(draw.integers(30, 80))
-                document = {**INPUTS, "body": {"units": "cm", "width": width, "height": 200}}
-                needed = {"body": ("body",), "impact": ("body",), "motion": ("motion",)}.get(what, tuple(INPUTS))
-                answer = client.post(f"/api/{what}", json={key: document[key] for key in needed})
-            seen.append((what, time.perf_counter() - start, answer.status_code))
-            time.sleep(draw.uniform(0.5, 2.5))
+    seen = []
+    await asyncio.sleep(draw.uniform(0.0, 1.0))
+    while time.perf_counter() < until:
+        what = str(draw.choice([*LIGHT, *LIGHT, "impact", "response", "motion"]))
+        document = {**INPUTS, "body": {"units": "cm", "width": float(draw.integers(30, 80)), "height": 200}}
+        needed = {"body": ("body",), "impact": ("body",), "motion": ("motion",)}.get(what, tuple(INPUTS))
+        start = time.perf_counter()
+        if what in {"info", "studies", "session"}:
+            answer = await client.get(f"/api/{what}")
+        else:
+            answer = await client.post(f"/api/{what}", json={key: document[key] for key in needed})
+        seen.append((what, time.perf_counter() - start, answer.status_code))
+        await asyncio.sleep(draw.uniform(0.5, 2.5))
+    return seen
+
+
+async def all_users(served: dict[str, Any], until: float) -> list[tuple[str, float, int]]:
+    """Return what fifty users saw."""
+    limits = httpx.Limits(max_connections=USERS, max_keepalive_connections=USERS)
+    async with httpx.AsyncClient(base_url=served["url"], headers=served["head"], timeout=60.0, limits=limits) as client:
+        found = await asyncio.gather(*(one_user(client, k, until) for k in range(USERS)))
+    return [each for one in found for each in one]
 
 
 def test_fifty_users_and_a_campaign(served: dict[str, Any]) -> None:
     """No 5xx; the light endpoints answer 99 of 100 times within 300 ms; the campaign goes on."""
-    client = httpx.Client(base_url=served["url"], headers=served["head"], timeout=60.0)
+    with httpx.Client(base_url=served["url"], headers=served["head"], timeout=60.0) as client:
+        fifty_users(served, client)
+
+
+def fifty_users(served: dict[str, Any], client: httpx.Client) -> None:
+    """Let them come, and judge."""
     study = client.post("/api/studies", json={"name": "beside", "job": JOB})
     assert study.status_code == 202, study.text
     for what in ("impact", "response"):  # what a server computes once, it has computed
         client.post(f"/api/{what}", json=BODY if what == "impact" else INPUTS)
-    seen: list[tuple[str, float, int]] = []
-    until = time.perf_counter() + SECONDS
-    users = [threading.Thread(target=one_user, args=(served, k, until, seen)) for k in range(USERS)]
-    for user in users:
-        user.start()
-    for user in users:
-        user.join()
+    seen = asyncio.run(all_users(served, time.perf_counter() + SECONDS))
     state = client.get(f"/api/studies/{study.json()['id']}").json()
     light = np.array([seconds for what, seconds, _ in seen if what in LIGHT])
     middle, slow = np.quantile(light, [0.5, 0.99])
@@ -88,4 +98,3 @@ def test_fifty_users_and_a_campaign(served: dict[str, Any]) -> None:
     assert state["state"] in {"running", "done"}
     assert state["histories_done"] > 0
     client.post(f"/api/studies/{study.json()['id']}/cancel")
-    client.close()

@@ -26,6 +26,8 @@ from rocking.studies.job.results import Results
 
 Tables = dict[str, Any]
 
+pytestmark = pytest.mark.timed
+
 JOB: Tables = {
     "campaign": {"name": "killed in the middle", "kind": "overturning-map", "chunk": 4096},
     "body": {"units": "m", "width": 0.5, "height": 2.0},

@@ -16,6 +16,8 @@ import pytest
 
 from rocking.cli import main
 
+pytestmark = pytest.mark.timed
+
 COMMAND = [sys.executable, "-m", "rocking", "serve"]
 
 

@@ -14,6 +14,8 @@ from rocking.app.studies.job_document import KINDS, JobDocument
 from rocking.errors import InvalidValueError
 from rocking.studies.job import Job
 
+pytestmark = pytest.mark.timed
+
 EXAMPLES = Path(__file__).parents[4] / "examples" / "jobs"
 LAUNCHED = [
     path for path in sorted(EXAMPLES.glob("*.toml")) if tomllib.loads(path.read_text())["campaign"]["kind"] in KINDS

@@ -21,6 +21,8 @@ from rocking.app.studies.results.kept import kept_result
 from rocking.errors import InvalidValueError
 from rocking.studies.job import Job, JobFolder
 
+pytestmark = pytest.mark.timed
+
 Tables = dict[str, Any]
 
 

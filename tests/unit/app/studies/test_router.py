@@ -12,6 +12,8 @@ from starlette.websockets import WebSocketDisconnect
 from rocking.app.settings import Settings
 from rocking.app.studies import live
 
+pytestmark = pytest.mark.timed
+
 with warnings.catch_warnings():  # it says that another client than httpx is coming
     warnings.simplefilter("ignore")
     from fastapi.testclient import TestClient

@@ -15,6 +15,8 @@ from rocking.studies.campaign import Campaign, CampaignInterrupted
 from rocking.studies.campaign.chunks import DEFAULT_CHUNK
 from rocking.studies.campaign.executors import Job
 
+pytestmark = pytest.mark.timed
+
 
 class Watched(Table):
     """Histories that may be slow, and remember the pieces that were asked for."""
