@@ -1,0 +1,260 @@
+"""Surface meshes through trimesh: STL, OBJ, PLY and GLB, repaired where that is safe, refused where it is not."""
+
+import io
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking import checks
+from rocking.bodies.body import DEFAULT_DENSITY
+from rocking.bodies.formats.source import MOST_VERTICES, blamed, checked_file
+from rocking.bodies.solid.part import Part
+from rocking.bodies.solid.polyhedron import Polyhedron
+from rocking.bodies.solid.repair import repaired
+from rocking.bodies.solid.solid import Solid
+from rocking.conventions import FloatArray, IntArray
+from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError
+
+MESH_FORMATS = ("stl", "obj", "ply", "glb")
+"""Formats that are read, by the end of the file's name."""
+
+_UP: dict[str, FloatArray] = {"z": np.eye(3), "y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])}
+_LOWEST, _HIGHEST = 1e-3, 300.0
+_SINGLE = 2.0**-24
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A closed surface from a file, with what was done to close it.
+
+    Parameters
+    ----------
+    shape : Polyhedron
+        The volume, the middle of its box at the origin [m].
+    middle : ndarray, shape (3,)
+        Where that middle lies in the file's coordinates, z up [m].
+    repairs : tuple of str
+        One sentence for each change and each doubt.
+    """
+
+    shape: Polyhedron
+    middle: FloatArray
+    repairs: tuple[str, ...]
+
+    def part(self, density: float = DEFAULT_DENSITY) -> Part:
+        """Return the volume in its place, in one material.
+
+        Parameters
+        ----------
+        density : float
+            Density [kg/m3].
+
+        Returns
+        -------
+        Part
+            For a `Solid` of several parts.
+        """
+        return Part(self.shape, density, translation=self.middle)
+
+    def solid(
+        self, density: float = DEFAULT_DENSITY, *, base: ArrayLike | None = None, base_tolerance: float | None = None
+    ) -> Solid:
+        """Return the volume as a body that stands on its lowest point.
+
+        Parameters
+        ----------
+        density : float
+            Density [kg/m3].
+        base : array_like, shape (n, 2), optional
+            Points (x, y) that it stands on, in the file's place [m].
+        base_tolerance : float, optional
+            Vertices this close to the lowest one stand on the ground [m]; scans need some millimetres.
+
+        Returns
+        -------
+        Solid
+            The body.
+        """
+        part = self.part(density)
+        return Solid(part, base=base, ground=float(part.box()[0, 2]), base_tolerance=base_tolerance)
+
+
+def mesh_from_file(
+    path: str | Path,
+    *,
+    units: str,
+    up: str = "z",
+    weld_tolerance: float | None = None,
+    fill_holes: bool = False,
+) -> Mesh:
+    """Return the volume inside a surface mesh: welded, oriented, closed, centred.
+
+    Parameters
+    ----------
+    path : str or Path
+        STL, OBJ, PLY or GLB file.
+    units : {"m", "cm", "mm", "ft", "in"}
+        Unit of the coordinates; files of these formats do not say it reliably.
+    up : {"z", "y"}
+        Axis that points up in the file; GLB files have "y" by their specification.
+    weld_tolerance : float, optional
+        Vertices this close are merged [m]; by default equal ones, and if that leaves the surface open, those within
+        1e-6 of its size.
+    fill_holes : bool
+        Whether holes of less than 1 % of the surface may be closed.
+
+    Returns
+    -------
+    Mesh
+        Shape, place and repairs.
+
+    Raises
+    ------
+    BodyFileError
+        If the file is no such mesh or damaged.
+    GeometryError
+        If the surface cannot be closed safely.
+    InvalidValueError
+        If unit or axis are unknown.
+    MissingExtraError
+        If trimesh is not installed.
+    """
+    path = Path(path)
+    scale = checks.length_unit(units)
+    if up not in _UP:
+        raise InvalidValueError(f'up must be "z" or "y", got {up!r}')
+    with blamed(path.name):
+        kind = path.suffix[1:].lower()
+        if kind not in MESH_FORMATS:
+            raise BodyFileError(f"is no mesh that is read here: {', '.join(MESH_FORMATS)}")
+        vertices, faces = _loaded(_content(path), kind)
+        done = repaired(vertices * scale @ _UP[up].T, faces, weld_tolerance=weld_tolerance, fill_holes=fill_holes)
+        doubts = [*_size_doubts(done.shape, units), *_precision_doubts(vertices, kind)]
+        if kind == "glb" and units != "m":
+            doubts.append(f"GLB files are in m by their specification; read in {units} as asked")
+        return Mesh(done.shape, done.middle, (*done.repairs, *doubts))
+
+
+def solid_from_mesh(
+    path: str | Path,
+    density: float = DEFAULT_DENSITY,
+    *,
+    units: str,
+    base: ArrayLike | None = None,
+    base_tolerance: float | None = None,
+    **options: Any,
+) -> tuple[Solid, tuple[str, ...]]:
+    """Return the body that a surface mesh describes, and what was repaired.
+
+    Parameters
+    ----------
+    path : str or Path
+        STL, OBJ, PLY or GLB file.
+    density : float
+        Density [kg/m3].
+    units : {"m", "cm", "mm", "ft", "in"}
+        Unit of the coordinates.
+    base : array_like, shape (n, 2), optional
+        Points (x, y) that it stands on [m].
+    base_tolerance : float, optional
+        Vertices this close to the lowest one stand on the ground [m].
+    **options
+        For `mesh_from_file`: ``up``, ``weld_tolerance``, ``fill_holes``.
+
+    Returns
+    -------
+    solid : Solid
+        The body.
+    repairs : tuple of str
+        One sentence for each change and each doubt.
+    """
+    mesh = mesh_from_file(path, units=units, **options)
+    with blamed(Path(path).name):
+        return mesh.solid(density, base=base, base_tolerance=base_tolerance), mesh.repairs
+
+
+def _content(path: Path) -> bytes:
+    try:
+        return checked_file(path).read_bytes()
+    except OSError as error:
+        raise BodyFileError(f"cannot be opened ({error.strerror})") from error
+
+
+def _loaded(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:
+    try:
+        import trimesh
+    except ImportError as error:
+        raise MissingExtraError("reading meshes needs trimesh: pip install 'rocking[mesh]'") from error
+    _check_stated(content, kind)
+    try:
+        # from memory and without a resolver: no other file is opened, whatever this one names
+        scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, process=False)
+        mesh = scene.to_mesh() if scene.geometry else None
+        vertices = np.array(mesh.vertices, dtype=np.float64) if mesh is not None else np.zeros((0, 3))
+        faces = np.array(mesh.faces, dtype=np.int64) if mesh is not None else np.zeros((0, 3), dtype=np.int64)
+    except Exception as error:  # trimesh lets whatever a damaged file provokes pass
+        raise BodyFileError(f"is no readable {kind.upper()} mesh ({type(error).__name__})") from error
+    if not len(faces):
+        raise BodyFileError("holds no triangles")
+    if len(vertices) > 3 * MOST_VERTICES:
+        raise BodyFileError(f"has {len(vertices)} vertices; a mesh may have up to {3 * MOST_VERTICES}")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise BodyFileError("has faces that name vertices it does not hold")
+    return vertices, faces
+
+
+def _check_stated(content: bytes, kind: str) -> None:
+    """Refuse files at odds with their own header."""
+    if kind == "stl":
+        _check_stl(content)
+    if kind == "glb" and (len(content) < 12 or int.from_bytes(content[8:12], "little") != len(content)):
+        raise BodyFileError(f"has {len(content)} bytes, not the number that its header states; was it cut short?")
+    if kind == "ply":
+        header = content[: content.find(b"end_header") + 1]
+        lines = content.count(b"\n", len(header)) if b"format ascii" in header else None
+        stated = sum(int(number) for number in re.findall(rb"element \w+ (\d+)", header))
+        if lines is not None and lines < stated:
+            raise BodyFileError(f"has fewer lines than the {stated} elements its header states; was it cut short?")
+
+
+def _check_stl(content: bytes) -> None:
+    stated = int.from_bytes(content[80:84], "little") if len(content) >= 84 else -1
+    if len(content) == 84 + 50 * stated:
+        return
+    if content.lstrip()[:5].lower() != b"solid":
+        raise BodyFileError(
+            f"has {len(content)} bytes, but a binary STL of the {max(stated, 0)} faces its header states has "
+            f"{84 + 50 * max(stated, 0)}; was it cut short?"
+        )
+    opened, closed = (len(re.findall(word, content)) for word in (rb"(?m)^\s*facet\b", rb"(?m)^\s*endfacet\b"))
+    if b"endsolid" not in content or opened != closed:
+        raise BodyFileError(f"opens {opened} facets and closes {closed}, or has no endsolid; was it cut short?")
+
+
+def _size_doubts(shape: Polyhedron, units: str) -> list[str]:
+    box = np.ptp(shape.vertices, axis=0)
+    words = " x ".join(f"{side:.4g}" for side in box)
+    if not _LOWEST <= float(box.max()) <= _HIGHEST:
+        raise BodyFileError(f"describes a body of {words} m, read in {units}; is that the file's unit?")
+    if not 0.02 <= float(box.max()) <= 30.0:
+        return [f"the body measures {words} m, read in {units}: please check the unit"]
+    return []
+
+
+def _precision_doubts(vertices: FloatArray, kind: str) -> list[str]:
+    size, far = float(np.ptp(vertices, axis=0).max()), float(np.abs(vertices).max())
+    single = bool((vertices.astype(np.float32) == vertices).all())
+    step = 2.0 * _SINGLE * far
+    if not single or kind == "obj" or step <= 1e-5 * size:
+        return []
+    share = step / size
+    if share > 1e-3:
+        raise BodyFileError(
+            f"holds single-precision coordinates {far / size:.3g} times the body's size from the origin, which keeps "
+            f"only {share:.1g} of its size; export it in coordinates near the body"
+        )
+    return [f"single-precision coordinates far from the origin keep {share:.1g} of the body's size only"]

@@ -1,0 +1,184 @@
+"""The support polygon: the convex hull of what a solid stands on."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking import checks
+from rocking.bodies.solid.support import Base, Corner, Edge
+from rocking.conventions import FloatArray
+from rocking.errors import GeometryError
+
+_INSIDE = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class SupportPolygon(Base):
+    """The convex hull of the points that a solid stands on.
+
+    Parameters
+    ----------
+    vertices : ndarray, shape (n, 2)
+        Corners of the hull, counter-clockwise seen from above [m].
+    height : float
+        Height of the ground [m].
+    """
+
+    vertices: FloatArray
+    height: float = 0.0
+
+    @property
+    def size(self) -> float:
+        """Largest extent [m]."""
+        return float(np.ptp(self.vertices, axis=0).max())
+
+    @property
+    def corners(self) -> list[Corner]:
+        """Corners in the order of `vertices`."""
+        return [Corner(np.array([x, y, self.height])) for x, y in self.vertices.tolist()]
+
+    @property
+    def edges(self) -> list[Edge]:
+        """Edges; number i runs from corner i to the next."""
+        return [self.edge(i) for i in range(len(self.vertices))]
+
+    def edge(self, which: float) -> Edge:
+        """Return edge number `which`.
+
+        Parameters
+        ----------
+        which : float
+            Number, from corner `which` to the next [-].
+
+        Returns
+        -------
+        Edge
+            The edge.
+
+        Raises
+        ------
+        GeometryError
+            If there is no such edge.
+        """
+        number = checks.number("edge", which)
+        if number != int(number) or not 0 <= number < len(self.vertices):
+            raise GeometryError(f"edge must be a whole number from 0 to {len(self.vertices) - 1}, got {which!r}")
+        start, end = self.vertices[int(number)], self.vertices[(int(number) + 1) % len(self.vertices)]
+        along = (end - start) / np.linalg.norm(end - start)
+        return Edge(np.array([*start, self.height]), np.array([*along, 0.0]))
+
+    def opposite(self, which: int) -> Edge:
+        """Return the edge parallel to another.
+
+        Parameters
+        ----------
+        which : int
+            Number of the other edge [-].
+
+        Returns
+        -------
+        Edge
+            The parallel edge on the far side.
+
+        Raises
+        ------
+        GeometryError
+            If no edge is parallel to it: the body then lands on a corner.
+        """
+        edges = self.edges
+        along = self.edge(which).direction
+        for edge in edges:
+            if float(edge.direction @ along) < -1.0 + 1e-12:
+                return edge
+        raise GeometryError(f"no edge of the base is parallel to edge {which}: the body lands on a corner there")
+
+    def margin(self, point: FloatArray) -> float:
+        """Return the distance of a point to the nearest edge, negative outside.
+
+        Parameters
+        ----------
+        point : ndarray, shape (2,)
+            Place (x, y) [m].
+
+        Returns
+        -------
+        float
+            Distance [m].
+        """
+        along = np.roll(self.vertices, -1, axis=0) - self.vertices
+        arm = point - self.vertices
+        return float(((along[:, 0] * arm[:, 1] - along[:, 1] * arm[:, 0]) / np.linalg.norm(along, axis=1)).min())
+
+    def changed(self, matrix: FloatArray, shift: FloatArray) -> "SupportPolygon":
+        """Return the polygon under a similarity of the plane.
+
+        Parameters
+        ----------
+        matrix : ndarray, shape (2, 2)
+            Rotation, mirror or scale [-].
+        shift : ndarray, shape (3,)
+            Displacement [m].
+
+        Returns
+        -------
+        SupportPolygon
+            In its new place, still counter-clockwise.
+        """
+        moved = self.vertices @ matrix.T + shift[:2]
+        scale = math.sqrt(abs(float(np.linalg.det(matrix))))
+        return SupportPolygon(moved if np.linalg.det(matrix) > 0.0 else moved[::-1], self.height * scale + shift[2])
+
+
+def hull(points: ArrayLike, height: float = 0.0) -> SupportPolygon:
+    """Return the support polygon of points on the ground.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        Points (x, y) [m].
+    height : float
+        Height of the ground [m].
+
+    Returns
+    -------
+    SupportPolygon
+        Their convex hull, without points on its straight edges.
+
+    Raises
+    ------
+    GeometryError
+        If there are fewer than three, or all lie on one line.
+
+    Examples
+    --------
+    >>> len(hull([(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0.0), (0.5, 0.5)]).vertices)
+    4
+    """
+    array = checks.real_array("base points", points, "m")
+    if array.ndim != 2 or array.shape[1:] != (2,) or not np.isfinite(array).all():
+        raise GeometryError("base points must be a list of finite points (x, y) in m")
+    ordered = np.unique(array, axis=0)
+    size = float(np.ptp(ordered, axis=0).max(initial=0.0)) if len(ordered) else 0.0
+    slack = _INSIDE * size * size
+    chain = _chain(ordered, slack)[:-1] + _chain(ordered[::-1], slack)[:-1]
+    if len(ordered) < 3 or len(chain) < 3:
+        raise GeometryError(
+            f"the body stands on {len(ordered)} point(s) of one line; it needs a base with an area: "
+            "pass base= with the points it stands on, or raise base_tolerance"
+        )
+    return SupportPolygon(np.array(chain), checks.number("height", height, "m"))
+
+
+def _chain(points: FloatArray, slack: float) -> list[FloatArray]:
+    chain: list[FloatArray] = []
+    for point in points:
+        while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= slack:
+            chain.pop()
+        chain.append(point)
+    return chain
+
+
+def _turn(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
+    return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))

@@ -1,0 +1,156 @@
+"""Mass, centre and second moments of parts in space, and how they add up."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SolidMoments:
+    """Zeroth, first and central second moments of a mass distribution in space.
+
+    Parameters
+    ----------
+    mass : float
+        Integral of dm [kg], or of dV [m3] for a bare shape.
+    centre : ndarray, shape (3,)
+        Centre of mass [m].
+    second : ndarray, shape (3, 3)
+        Integral of ``(S - centre)(S - centre)^T dm`` [kg m2].
+    """
+
+    mass: float
+    centre: FloatArray
+    second: FloatArray
+
+    @property
+    def inertia(self) -> FloatArray:
+        """Inertia tensor about the centre, ``tr(J) 1 - J`` with J the second moments [kg m2]."""
+        tensor: FloatArray = float(np.trace(self.second)) * np.eye(3) - self.second
+        return tensor
+
+    def times(self, weight: float) -> "SolidMoments":
+        """Return the same shape with `weight` times the mass.
+
+        Parameters
+        ----------
+        weight : float
+            Factor, for instance a density.
+
+        Returns
+        -------
+        SolidMoments
+            Scaled mass and second moments, same centre.
+        """
+        return SolidMoments(self.mass * weight, self.centre, self.second * weight)
+
+    def placed(self, rotation: FloatArray, translation: FloatArray) -> "SolidMoments":
+        """Return the moments of the rotated, then translated, distribution.
+
+        Parameters
+        ----------
+        rotation : ndarray, shape (3, 3)
+            Rotation matrix [-].
+        translation : ndarray, shape (3,)
+            Displacement [m].
+
+        Returns
+        -------
+        SolidMoments
+            Of the distribution in its new place.
+        """
+        return SolidMoments(self.mass, rotation @ self.centre + translation, rotation @ self.second @ rotation.T)
+
+    def second_about(self, point: FloatArray) -> FloatArray:
+        """Return the integral of ``(S - point)(S - point)^T dm`` (parallel axes).
+
+        Parameters
+        ----------
+        point : ndarray, shape (3,)
+            The point, in the same frame as the centre [m].
+
+        Returns
+        -------
+        ndarray, shape (3, 3)
+            Second moments [kg m2].
+        """
+        arm = self.centre - point
+        return self.second + self.mass * np.outer(arm, arm)
+
+    def inertia_about(self, point: FloatArray) -> FloatArray:
+        """Return the inertia tensor about a point.
+
+        Parameters
+        ----------
+        point : ndarray, shape (3,)
+            The point, in the same frame as the centre [m].
+
+        Returns
+        -------
+        ndarray, shape (3, 3)
+            Inertia tensor [kg m2].
+        """
+        second = self.second_about(point)
+        tensor: FloatArray = float(np.trace(second)) * np.eye(3) - second
+        return tensor
+
+
+def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
+    """Return the moments of several parts together; holes have negative mass.
+
+    Parameters
+    ----------
+    parts : iterable of SolidMoments
+        The parts, in one frame.
+
+    Returns
+    -------
+    SolidMoments
+        Of the whole.
+    """
+    listed = list(parts)
+    masses = np.array([part.mass for part in listed])
+    centres = np.array([part.centre for part in listed])
+    mass = float(masses.sum())
+    centre = masses @ centres / mass
+    second = np.sum([part.second_about(centre) for part in listed], axis=0)
+    return SolidMoments(mass, centre, second)
+
+
+def polyhedron_moments(triangles: FloatArray) -> SolidMoments:
+    """Exact moments of the volume inside a closed surface of triangles (divergence theorem).
+
+    The surface is moved to the middle of its box first, so that nothing cancels far from the origin. Each triangle
+    (a, b, c) stands for the tetrahedron over it, of signed volume ``a.(b x c)/6`` and second moments
+    ``V/20 (a a^T + b b^T + c c^T + s s^T)``, ``s = a + b + c``.
+
+    Parameters
+    ----------
+    triangles : ndarray, shape (n, 3, 3)
+        Corners [m], counter-clockwise seen from outside; inward faces count negative.
+
+    Returns
+    -------
+    SolidMoments
+        Of the volume, unit weight; the volume is negative if the surface is inside out.
+
+    Examples
+    --------
+    >>> corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    >>> faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    >>> round(6.0 * polyhedron_moments(corners[faces]).mass, 12)
+    1.0
+    """
+    middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
+    a, b, c = np.moveaxis(triangles - middle, 1, 0)
+    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+    volume = float(volumes.sum())
+    total = a + b + c
+    if volume == 0.0:
+        return SolidMoments(0.0, middle, np.zeros((3, 3)))
+    centre = volumes @ total / (4.0 * volume)
+    second = sum(np.einsum("n,ni,nj->ij", volumes / 20.0, v, v) for v in (a, b, c, total))
+    return SolidMoments(volume, middle + centre, second - volume * np.outer(centre, centre))

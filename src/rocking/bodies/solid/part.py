@@ -1,0 +1,217 @@
+"""One shape of one material in its place: what a solid is made of."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking import checks
+from rocking.bodies.body import DEFAULT_DENSITY
+from rocking.bodies.solid.moments import SolidMoments
+from rocking.bodies.solid.placement import rotation_about, rotation_matrix
+from rocking.bodies.solid.shape import Shape, placed_points, vector
+from rocking.bodies.solid.surfaces import Surface
+from rocking.conventions import BoolArray, FloatArray
+from rocking.errors import GeometryError
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Part:
+    """One shape of one material, rotated, then translated.
+
+    Parameters
+    ----------
+    shape : Shape
+        The volume, in a frame of its own.
+    density : float
+        Density [kg/m3].
+    rotation : array_like, shape (3, 3), optional
+        Rotation matrix [-].
+    translation : array_like, shape (3,)
+        Displacement of the shape's origin [m].
+
+    Raises
+    ------
+    GeometryError
+        If this is no shape, no rotation, or no displacement.
+    InvalidValueError
+        If the density is not a finite number above zero.
+
+    Examples
+    --------
+    >>> from rocking.bodies.solid import box
+    >>> Part(box(1.0, 1.0, 2.0), 1000.0).moved(0.0, 0.0, 1.0).moments().centre.tolist()
+    [0.0, 0.0, 2.0]
+    """
+
+    shape: Shape
+    density: float
+    rotation: FloatArray
+    translation: FloatArray
+
+    def __init__(
+        self,
+        shape: Shape,
+        density: float = DEFAULT_DENSITY,
+        *,
+        rotation: ArrayLike | None = None,
+        translation: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None:
+        given: object = shape
+        if not isinstance(given, Shape):
+            raise GeometryError(f"a Part needs a shape (box, cylinder, extrusion, mesh ...), got {shape!r:.60}")
+        object.__setattr__(self, "shape", shape)
+        object.__setattr__(self, "density", checks.density("density", density))
+        object.__setattr__(self, "rotation", rotation_matrix(rotation))
+        object.__setattr__(self, "translation", vector("translation", translation))
+
+    def moved(self, dx: float, dy: float, dz: float) -> "Part":
+        """Return the part moved.
+
+        Parameters
+        ----------
+        dx, dy, dz : float
+            Displacement [m].
+
+        Returns
+        -------
+        Part
+            The same shape elsewhere.
+        """
+        return self._with(self.shape, self.rotation, self.translation + vector("displacement", (dx, dy, dz)))
+
+    def turned(self, axis: ArrayLike, angle: float) -> "Part":
+        """Return the part turned about an axis through the origin.
+
+        Parameters
+        ----------
+        axis : array_like, shape (3,)
+            Direction [-].
+        angle : float
+            Angle, counter-clockwise seen against the axis [rad].
+
+        Returns
+        -------
+        Part
+            The same shape, turned with its place.
+        """
+        turn = rotation_about(axis, angle)
+        return self._with(self.shape, turn @ self.rotation, turn @ self.translation)
+
+    def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Part":
+        """Return the part with all lengths times `size`, about the origin, and its density times `density`.
+
+        Parameters
+        ----------
+        size, density : float
+            Factors [-].
+
+        Returns
+        -------
+        Part
+            The scaled part.
+        """
+        scaled = self._with(self.shape.scaled(size), self.rotation, self.translation * size)
+        return replace_density(scaled, self.density * checks.positive("density", density))
+
+    def mirrored(self) -> "Part":
+        """Return the part seen in the mirror x -> -x.
+
+        Returns
+        -------
+        Part
+            The mirror image.
+        """
+        mirror = np.array([-1.0, 1.0, 1.0])
+        return self._with(self.shape.mirrored(), mirror[:, None] * self.rotation * mirror, mirror * self.translation)
+
+    def moments(self) -> SolidMoments:
+        """Return mass, centre and second moments in place.
+
+        Returns
+        -------
+        SolidMoments
+            Exact up to rounding.
+        """
+        return self.shape.moments().times(self.density).placed(self.rotation, self.translation)
+
+    def surfaces(self) -> list[Surface]:
+        """Return the surface in place.
+
+        Returns
+        -------
+        list of Surface
+            Its pieces.
+        """
+        return self.shape.surfaces(self.rotation, self.translation)
+
+    def box(self) -> FloatArray:
+        """Return the bounding box in place.
+
+        Returns
+        -------
+        ndarray, shape (2, 3)
+            Lowest and highest coordinates [m].
+        """
+        box: FloatArray = self.shape.extent(self.rotation) + self.translation
+        return box
+
+    def contains(self, points: FloatArray) -> BoolArray:
+        """Return which points lie inside.
+
+        Parameters
+        ----------
+        points : ndarray, shape (n, 3)
+            Points [m].
+
+        Returns
+        -------
+        ndarray of bool, shape (n,)
+            True inside.
+        """
+        return self.shape.contains((points - self.translation) @ self.rotation)
+
+    def footprint(self, ground: float, tolerance: float) -> tuple[FloatArray, list[tuple[FloatArray, float]]]:
+        """Return what of the part stands on a level ground.
+
+        Parameters
+        ----------
+        ground : float
+            Height of the ground [m].
+        tolerance : float
+            Corners this close to it stand on it [m].
+
+        Returns
+        -------
+        points : ndarray, shape (n, 2)
+            Corners [m].
+        discs : list of (ndarray, float)
+            Centre (x, y) [m] and radius [m] of round faces.
+        """
+        print_ = self.shape.footprint()
+        points = placed_points(print_.points, self.rotation, self.translation)
+        upright = abs(abs(float(self.rotation[2, 2])) - 1.0) <= 1e-12
+        discs = [(placed_points(centre, self.rotation, self.translation), radius) for centre, radius in print_.discs]
+        standing = [(c[:2], r) for c, r in discs if upright and abs(float(c[2]) - ground) <= tolerance]
+        return points[np.abs(points[:, 2] - ground) <= tolerance, :2], standing
+
+    def _with(self, shape: Shape, rotation: FloatArray, translation: FloatArray) -> "Part":
+        return Part(shape, self.density, rotation=rotation, translation=translation)
+
+
+def replace_density(part: Part, density: float) -> Part:
+    """Return the part with another density.
+
+    Parameters
+    ----------
+    part : Part
+        The part.
+    density : float
+        Density [kg/m3].
+
+    Returns
+    -------
+    Part
+        Same shape and place.
+    """
+    return Part(part.shape, density, rotation=part.rotation, translation=part.translation)

@@ -1,0 +1,246 @@
+"""A closed surface of triangles, and what encloses a volume with it."""
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking import checks
+from rocking.bodies.solid.crossings import inside
+from rocking.bodies.solid.moments import SolidMoments, polyhedron_moments
+from rocking.bodies.solid.shape import Footprint, Shape, placed_points
+from rocking.bodies.solid.surfaces import Surface
+from rocking.bodies.solid.triangle_surface import TriangleSurface
+from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.errors import GeometryError
+
+
+class Polyhedron(Shape):
+    """The volume inside a closed surface of triangles.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3)
+        Vertices [m].
+    faces : array_like of int, shape (m, 3)
+        Corners of each triangle, counter-clockwise seen from outside; cavities are lined by faces that look inward.
+
+    Raises
+    ------
+    GeometryError
+        If the surface is not closed and oriented, is inside out, or encloses no volume.
+
+    Examples
+    --------
+    >>> corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    >>> round(Polyhedron(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]).moments().mass, 12)
+    0.166666666667
+    """
+
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
+        self.vertices = _vertices(vertices)
+        self.faces = _faces(faces, len(self.vertices))
+        _check_closed(self.faces)
+        self._check_volume()
+
+    def __repr__(self) -> str:
+        """Vertices, faces and volume."""
+        return f"{type(self).__name__}({len(self.vertices)} vertices, {len(self.faces)} faces, {self._volume:g} m3)"
+
+    @property
+    def corners(self) -> FloatArray:
+        """Corners of every triangle, shape (m, 3, 3) [m]."""
+        corners: FloatArray = self.vertices[self.faces]
+        return corners
+
+    @property
+    def _volume(self) -> float:
+        return self._moments.mass
+
+    @cached_property
+    def _moments(self) -> SolidMoments:
+        return polyhedron_moments(self.corners)
+
+    def moments(self) -> SolidMoments:
+        """Return volume, centre and second moments by the divergence theorem.
+
+        Returns
+        -------
+        SolidMoments
+            Exact up to rounding.
+        """
+        return self._moments
+
+    def surfaces(self, rotation: FloatArray | None = None, translation: FloatArray | None = None) -> list[Surface]:
+        """Return the placed triangles.
+
+        Parameters
+        ----------
+        rotation : ndarray, shape (3, 3), optional
+            Rotation matrix [-].
+        translation : ndarray, shape (3,), optional
+            Displacement [m].
+
+        Returns
+        -------
+        list of Surface
+            One piece.
+        """
+        return [TriangleSurface(placed_points(self.corners, rotation, translation))]
+
+    def extent(self, rotation: FloatArray) -> FloatArray:
+        """Return the box of the rotated vertices.
+
+        Parameters
+        ----------
+        rotation : ndarray, shape (3, 3)
+            Rotation matrix [-].
+
+        Returns
+        -------
+        ndarray, shape (2, 3)
+            Lowest and highest coordinates [m].
+        """
+        turned = self.vertices @ rotation.T
+        return np.array([turned.min(axis=0), turned.max(axis=0)])
+
+    def footprint(self) -> Footprint:
+        """Return the vertices.
+
+        Returns
+        -------
+        Footprint
+            Points only.
+        """
+        return Footprint(self.vertices)
+
+    def contains(self, points: FloatArray) -> BoolArray:
+        """Return which points lie inside, by counting the faces above each.
+
+        Parameters
+        ----------
+        points : ndarray, shape (n, 3)
+            Points [m].
+
+        Returns
+        -------
+        ndarray of bool, shape (n,)
+            True inside.
+        """
+        return inside(points, self.corners)
+
+    def scaled(self, size: float) -> "Polyhedron":
+        """Return the shape with all lengths times `size`.
+
+        Parameters
+        ----------
+        size : float
+            Factor [-].
+
+        Returns
+        -------
+        Polyhedron
+            The larger or smaller shape.
+        """
+        return Polyhedron(self.vertices * checks.positive("size", size), self.faces)
+
+    def mirrored(self) -> "Polyhedron":
+        """Return the mirror image x -> -x.
+
+        Returns
+        -------
+        Polyhedron
+            With faces turned, so that they look outward again.
+        """
+        return Polyhedron(self.vertices * np.array([-1.0, 1.0, 1.0]), self.faces[:, ::-1])
+
+    def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
+        """Return tetrahedra between the faces and the centre, if the whole surface is seen from there.
+
+        Parameters
+        ----------
+        divisions : int
+            Layers between centre and surface; faces are split as finely.
+
+        Returns
+        -------
+        (ndarray, ndarray) or None
+            Volumes (n,) [m3] and centres (n, 3) [m]; None if some face looks away from the centre.
+        """
+        apex = self._moments.centre
+        corners = self.corners - apex
+        cones = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+        if (cones <= 0.0).any():
+            return None
+        pieces = TriangleSurface(corners).triangles(divisions)
+        cones = np.einsum("ij,ij->i", pieces[:, 0], np.cross(pieces[:, 1], pieces[:, 2])) / 6.0
+        ends = np.linspace(0.0, 1.0, divisions + 1)
+        shares, fourths = np.diff(ends**3), 0.75 * np.diff(ends**4) / np.diff(ends**3)
+        volumes = np.outer(cones, shares).ravel()
+        centres = (pieces.mean(axis=1)[:, None] * fourths[:, None]).reshape(-1, 3)
+        return volumes, centres + apex
+
+    def _check_volume(self) -> None:
+        box = np.ptp(self.vertices, axis=0)
+        checks.length("largest dimension of the polyhedron", float(box.max()))
+        if abs(self._volume) <= 1e-9 * float(box.max()) * float(np.sort(box)[-2:].prod()):
+            raise GeometryError(
+                f"the surface encloses no volume (box {box[0]:g} x {box[1]:g} x {box[2]:g} m); "
+                "is it a sheet, or does half of it look the other way?"
+            )
+        if self._volume < 0.0:
+            raise GeometryError("the surface is inside out (negative volume); turn the faces round")
+
+
+def open_edges(faces: IntArray) -> IntArray:
+    """Return the directed edges that no face runs along the other way.
+
+    Parameters
+    ----------
+    faces : ndarray of int, shape (m, 3)
+        Triangles.
+
+    Returns
+    -------
+    ndarray of int, shape (n, 2)
+        Empty if the surface is closed and oriented.
+    """
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
+    base = int(edges.max(initial=0)) + 1
+    forward, back = edges[:, 0] * base + edges[:, 1], edges[:, 1] * base + edges[:, 0]
+    keys, inverse = np.unique(np.concatenate([forward, back]), return_inverse=True)
+    there = np.bincount(inverse[: len(edges)], minlength=len(keys))
+    reverse = np.bincount(inverse[len(edges) :], minlength=len(keys))
+    left = np.repeat(keys, np.maximum(there - reverse, 0))
+    return np.stack([left // base, left % base], axis=1)
+
+
+def _check_closed(faces: IntArray) -> None:
+    count = len(open_edges(faces))
+    if count:
+        raise GeometryError(
+            f"the surface is not closed and oriented: {count} edges lack a neighbour that runs the other way; "
+            "are there holes, flipped faces, or vertices that were not merged?"
+        )
+
+
+def _vertices(values: ArrayLike) -> FloatArray:
+    array = checks.real_array("vertices", values, "m")
+    if array.ndim != 2 or array.shape[1:] != (3,) or len(array) < 4:
+        raise GeometryError(f"vertices must be at least 4 points (x, y, z) in m, got an array of shape {array.shape}")
+    finite = np.isfinite(array).all(axis=1)
+    if not finite.all():
+        bad = int(np.argmin(finite))
+        raise GeometryError(f"vertex {bad} must be finite, got {tuple(array[bad].tolist())}")
+    if np.abs(array).max() > checks.LARGEST:
+        raise GeometryError(f"coordinates must be within {checks.LARGEST:g} m of the origin; wrong unit?")
+    return array.copy()
+
+
+def _faces(values: ArrayLike, vertices: int) -> IntArray:
+    array = np.asarray(values)
+    if array.ndim != 2 or array.shape[1:] != (3,) or array.dtype.kind not in "iu" or len(array) < 4:
+        raise GeometryError("faces must be at least 4 triangles, each of three vertex numbers")
+    if array.min() < 0 or array.max() >= vertices:
+        raise GeometryError(f"faces must name vertices 0 to {vertices - 1}, got {array.min()} to {array.max()}")
+    return array.astype(np.int64)

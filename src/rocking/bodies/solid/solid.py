@@ -1,0 +1,291 @@
+"""A rigid body in space: parts of any shape and density on a base."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rocking import checks
+from rocking.bodies.section import Section
+from rocking.bodies.solid.hull import SupportPolygon, hull
+from rocking.bodies.solid.moments import SolidMoments, combined
+from rocking.bodies.solid.overlap import check_disjoint
+from rocking.bodies.solid.part import Part
+from rocking.bodies.solid.placement import rotation_about
+from rocking.bodies.solid.prism import Prism
+from rocking.bodies.solid.shape import Shape
+from rocking.bodies.solid.support import Base, RoundBase
+from rocking.conventions import FloatArray
+from rocking.errors import GeometryError
+
+BASE_TOLERANCE = 1e-9
+"""Corners this close to the ground, relative to the body's size, stand on it by default."""
+
+
+class Solid:
+    """A rigid body in space, standing on level ground.
+
+    Parameters
+    ----------
+    parts : Part, Shape, or sequence of them
+        What it is made of; parts may touch but not overlap, and move as one even where they do not touch. A bare
+        shape has the density of plain concrete, 2400 kg/m3.
+    base : array_like, shape (n, 2), or Base, optional
+        Points (x, y) that it stands on [m]; by default its corners on the ground, or its round face there.
+    ground : float
+        Height of the ground [m]: the lowest point must lie on it.
+    base_tolerance : float, optional
+        Corners this close to the ground stand on it [m]; by default 1e-9 of the body's size.
+
+    Raises
+    ------
+    GeometryError
+        If parts overlap, the body does not stand on the ground, has no base with an area, or its centre is not
+        above the base.
+    InvalidValueError
+        If a number is not finite.
+
+    Examples
+    --------
+    >>> from rocking.bodies.solid import box, cylinder, Part
+    >>> column = Part(cylinder(0.8, 2.0), 2700.0).moved(0.0, 0.0, 0.3)
+    >>> solid = Solid([Part(box(1.0, 1.0, 0.3), 2400.0), column])
+    >>> round(solid.mass, 6), len(solid.base.vertices)
+    (3434.336053, 4)
+    """
+
+    def __init__(
+        self,
+        parts: Part | Shape | Sequence[Part | Shape],
+        *,
+        base: Base | ArrayLike | None = None,
+        ground: float = 0.0,
+        base_tolerance: float | None = None,
+    ) -> None:
+        listed = _listed(parts)
+        self._ground = checks.number("ground", ground, "m")
+        boxes = np.array([part.box() for part in listed])
+        low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+        self._size = checks.length("largest dimension of the body", float((high - low).max()))
+        tolerance = self._tolerance(base_tolerance)
+        self._check_ground(float(low[2]), tolerance)
+        middle = 0.5 * (low + high)
+        self.origin: FloatArray = np.array([middle[0], middle[1], self._ground])
+        self.local_parts = tuple(part.moved(*(-self.origin).tolist()) for part in listed)
+        check_disjoint(self.local_parts)
+        self.local_base = self._placed_base(base, tolerance)
+        self._check_support()
+
+    def __repr__(self) -> str:
+        """Parts, mass and base."""
+        base = self.local_base
+        kind = f"{len(base.vertices)} corners" if isinstance(base, SupportPolygon) else "a circle"
+        return f"Solid({len(self.local_parts)} part(s), {self.mass:g} kg, on {kind})"
+
+    @classmethod
+    def from_section(cls, section: Section) -> "Solid":
+        """Return the plane body as a body in space: its polygons extruded over its depth, along y.
+
+        Parameters
+        ----------
+        section : Section
+            The plane body; its y becomes z, its depth lies half before and half behind the plane y = 0.
+
+        Returns
+        -------
+        Solid
+            A prism for each region, standing on the section's feet.
+
+        Examples
+        --------
+        >>> import rocking as rk
+        >>> Solid.from_section(rk.Section.from_rectangle(1.0, 4.0, density=1.0)).mass
+        4.0
+        """
+        stand = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+        place = (section.origin_x, 0.5 * section.depth, section.ground)
+        parts = [Part(Prism(r, section.depth), r.density, rotation=stand, translation=place) for r in section.regions]
+        half = 0.5 * section.depth
+        feet = [(x, y) for x in section.feet for y in (-half, half)]
+        return cls(parts, base=feet, ground=section.ground)
+
+    @property
+    def ground(self) -> float:
+        """Height of the ground in the user's coordinates [m]."""
+        return self._ground
+
+    @property
+    def size(self) -> float:
+        """Largest side of the bounding box [m]."""
+        return self._size
+
+    @cached_property
+    def local_moments(self) -> SolidMoments:
+        """Mass, centre and central second moments about `origin`."""
+        return combined(part.moments() for part in self.local_parts)
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+        return self.local_moments.mass
+
+    @property
+    def volume(self) -> float:
+        """Volume [m3]."""
+        return sum(part.shape.moments().mass for part in self.local_parts)
+
+    @property
+    def centre(self) -> FloatArray:
+        """Centre of mass (x, y, z) in the user's coordinates [m]."""
+        return self.origin + self.local_moments.centre
+
+    @property
+    def inertia(self) -> FloatArray:
+        """Inertia tensor about the centre of mass, axes along x, y and z [kg m2]."""
+        return self.local_moments.inertia
+
+    @property
+    def base(self) -> Base:
+        """The base in the user's coordinates."""
+        return self.local_base.changed(np.eye(2), self.origin)
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The parts in the user's coordinates."""
+        return tuple(part.moved(*self.origin.tolist()) for part in self.local_parts)
+
+    @property
+    def box(self) -> FloatArray:
+        """Lowest and highest corner of the bounding box in the user's coordinates, shape (2, 3) [m]."""
+        boxes = np.array([part.box() for part in self.local_parts])
+        box: FloatArray = np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)]) + self.origin
+        return box
+
+    def turned(self, angle: float) -> "Solid":
+        """Return the body turned about the vertical through its own origin.
+
+        Parameters
+        ----------
+        angle : float
+            Angle, counter-clockwise seen from above [rad].
+
+        Returns
+        -------
+        Solid
+            The same body, another way round.
+        """
+        turn = rotation_about((0.0, 0.0, 1.0), angle)
+        return self._copy([part.turned((0.0, 0.0, 1.0), angle) for part in self.local_parts], turn[:2, :2])
+
+    def mirrored(self) -> "Solid":
+        """Return the body seen in the mirror x -> -x through its own origin.
+
+        Returns
+        -------
+        Solid
+            The mirror image.
+        """
+        return self._copy([part.mirrored() for part in self.local_parts], np.diag([-1.0, 1.0]))
+
+    def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Solid":
+        """Return the body with all lengths times `size` and all densities times `density`.
+
+        Parameters
+        ----------
+        size, density : float
+            Factors [-].
+
+        Returns
+        -------
+        Solid
+            The scaled body, about its own origin.
+        """
+        factor = checks.positive("size", size)
+        checks.length("size of the scaled body", self._size * factor)
+        parts = [part.scaled(size=factor, density=density) for part in self.local_parts]
+        return self._copy(parts, factor * np.eye(2), factor)
+
+    def _copy(self, parts: list[Part], matrix: FloatArray, size: float = 1.0) -> "Solid":
+        # not checked again: a similarity keeps a valid body valid
+        result = object.__new__(Solid)
+        result._ground, result._size, result.origin = self._ground, self._size * size, self.origin
+        result.local_parts, result.local_base = tuple(parts), self.local_base.changed(matrix, np.zeros(3))
+        return result
+
+    def _tolerance(self, given: float | None) -> float:
+        return BASE_TOLERANCE * self._size if given is None else checks.positive("base_tolerance", given, "m")
+
+    def _check_ground(self, lowest: float, tolerance: float) -> None:
+        slack = max(tolerance, 8.0 * np.spacing(abs(self._ground)))
+        if abs(lowest - self._ground) > slack:
+            verb = "floats above" if lowest > self._ground else "reaches below"
+            raise GeometryError(
+                f"the body {verb} the ground: its lowest point is z = {lowest:.9g} m, the ground {self._ground:.9g} m; "
+                f"pass ground={lowest:.9g} or move the parts"
+            )
+
+    def _placed_base(self, base: Base | ArrayLike | None, tolerance: float) -> Base:
+        if isinstance(base, Base):
+            return base.changed(np.eye(2), -self.origin)
+        if base is not None:
+            points = checks.real_array("base", base, "m")
+            return hull(points - self.origin[:2] if points.ndim == 2 and points.shape[1:] == (2,) else points)
+        return found_base(self.local_parts, tolerance)
+
+    def _check_support(self) -> None:
+        centre = self.local_moments.centre
+        if self.local_base.margin(centre[:2]) <= 1e-12 * self._size:
+            x, y = (self.origin + centre)[:2].tolist()
+            raise GeometryError(
+                f"the centre of mass (x = {x:.6g}, y = {y:.6g} m) must lie above the base; "
+                "a body like this falls over by itself"
+            )
+
+
+def found_base(parts: Sequence[Part], tolerance: float) -> Base:
+    """Return what parts stand on: the hull of their corners on the ground, or the round face there.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+        The parts, the ground at z = 0.
+    tolerance : float
+        Corners this close to the ground stand on it [m].
+
+    Returns
+    -------
+    Base
+        A polygon, or a circle if everything else lies inside it.
+
+    Raises
+    ------
+    GeometryError
+        If there is no base with an area, or corners and round faces both reach out.
+    """
+    prints = [part.footprint(0.0, tolerance) for part in parts]
+    points = np.concatenate([print_[0] for print_ in prints])
+    discs = [disc for print_ in prints for disc in print_[1]]
+    if not discs:
+        return hull(points)
+    centre, radius = max(discs, key=lambda disc: disc[1])
+    circle = RoundBase(centre, radius)
+    slack = -1e-9 * radius
+    inside_points = all(circle.margin(point) >= slack for point in points)
+    if inside_points and all(circle.margin(c) >= r + slack for c, r in discs):
+        return circle
+    polygon = hull(points) if len(points) > 2 else None
+    if polygon is not None and all(polygon.margin(c) >= r + slack for c, r in discs):
+        return polygon
+    raise GeometryError(
+        "the body stands on round faces and corners that reach beyond each other; pass base= with points"
+    )
+
+
+def _listed(parts: Any) -> list[Part]:
+    given = [parts] if isinstance(parts, (Part, Shape)) else parts
+    listed = list(given) if isinstance(given, Sequence) else []
+    if not listed or not all(isinstance(part, (Part, Shape)) for part in listed):
+        raise GeometryError("a Solid needs at least one Part(shape, density) or shape")
+    return [part if isinstance(part, Part) else Part(part) for part in listed]

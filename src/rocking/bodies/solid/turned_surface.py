@@ -1,0 +1,151 @@
+"""A meridian turned about an axis as a surface."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.bodies.solid.surfaces import Surface, area_vectors, gauss_square
+from rocking.conventions import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class TurnedSurface(Surface):
+    """A meridian turned about the z axis, stretched to half axes, then placed.
+
+    Parameters
+    ----------
+    meridian : ndarray, shape (2, 2)
+        Straight: (radius, height) at both ends [m]. Arc: its two polar angles from the top [rad] in the first
+        row, its height of centre and vertical half axis [m] in the second; the radius is then 1.
+    half_axes : (float, float)
+        Stretch along x and y [-], or the half axes of the ellipse [m] for an arc.
+    arc : bool
+        Whether the meridian is an arc of an ellipse.
+    rotation : ndarray, shape (3, 3)
+        Rotation matrix [-].
+    translation : ndarray, shape (3,)
+        Displacement [m].
+    """
+
+    meridian: FloatArray
+    half_axes: tuple[float, float]
+    arc: bool
+    rotation: FloatArray
+    translation: FloatArray
+
+    def cells(self) -> FloatArray:
+        """Return the whole turn in eight sectors, the meridian in pieces of at most an eighth of a turn.
+
+        Returns
+        -------
+        ndarray, shape (n, 4)
+            Ends (u0, u1) along the meridian, in shares of it, and (phi0, phi1) around [rad].
+        """
+        u = np.linspace(0.0, 1.0, 1 + max(1, math.ceil(self._sweep / (0.25 * math.pi) - 1e-9)))
+        phi = np.linspace(0.0, 2.0 * math.pi, 9)
+        return np.array([(*u[i : i + 2], *phi[j : j + 2]) for i in range(len(u) - 1) for j in range(8)])
+
+    def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the middle and eight points around of each cell, with area vectors.
+
+        Parameters
+        ----------
+        cells : ndarray, shape (n, 4)
+            Cells.
+
+        Returns
+        -------
+        points, areas : ndarray, shape (n, 9, 3)
+            Points [m] and area vectors [m2].
+        """
+        ends = np.array([0.5, 0.0, 1.0])
+        s, t = (grid.ravel() for grid in np.meshgrid(ends, ends, indexing="ij"))
+        return self._at(cells, s, t)
+
+    def split(self, cells: FloatArray) -> FloatArray:
+        """Return the quarters of each cell.
+
+        Parameters
+        ----------
+        cells : ndarray, shape (n, 4)
+            Cells.
+
+        Returns
+        -------
+        ndarray, shape (4 n, 4)
+            Their quarters.
+        """
+        u0, u1, p0, p1 = cells.T
+        um, pm = 0.5 * (u0 + u1), 0.5 * (p0 + p1)
+        quarters = ((u0, um, p0, pm), (um, u1, p0, pm), (u0, um, pm, p1), (um, u1, pm, p1))
+        return np.concatenate([np.stack(quarter, axis=1) for quarter in quarters])
+
+    def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
+        """Return Gauss points of each cell, at least eight in each direction for the curvature's sake.
+
+        Parameters
+        ----------
+        cells : ndarray, shape (n, 4)
+            Cells.
+        order : int
+            Points in each direction.
+
+        Returns
+        -------
+        points, areas : ndarray, shape (n m^2, 3)
+            Points [m] and weighted area vectors [m2].
+        """
+        u, v, weights = gauss_square(max(order, 8))
+        points, areas = self._at(cells, u, v)
+        return points.reshape(-1, 3), (areas * weights[:, None]).reshape(-1, 3)
+
+    def triangles(self, divisions: int) -> FloatArray:
+        """Return two triangles for each patch of a regular net.
+
+        Parameters
+        ----------
+        divisions : int
+            Divisions of a quarter turn.
+
+        Returns
+        -------
+        ndarray, shape (n, 3, 3)
+            Corners [m]; none without area.
+        """
+        pieces = divisions * (math.ceil(self._sweep / (0.5 * math.pi) - 1e-9) if self.arc else 1)
+        u, v = np.linspace(0.0, 1.0, pieces + 1), np.linspace(0.0, 1.0, 4 * divisions + 1)
+        s, t = (grid.ravel() for grid in np.meshgrid(u, v, indexing="ij"))
+        net = self._at(np.array([[0.0, 1.0, 0.0, 2.0 * math.pi]]), s, t)[0].reshape(len(u), len(v), 3)
+        a, b, c, d = net[:-1, :-1], net[1:, :-1], net[1:, 1:], net[:-1, 1:]
+        both = np.concatenate([np.stack(corners, axis=2).reshape(-1, 3, 3) for corners in ((a, c, b), (a, d, c))])
+        kept: FloatArray = both[
+            np.linalg.norm(area_vectors(both), axis=1) > 1e-14 * np.ptp(net, axis=(0, 1)).max() ** 2
+        ]
+        return kept
+
+    @property
+    def _sweep(self) -> float:
+        return abs(float(self.meridian[0, 1] - self.meridian[0, 0])) if self.arc else 0.0
+
+    def _at(self, cells: FloatArray, s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        u0, u1, p0, p1 = (column[:, None] for column in cells.T)
+        r, z, dr, dz = self._meridian(u0 + (u1 - u0) * s)
+        phi = p0 + (p1 - p0) * t
+        (a, b), cos, sin = self.half_axes, np.cos(phi), np.sin(phi)
+        local = np.stack([a * r * cos, b * r * sin, z], axis=-1)
+        along = np.stack([a * dr * cos, b * dr * sin, dz], axis=-1)
+        around = np.stack([-a * r * sin, b * r * cos, np.zeros_like(r)], axis=-1)
+        areas = np.cross(around, along) * ((u1 - u0) * (p1 - p0))[..., None]
+        return local @ self.rotation.T + self.translation, areas @ self.rotation.T
+
+    def _meridian(self, u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        first, second = self.meridian
+        if not self.arc:
+            (r0, z0), (r1, z1) = first, second
+            ones = np.ones_like(u)
+            return r0 + (r1 - r0) * u, z0 + (z1 - z0) * u, (r1 - r0) * ones, (z1 - z0) * ones
+        (q0, q1), (centre, half) = first, second
+        sweep = q1 - q0
+        polar = q0 + sweep * u
+        return np.sin(polar), centre + half * np.cos(polar), np.cos(polar) * sweep, -half * np.sin(polar) * sweep

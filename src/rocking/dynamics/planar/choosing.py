@@ -1,0 +1,117 @@
+"""Which mode follows: complementarity of contact forces and motions, all modes tried.
+
+With one pair of feet there are at most nine modes, so that the complementarity problem is solved by trying each; what
+Lemke's algorithm would find is among them, and unlike it the trial also sees where there are two solutions or none.
+"""
+
+from itertools import chain, combinations
+from typing import NamedTuple
+
+from rocking.dynamics.planar.course import Course, course
+from rocking.dynamics.planar.footing import Footing
+from rocking.dynamics.planar.ground import Ground
+from rocking.dynamics.planar.margins import consistent, margins
+from rocking.dynamics.planar.mode import Mode
+from rocking.dynamics.planar.outcome import PlanarStatus
+from rocking.dynamics.planar.state import State, along, away
+
+TOLERANCE = 1e-12
+_LADDER = (TOLERANCE, 1e-10, 1e-8)
+_ORDER = 8
+_SAME = 1e-6
+
+
+def candidates(footing: Footing, state: State) -> list[Mode]:
+    """Return the modes that the velocities allow.
+
+    Parameters
+    ----------
+    footing : Footing
+        The body.
+    state : State
+        Its state.
+
+    Returns
+    -------
+    list of Mode
+        Modes with most feet first, and those that stick before those that slide.
+    """
+    resting = [foot for foot in state.touching if away(footing, state, foot) == 0.0]
+    subsets = chain.from_iterable(combinations(resting, n) for n in range(len(resting), 0, -1))
+    found = []
+    for feet in subsets:
+        speed = along(footing, state, feet[0])
+        if speed == 0.0:
+            found.append(Mode(feet))
+        found += [Mode(feet, slip) for slip in (1, -1) if slip * speed >= 0.0]
+    return [*found, Mode(())]
+
+
+class Choice(NamedTuple):
+    """The mode that follows.
+
+    Parameters
+    ----------
+    mode : Mode
+        The mode.
+    tolerance : float
+        Below it, over their scale, coefficients counted as zero [-].
+    """
+
+    mode: Mode
+    tolerance: float
+
+
+def choose(footing: Footing, state: State, ground: Ground, friction: float) -> Choice | PlanarStatus:
+    """Return the mode that follows a state.
+
+    Parameters
+    ----------
+    footing : Footing
+        The body.
+    state : State
+        Its state, after impacts: no foot moves into the ground.
+    ground : Ground
+        The motion of the ground from there on; its unit of time is the natural time of the body.
+    friction : float
+        Coulomb's coefficient [-].
+
+    Returns
+    -------
+    Choice or PlanarStatus
+        The mode; where there is none, or where two of them move the body differently, a status that says so.
+    """
+    weight = weight_of(ground)
+    tried = [(mode, course(footing, state, mode, ground, friction, _ORDER)) for mode in candidates(footing, state)]
+    possible = [(m, c, margins(footing, m, c, friction, weight)) for m, c in tried if c.stiff > 0.0]
+    for tolerance in _LADDER:
+        good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]
+        if good:
+            same = all(_agree(good[0][1], other, footing.size) for _, other in good[1:])
+            return Choice(good[0][0], tolerance) if same else PlanarStatus.AMBIGUOUS
+    return PlanarStatus.NO_CONTACT_FORCE
+
+
+def weight_of(ground: Ground) -> float:
+    """Return the acceleration that contact forces are measured by.
+
+    Parameters
+    ----------
+    ground : Ground
+        The motion of the ground.
+
+    Returns
+    -------
+    float
+        |g + a_z| + |a_x|, and at least a little [m/s2].
+    """
+    return max(abs(ground.lift[0]) + abs(ground.push[0]), 1e-3)
+
+
+def _agree(one: Course, other: Course, size: float) -> bool:
+    """Whether two courses start alike, as they do where a margin is just zero."""
+    gap = max(
+        abs(one.rotation[2] - other.rotation[2]) * size, abs(one.x[2] - other.x[2]), abs(one.rise[2] - other.rise[2])
+    )
+    reach = max(abs(one.rotation[2]) * size, abs(one.x[2]), abs(one.rise[2]), 1e-9 * size)
+    return bool(gap <= _SAME * reach or gap <= 1e-9 * size)

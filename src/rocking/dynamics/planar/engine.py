@@ -1,0 +1,293 @@
+"""The planar engine: Taylor series between events, events to rounding, complementarity at each of them.
+
+It follows one body at a time in the frame of the ground: rest, sliding, rocking, rocking while sliding, flight. Series
+of order 30 shorten themselves until their last terms are below rounding; every step ends on a sample of the motion, so
+that nothing is integrated across a kink; an event is a zero of a polynomial. When nothing moves, the next stretch that
+could lift or move the body is looked up instead of stepped to.
+"""
+
+import math
+
+import numpy as np
+
+from rocking.dynamics.planar.choosing import TOLERANCE, Choice, choose, weight_of
+from rocking.dynamics.planar.course import Course, course
+from rocking.dynamics.planar.footing import BOTH, Footing
+from rocking.dynamics.planar.ground import Ground
+from rocking.dynamics.planar.history import History
+from rocking.dynamics.planar.impact import Struck, cleaned, largest_speed, strike
+from rocking.dynamics.planar.imposed import strike_with
+from rocking.dynamics.planar.log import Blow, Log
+from rocking.dynamics.planar.margins import Kind, consistent, first_end, margins
+from rocking.dynamics.planar.mode import FLIGHT, REST, Mode
+from rocking.dynamics.planar.outcome import PlanarStatus
+from rocking.dynamics.planar.power_series import value
+from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
+from rocking.dynamics.planar.state import State, away, kept, kinetic
+from rocking.dynamics.planar.stirring import stirring
+from rocking.dynamics.taylor import shifted
+from rocking.motions.segments import Segments
+
+_ORDER = 30
+_WHOLE = 1.0 - 1e-13
+_CLOSED = 1e-13
+_MOST_CHANGES = 40
+_AFTER = 60.0
+
+
+class Planar:
+    """One history.
+
+    Parameters
+    ----------
+    footing : Footing
+        The body.
+    segments : Segments
+        The motion [m/s2].
+    law : ContactLaw
+        Friction and restitution.
+    settings : PlanarSettings
+        Gravity, limits, tolerance.
+    scale : float
+        Factor on the motion [-].
+    """
+
+    def __init__(
+        self,
+        footing: Footing,
+        segments: Segments,
+        law: ContactLaw,
+        settings: PlanarSettings,
+        scale: float = 1.0,
+    ) -> None:
+        vertical = np.zeros_like(segments.horizontal) if segments.vertical is None else segments.vertical
+        self.push, self.lift = segments.horizontal * scale, vertical * scale
+        self.lift[:, 0] += settings.gravity
+        self.step, self.count = segments.step, segments.count
+        self.footing, self.law, self.settings = footing, law, settings
+        self.pace = math.sqrt(settings.gravity / footing.size)
+        self.slowest = settings.rest_speed * math.sqrt(settings.gravity * footing.size)
+        self.log = Log(self.count, settings.gravity)
+        self.state, self.mode = State(), REST
+        self.stretch, self.tau = 0, 0.0
+        self.tolerance, self.changed, self.events = TOLERANCE, 0, 0
+        self.passed = math.nan
+        self.ended: PlanarStatus | None = None
+        self.lies = False
+        self.latest: Course | None = None
+
+    def run(self, state: State | None = None) -> History:
+        """Return the history from a state.
+
+        Parameters
+        ----------
+        state : State, optional
+            Position and velocity at time zero; standing at rest if not given.
+
+        Returns
+        -------
+        History
+            The history.
+        """
+        self.state = state or State()
+        if any(away(self.footing, self.state, foot) < 0.0 for foot in self.state.touching):
+            self._strike(FLIGHT)
+        else:
+            self._change()
+        self._first_sample()
+        while self.ended is None and not self._over():
+            self._step()
+        return History(self.log, self.ended or PlanarStatus.GOOD, self.lies, self.passed, self._now)
+
+    # ---- from event to event ----------------------------------------------------------------------------------------
+
+    @property
+    def _now(self) -> float:
+        return (self.stretch + self.tau) * self.step
+
+    def _over(self) -> bool:
+        """Whether the motion is over, and the body does not stand where it might yet fall."""
+        if self.stretch < self.count:
+            return False
+        side = 1 if self.state.rotation > 0.0 else -1
+        tilted = abs(self.state.rotation) > self.footing.slenderness_angle(side)
+        return not tilted or (self.stretch - self.count) * self.step * self.pace > _AFTER
+
+    def _ground(self, unit: float) -> Ground:
+        """Return the motion from now on, over a unit of time."""
+        if self.stretch >= self.count:
+            return Ground([0.0], [self.settings.gravity], unit)
+        width = unit / self.step
+        push = shifted(self.push[self.stretch].tolist(), self.tau, width)
+        lift = shifted(self.lift[self.stretch].tolist(), self.tau, width)
+        return Ground(push, lift, unit)
+
+    def _step(self) -> None:
+        if self.mode == REST and self._skip():
+            return
+        ground = self._ground((1.0 - self.tau) * self.step)
+        full = course(self.footing, self.state, self.mode, ground, self.law.friction, _ORDER)
+        part = self._trusted(full)
+        if not part > 0.0:
+            self.ended = PlanarStatus.NOT_FINITE if full.stiff > 0.0 else PlanarStatus.NO_CONTACT_FORCE
+            return
+        whole, here = full.shortened(part), ground.shortened(part)
+        stretch = whole.unit * self.pace
+        found = margins(self.footing, self.mode, whole, self.law.friction, weight_of(here))
+        if full.stiff <= 0.0 or not consistent(found, stretch, self.tolerance):
+            self._change()
+            return
+        end = first_end(found, stretch, self.tolerance)
+        at, kind = end or (1.0, None)
+        self.log.pass_through(self._now, whole, here, at, self.law.friction)
+        self._watch_top(whole, at)
+        self.latest = whole
+        self.tolerance, self.changed = TOLERANCE, 0
+        reached = whole.state(at, self.mode.feet)
+        self._move(self.tau + at * part * (1.0 - self.tau) if at * part < 1.0 else 1.0, reached, at)
+        if kind is not None:
+            self._end(kind, whole, at)
+
+    def _trusted(self, full: Course) -> float:
+        """Part of a course over which its last terms stay below the tolerance."""
+        if not all(np.isfinite(c).all() for c in (full.rotation, full.x, full.rise)):
+            return 0.0
+        if full.rotation.size <= _ORDER:
+            return 1.0
+        part, size = 1.0, self.footing.size
+        series = [(full.rotation, 1.0), (full.x, size), *((gap, size) for gap in full.gaps.values())]
+        for c, unit in series:
+            for k in (_ORDER - 1, _ORDER):
+                over = abs(c[k]) / (self.settings.tolerance * unit)
+                if over > 1.0:
+                    part = min(part, float(over) ** (-1.0 / k))
+        return part
+
+    def _move(self, tau: float, reached: State, at: float) -> None:
+        self.state = kept(self.footing, reached, self.mode.feet, stick=self.mode.slip == 0)
+        if tau > _WHOLE:
+            self.stretch, self.tau = self.stretch + 1, 0.0
+            self.log.sample(self.stretch, self.state, self.mode, self.latest, at)
+        else:
+            self.tau = tau
+
+    def _watch_top(self, whole: Course, at: float) -> None:
+        """Note when the centre passes over the foot."""
+        start, end = value(whole.rotation, 0.0), value(whole.rotation, at)
+        alpha = self.footing.slenderness_angle(1 if end > 0.0 else -1)
+        if abs(end) <= alpha:
+            self.passed = math.nan
+        elif not abs(start) > alpha or math.isnan(self.passed):
+            share = (alpha - abs(start)) / (abs(end) - abs(start)) if abs(end) > abs(start) else 0.0
+            self.passed = self._now + max(share, 0.0) * at * whole.unit
+
+    # ---- events -----------------------------------------------------------------------------------------------------
+
+    def _end(self, kind: Kind, whole: Course, at: float) -> None:
+        """Let a mode end."""
+        self._count()
+        if kind is Kind.LYING:
+            self.lies, self.ended = True, PlanarStatus.GOOD
+        elif kind is Kind.LANDING:
+            self._land(whole, at)
+        else:
+            if kind is Kind.STICKING:
+                self.state = kept(self.footing, self.state, self.mode.feet, stick=True)
+            self._change()
+
+    def _land(self, whole: Course, at: float) -> None:
+        before, mode = self.state, self.mode
+        if mode.feet:
+            upright = before._replace(rotation=0.0, rise=0.0)
+            self.state = kept(self.footing, upright, mode.feet, stick=mode.slip == 0)._replace(touching=BOTH)
+        else:
+            slack = _CLOSED * self.footing.size
+            feet = tuple(foot for foot in BOTH if value(whole.gaps[foot], at) <= slack)
+            if len(feet) == 2:
+                self.state = before._replace(rotation=0.0, rise=0.0, touching=feet)
+            else:
+                rise = self.footing.rise_on(feet[0], before.rotation)
+                self.state = before._replace(rise=rise, touching=feet)
+        self._strike(mode, self.settings.gravity * (before.rise - self.state.rise))
+
+    def _strike(self, mode: Mode, dropped: float = 0.0) -> None:
+        """Resolve an impact of the feet that touch; rounding in its place is booked with it."""
+        before = self.state
+        struck = self._struck(before, mode)
+        if isinstance(struck, PlanarStatus):
+            self.ended = struck
+            return
+        rounding = 1e-13 * largest_speed(self.footing, before)
+        after = self._calmed(cleaned(self.footing, struck, rounding))
+        loss = dropped + kinetic(self.footing, before) - kinetic(self.footing, after)
+        self.log.strike(Blow(self._now, before, struck, after, loss))
+        self.state = after
+        self._change()
+
+    def _struck(self, before: State, mode: Mode) -> Struck | PlanarStatus:
+        law = self.law
+        if law.restitution is not None and len(mode.feet) == 1:
+            foot = -mode.feet[0]
+            r = law.restitution[0 if foot < 0 else 1]
+            imposed = strike_with(self.footing, before, foot, law.friction, r)
+            if imposed is not None:
+                return imposed
+        bounces = {foot: law.bounce * -away(self.footing, before, foot) for foot in before.touching}
+        bounce = {foot: law.bounce if v > self.slowest else 0.0 for foot, v in bounces.items()}
+        return strike(self.footing, before, law.friction, bounce)
+
+    def _calmed(self, after: State) -> State:
+        """Let a body that hardly moves after an impact stand, if the ground lets it."""
+        slow = max(abs(after.w), abs(after.spin) * self.footing.size) <= self.slowest
+        if after.touching != BOTH or not slow:
+            return after
+        calm = kept(self.footing, after, BOTH, stick=False)
+        if abs(calm.u) <= self.slowest * 1e-3:
+            calm = calm._replace(u=0.0)
+        found = choose(self.footing, calm, self._ground(1.0 / self.pace), self.law.friction)
+        return calm if isinstance(found, Choice) and found.mode.feet == BOTH else after
+
+    def _count(self) -> None:
+        self.events += 1
+        if self.events >= self.settings.most_events:
+            self.ended = PlanarStatus.TOO_MANY_EVENTS
+
+    def _change(self) -> None:
+        """Choose the mode that follows."""
+        if self.ended is not None:
+            return
+        self.changed += 1
+        found = choose(self.footing, self.state, self._ground(1.0 / self.pace), self.law.friction)
+        if isinstance(found, PlanarStatus):
+            self.ended = found
+            return
+        if self.changed > _MOST_CHANGES:
+            self.ended = PlanarStatus.NOT_RESOLVED
+        self.tolerance = max(found.tolerance, TOLERANCE * 10.0 ** min(self.changed - 3, 5) if self.changed > 3 else 0.0)
+        self.mode = found.mode
+        self.log.change(self._now, self.mode)
+        if self.mode.feet != BOTH and len(self.mode.feet) == 1 and self.state.rotation != 0.0:
+            self.state = kept(self.footing, self.state, self.mode.feet, stick=self.mode.slip == 0)
+
+    # ---- rest -------------------------------------------------------------------------------------------------------
+
+    def _first_sample(self) -> None:
+        if self.ended is None:
+            ground = self._ground(self.step)
+            self.latest = course(self.footing, self.state, self.mode, ground, self.law.friction, _ORDER)
+        self.log.sample(0, self.state, self.mode, self.latest, 0.0)
+
+    def _skip(self) -> bool:
+        """Rest through stretches that cannot move the body; whether there were any."""
+        if not hasattr(self, "_stirring"):
+            self._stirring = stirring(self.footing, self.push, self.lift, self.law.friction)
+        at = int(np.searchsorted(self._stirring, self.stretch))
+        until = int(self._stirring[at]) if at < self._stirring.size else self.count
+        if until <= self.stretch:
+            return False
+        while self.stretch < until:
+            ground = self._ground((1.0 - self.tau) * self.step)
+            self.latest = course(self.footing, self.state, REST, ground, self.law.friction, _ORDER)
+            self.log.pass_through(self._now, self.latest, ground, 1.0, self.law.friction)
+            self._move(1.0, self.state, 1.0)
+        return True

@@ -1,0 +1,54 @@
+"""Which feet carry the body and whether they slide: ten modes, six regimes."""
+
+from enum import Enum
+from typing import NamedTuple
+
+from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT
+
+
+class Regime(Enum):
+    """What the body does, in words."""
+
+    REST = "at rest"
+    SLIDE = "sliding on its base"
+    ROCK = "rocking about one foot"
+    SLIDE_ROCK = "rocking about one foot that slides"
+    FLIGHT = "in flight"
+
+    @property
+    def code(self) -> int:
+        """Number of the regime in arrays."""
+        return list(Regime).index(self)
+
+
+class Mode(NamedTuple):
+    """One smooth piece of the motion.
+
+    Parameters
+    ----------
+    feet : tuple of int
+        Feet that carry: none, -1 (left), +1 (right) or both.
+    slip : int
+        Direction in which they slide: -1, 0 (they stick) or +1.
+    """
+
+    feet: tuple[int, ...]
+    slip: int = 0
+
+    @property
+    def regime(self) -> Regime:
+        """What the body does."""
+        if not self.feet:
+            return Regime.FLIGHT
+        if len(self.feet) == 2:
+            return Regime.SLIDE if self.slip else Regime.REST
+        return Regime.SLIDE_ROCK if self.slip else Regime.ROCK
+
+    @property
+    def carrier(self) -> str:
+        """Feet in words: ``"none"``, ``"left"``, ``"right"`` or ``"both"``."""
+        return {(): "none", (LEFT,): "left", (RIGHT,): "right", BOTH: "both"}[self.feet]
+
+
+REST = Mode(BOTH)
+FLIGHT = Mode(())

@@ -1,0 +1,127 @@
+r"""Taylor series of a body that turns about one foot, which sticks or slides.
+
+With the arm r from the centre to the foot, ``j = I_C / m`` and the effective weight ``G = g + a_z``,
+
+    stick:  (j + r_x^2 + r_z^2) theta'' = -(G r_x - a_x r_z)
+    slide:  (j + r_x L) theta'' = -L (G + r_z theta'^2),    L = r_x + sigma mu r_z,
+
+where sigma is the direction of sliding: moments about the foot, and about the centre with ``F_t = -sigma mu F_n`` and
+``z'' = r_x theta'' + r_z theta'^2``. Where ``j + r_x L <= 0`` the second one has no meaning (Painleve 1895).
+"""
+
+from collections.abc import Sequence
+from operator import mul
+from typing import NamedTuple
+
+_SMALLEST = 1e-22
+
+
+class Turning(NamedTuple):
+    """Series over a unit of time.
+
+    Parameters
+    ----------
+    rotation, arm_x, arm_z : list of float
+        Coefficients of theta [rad] and of the arm [m].
+    stiff : float
+        ``j + r_x L`` at the start, over its value without friction; 1 for a foot that sticks [-].
+    """
+
+    rotation: list[float]
+    arm_x: list[float]
+    arm_z: list[float]
+    stiff: float
+
+
+class _Stick:
+    """Moments about a foot that does not move."""
+
+    def __init__(self, inertia: float, unit: float, push: Sequence[float], lift: Sequence[float]) -> None:
+        self.inertia, self.unit2, self.push, self.lift = inertia, unit * unit, push, lift
+        self.stiff = 1.0
+
+    def acceleration(self, k: int, x: list[float], z: list[float], _: list[float]) -> float:
+        """Coefficient k of theta''."""
+        moment: float = sum(map(mul, self.lift, x[k::-1])) - sum(map(mul, self.push, z[k::-1]))
+        return -moment * (self.unit2 / (self.inertia + x[0] ** 2 + z[0] ** 2))
+
+
+class _Slide:
+    """Moments about the centre, with the friction of a foot that slides."""
+
+    def __init__(self, inertia: float, unit: float, lift: Sequence[float], pull: float) -> None:
+        self.inertia, self.unit2, self.lift, self.pull = inertia, unit * unit, lift, pull
+        self.level: list[float] = []
+        self.stiffness: list[float] = []
+        self.square: list[float] = []
+        self.force: list[float] = []
+        self.found: list[float] = []
+        self.stiff = 1.0
+
+    def acceleration(self, k: int, x: list[float], z: list[float], spin: list[float]) -> float:
+        """Coefficient k of theta'' by division of series."""
+        self.level.append(x[k] + self.pull * z[k])
+        self.stiffness.append(sum(map(mul, x, self.level[k::-1])) + (self.inertia if k == 0 else 0.0))
+        self.square.append(sum(map(mul, spin, spin[k::-1])))
+        weight = self.lift[k] * self.unit2 if k < len(self.lift) else 0.0
+        self.force.append(weight + sum(map(mul, z, self.square[k::-1])))
+        if k == 0:
+            self.stiff = self.stiffness[0] / (self.inertia + x[0] ** 2)
+        known = sum(map(mul, self.level, self.force[k::-1])) + sum(map(mul, self.stiffness[1:], self.found[::-1]))
+        self.found.append(-known / self.stiffness[0] if self.stiffness[0] else float("nan"))
+        return self.found[-1]
+
+
+def turning(
+    inertia: float,
+    arm: tuple[float, float],
+    motion: tuple[float, float],
+    ground: tuple[Sequence[float], Sequence[float], float],
+    pull: float | None,
+    order: int,
+) -> Turning:
+    """Return the series of a body that turns about one foot.
+
+    Parameters
+    ----------
+    inertia : float
+        j = I_C / m [m2].
+    arm : (float, float)
+        r_x and r_z at the start [m].
+    motion : (float, float)
+        theta [rad] and theta' [rad/s] at the start.
+    ground : (sequence of float, sequence of float, float)
+        Coefficients of a_x and of g + a_z over the unit of time [m/s2], and that unit [s].
+    pull : float, optional
+        ``sigma mu`` where the foot slides; None where it sticks [-].
+    order : int
+        Highest power of theta.
+
+    Returns
+    -------
+    Turning
+        The series.
+
+    Examples
+    --------
+    >>> found = turning(1.0, (0.0, -1.0), (0.0, 0.0), ([2.0], [10.0], 1.0), None, 2)
+    >>> found.rotation  # theta'' = -a_x h / (j + h^2)
+    [0.0, 0.0, -0.5]
+    """
+    push, lift, unit = ground
+    law = _Stick(inertia, unit, push, lift) if pull is None else _Slide(inertia, unit, lift, pull)
+    rotation, spin = [motion[0], motion[1] * unit], [motion[1] * unit]
+    x, z = [arm[0]], [arm[1]]
+    floor, small, least = 1e-300, 0, len(push) + len(lift)
+    for k in range(order - 1):
+        spin.append(law.acceleration(k, x, z, spin) / (k + 1))
+        rotation.append(spin[-1] / (k + 2))
+        floor = max(floor, _SMALLEST * abs(spin[-1]), _SMALLEST * abs(spin[0]))
+        x_next = sum(map(mul, spin, z[k::-1])) / (k + 1)
+        z_next = -sum(map(mul, spin, x[k::-1])) / (k + 1)
+        x.append(x_next)
+        z.append(z_next)
+        small = small + 1 if abs(spin[-1]) <= floor and k >= least else 0
+        if small == 3:
+            break
+    return Turning(rotation, x, z, law.stiff)

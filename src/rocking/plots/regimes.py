@@ -1,0 +1,184 @@
+"""Regimes in pictures: Shenton's map, and a planar response with its regimes coloured."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.dynamics.planar.mode import Regime
+from rocking.dynamics.planar.response import PlanarResponse
+from rocking.dynamics.planar.shenton import friction_demand, regime_map
+from rocking.errors import InvalidValueError
+from rocking.plots.style import DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COLOURS = {
+    Regime.REST: "#ffffff",
+    Regime.SLIDE: "#F0E442",
+    Regime.ROCK: "#9BCDEB",
+    Regime.SLIDE_ROCK: "#8FD6BE",
+    Regime.FLIGHT: "#E8BAD3",
+}
+"""One pale colour a regime, after Okabe and Ito."""
+
+_NAMES = {
+    Regime.REST: "rest",
+    Regime.SLIDE: "slide",
+    Regime.ROCK: "rock",
+    Regime.SLIDE_ROCK: "slide and rock",
+    Regime.FLIGHT: "flight",
+}
+_LINE, _IMPACT = "#0072B2", "#D55E00"
+
+
+@in_journal_style
+def regime_map_picture(body: Body, largest: float = 1.5, cells: int = 40) -> "Figure":
+    """Draw what a body at rest starts to do under a sudden ground acceleration: complementarity against boundaries.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    largest : float
+        Largest acceleration over gravity, and largest friction [-].
+    cells : int
+        Cells along each axis, from 2 to 400.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Cells computed by complementarity, lines by Shenton's closed forms.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or nothing rocks below the largest acceleration.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> len(regime_map_picture(rk.Block(width=1.0, height=4.0), cells=4).axes)
+    1
+    """
+    largest = checks.within("largest", largest, 0.0, 100.0, open_low=True)
+    count: object = cells
+    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= 400:
+        raise InvalidValueError(f"cells must be a whole number in [2, 400], got {cells!r}")
+    slender = body.side("left").half_width / body.side("left").centre_height
+    if not slender < largest:
+        raise InvalidValueError(f"largest must be above b / h = {slender:g}, where the body is lifted, got {largest:g}")
+    figure, (axes,) = new_figure(SINGLE, 0.95 * SINGLE)
+    middles = (np.arange(count) + 0.5) * largest / count
+    _cells(axes, regime_map(body, middles, middles), largest)
+    _boundaries(axes, body, slender, largest)
+    axes.set(xlim=(0.0, largest), ylim=(0.0, largest))
+    axes.set(xlabel="ground acceleration over gravity [-]", ylabel="coefficient of friction [-]")
+    axes.set_title("cells: complementarity;  lines: closed form", loc="left", fontsize=7)
+    return figure
+
+
+def _cells(axes: "Axes", codes: np.ndarray, largest: float) -> None:
+    from matplotlib.colors import ListedColormap
+
+    colours = ListedColormap([COLOURS[regime] for regime in Regime])
+    axes.imshow(
+        codes, origin="lower", extent=(0.0, largest, 0.0, largest), cmap=colours, vmin=-0.5, vmax=len(Regime) - 0.5,
+        aspect="auto", interpolation="nearest",
+    )  # fmt: skip
+    step = largest / len(codes)
+    for regime in Regime:
+        rows, places = np.nonzero(codes == regime.code)
+        if rows.size > 0.04 * codes.size:
+            middle = np.array([np.median(places), np.median(rows)])
+            near = np.argmin((places - middle[0]) ** 2 + (rows - middle[1]) ** 2)
+            x, y = (places[near] + 0.5) * step, (rows[near] + 0.5) * step
+            upright = 90.0 if np.ptp(places) < 0.35 * len(codes) < np.ptp(rows) else 0.0
+            axes.text(x, y, _NAMES[regime], ha="center", va="center", fontsize=7, color=INK, rotation=upright)
+
+
+def _boundaries(axes: "Axes", body: Body, slender: float, largest: float) -> None:
+    axes.plot([0.0, slender, slender], [0.0, slender, largest], color=INK, linewidth=1.0)
+    axes.plot([slender, largest], [slender, slender], color=INK, linewidth=1.0)
+    pushes = np.linspace(slender * (1.0 + 1e-12), largest, 200)
+    axes.plot(pushes, [friction_demand(body, push) for push in pushes.tolist()], color=INK, linewidth=1.0)
+
+
+@in_journal_style
+def regimes_picture(response: PlanarResponse) -> "Figure":
+    """Draw a planar response over its regimes: rotation, place of the centre, energy.
+
+    Parameters
+    ----------
+    response : PlanarResponse
+        What `simulate_with_contact` returned.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Four panels over one time axis, the regimes as coloured bands.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.dynamics.planar.histories import simulate_with_contact
+    >>> pulse = rk.pulses.sine(amplitude=4.0, period=0.8)
+    >>> len(regimes_picture(simulate_with_contact(rk.Block(width=1.0, height=2.0), pulse, friction=0.3)).axes)
+    4
+    """
+    figure, axes = new_figure(DOUBLE, 5.2, rows=4, sharex=True, height_ratios=[1.5, 1.0, 0.8, 1.2])
+    title = response.summary[:1].upper() + response.summary[1:]
+    figure.suptitle(title[:118], x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    panels = (
+        (np.degrees(response.rotation), "rotation\n[degrees]"),
+        (response.displacement, "centre to\nthe right [m]"),
+        (response.rise, "centre\nraised [m]"),
+    )
+    for panel, (values, label) in zip(axes, panels, strict=False):
+        panel.axhline(0.0, color=PALE, linewidth=0.6, zorder=1)
+        panel.plot(response.time, values, color=_LINE, linewidth=0.9, zorder=3)
+        panel.set_ylabel(label)
+    times = response.impacts["time"]
+    turned = np.degrees(response.at(times)[:, 2])
+    axes[0].plot(times, turned, "o", markersize=2.6, markerfacecolor="white", color=_IMPACT, zorder=4)
+    _energy(axes[3], response)
+    _bands(axes, response)
+    axes[0].set_xlim(0.0, max(float(response.time[-1]), response.segments.step))
+    axes[-1].set_xlabel("time [s]")
+    figure.align_ylabels(axes)
+    return figure
+
+
+def _energy(axes: "Axes", response: PlanarResponse) -> None:
+    energy = response.energy
+    rows = (
+        ("kinetic and potential", energy.kinetic + energy.potential, INK, "-"),
+        ("work of the ground", energy.work, GREY, ":"),
+        ("lost in impacts", energy.lost_in_impacts, _IMPACT, "-."),
+        ("lost in friction", energy.lost_in_friction, "#009E73", "--"),
+    )
+    for label, values, colour, line in rows:
+        axes.plot(energy.time, values, color=colour, linestyle=line, linewidth=0.9, label=label, zorder=3)
+    axes.set_ylabel("energy [J]")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.0, borderpad=0.2)
+
+
+def _bands(axes: list["Axes"], response: PlanarResponse) -> None:
+    from matplotlib.patches import Patch
+
+    regimes = response.regimes
+    for regime in Regime:
+        mine = regimes[regimes["regime"] == regime.name]
+        for panel in axes:
+            spans = list(zip(mine["start"], mine["end"] - mine["start"], strict=True))
+            panel.broken_barh(
+                spans, (0.0, 1.0), transform=panel.get_xaxis_transform(), color=COLOURS[regime], linewidth=0.0, zorder=0
+            )
+    seen = [regime for regime in Regime if regime.name in set(regimes["regime"])]
+    patches = [Patch(facecolor=COLOURS[r], edgecolor=GREY, linewidth=0.4, label=_NAMES[r]) for r in seen]
+    axes[0].legend(
+        handles=patches, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=5, borderaxespad=0.0, borderpad=0.2
+    )

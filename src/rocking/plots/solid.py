@@ -1,0 +1,224 @@
+"""Bodies in space and where they lose energy: shaded pictures, slices and layers."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.bodies.solid import Edge, RoundBase, Solid, SupportPolygon, box, voxels
+from rocking.bodies.solid.triangle_surface import TriangleSurface
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.plots.style import DOUBLE, GREY, INK, SINGLE, in_journal_style, new_figure
+from rocking.restitution.spatial import SpatialRestitution, UnitEnergies, lost_density, unit_energies
+from rocking.restitution.spatial.geometry import SpatialImpact
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_LIGHT = np.array([0.4, -0.7, 0.6]) / np.linalg.norm([0.4, -0.7, 0.6])
+_COLOURS = "cividis"
+_MOST_TRIANGLES = 60_000
+
+
+@in_journal_style
+def solid_picture(solid: Solid, *, azimuth: float = -60.0, elevation: float = 18.0) -> "Figure":
+    """Draw a body on its base, seen along parallel rays.
+
+    Parameters
+    ----------
+    solid : Solid
+        The body.
+    azimuth, elevation : float
+        Direction it is seen from [degree].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel.
+    """
+    figure, (axes,) = new_figure(SINGLE, 4.0)
+    triangles = _surface(solid, 8)
+    _shaded(axes, triangles, None, _frame(azimuth, elevation))
+    _base(axes, solid, _frame(azimuth, elevation))
+    axes.set_title(f"{solid.mass:.4g} kg, centre {solid.centre[2] - solid.ground:.4g} m high", loc="left")
+    return figure
+
+
+@in_journal_style
+def energy_picture(
+    result: SpatialRestitution, *, divisions: int = 16, azimuth: float = -60.0, elevation: float = 18.0
+) -> "Figure":
+    """Draw where a body loses its energy in an impact: unit by unit, in an upright slice, and layer by layer.
+
+    Parameters
+    ----------
+    result : SpatialRestitution
+        The impact.
+    divisions : int
+        Cubes along the longest side of the body [-].
+    azimuth, elevation : float
+        Direction it is seen from [degree].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels: J a unit, J/m3 in the slice through the centre across the axis, J a layer.
+    """
+    impact = result.impact
+    figure, axes = new_figure(DOUBLE, 3.4, columns=3, width_ratios=[1.0, 1.0, 0.7])
+    step = impact.solid.size / divisions
+    energies = unit_energies(impact, voxels(impact.solid, divisions))
+    frame = _frame(azimuth, elevation)
+    picture = _shaded(axes[0], *_cubes(energies, 0.94 * step), frame)
+    figure.colorbar(picture, ax=axes[0], label="energy lost [J a unit]", shrink=0.7)
+    axes[0].set_title(f"{len(energies.units)} units", loc="left")
+    image = _slice(axes[1], impact, 8 * divisions)
+    figure.colorbar(image, ax=axes[1], label="energy lost [J/m$^3$]", shrink=0.7)
+    _layers(axes[2], energies, step, result)
+    return figure
+
+
+@in_journal_style
+def slices_picture(result: SpatialRestitution, heights: FloatArray, *, divisions: int = 24) -> "Figure":
+    """Draw the energy lost in level slices of a body.
+
+    Parameters
+    ----------
+    result : SpatialRestitution
+        The impact.
+    heights : ndarray, shape (n,)
+        Heights of the slices over the ground [m].
+    divisions : int
+        Points along each side of a slice, times four [-].
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        One panel a slice, one colour bar [J/m3].
+
+    Raises
+    ------
+    InvalidValueError
+        If a slice misses the body.
+    """
+    impact, fields = result.impact, []
+    for height in np.atleast_1d(heights).tolist():
+        field, extent = _level(impact, height, 4 * divisions)
+        if np.isnan(field).all():
+            raise InvalidValueError(f"the slice at a height of {height:g} m misses the body")
+        fields.append((height, field, extent))
+    figure, axes = new_figure(DOUBLE, 2.6, columns=len(fields))
+    top = max(float(np.nanmax(field)) for _, field, _ in fields)
+    for panel, (height, field, extent) in zip(axes, fields, strict=True):
+        image = panel.imshow(field.T, origin="lower", extent=extent, cmap=_COLOURS, vmin=0.0, vmax=top)
+        panel.set_title(f"z = {height:.3g} m", loc="left")
+        panel.set_xlabel("x [m]")
+    axes[0].set_ylabel("y [m]")
+    figure.colorbar(image, ax=axes, label="energy lost [J/m$^3$]", shrink=0.8)
+    return figure
+
+
+def _surface(solid: Solid, divisions: int) -> FloatArray:
+    pieces = []
+    for part in solid.local_parts:
+        for surface in part.surfaces():
+            fine = isinstance(surface, TriangleSurface) and len(surface.corners) * divisions**2 > _MOST_TRIANGLES
+            pieces.append(surface.triangles(1 if fine else divisions))
+    return np.concatenate(pieces)
+
+
+def _frame(azimuth: float, elevation: float) -> FloatArray:
+    turn, tilt = np.deg2rad(azimuth), np.deg2rad(elevation)
+    right = np.array([-np.sin(turn), np.cos(turn), 0.0])
+    toward = np.array([np.cos(tilt) * np.cos(turn), np.cos(tilt) * np.sin(turn), np.sin(tilt)])
+    return np.stack([right, np.cross(toward, right), toward])
+
+
+def _shaded(axes: "Axes", triangles: FloatArray, values: FloatArray | None, frame: FloatArray) -> Any:
+    from matplotlib import colormaps
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import Normalize
+
+    seen = triangles @ frame.T
+    normals = np.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    front = np.flatnonzero(normals[:, 2] > 0.0)
+    # the painter's order: far faces first
+    front = front[np.argsort(seen[front, :, 2].mean(axis=1), kind="stable")]
+    scale = Normalize(0.0, float(values.max()) if values is not None else 1.0)
+    colours = np.full((len(front), 4), 0.8) if values is None else colormaps[_COLOURS](scale(values[front]))
+    light = 0.6 + 0.4 * np.maximum(normals[front] @ (frame @ _LIGHT), 0.0)
+    colours[:, :3] *= light[:, None] if values is None else (0.8 + 0.2 * light)[:, None]
+    colours[:, 3] = 1.0
+    axes.add_collection(
+        PolyCollection(list(seen[front, :, :2]), facecolors=colours, edgecolors=colours, linewidths=0.2)
+    )
+    axes.set_aspect("equal")
+    axes.autoscale_view()
+    axes.set_axis_off()
+    return ScalarMappable(scale, _COLOURS)
+
+
+def _base(axes: "Axes", solid: Solid, frame: FloatArray) -> None:
+    base = solid.local_base
+    if isinstance(base, SupportPolygon):
+        flat = base.vertices
+    else:
+        phi = np.linspace(0.0, 2.0 * np.pi, 90)
+        circle = base if isinstance(base, RoundBase) else RoundBase(np.zeros(2), 0.0)
+        flat = circle.centre + circle.radius * np.stack([np.cos(phi), np.sin(phi)], axis=1)
+    ring = np.column_stack([flat, np.zeros(len(flat))])[[*range(len(flat)), 0]] @ frame.T
+    axes.plot(ring[:, 0], ring[:, 1], color=INK, linewidth=0.8)
+    centre = frame @ solid.local_moments.centre
+    axes.plot([centre[0]], [centre[1]], marker="+", color=INK)
+
+
+def _cubes(energies: UnitEnergies, side: float) -> tuple[FloatArray, FloatArray]:
+    cube = box(side, side, side).corners - np.array([0.0, 0.0, 0.5 * side])
+    triangles = (energies.units.centre[:, None, None] + cube).reshape(-1, 3, 3)
+    return triangles, np.repeat(energies.lost, len(cube))
+
+
+def _slice(axes: "Axes", impact: SpatialImpact, count: int) -> Any:
+    # the upright plane through the centre, across the axis that the body turns about
+    along = impact.onto.direction if isinstance(impact.onto, Edge) else impact.velocity / impact.speed
+    across = np.array([along[1], -along[0], 0.0])
+    across /= max(float(np.linalg.norm(across)), 1e-300)
+    centre, (low, high) = impact.solid.local_moments.centre, impact.solid.box - impact.solid.origin
+    reach = 0.5 * float(np.linalg.norm((high - low)[:2]))
+    share = (np.arange(count) + 0.5) / count
+    s, z = np.meshgrid(reach * (2.0 * share - 1.0), high[2] * share, indexing="ij")
+    points = np.array([centre[0], centre[1], 0.0]) + s[..., None] * across + z[..., None] * np.array([0.0, 0.0, 1.0])
+    field = _field(impact, points.reshape(-1, 3)).reshape(count, count)
+    image = axes.imshow(field.T, origin="lower", extent=(-reach, reach, 0.0, float(high[2])), cmap=_COLOURS, vmin=0.0)
+    axes.set_xlabel("across the axis [m]")
+    axes.set_ylabel("height [m]")
+    axes.set_title("upright slice through the centre", loc="left")
+    return image
+
+
+def _layers(axes: "Axes", energies: UnitEnergies, step: float, result: SpatialRestitution) -> None:
+    count = int(np.ceil(float(energies.units.centre[:, 2].max()) / step))
+    ends, lost = energies.layers(count, count * step)
+    axes.barh(0.5 * (ends[1:] + ends[:-1]), lost, height=0.9 * np.diff(ends), color=GREY)
+    axes.set_xlabel("energy lost [J a layer]")
+    axes.set_title(f"{result.model.name}: r = {result.coefficient:.4f}", loc="left")
+
+
+def _field(impact: SpatialImpact, points: FloatArray) -> FloatArray:
+    field = np.full(len(points), np.nan)
+    for part in impact.solid.local_parts:
+        held = part.contains(points)
+        field[held] = lost_density(impact, part, points[held])
+    return field
+
+
+def _level(impact: SpatialImpact, height: float, count: int) -> tuple[FloatArray, tuple[float, float, float, float]]:
+    low, high = impact.solid.box - impact.solid.origin
+    share = (np.arange(count) + 0.5) / count
+    x, y = (low[i] + (high[i] - low[i]) * share for i in range(2))
+    points = np.stack(np.meshgrid(x, y, [height], indexing="ij"), axis=-1).reshape(-1, 3)
+    field = _field(impact, points)
+    return field.reshape(count, count), (float(low[0]), float(high[0]), float(low[1]), float(high[1]))

@@ -1,0 +1,27 @@
+"""What an impact costs a body in space: corner to corner, edge to edge, corner to edge."""
+
+from rocking.restitution.spatial.energies import UnitEnergies, lost_density, unit_energies
+from rocking.restitution.spatial.geometry import SpatialImpact
+from rocking.restitution.spatial.horizontal_momentum import SpatialHorizontalMomentum
+from rocking.restitution.spatial.housner import SpatialHousner
+from rocking.restitution.spatial.interface import edge_coefficient, impact_in_space, spatial_model, spatial_models
+from rocking.restitution.spatial.ked import SpatialKed, energy_left
+from rocking.restitution.spatial.model import SpatialFlag, SpatialModel, SpatialRestitution
+
+__all__ = [
+    "SpatialFlag",
+    "SpatialHorizontalMomentum",
+    "SpatialHousner",
+    "SpatialImpact",
+    "SpatialKed",
+    "SpatialModel",
+    "SpatialRestitution",
+    "UnitEnergies",
+    "edge_coefficient",
+    "energy_left",
+    "impact_in_space",
+    "lost_density",
+    "spatial_model",
+    "spatial_models",
+    "unit_energies",
+]

@@ -1,0 +1,259 @@
+"""Surface meshes: what is repaired and said, what is refused and why."""
+
+import math
+import struct
+
+import numpy as np
+import pytest
+
+from rocking.bodies.formats.mesh import mesh_from_file, solid_from_mesh
+from rocking.bodies.solid import Polyhedron, box
+from rocking.bodies.solid.repair import repaired
+from rocking.errors import BodyFileError, GeometryError, InvalidValueError
+
+trimesh = pytest.importorskip("trimesh")
+
+CUBE = box(1.0, 1.0, 4.0)
+V, F = CUBE.vertices, CUBE.faces
+MASS, SPIN = 4000.0, (4000.0 * 17.0 / 12.0, 4000.0 * 17.0 / 12.0, 4000.0 / 6.0)
+
+
+def saved(folder, vertices, faces, name):
+    path = folder / name
+    trimesh.Trimesh(vertices, faces, process=False).export(path)
+    return path
+
+
+def triangle_soup(vertices, faces):
+    corners = vertices[faces].reshape(-1, 3)
+    return corners, np.arange(len(corners)).reshape(-1, 3)
+
+
+def sphere(divisions=3):
+    found = trimesh.creation.icosphere(divisions)
+    return np.array(found.vertices), np.array(found.faces)
+
+
+@pytest.mark.parametrize("name", ["a.stl", "a.obj", "a.ply", "a.glb"])
+def test_formats(tmp_path, name):
+    """Every format gives the prism's mass and inertia; STL, which repeats every corner, says that it was welded."""
+    solid, repairs = solid_from_mesh(saved(tmp_path, V, F, name), 1000.0, units="m")
+    assert solid.mass == pytest.approx(MASS, rel=1e-12)
+    assert np.diag(solid.inertia) == pytest.approx(SPIN, rel=1e-12)
+    assert len(solid.base.vertices) == 4
+    assert [text.startswith("merged 28 of 36 vertices") for text in repairs] == [True] * (name == "a.stl")
+
+
+def test_units_and_axis(tmp_path):
+    """Millimetres are told, not guessed; y up stands the body up."""
+    path = saved(tmp_path, V * 1000.0, F, "a.stl")
+    assert solid_from_mesh(path, 1000.0, units="mm")[0].mass == pytest.approx(MASS, rel=1e-6)
+    lying = saved(tmp_path, V[:, [0, 2, 1]] * [1, 1, -1], F, "b.glb")
+    assert solid_from_mesh(lying, 1000.0, units="m", up="y")[0].centre[2] == pytest.approx(2.0)
+    with pytest.raises(TypeError):
+        mesh_from_file(path)
+    with pytest.raises(InvalidValueError, match="length unit"):
+        mesh_from_file(path, units="km")
+    with pytest.raises(InvalidValueError, match="up must be"):
+        mesh_from_file(path, units="m", up="x")
+    with pytest.raises(BodyFileError, match=r"1000 x 1000 x 4000 m, read in m; is that the file's unit"):
+        mesh_from_file(path, units="m")
+    doubt = mesh_from_file(saved(tmp_path, V * 10.0, F, "c.stl"), units="m").repairs[-1]
+    assert "please check the unit" in doubt
+
+
+def test_flipped_faces():
+    """Faces that look the wrong way are turned back, and the sentence counts them."""
+    faces = F.copy()
+    faces[[3, 5, 8]] = faces[[3, 5, 8], ::-1]
+    done = repaired(V, faces)
+    assert done.repairs == ("turned round 3 of 12 faces that looked the other way than their neighbours",)
+    assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-14)
+    # negative controls: as they are they are refused, and the bare sum is wrong
+    with pytest.raises(GeometryError, match="not closed and oriented"):
+        Polyhedron(V, faces)
+    a, b, c = np.moveaxis(V[faces], 1, 0)
+    assert abs(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0 - 4.0) > 0.1
+
+
+def test_inside_out():
+    """A surface that is inside out as a whole is turned, and said to be."""
+    assert repaired(V, F[:, ::-1]).repairs == ("turned 1 shell(s), 12 faces, inside out",)
+
+
+def test_unwelded():
+    """A soup of triangles is welded first; without welding nothing is closed, so that nothing is integrated."""
+    vertices, faces = triangle_soup(V, F)
+    done = repaired(vertices, faces)
+    assert len(done.shape.vertices) == 8
+    with pytest.raises(GeometryError, match="36 edges lack a neighbour"):
+        Polyhedron(vertices, faces)
+
+
+def test_nearly_equal_vertices():
+    """Corners that rounding pulled apart are merged within 1e-6 of the size; wider gaps are refused."""
+    vertices, faces = triangle_soup(V, F)
+    noise = np.random.default_rng(1).normal(size=vertices.shape)
+    done = repaired(vertices + 1e-7 * noise, faces)
+    assert "within 4e-06 m" in done.repairs[0]
+    assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-5)
+    with pytest.raises(GeometryError, match="not closed"):
+        repaired(vertices + 1e-3 * noise, faces)
+    assert repaired(vertices + 1e-4 * noise, faces, weld_tolerance=2e-3).shape.moments().mass == pytest.approx(
+        4.0, rel=1e-3
+    )
+
+
+def test_missing_face():
+    """A hole is described and refused; one of 12 % of the surface is not filled even on request."""
+    with pytest.raises(GeometryError, match=r"1 hole\(s\): 4\.12 m wide \(3 edges\)"):
+        repaired(V, F[:-1])
+    with pytest.raises(GeometryError, match="are 12 % of the surface; only up to 1 %"):
+        repaired(V, F[:-1], fill_holes=True)
+
+
+def test_small_hole():
+    """A hole of a thousandth of a sphere is filled on request, said, and costs no more than that of the volume."""
+    vertices, faces = sphere()
+    whole = repaired(vertices, faces).shape.moments().mass
+    keep = np.ones(len(faces), dtype=bool)
+    keep[7] = False
+    with pytest.raises(GeometryError, match="fill_holes=True"):
+        repaired(vertices, faces[keep])
+    done = repaired(*triangle_soup(vertices, faces[keep]), fill_holes=True)
+    assert done.repairs[-1].startswith("filled 1 hole(s), together 0.074 %")
+    assert done.shape.moments().mass == pytest.approx(whole, rel=1e-12)  # a fan over a flat triangle is the triangle
+
+
+def test_duplicates_and_degenerates():
+    """Doubled faces and faces without area disappear, and are counted."""
+    faces = np.concatenate([F, F[:2], [[0, 0, 1]]])
+    done = repaired(V, faces)
+    assert done.repairs == (
+        "removed 1 faces that had shrunk to an edge or a point",
+        "removed 2 faces that lay on top of others",
+    )
+    assert done.shape.moments().mass == pytest.approx(4.0, rel=1e-14)
+
+
+def test_zero_volume():
+    """A sheet with two sides encloses nothing and is refused."""
+    with pytest.raises(GeometryError, match="nothing is left between"):
+        repaired(V * [1.0, 1.0, 0.0], F)
+    folded = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
+    with pytest.raises(GeometryError, match="no volume"):
+        repaired(folded, np.array([[0, 1, 2], [0, 2, 3], [1, 0, 3], [1, 3, 2]]))
+
+
+def test_nan():
+    """A vertex that is not a number is named."""
+    vertices = V.copy()
+    vertices[5, 1] = math.nan
+    with pytest.raises(GeometryError, match="vertex 5 must be finite"):
+        repaired(vertices, F)
+
+
+def test_shells():
+    """Prisms that share an edge add up, one inside another is a cavity, crossing ones are refused."""
+    other = np.concatenate([F, F + 8])
+    beside = repaired(np.concatenate([V, V + np.array([1.0, 1.0, 0.0])]), other)
+    assert beside.shape.moments().mass == pytest.approx(8.0, rel=1e-13)
+    assert "2 separate shells, 0 of them cavities" in beside.repairs[-1]
+    hollow = repaired(np.concatenate([V, V * 0.5 + [0.0, 0.0, 1.0]]), other)
+    assert hollow.shape.moments().mass == pytest.approx(3.5, rel=1e-13)
+    assert "1 of them cavities" in hollow.repairs[-1]
+    for shift in ([0.5, 0.5, 0.0], [0.5, 0.5, 1.0], [0.3, 0.0, 2.0]):
+        with pytest.raises(GeometryError, match="pass through each other"):
+            repaired(np.concatenate([V, V + shift]), other)
+
+
+def test_one_sided_surface():
+    """A Moebius band has an open edge; neither it nor what a fan makes of it becomes a body."""
+    count = 12
+    turn = 2.0 * math.pi * np.arange(count) / count
+    rim = np.stack([np.cos(turn), np.sin(turn), 0.0 * turn], axis=1)
+    half = 0.5 * np.stack([np.cos(turn / 2) * np.cos(turn), np.cos(turn / 2) * np.sin(turn), np.sin(turn / 2)], axis=1)
+    vertices = np.concatenate([rim + half, rim - half])
+    faces = []
+    for i in range(count):
+        j, k = (i + 1) % count, i + count
+        m = j + count
+        if j == 0:
+            j, m = m, j
+        faces += [(i, j, k), (j, m, k)]
+    for fill in (False, True):
+        with pytest.raises(GeometryError):
+            repaired(vertices, np.array(faces), fill_holes=fill)
+
+
+def test_dust():
+    """Hundreds of loose pieces are refused rather than added to the body."""
+    shifts = np.stack([3.0 * np.arange(201.0), np.zeros(201), np.zeros(201)], axis=1)
+    vertices = (V[None] + shifts[:, None]).reshape(-1, 3)
+    faces = (F[None] + 8 * np.arange(201)[:, None, None]).reshape(-1, 3)
+    with pytest.raises(GeometryError, match="201 pieces"):
+        repaired(vertices, faces)
+
+
+def test_far_from_the_origin(tmp_path):
+    """In double precision a mesh at 1e6 m keeps its inertia to 1e-9; single precision is found out."""
+    offset = np.array([1e6, 2e6, 0.0])
+    solid, _ = solid_from_mesh(saved(tmp_path, V + offset, F, "a.obj"), 1000.0, units="m")
+    assert np.diag(solid.inertia) == pytest.approx(SPIN, rel=1e-9)
+    assert solid.centre == pytest.approx([1e6, 2e6, 2.0], rel=1e-12)
+    with pytest.raises(BodyFileError, match="single-precision"):
+        mesh_from_file(saved(tmp_path, V + offset, F, "a.stl"), units="m")
+    near = mesh_from_file(saved(tmp_path, V + np.array([3000.0, 0.0, 0.0]), F, "b.stl"), units="m")
+    assert "single-precision coordinates far from the origin" in near.repairs[-1]
+
+
+@pytest.mark.parametrize("name", ["a.stl", "a.obj", "a.ply", "a.glb"])
+def test_damaged_files(tmp_path, name):
+    """Cut short anywhere, empty, or garbage: never a body that differs from the whole one."""
+    whole = saved(tmp_path, *sphere(1), name).read_bytes()
+    path = tmp_path / name
+    for share in (0.0, 0.1, 0.5, 0.9, 0.99):
+        path.write_bytes(whole[: int(share * len(whole))])
+        with pytest.raises((BodyFileError, GeometryError), match=name):
+            mesh_from_file(path, units="m")
+    path.write_bytes(b"\x00nonsense" * 40)
+    with pytest.raises(BodyFileError, match=name):
+        mesh_from_file(path, units="m")
+
+
+def test_headers_that_lie(tmp_path):
+    """A binary STL with another number of faces than its bytes hold, and an ASCII one without an end, are refused."""
+    path = saved(tmp_path, V, F, "a.stl")
+    content = bytearray(path.read_bytes())
+    content[80:84] = struct.pack("<I", 11)
+    path.write_bytes(content)
+    with pytest.raises(BodyFileError, match="11 faces its header states"):
+        mesh_from_file(path, units="m")
+    text = trimesh.Trimesh(V, F, process=False).export(file_type="stl_ascii")
+    path.write_text(text.replace("endsolid", ""))
+    with pytest.raises(BodyFileError, match="no endsolid"):
+        mesh_from_file(path, units="m")
+    path.write_text(text)
+    assert mesh_from_file(path, units="m").shape.moments().mass == pytest.approx(4.0, rel=1e-6)
+
+
+def test_other_files(tmp_path):
+    """No such file, no such format, no triangles: a sentence each."""
+    with pytest.raises(BodyFileError, match="there is no such file"):
+        mesh_from_file(tmp_path / "a.stl", units="m")
+    (tmp_path / "a.step").write_text("x")
+    with pytest.raises(BodyFileError, match="stl, obj, ply, glb"):
+        mesh_from_file(tmp_path / "a.step", units="m")
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n")
+    with pytest.raises(BodyFileError, match="no triangles"):
+        mesh_from_file(tmp_path / "a.obj", units="m")
+
+
+def test_scans_stand_on_a_tolerance(tmp_path):
+    """A base that is uneven by millimetres stands on one corner by default, on all of them within a tolerance."""
+    vertices = V.copy()
+    vertices[[1, 2, 3], 2] += [0.001, 0.0015, 0.002]
+    path = saved(tmp_path, vertices, F, "a.obj")
+    with pytest.raises(GeometryError, match="raise base_tolerance"):
+        solid_from_mesh(path, units="m")
+    assert len(solid_from_mesh(path, units="m", base_tolerance=0.003)[0].base.vertices) == 4

@@ -1,0 +1,205 @@
+"""Contact mechanics of the planar engine: footing, impacts, margins, choice of the mode."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rocking.bodies import Block, Section
+from rocking.bodies.region import Region
+from rocking.dynamics.planar.choosing import Choice, candidates, choose
+from rocking.dynamics.planar.course import course
+from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
+from rocking.dynamics.planar.ground import Ground
+from rocking.dynamics.planar.impact import Struck, strike
+from rocking.dynamics.planar.imposed import strike_with
+from rocking.dynamics.planar.margins import Kind, Margin, consistent, first_end, leading
+from rocking.dynamics.planar.mode import FLIGHT, REST, Mode, Regime
+from rocking.dynamics.planar.outcome import PlanarStatus
+from rocking.dynamics.planar.power_series import derivative, integral, value
+from rocking.dynamics.planar.state import State, along, away, kept, kinetic
+
+G = 9.80665
+TALL = Footing.of_body(Block(width=1.0, height=2.0))
+STILL = Ground([0.0], [G], 0.3)
+
+
+def _tilted(rotation, spin, slip=0.0):
+    """A body on its right foot, which slides at a speed."""
+    r_x, r_z = TALL.arm(RIGHT, rotation)
+    return State(0.0, TALL.rise_on(RIGHT, rotation), rotation, slip - r_z * spin, r_x * spin, spin, (RIGHT,))
+
+
+def test_footing_of_a_block_is_its_half_sizes():
+    """b = 0.5 m, h = 1 m, I_C / m = (b^2 + h^2) / 3; the levers have signs."""
+    assert (TALL.left, TALL.right, TALL.height) == (0.5, 0.5, 1.0)
+    assert TALL.inertia == pytest.approx(1.25 / 3.0, rel=1e-15)
+    assert (TALL.lever(LEFT), TALL.lever(RIGHT)) == (-0.5, 0.5)
+
+
+def test_footing_of_a_section_with_other_feet():
+    """Feet at 0.1 and 0.7 m under a centre at 0.5 m."""
+    body = Section([Region([(0, 0), (1, 0), (1, 4), (0, 4)], 1.0)], feet=(0.1, 0.7))
+    footing = Footing.of_body(body)
+    assert footing.left == pytest.approx(0.4, rel=1e-14)
+    assert footing.right == pytest.approx(0.2, rel=1e-14)
+    assert footing.base == pytest.approx(0.6, rel=1e-14)
+
+
+@pytest.mark.parametrize("rotation", [-0.4, 1e-9, 0.7])
+def test_rise_is_the_height_of_the_centre_over_a_foot(rotation):
+    """-r_z - h, without its cancellation."""
+    for foot in BOTH:
+        assert TALL.rise_on(foot, rotation) == pytest.approx(-TALL.arm(foot, rotation)[1] - TALL.height, abs=2e-16)
+
+
+def test_modes_have_names():
+    """Ten modes, five regimes."""
+    modes = [Mode(BOTH), Mode(BOTH, 1), Mode((LEFT,)), Mode((RIGHT,), -1), Mode(())]
+    assert [mode.regime for mode in modes] == list(Regime)
+    assert [mode.carrier for mode in modes] == ["both", "both", "left", "right", "none"]
+
+
+@pytest.mark.parametrize("mode", [Mode((RIGHT,)), Mode((RIGHT,), 1), Mode((RIGHT,), -1)])
+def test_series_satisfy_newton_and_euler(mode):
+    """Forces from the series move the centre and turn the body: m x'' = F_t - m a_x, ..., at three instants."""
+    mu, state = 0.3, _tilted(0.2, -0.5, mode.slip * 0.4)
+    ground = Ground([1.0, -0.5], [G + 0.4, 0.3], 0.05)
+    found = course(TALL, state, mode, ground, mu, 30)
+    for at in (0.0, 0.4, 1.0):
+        second = [value(derivative(derivative(c)), at) / 0.05**2 for c in (found.x, found.rise, found.rotation)]
+        push, lift = 1.0 - 0.5 * at, G + 0.4 + 0.3 * at
+        normal, tangential = value(found.normals[RIGHT], at), value(found.tangential, at)
+        r_x, r_z = TALL.arm(RIGHT, value(found.rotation, at))
+        assert second[0] == pytest.approx(tangential - push, rel=1e-11, abs=1e-11)
+        assert second[1] == pytest.approx(normal - lift, rel=1e-11, abs=1e-11)
+        assert TALL.inertia * second[2] == pytest.approx(tangential * r_z - normal * r_x, rel=1e-11)
+        assert value(found.rise, at) == pytest.approx(-r_z - TALL.height, abs=1e-14)
+        if mode.slip:
+            assert tangential == pytest.approx(-mode.slip * mu * normal, rel=1e-14)
+
+
+def test_shorter_course_is_the_same_course():
+    """Half a course at 1 is the course at 1/2."""
+    found = course(TALL, _tilted(0.2, -0.5), Mode((RIGHT,)), STILL, 0.3, 30)
+    assert found.shortened(0.5).state(1.0, (RIGHT,))[:6] == pytest.approx(found.state(0.5, (RIGHT,))[:6], rel=1e-13)
+
+
+def test_integral_of_a_product():
+    """The integral of (1 + x) (x^2) from 0 to 2 is 8/3 + 4."""
+    assert integral(np.array([1.0, 1.0]), np.array([0.0, 0.0, 1.0]), 2.0) == pytest.approx(8.0 / 3.0 + 4.0)
+
+
+def test_impulses_change_the_momenta():
+    """Impulses at the feet account for all three momenta; signs of the laws hold; a wrong sign is caught."""
+    state = State(0.0, 0.0, 0.0, 0.7, -1.0, 0.4, BOTH)
+    for mu, e in ((0.1, 0.0), (0.5, 0.3), (2.0, 0.6)):
+        found = strike(TALL, state, mu, dict.fromkeys(BOTH, e))
+        assert isinstance(found, Struck)
+        normal, after = found.normal, found.state
+        total = sum(normal.values())
+        moment = -found.tangential * TALL.height - sum(p * TALL.lever(foot) for foot, p in normal.items())
+        assert after.u - state.u == pytest.approx(found.tangential, rel=1e-12)
+        assert after.w - state.w == pytest.approx(total, rel=1e-12)
+        assert TALL.inertia * (after.spin - state.spin) == pytest.approx(moment, rel=1e-12)
+        assert TALL.inertia * (after.spin - state.spin) != pytest.approx(-moment, rel=1e-3)
+        assert min(normal.values()) >= 0.0
+        assert abs(found.tangential) <= mu * total * (1.0 + 1e-12)
+        assert kinetic(TALL, after) < kinetic(TALL, state)
+
+
+def test_newton_and_coulomb_may_create_energy_and_then_there_is_no_result():
+    """A fast bounce of a foot under the body, found at random, gains energy: a status; its plastic twin is fine."""
+    rotation, spin = 1.3334259860891, -1.8520466144989
+    state = State(0.0, TALL.rise_on(RIGHT, rotation), rotation, -0.12833044107477, -0.64140325334667, spin, (RIGHT,))
+    assert strike(TALL, state, 3.0, {RIGHT: 0.9}) is PlanarStatus.ENERGY_GAIN
+    assert isinstance(strike(TALL, state, 3.0, {RIGHT: 0.0}), Struck)
+
+
+def test_plastic_impacts_never_create_energy():
+    """300 random impacts of one foot with e = 0: always one solution, v_n = 0 after it, and energy lost."""
+    rng = np.random.default_rng(5)
+    struck = 0
+    for _ in range(300):
+        rotation = float(rng.uniform(0.01, 1.4))
+        u, w, spin = rng.uniform(-1.0, 1.0, 3).tolist()
+        state = State(0.0, TALL.rise_on(RIGHT, rotation), rotation, u, w, spin, (RIGHT,))
+        if away(TALL, state, RIGHT) >= 0.0:
+            continue
+        found = strike(TALL, state, float(rng.uniform(0.0, 1.3)), {RIGHT: 0.0})
+        assert isinstance(found, Struck)
+        assert abs(away(TALL, found.state, RIGHT)) < 1e-14
+        assert kinetic(TALL, found.state) <= kinetic(TALL, state)
+        struck += 1
+    assert struck > 100
+
+
+def test_imposed_coefficient_that_presses_the_old_foot_down_is_left_to_complementarity():
+    """r = 0 for a slender body with no friction would turn it back: None."""
+    height, lever = 1.0, 0.5
+    state = State(0.0, 0.0, 0.0, height, -lever, 1.0, BOTH)
+    assert isinstance(strike_with(TALL, state, RIGHT, 1e6, 0.0), Struck)
+    assert strike_with(TALL, state, RIGHT, 0.0, 0.0) is None
+
+
+def test_imposed_coefficient_sets_the_place_of_the_impulse():
+    """r = 1 - 3 k / (2 (1 + lambda^2) ...): the shares of the feet say where the resultant is, by moments."""
+    state = State(0.0, 0.0, 0.0, 1.0, -0.5, 1.0, BOTH)
+    found = strike_with(TALL, state, RIGHT, 1e6, 0.85)
+    place = 0.5 * (found.normal[RIGHT] - found.normal[LEFT]) / sum(found.normal.values())
+    # moments about the centre: j (r - 1) = -h P_t - s P_n with P_t = h (r - 1), P_n = b (r + 1)
+    expected = 0.15 * (TALL.inertia + 1.0) / (0.5 * 1.85)
+    assert place == pytest.approx(expected, rel=1e-12)
+
+
+def test_candidates_are_what_velocities_allow():
+    """At rest all nine modes; sliding to the right only those that slide there, and flight."""
+    assert len(candidates(TALL, State())) == 10
+    assert candidates(TALL, State(u=1.0)) == [Mode(BOTH, 1), Mode((LEFT,), 1), Mode((RIGHT,), 1), FLIGHT]
+    assert candidates(TALL, State(rise=1.0, touching=())) == [FLIGHT]
+
+
+@pytest.mark.parametrize(("rate", "expected"), [(1e-3, Mode((LEFT,))), (-1e-3, REST)])
+def test_next_derivative_decides_at_the_threshold(rate, expected):
+    """At a_x = g b / h exactly, the push that grows lifts the body and the one that falls lets it rest."""
+    found = choose(TALL, State(), Ground([0.5 * G, rate], [G], 0.3), 1.0)
+    assert isinstance(found, Choice)
+    assert found.mode == expected
+
+
+def test_a_slide_that_stops_does_not_turn_round_without_a_push():
+    """At v_t = 0 on ground at rest the body rests; under a_x = 0.4 g with mu = 0.3 it slides to the left."""
+    assert choose(TALL, State(), STILL, 0.3).mode == REST
+    assert choose(TALL, State(), Ground([0.4 * G], [G], 0.3), 0.3).mode == Mode(BOTH, -1)
+
+
+def test_margins_start_with_their_first_coefficient_that_is_not_rounding():
+    """1e-15 counts as zero where rounding is possible, and as above zero where it is not."""
+    series = np.array([1e-15, -1.0, 0.0])
+    rounded, exact = (Margin(Kind.RELEASE, series, n, 1.0) for n in (0, 1))
+    assert leading(rounded, 1.0, 1e-12) == 1
+    assert not consistent([rounded], 1.0, 1e-12)
+    assert leading(exact, 1.0, 1e-12) == 0
+    assert consistent([exact], 1.0, 1e-12)
+    assert first_end([exact], 1.0, 1e-12)[0] == pytest.approx(1e-15)
+
+
+def test_first_end_is_the_earliest_zero():
+    """Of 1 - 2 x and 1 - 4 x^2 ... the one that falls first, with its kind; none where nothing falls."""
+    early, late = (
+        Margin(Kind.LANDING, np.array([1.0, -4.0]), 0, 1.0),
+        Margin(Kind.RELEASE, np.array([1.0, -2.0]), 0, 1.0),
+    )
+    assert first_end([late, early], 1.0, 1e-12) == (0.25, Kind.LANDING)
+    assert first_end([Margin(Kind.RELEASE, np.array([1.0, 2.0]), 0, 1.0)], 1.0, 1e-12) is None
+
+
+def test_kept_takes_out_rounding_exactly():
+    """After `kept` a foot that sticks has v_n = v_t = 0 to the last bit, and a flat body no turn."""
+    state = _tilted(0.3, 0.4)._replace(u=0.4001, w=0.2)
+    made = kept(TALL, state, (RIGHT,), stick=True)
+    assert away(TALL, made, RIGHT) == 0.0
+    assert along(TALL, made, RIGHT) == 0.0
+    flat = kept(TALL, State(rotation=1e-17, spin=1e-17), BOTH, stick=True)
+    assert (flat.rotation, flat.spin, flat.w) == (0.0, 0.0, 0.0)
+    assert math.copysign(1.0, kept(TALL, state, (), stick=True).u) == 1.0

@@ -1,0 +1,252 @@
+"""The planar response at its doors: refusals, outcomes, exports, forces, positions between samples."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rocking.bodies import Block
+from rocking.dynamics.impact_law import SpeedRestitution
+from rocking.dynamics.planar import (
+    PlanarOutcome,
+    PlanarStatus,
+    Regime,
+    Start,
+    friction_demand,
+    regime_at_start,
+    simulate_with_contact,
+)
+from rocking.dynamics.planar.export import COLUMNS
+from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulses import rectangular, sine
+
+G = 9.80665
+BODY = Block(width=1.0, height=2.0)
+
+
+@pytest.fixture(scope="module")
+def rocked():
+    """Sliding, rocking and impacts under a sine pulse."""
+    return simulate_with_contact(Block(width=1.2, height=2.0), sine(amplitude=9.0, period=0.9), 0.62)
+
+
+def test_outcomes_of_five_bodies(rocked):
+    """Rest, sliding, rocking, both, overturning: each has its sentence, with "overturned" only where it did."""
+    pulse = rectangular(4.0, 0.5)
+    found = [
+        simulate_with_contact(BODY, rectangular(1.0, 0.5), 0.5),
+        simulate_with_contact(BODY, pulse, 0.3),
+        simulate_with_contact(BODY, rectangular(6.0, 0.1), 1.0),
+        rocked,
+        simulate_with_contact(Block(width=0.2, height=2.0), pulse, 0.6),
+    ]
+    expected = [
+        PlanarOutcome.NO_MOTION,
+        PlanarOutcome.SLID,
+        PlanarOutcome.ROCKED,
+        PlanarOutcome.ROCKED_AND_SLID,
+        PlanarOutcome.OVERTURNED,
+    ]
+    assert [response.outcome for response in found] == expected
+    assert ["overturned" in response.summary for response in found] == [False, False, False, False, True]
+    assert found[-1].overturning_time > 0.0
+    assert found[-1].peak_rotation == pytest.approx(0.5 * math.pi, rel=1e-12)
+    assert math.isnan(rocked.overturning_time)
+    assert "slid" in repr(rocked)
+
+
+def test_body_that_rests_is_only_looked_up():
+    """A minute of ground that never moves the body: no sample moves, and the forces are its weight."""
+    motion = GroundMotion(np.full(6001, 0.5), 0.01)
+    response = simulate_with_contact(BODY, motion, 0.4)
+    assert not response.rotation.any()
+    assert not response.displacement.any()
+    assert response.forces.vertical[100] == pytest.approx(BODY.mass * G, rel=1e-14)
+    # moments: the left foot carries m (g b + a h) / (2 b)
+    assert response.forces.left[100] == pytest.approx(BODY.mass * (G * 0.5 + 0.5 * 1.0) / 1.0, rel=1e-13)
+    assert response.friction_usage == pytest.approx(0.5 / G / 0.4, rel=1e-12)
+
+
+def test_regimes_follow_without_gaps(rocked):
+    """Every interval starts where the last one ended, from 0 to the end; sliding adds up to the path."""
+    regimes = rocked.regimes
+    assert regimes["start"][0] == 0.0
+    assert np.array_equal(regimes["start"][1:], regimes["end"][:-1])
+    assert np.abs(regimes["distance"]).sum() == pytest.approx(rocked.sliding_distance, rel=1e-9)
+    assert np.all(np.sign(regimes["distance"]) == regimes["slip"])
+
+
+def test_positions_between_samples(rocked):
+    """At the samples `at` is the samples; between them velocities are their differences, to second order."""
+    place = rocked.at(rocked.time)
+    assert np.allclose(place[:, 2], rocked.rotation, rtol=0.0, atol=1e-14)
+    assert np.allclose(place[:, 0], rocked.displacement, rtol=0.0, atol=1e-14)
+    step = 1e-5
+    k = int(np.argmax(rocked.regime == Regime.ROCK.code)) + 2
+    around = rocked.at(rocked.time[k] + np.array([-step, step]))
+    assert (around[1, 2] - around[0, 2]) / (2.0 * step) == pytest.approx(rocked.angular_velocity[k], rel=1e-6)
+
+
+def test_times_outside_are_refused(rocked):
+    """Before the start, after the end, and NaN."""
+    for time in (-1.0, 1e3, math.nan):
+        with pytest.raises(InvalidValueError, match="time must be in"):
+            rocked.at(time)
+
+
+def test_impacts_have_impulses_that_press(rocked):
+    """Vertical impulses are never negative, friction stays within its cone, losses are positive."""
+    impacts = rocked.impacts
+    assert impacts.size > 2
+    for foot in ("left", "right"):
+        assert np.all(impacts[f"normal_{foot}"] >= 0.0)
+        assert np.all(np.abs(impacts[f"tangential_{foot}"]) <= 0.62 * impacts[f"normal_{foot}"] * (1.0 + 1e-9) + 1e-12)
+    assert np.all(impacts["lost"] > 0.0)
+
+
+def test_tables_hold_all_columns(rocked, tmp_path):
+    """Data frame, CSV and dataset agree to the last digit, with units."""
+    frame, data = rocked.to_dataframe(), rocked.to_xarray()
+    assert list(frame.columns) == [f"{name} [{unit}]" for name, unit, _ in COLUMNS]
+    path = rocked.to_csv(tmp_path / "planar.csv")
+    read = np.loadtxt(path, delimiter=",", skiprows=1)
+    assert np.array_equal(read, frame.to_numpy())
+    assert np.array_equal(data["rotation"].values, rocked.rotation)
+    assert data["rise"].attrs["units"] == "m"
+    assert data.attrs["friction"] == 0.62
+    assert data.sizes["impact"] == rocked.impacts.size
+
+
+def test_csv_needs_a_folder(rocked, tmp_path):
+    """A folder, or a file in none, is refused."""
+    for path in (tmp_path, tmp_path / "none" / "planar.csv"):
+        with pytest.raises(InvalidValueError, match="path must be a file"):
+            rocked.to_csv(path)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"friction": -0.1}, "friction must be in"),
+        ({"friction": math.inf}, "friction must be finite"),
+        ({"friction": math.nan}, "friction must be finite"),
+        ({"bounce": 1.0}, "bounce must be in"),
+        ({"scale": math.nan}, "scale must be finite"),
+        ({"duration": 0.0}, "duration must be > 0"),
+        ({"duration": 1e9}, "a shorter duration"),
+        ({"gravity": 0.0}, "gravity must be in"),
+        ({"rest_speed": 0.0}, "rest_speed must be in"),
+        ({"most_events": 0}, "most_events must be"),
+        ({"tolerance": 1.0}, "tolerance must be in"),
+        ({"order": 8}, "no option named 'order'"),
+        ({"start": 0.1}, "start must be a Start"),
+        ({"restitution": 1.5}, "would create energy"),
+        ({"restitution": SpeedRestitution((0.0, 1.0), (1.0, 0.9))}, "laws that change"),
+        ({"motion": 3.0}, "motion must be a GroundMotion"),
+        ({"body": 3.0}, "body must be a Block"),
+    ],
+)
+def test_bad_input_is_refused(options, words):
+    """Each refusal names the value and its range."""
+    given = {"body": BODY, "motion": rectangular(4.0, 0.5), "friction": 0.3, **options}
+    with pytest.raises(InvalidValueError, match=words):
+        simulate_with_contact(**given)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"rotation": 2.0}, {"height": -0.1}, {"vertical_velocity": math.nan}, {"angular_velocity": math.inf}]
+)
+def test_bad_starts_are_refused(wrong):
+    """Beyond a quarter turn, under the ground, not finite."""
+    with pytest.raises(InvalidValueError, match=next(iter(wrong))):
+        Start(**wrong)
+
+
+def test_settings_are_frozen_values():
+    """Defaults pass their own checks."""
+    assert PlanarSettings().rest_speed == 1e-7
+    assert ContactLaw(0.5) == ContactLaw(0.5, 0.0, None)
+
+
+def test_too_many_events_are_a_status():
+    """A history that is cut by its limit has no result."""
+    response = simulate_with_contact(BODY, None, 0.5, bounce=0.9, start=Start(height=0.1), most_events=5)
+    assert response.status is PlanarStatus.TOO_MANY_EVENTS
+    assert response.outcome is PlanarOutcome.FAILED
+    assert "no result" in response.summary
+
+
+def test_start_with_a_foot_that_hits_the_ground():
+    """A body that starts flat and turning rocks; one thrown down on its base stops at once."""
+    turning = simulate_with_contact(BODY, None, 1.0, start=Start(angular_velocity=0.5), duration=0.1)
+    assert turning.rotation[-1] > 0.0
+    assert turning.impacts.size == 0
+    thrown = simulate_with_contact(BODY, None, 1.0, start=Start(vertical_velocity=-1.0), duration=0.1)
+    assert thrown.impacts.size == 1
+    assert thrown.energy.lost_in_impacts[-1] == pytest.approx(0.5 * BODY.mass, rel=1e-14)
+
+
+def test_scale_is_a_factor_on_the_motion():
+    """Half of 8 m/s2 is 4 m/s2, bitwise."""
+    one = simulate_with_contact(BODY, rectangular(8.0, 0.2), 0.3, scale=0.5)
+    other = simulate_with_contact(BODY, rectangular(4.0, 0.2), 0.3)
+    assert np.array_equal(one.displacement, other.displacement)
+
+
+def test_long_steps_are_cut_where_series_need_it():
+    """Straight lines of 2 s sampled at 2 s and at 0.02 s are one motion: rotations agree to 1e-11 rad."""
+    coarse = GroundMotion([0.0, 7.0, -6.0, 0.0], 2.0)
+    fine = GroundMotion(np.interp(np.arange(301) * 0.02, [0.0, 2.0, 4.0, 6.0], [0.0, 7.0, -6.0, 0.0]), 0.02)
+    long, short = (simulate_with_contact(Block(width=2.2, height=3.0), m, 0.66, duration=3.0) for m in (coarse, fine))
+    times = np.linspace(0.0, 3.0, 50)
+    assert "SLIDE" in long.regimes["regime"]
+    assert np.max(np.abs(long.at(times) - short.at(times))) < 1e-11
+
+
+def test_paradox_at_the_start_leaves_empty_tables():
+    """Without a contact force at time zero there are no regimes and no impacts, but still a sentence."""
+    response = simulate_with_contact(BODY, None, 2.5, start=Start(rotation=0.1, horizontal_velocity=1.0))
+    assert response.status is PlanarStatus.NO_CONTACT_FORCE
+    assert response.regimes.size == 0
+    assert response.impacts.size == 0
+    assert "Painleve" in response.summary
+
+
+def test_map_refuses_what_has_no_answer():
+    """A push that does not lift has no friction demand; negative friction and gravity are refused."""
+    with pytest.raises(InvalidValueError, match="acceleration must be at least"):
+        friction_demand(BODY, 0.4)
+    with pytest.raises(InvalidValueError, match="friction must be in"):
+        regime_at_start(BODY, 0.4, -0.1)
+    with pytest.raises(InvalidValueError, match="gravity must be"):
+        regime_at_start(BODY, 0.4, 0.1, gravity=0.0)
+
+
+@settings(max_examples=15)
+@given(
+    width=st.floats(0.3, 3.0),
+    friction=st.sampled_from([0.0, 0.05, 0.2, 0.4, 0.7, 1.0]),
+    bounce=st.sampled_from([0.0, 0.2, 0.5]),
+    amplitude=st.floats(1.0, 12.0),
+    period=st.floats(0.3, 1.5),
+    restitution=st.sampled_from([None, "ked", "plastic-winkler"]),
+)
+def test_any_history_keeps_its_books_and_stays_above_the_ground(
+    width, friction, bounce, amplitude, period, restitution
+):
+    """Random bodies and pulses: a result, energy closed to 1e-10, feet never under the ground, forces that press."""
+    body = Block(width=width, height=2.0)
+    pulse = sine(amplitude=amplitude, period=period)
+    response = simulate_with_contact(
+        body, pulse, friction, bounce=bounce, restitution=restitution, duration=period + 1.0
+    )
+    assert response.status is PlanarStatus.GOOD
+    assert response.energy.closure < 1e-10
+    for lever in (-0.5 * width, 0.5 * width):
+        gap = response.rise + 1.0 - lever * np.sin(response.rotation) - np.cos(response.rotation)
+        assert gap.min() > -1e-11
+    assert min(response.forces.left.min(), response.forces.right.min()) >= -1e-9 * body.mass * G
