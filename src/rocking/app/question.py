@@ -3,6 +3,7 @@
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from rocking.app.schemas.caps import check_contact
 from rocking.bodies import Body
 from rocking.bodies.formats.source import blamed
 from rocking.dynamics.response import Motion
@@ -111,7 +112,7 @@ class _Hashed:
 def _body(key: _Hashed) -> Body:
     with blamed("body"):
         try:
-            return body_of(key.given.table(), None)
+            return check_contact(body_of(key.given.table(), None))
         except InvalidValueError as error:
             kind = type(error.__cause__) if isinstance(error.__cause__, RockingError) else InvalidValueError
             raise kind(str(error)) from error

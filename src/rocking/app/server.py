@@ -16,9 +16,9 @@ from rocking.app.address import check_host, listen
 from rocking.app.application import create_app
 from rocking.app.folder import DataFolder
 from rocking.app.settings import DEFAULT_PORT, Settings
+from rocking.app.warm_up import warm_up_later
 
 _HEAD_SECONDS = 15.0
-_FIRST_PAGE_SECONDS = 0.5
 _CONNECTIONS = 512
 
 
@@ -81,7 +81,7 @@ def _run(settings: Settings, folder: DataFolder, door: socket.socket, started: C
 
     def tell() -> None:
         started(Started(settings.origin, sessions.first_link(), settings.port, key_file))
-        _later(_warm_up)
+        warm_up_later()
 
     server = _Server(_config(app), tell)
     with contextlib.suppress(KeyboardInterrupt), _ended_like_ctrl_c():  # the end that was asked for
@@ -143,18 +143,3 @@ class _PatientProtocol(H11Protocol):
         cycle: object | None = self.cycle  # None until the head of a first request is whole
         if cycle is None and not self.transport.is_closing():
             self.transport.close()
-
-
-def _later(what: Callable[[], None]) -> None:
-    timer = threading.Timer(_FIRST_PAGE_SECONDS, what)
-    timer.daemon = True
-    timer.start()
-
-
-def _warm_up() -> None:
-    """Import what the first picture and the first fit would wait for."""
-    import importlib
-
-    for name in ("rocking.dynamics.response", "scipy.stats", "rocking.plots", "matplotlib.backends.backend_agg"):
-        with contextlib.suppress(ImportError):
-            importlib.import_module(name)

@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import FloatArray, Foot, opposite
+from rocking.conventions import FEET, FloatArray, Foot, opposite
 from rocking.dynamics import equations
 from rocking.dynamics.intervals import Intervals
 from rocking.dynamics.settings import Settings
@@ -139,11 +139,12 @@ def contact_of(
 
 
 def _friction_of_impacts(trajectory: Trajectory, body: Body) -> float:
+    sides = {foot: body.side(foot) for foot in FEET}
     most = 0.0
     for event in trajectory.events:
         if event.kind is EventKind.IMPACT:
             onto: Foot = "right" if event.side > 0 else "left"
-            new, old = body.side(onto), body.side(opposite(onto))
+            new, old = sides[onto], sides[opposite(onto)]
             ratio = equations.friction_of_impact(new.centre_height, old.half_width, new.half_width, event.coefficient)
             most = max(most, abs(float(ratio)))
     return most

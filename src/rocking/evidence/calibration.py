@@ -131,19 +131,25 @@ class Calibration:
         >>> bool(prediction.low[0] < 0.94 < prediction.high[0])
         True
         """
-        geometry, bound = _geometry(body, onto)
+        if isinstance(body, Body):
+            found, shape = self._predicted(*_geometry(body, onto)), ()
+        else:
+            ratios = checks.positive_array("slenderness_ratio", body)
+            found, shape = self._of_ratios(np.ascontiguousarray(ratios).tobytes()), ratios.shape
+        mean, low, high, spread = (values.reshape(shape).copy() for values in found)
+        return Prediction(mean, low, high, spread)
+
+    @lru_cache(maxsize=16)  # noqa: B019 - there is one calibration, and pictures ask it for the same ratios again
+    def _of_ratios(self, ratios: bytes) -> tuple[FloatArray, ...]:
+        return self._predicted(*_geometry(np.frombuffer(ratios), "right"))
+
+    def _predicted(self, geometry: ImpactGeometry, bound: FloatArray) -> tuple[FloatArray, ...]:
         eta, k, s, gamma = self.samples.T[:, :, None]
         mean = np.clip(eta * shifted(geometry, k), 0.0, bound)
         sd = scatter(mean, s, gamma)
         low, high = (_quantile(mean, sd, p) for p in (0.5 * (1.0 - LEVEL), 0.5 * (1.0 + LEVEL)))
         spread = np.sqrt((sd**2 + mean**2).mean(axis=0) - mean.mean(axis=0) ** 2)
-        shape = () if isinstance(body, Body) else np.shape(body)
-        return Prediction(
-            mean.mean(axis=0).reshape(shape),
-            np.clip(low, 0.0, bound).reshape(shape),
-            np.clip(high, 0.0, bound).reshape(shape),
-            spread.reshape(shape),
-        )
+        return mean.mean(axis=0), np.clip(low, 0.0, bound), np.clip(high, 0.0, bound), spread
 
     def draw(self, count: int, seed: int) -> FloatArray:
         """Draw parameters from the posterior.
@@ -293,8 +299,12 @@ def _misfit(model: RestitutionModel) -> tuple[float, float]:
     if isinstance(model, Fixed):
         facts = calibrate().summary
         return facts["s"]["mean"], facts["gamma"]["mean"]
-    data = all_measurements()
-    floor, slope, _ = fit_scatter(data, model.of_slenderness(data.slenderness))
+    return _fitted(model.of_slenderness(all_measurements().slenderness).tobytes())
+
+
+@lru_cache(maxsize=1024)
+def _fitted(predictions: bytes) -> tuple[float, float]:
+    floor, slope, _ = fit_scatter(all_measurements(), np.frombuffer(predictions))
     return floor, slope
 
 

@@ -10,10 +10,8 @@ from rocking.conventions import FloatArray, Foot
 from rocking.restitution.contact import contact_of
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.model import InertiaModel
+from rocking.restitution.plastic_bed import land
 
-# The contact ends exponentially: once the tip is this slow, relative to the start, nothing more happens.
-_AT_REST = 1e-14
-_TOLERANCE = 1e-13
 _LARGEST_BATCH = 128
 _DEGREE = 80
 _REACH = float(np.log(100.0))
@@ -61,7 +59,7 @@ class PlasticWinkler(InertiaModel):
         kappa, back = np.broadcast_arrays(lever**2 / geometry.base_gyration, geometry.old_lever / lever)
         flat = np.column_stack([kappa.ravel(), back.ravel()])
         different, place = np.unique(flat, axis=0, return_inverse=True)
-        values = [_whole_base(k, b) for k, b in different.tolist()]
+        values = [_impact(k, b, (-b, 1.0)) for k, b in different.tolist()]
         return np.array(values)[place].reshape(kappa.shape)
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
@@ -100,13 +98,20 @@ class PlasticWinkler(InertiaModel):
         """
         geometry = ImpactGeometry.of_body(body, onto)
         lever, back = float(geometry.new_lever), float(geometry.old_lever)
-        patches = contact_of(body, onto) / lever
-        return _impact(lever**2 / float(geometry.base_gyration), back / lever, patches)
+        edges = (contact_of(body, onto) / lever).ravel().tolist()
+        return _impact(lever**2 / float(geometry.base_gyration), back / lever, tuple(edges))
 
 
 @lru_cache(maxsize=4096)
-def _whole_base(kappa: float, back: float) -> float:
-    return _impact(kappa, back, np.array([[-back, 1.0]]))
+def _impact(kappa: float, back: float, edges: tuple[float, ...]) -> float:
+    """Velocity ratio for levers in units of the new one; kappa = m b_new^2 / (I_C + m h^2)."""
+    stretches = np.reshape(edges, (-1, 2))
+    if float((stretches[:, 1] - stretches[:, 0]).sum()) <= 1e-9 * (1.0 + back):
+        # feet without area: the whole impulse acts at the new one (Housner)
+        return (1.0 - kappa * back) / (1.0 + kappa)
+    left = land(kappa, back, stretches)
+    # the bed leaves the body turning about its end; from there it steps onto the foot (Housner)
+    return left.velocity * (1.0 + kappa * left.end) / (1.0 + kappa)
 
 
 @lru_cache(maxsize=1)
@@ -117,37 +122,3 @@ def _log_odds() -> np.polynomial.Chebyshev:
         return np.asarray(np.log(r / (1.0 - r)))
 
     return np.polynomial.Chebyshev.interpolate(odds, _DEGREE, domain=[-_REACH, _REACH])
-
-
-def _impact(kappa: float, back: float, patches: FloatArray) -> float:
-    """Velocity ratio for levers in units of the new one; kappa = m b_new^2 / (I_C + m h^2)."""
-    from scipy.integrate import solve_ivp
-
-    total = float((patches[:, 1] - patches[:, 0]).sum())
-    if total <= 1e-9 * (1.0 + back):
-        # feet without area: the whole impulse acts at the new one (Housner)
-        return (1.0 - kappa * back) / (1.0 + kappa)
-
-    end = min(float(patches[-1, 1]), 1.0)
-
-    def bed(_: float, state: FloatArray) -> FloatArray:
-        v, omega, y, theta = state
-        near, far = np.maximum(patches[:, 0], v / omega), patches[:, 1]
-        near = np.minimum(near, far)
-        force = float((theta * (far**2 - near**2) / 2.0 - y * (far - near)).sum())
-        moment = float((theta * (far**3 - near**3) / 3.0 - y * (far**2 - near**2) / 2.0).sum())
-        # the stiffness of the bed only scales time: a contact of any size then takes about as long
-        return np.array([force / total, -kappa * moment / total, v, omega])
-
-    def tip(_: float, state: FloatArray) -> float:
-        return float(end * state[1] - state[0] - _AT_REST)
-
-    def stop(_: float, state: FloatArray) -> float:
-        return float(state[1] - 1e-9)
-
-    tip.terminal = stop.terminal = True  # type: ignore[attr-defined]
-    start = np.array([-back, 1.0, 0.0, 0.0])
-    run = solve_ivp(bed, (0.0, 1e4), start, "DOP853", rtol=_TOLERANCE, atol=1e-16, events=[tip, stop])
-    stopped = run.t_events is not None and len(run.t_events[1]) > 0
-    # the bed leaves the body turning about its end; from there it steps onto the foot (Housner)
-    return 0.0 if stopped else float(run.y[1, -1]) * (1.0 + kappa * end) / (1.0 + kappa)

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from rocking.app.api.curves import response_series
-from rocking.app.problems import TooLarge
 from rocking.app.question import Question
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
@@ -12,9 +11,6 @@ from rocking.errors import InvalidValueError
 from rocking.report.facts.body import body_facts, outline_facts
 from rocking.report.facts.response import moved_facts, response_facts
 from rocking.report.facts.verdict import Verdict
-
-MOST_CHOICES = 32
-"""Restitutions in one question."""
 
 MOST_SAMPLES = 500_000
 """Samples of a response whose forces and energy are computed here."""
@@ -53,11 +49,7 @@ class ResponseAnswers:
         ------
         InvalidValueError
             If none of the restitutions has a response.
-        TooLarge
-            If there are more than 32 restitutions.
         """
-        if len(question.choices) > MOST_CHOICES:
-            raise TooLarge(f"one question takes up to {MOST_CHOICES} restitutions, got {len(question.choices)}")
         found = {label: _tried(question, choice) for label, choice in question.choices.items()}
         reasons = [reason for reason in found.values() if isinstance(reason, str)]
         if len(reasons) == len(found):

@@ -5,6 +5,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request
 
 from rocking.app.answers import JsonAnswer
+from rocking.app.api.sized import sized
 from rocking.app.api.uploads import OCTETS
 from rocking.app.question import body_from
 from rocking.app.schemas.body import BodyInput
@@ -25,11 +26,13 @@ WKT and GeoJSON, and for a drawing that does not state its unit. `body` of the a
 
 
 @router.post("/body", summary="What a body is", description=_ABOUT, response_class=JsonAnswer)
-def body(asked: BodyAsked) -> JsonAnswer:
+async def body(request: Request, asked: BodyAsked) -> JsonAnswer:
     """Answer with the facts of a body.
 
     Parameters
     ----------
+    request : Request
+        The request.
     asked : BodyAsked
         What the user chose.
 
@@ -38,7 +41,7 @@ def body(asked: BodyAsked) -> JsonAnswer:
     JsonAnswer
         Facts, outline and warnings.
     """
-    return JsonAnswer(described(body_from(asked.body), asked.settings.gravity or g, asked.body.name))
+    return await sized(request, asked.body, _body, asked)
 
 
 @router.post(
@@ -92,6 +95,10 @@ def described(body: Body, gravity: float, name: str | None) -> dict[str, Any]:
     found = [outside_evidence(body, opposite(foot)) for foot in FEET]
     warnings = list(dict.fromkeys(sentence for sentence in found if sentence))
     return {"name": name, **body_facts(body, gravity), **outline_facts(body), "warnings": warnings}
+
+
+def _body(asked: BodyAsked) -> JsonAnswer:
+    return JsonAnswer(described(body_from(asked.body), asked.settings.gravity or g, asked.body.name))
 
 
 def _read(content: bytes, name: str, units: str | None, density: float | None) -> dict[str, Any]:

@@ -2,10 +2,11 @@
 
 from typing import Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 
 from rocking.app.answers import JsonAnswer
 from rocking.app.api.remembered import Remembered
+from rocking.app.api.sized import sized
 from rocking.app.question import body_from
 from rocking.app.schemas.inputs import ImpactAsked
 from rocking.bodies import Block
@@ -25,11 +26,13 @@ _HELD: Remembered[JsonAnswer] = Remembered(64)
 
 
 @router.post("/impact", summary="What an impact costs", description=_ABOUT, response_class=JsonAnswer)
-def impact(asked: ImpactAsked) -> JsonAnswer:
+async def impact(request: Request, asked: ImpactAsked) -> JsonAnswer:
     """Answer with coefficients, evidence and stages.
 
     Parameters
     ----------
+    request : Request
+        The request.
     asked : ImpactAsked
         What the user chose.
 
@@ -38,12 +41,16 @@ def impact(asked: ImpactAsked) -> JsonAnswer:
     JsonAnswer
         Facts of the impact.
     """
-    return _HELD.get(asked.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(asked)))
+    return await sized(request, asked.body, _answer, asked)
 
 
 def warm_up() -> None:
     """Compute what all answers share, so that the first user does not wait for it."""
-    impact(ImpactAsked.model_validate({"body": {"units": "m", "width": 1.0, "height": 4.0}}))
+    _answer(ImpactAsked.model_validate({"body": {"units": "m", "width": 1.0, "height": 4.0}}))
+
+
+def _answer(asked: ImpactAsked) -> JsonAnswer:
+    return _HELD.get(asked.model_dump_json(exclude_unset=True), lambda: JsonAnswer(_facts(asked)))
 
 
 def _facts(asked: ImpactAsked) -> dict[str, Any]:

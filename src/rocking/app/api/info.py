@@ -9,6 +9,7 @@ from typing import Any
 from fastapi import APIRouter, Request
 
 from rocking.app.answers import JsonAnswer
+from rocking.app.schemas.caps import CAPS
 from rocking.app.state import state_of
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, g
 
@@ -42,7 +43,7 @@ def info(request: Request) -> JsonAnswer:
     JsonAnswer
         What there is.
     """
-    limits = asdict(state_of(request).settings.limits)
+    limits = {**asdict(state_of(request).settings.limits), **CAPS}
     return JsonAnswer({**_constant(), "limits": limits})
 
 

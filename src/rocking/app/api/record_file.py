@@ -14,6 +14,8 @@ from rocking.motions.formats.record import Component, Record
 _STAND_IN = {"units": "m/s2", "time_step": 0.01}
 """What stands for an answer that is missing, to find out what else is."""
 
+_FOR_PROGRAMS = "; say "
+"""What follows in the words of the library names an argument; people see the choices instead."""
 
 _ORDER = ("format", "units", "time_step", "component")
 
@@ -94,7 +96,7 @@ class Looked:
                 if missing is None:
                     raise
                 needs.append(missing)
-                reasons.append(str(error))
+                reasons.append(str(error).partition(_FOR_PROGRAMS)[0])
                 if missing not in _STAND_IN:
                     return cls(None, needs, reasons[0])
                 given[missing] = _STAND_IN[missing]

@@ -7,6 +7,7 @@ from typing import Any
 
 from rocking.app.files import safe_name
 from rocking.app.schemas.body import BodyInput
+from rocking.app.schemas.caps import check_file
 from rocking.bodies.formats import read_body
 from rocking.bodies.formats.body_writer import body_to_toml
 from rocking.bodies.formats.source import blamed
@@ -46,6 +47,7 @@ def body_in_file(content: bytes, name: str, units: str | None, density: float | 
         If it cannot be read as a body.
     """
     shown = safe_name(name, "body")
+    check_file(content, shown)
     if shown.lower().endswith(".toml"):
         return _toml(content, shown, units)
     with TemporaryDirectory(prefix="rocking-") as folder:

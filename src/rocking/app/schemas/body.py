@@ -5,6 +5,7 @@ from typing import Any
 from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
+from rocking.app.schemas.caps import check_size
 from rocking.bodies.formats.body_schema import BODIES, Document, Positive
 
 _UPLOAD = "the application reads no file by its name: upload it to /api/body/file, which answers with its points"
@@ -40,6 +41,7 @@ class BodyInput(Document):
             for key in ("geojson", "dxf"):
                 if getattr(region, key) is not None:
                     raise _refused(f"section.region[{k}].{key}: {_UPLOAD}")
+        check_size(self)
         return self
 
     def table(self) -> dict[str, Any]:

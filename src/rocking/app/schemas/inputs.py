@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, model_validator
 
 from rocking.app.schemas.body import BodyInput
+from rocking.app.schemas.caps import MOST_RESTITUTIONS, refuse_more
 from rocking.studies.job.response_tables import OneMotionTable, ResponseTables, check_start
 from rocking.studies.job.table import JobTable, Words, refused
 from rocking.studies.job.tables import SettingsTable
@@ -57,6 +58,12 @@ class Inputs(ResponseTables):
 
     body: BodyInput
     motion: MotionInput | None = None
+
+    @model_validator(mode="after")
+    def _few_restitutions(self) -> "Inputs":
+        chosen = len(self.restitution.models or ()) + len(self.restitution.values or ())
+        refuse_more(chosen, MOST_RESTITUTIONS, "one question compares up to {most} restitutions")
+        return self
 
 
 class ResponseInputs(Inputs):

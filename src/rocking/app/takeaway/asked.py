@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from rocking.app.api.answers import ResponseAnswers
-from rocking.app.problems import Refused, TooLarge
+from rocking.app.problems import Refused
 from rocking.app.question import Question, body_from, motion_from, question_of
 from rocking.app.records import RecordStore
 from rocking.app.schemas.inputs import Inputs
@@ -16,9 +16,6 @@ from rocking.dynamics.response import Motion, Response
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.report.facts.impact import ImpactAnswer
-
-MOST_RESTITUTIONS = 24
-"""Restitutions that one file compares."""
 
 
 @dataclass(frozen=True)
@@ -71,8 +68,6 @@ class Asked:
         made = question_of(self.inputs, self.records)
         if made.motion is not None:
             made = replace(made, motion=_named_plainly(made.motion))
-        if len(made.choices) > MOST_RESTITUTIONS:
-            raise TooLarge(f"one file holds up to {MOST_RESTITUTIONS} restitutions, got {len(made.choices)}")
         return made
 
     @cached_property

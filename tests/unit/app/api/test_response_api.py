@@ -141,10 +141,13 @@ def test_refusals_are_sentences(client, case):
 
 
 def test_too_many_restitutions_are_refused(client):
-    """More than 32 restitutions in one question are too large a question."""
-    document = {"body": BODY, "motion": PULSE, "restitution": {"values": [0.01 * k for k in range(33)]}}
-    answer = client.post("/api/response", json=document)
-    assert (answer.status_code, answer.json()["error"]["kind"]) == (413, "too-large")
+    """More than 24 restitutions are too large a question, for the screen, a table and a picture alike; 24 are not."""
+    for path in ("response", "table/impacts.csv", "picture/response.svg"):
+        document = {"body": BODY, "motion": PULSE, "restitution": {"values": [0.01 * k for k in range(25)]}}
+        answer = client.post(f"/api/{path}", json=document)
+        assert (answer.status_code, answer.json()["error"]["kind"]) == (413, "too-large")
+        assert "up to 24 restitutions, got 25" in answer.json()["error"]["message"]
+    assert len(asked(client, restitution={"values": [0.5 + 0.01 * k for k in range(24)]})["answers"]) == 24
 
 
 def test_a_response_of_millions_of_samples_is_refused_in_words(client):

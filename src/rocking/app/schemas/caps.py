@@ -1,0 +1,146 @@
+"""How large a body and a question may be, so that every answer comes within about a second."""
+
+import re
+
+from rocking.app.problems import TooLarge
+from rocking.bodies import Body
+from rocking.bodies.formats.body_schema import Document
+
+MOST_REGIONS = 250
+MOST_HOLES = 500
+MOST_VERTICES = 10_000
+MOST_POINTS = 10_000
+MOST_STRETCHES = 40
+MOST_RESTITUTIONS = 24
+
+_X_IN_DXF = re.compile(rb"^[ \t]*10[ \t]*\r?$", re.MULTILINE)
+
+CAPS = {
+    "regions": MOST_REGIONS,
+    "holes": MOST_HOLES,
+    "vertices": MOST_VERTICES,
+    "mass_points": MOST_POINTS,
+    "contact_stretches": MOST_STRETCHES,
+    "restitutions": MOST_RESTITUTIONS,
+}
+"""What one body and one question may hold, as the API tells it."""
+
+
+def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
+    """Refuse more of something than one answer takes.
+
+    Parameters
+    ----------
+    count : int
+        How many there are.
+    most : int
+        How many there may be.
+    what : str
+        What they are, with whatever has them: "a section holds up to {most} regions".
+    way_out : str
+        What the user can do instead.
+
+    Raises
+    ------
+    TooLarge
+        If there are more.
+    """
+    if count > most:
+        raise TooLarge(f"{what.format(most=most)}, got {count}" + (f"; {way_out}" if way_out else ""))
+
+
+def check_size(given: Document) -> None:
+    """Refuse a body that is too large, before anything is made of it.
+
+    Parameters
+    ----------
+    given : Document
+        The body in a request.
+
+    Raises
+    ------
+    TooLarge
+        If it has too many regions, holes, vertices or points.
+    """
+    regions, holes, vertices = _polygons(given)
+    refuse_more(regions, MOST_REGIONS, "a section holds up to {most} regions", "join those of one density")
+    refuse_more(holes, MOST_HOLES, "a section holds up to {most} holes", "leave out the small ones")
+    refuse_more(vertices, MOST_VERTICES, "outlines and holes hold up to {most} vertices", "simplify the outline")
+    points = given.mass_points
+    held = 0 if points is None else max(len(points.points), len(points.masses), len(points.contact or ()))
+    refuse_more(held, MOST_POINTS, "a body holds up to {most} points with mass")
+
+
+def check_file(content: bytes, name: str) -> None:
+    """Refuse a body file that holds far more than a body may have, before it is read.
+
+    Parameters
+    ----------
+    content : bytes
+        The file.
+    name : str
+        Its name, whose ending says the format.
+
+    Raises
+    ------
+    TooLarge
+        If it has too many points.
+    """
+    drawing = name.lower().endswith(".dxf")
+    # a drawing may hold much that is no outline; in text a comma or a bracket stands before every point
+    points = len(_X_IN_DXF.findall(content)) // 4 if drawing else max(content.count(b","), content.count(b"[")) // 3
+    refuse_more(points, MOST_VERTICES, "a body file may describe up to {most} vertices", "simplify the outlines")
+
+
+def check_contact(body: Body) -> Body:
+    """Return a body, unless its base touches the ground in too many places.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+
+    Returns
+    -------
+    Body
+        The same.
+
+    Raises
+    ------
+    TooLarge
+        If there are too many flat stretches.
+    """
+    what = "a base touches the ground in up to {most} separate stretches"
+    refuse_more(len(body.local_contact), MOST_STRETCHES, what, "leave out those that are no feet")
+    return body
+
+
+def size_of(given: Document) -> int:
+    """Return how much there is to compute with.
+
+    Parameters
+    ----------
+    given : Document
+        The body in a request.
+
+    Returns
+    -------
+    int
+        Vertices and points.
+    """
+    return _polygons(given)[-1] + (len(given.mass_points.points) if given.mass_points else 0)
+
+
+def _polygons(given: Document) -> tuple[int, int, int]:
+    regions = holes = vertices = 0
+    for region in given.section.region if given.section else ():
+        words = region.wkt or ""
+        # every polygon of a text begins with two brackets, and commas stand between its points
+        polygons = 1 if region.outline is not None else max(1, words.count("(("))
+        regions += polygons
+        holes += len(region.holes or ()) + max(0, words.count(",(") + words.count(", (") - polygons + 1)
+        rings = [region.outline or [], *(region.holes or ())]
+        vertices += sum(map(len, rings)) + (words.count(",") + 1 if words else 0)
+    for shape in (given.ellipse, given.regular_polygon):
+        vertices += shape.sides if shape is not None else 0
+    return regions, holes, vertices
