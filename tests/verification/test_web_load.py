@@ -24,10 +24,14 @@ LIGHT = ("info", "body", "studies", "session")
 BODY = {"body": {"units": "cm", "width": 50, "height": 200}}
 INPUTS = {**BODY, "motion": {"pulse": "sine:amplitude=3.2,period=0.8"}, "restitution": {"models": ["ked", "housner"]}}
 JOB = {
-    "campaign": {"name": "beside the users", "kind": "stripes"},
+    "campaign": {"name": "beside the users", "kind": "overturning-map"},
     "body": BODY["body"],
-    "motions": [{"synthetic": "firm-ground", "count": 2000, "seed": 1}],
-    "fragility": {"measure": "pga", "levels": {"from": 1.0, "to": 12.0, "count": 100}},
+    "motions": [{"pulse": ["sine:amplitude=3,period=0.6"]}],
+    "restitution": INPUTS["restitution"],
+    "map": {
+        "x": {"axis": "frequency_ratio", "from": 0.5, "to": 8.0, "count": 1000},
+        "y": {"axis": "amplitude_ratio", "from": 1.0, "to": 10.0, "count": 900},
+    },
 }
 
 

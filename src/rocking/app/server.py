@@ -3,6 +3,7 @@
 import contextlib
 import signal
 import socket
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -20,6 +21,8 @@ from rocking.app.warm_up import warm_up_later
 
 _HEAD_SECONDS = 15.0
 _CONNECTIONS = 512
+_TURN = 0.0005
+"""How long a computation may keep the interpreter while light requests wait [s]; Python's own is ten times that."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +86,7 @@ def _run(settings: Settings, folder: DataFolder, door: socket.socket, started: C
         started(Started(settings.origin, sessions.first_link(), settings.port, key_file))
         warm_up_later()
 
+    sys.setswitchinterval(_TURN)
     server = _Server(_config(app), tell)
     with contextlib.suppress(KeyboardInterrupt), _ended_like_ctrl_c():  # the end that was asked for
         server.run(sockets=[door])

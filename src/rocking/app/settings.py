@@ -56,7 +56,7 @@ class Limits:
     studies_bytes: int = 8192 * MEBIBYTE
     histories: int = 2_000_000
     studies_waiting: int = 8
-    heavy_at_once: int = 4
+    heavy_at_once: int = 2
     heavy_waiting: int = 32
     wrong_tokens: int = 10
     session_seconds: float = 12 * 3600.0
