@@ -43,7 +43,7 @@ $(VENV)/bench: $(VENV)/dev requirements/bench.lock
 # The fast engine is built where it stands. Without a compiler the reference engine serves, and says so.
 ENGINE := build/engine/built
 engine: $(ENGINE)
-$(ENGINE): $(VENV)/demo CMakeLists.txt $(wildcard engine/*.cpp engine/*.hpp)
+$(ENGINE): $(VENV)/demo CMakeLists.txt $(wildcard engine/*.cpp engine/*.hpp engine/*/*.cpp engine/*/*.hpp)
 	@echo "Building the fast engine (about a minute, once) ..."
 	@mkdir -p build/engine
 	@$(BIN)/cmake -S . -B build/engine -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN)/ninja) -DROCKING_INPLACE=ON \
@@ -102,5 +102,5 @@ lock: $(VENV)/created
 		-o requirements/demo.lock
 
 clean:
-	rm -rf src/rocking/dynamics/_engine*.so
+	rm -rf src/rocking/dynamics/_*.so
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage $(OUT) gallery-output

@@ -1,0 +1,215 @@
+// The bed: what each contact point does, and the force of all of them on the body.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "radau.hpp"
+
+namespace rocking::bed {
+
+enum Law : int { kKelvinVoigt = 0, kHuntCrossley = 1, kPlastic = 2 };
+enum Friction : int { kSticking = 0, kCoulomb = 1, kRegularised = 2 };
+// away: no touch; pressing: on the loading branch; lagging: the bed is slower than the body, no force; spring: unloading
+enum class Mode : std::uint8_t { away, pressing, lagging, spring };
+
+struct Points {  // towards the new foot; share: copies of the law that stand under the point
+    std::int64_t count = 0;
+    const double *at = nullptr, *height = nullptr, *share = nullptr;
+};
+
+struct Problem {
+    double mass, inertia, height, gravity, push;  // push: horizontal ground acceleration
+    double stiffness, damping, exponent, viscosity, rebound, friction, creep;
+    Law law;
+    Friction kind;
+    bool exact;
+    Points points;
+};
+
+using State = Vector<5>;  // y, theta, u, w, omega: height and rotation of the base centre, velocities along and across the base
+enum { kY, kTheta, kU, kW, kOmega };
+
+struct Place {  // gap = y - s sigma + zeta kappa, and its rate
+    double y, sigma, kappa, dy, dsigma, dkappa;
+    double gap(double s, double zeta) const { return y - s * sigma + zeta * kappa; }
+    double rate(double s, double zeta) const { return dy - s * dsigma + zeta * dkappa; }
+};
+
+inline Place place(const State& x, bool exact) {
+    if (!exact) return {x[kY], x[kTheta], 1.0, x[kW], x[kOmega], 0.0};
+    const double s = std::sin(x[kTheta]), c = std::cos(x[kTheta]);
+    return {x[kY], s, c, x[kW] * c - x[kU] * s, c * x[kOmega], -s * x[kOmega]};
+}
+
+// Sums over points that make a linear law independent of their number.
+struct Sums {
+    double one = 0, s = 0, ss = 0, z = 0, sz = 0, zz = 0;
+    void add(double k, double at, double height) {
+        one += k;
+        s += k * at;
+        ss += k * at * at;
+        z += k * height;
+        sz += k * at * height;
+        zz += k * height * height;
+    }
+    double product(double y, double g, double k, double y2, double g2, double k2) const {
+        return one * y * y2 + ss * g * g2 + zz * k * k2 - s * (y * g2 + y2 * g) + z * (y * k2 + y2 * k) - sz * (g * k2 + g2 * k);
+    }
+};
+
+struct Load {  // resultant, its moments with s and zeta, power lost in the bed
+    double force = 0, moment = 0, tilt = 0, loss = 0;
+};
+
+class Bed {
+public:
+    explicit Bed(const Problem& p) : p_(p), mode(p.points.count, Mode::away), deepest(p.points.count, 0.0) {}
+
+    bool linear() const { return p_.law != kHuntCrossley; }
+    double gap(std::int64_t i, const Place& x) const { return x.gap(p_.points.at[i], p_.points.height[i]); }
+    double rate(std::int64_t i, const Place& x) const { return x.rate(p_.points.at[i], p_.points.height[i]); }
+    double set(std::int64_t i) const { return p_.law == kPlastic ? (1.0 - p_.rebound * p_.rebound) * deepest[i] : 0.0; }
+
+    void gather() {  // after every switch
+        elastic_ = viscous_ = lost_ = Sums{};
+        offset_ = offset_s_ = offset_z_ = 0.0;
+        pressing = 0;
+        for (std::int64_t i = 0; i < p_.points.count; ++i) {
+            const double s = p_.points.at[i], z = p_.points.height[i], share = p_.points.share[i];
+            const double k = p_.stiffness * share;
+            if (mode[i] == Mode::pressing || mode[i] == Mode::spring) ++pressing;
+            if (!linear()) continue;
+            if (mode[i] == Mode::lagging) lost_.add(-k, s, z);
+            if (mode[i] == Mode::pressing) {
+                elastic_.add(k, s, z);
+                if (p_.law == kKelvinVoigt) viscous_.add(p_.damping * share, s, z);
+                if (p_.law == kPlastic) lost_.add((1.0 - p_.rebound * p_.rebound) * k, s, z);
+            }
+            if (mode[i] == Mode::spring) {
+                const double hard = k / (p_.rebound * p_.rebound), back = hard * set(i);
+                elastic_.add(hard, s, z);
+                offset_ += back;
+                offset_s_ += back * s;
+                offset_z_ += back * z;
+            }
+        }
+    }
+
+    Load load(const Place& x) const {
+        if (!linear()) return sum_over_points(x);
+        const auto of = [](const Sums& a, double y, double g, double k, double& f, double& m, double& t) {
+            f -= a.one * y - a.s * g + a.z * k;
+            m -= a.s * y - a.ss * g + a.sz * k;
+            t -= a.z * y - a.sz * g + a.zz * k;
+        };
+        Load l{-offset_, -offset_s_, -offset_z_, 0.0};
+        of(elastic_, x.y, x.sigma, x.kappa, l.force, l.moment, l.tilt);
+        of(viscous_, x.dy, x.dsigma, x.dkappa, l.force, l.moment, l.tilt);
+        l.loss = viscous_.product(x.dy, x.dsigma, x.dkappa, x.dy, x.dsigma, x.dkappa) +
+                 lost_.product(x.y, x.sigma, x.kappa, x.dy, x.dsigma, x.dkappa);
+        return l;
+    }
+
+    double force(std::int64_t i, const Place& x) const {
+        if (mode[i] == Mode::away || mode[i] == Mode::lagging) return 0.0;
+        const double share = p_.points.share[i], d = -gap(i, x), v = -rate(i, x);
+        if (mode[i] == Mode::spring) return p_.stiffness * share / (p_.rebound * p_.rebound) * (d - set(i));
+        if (p_.law == kPlastic) return p_.stiffness * share * d;
+        if (p_.law == kKelvinVoigt) return share * (p_.stiffness * d + p_.damping * v);
+        return d > 0.0 ? share * p_.stiffness * power(d) * (1.0 + p_.viscosity * v) : 0.0;
+    }
+
+    double stored(std::int64_t i, const Place& x) const {
+        const double share = p_.points.share[i], d = -gap(i, x);
+        if (mode[i] == Mode::away || d <= 0.0) return 0.0;
+        if (p_.law == kPlastic) {
+            const double f = force(i, x);
+            return p_.rebound > 0.0 ? 0.5 * f * f * p_.rebound * p_.rebound / (p_.stiffness * share) : 0.0;
+        }
+        if (p_.law == kKelvinVoigt) return 0.5 * share * p_.stiffness * d * d;
+        return share * p_.stiffness * power(d) * d / (p_.exponent + 1.0);
+    }
+
+    // Positive while the mode of point i holds; `which`: 0 or 1.
+    double margin(std::int64_t i, int which, const Place& x) const {
+        const double d = -gap(i, x);
+        switch (mode[i]) {
+            case Mode::away: return which == 0 ? set(i) - d : 1.0;
+            case Mode::pressing:
+                if (p_.law == kPlastic) return which == 0 ? -rate(i, x) : 1.0;
+                if (which == 1) return p_.law == kHuntCrossley ? d : 1.0;
+                return push(d, -rate(i, x));
+            case Mode::lagging: return which == 0 ? -push(d, -rate(i, x)) : d;
+            default: return which == 0 ? deepest[i] - d : d - set(i);
+        }
+    }
+
+    void change(std::int64_t i, int which, const Place& x) {  // margin `which` of point i has run out
+        switch (mode[i]) {
+            case Mode::away: mode[i] = p_.law == kPlastic && deepest[i] > 0.0 && p_.rebound > 0.0 ? Mode::spring : Mode::pressing; break;
+            case Mode::pressing:
+                if (p_.law == kPlastic) {
+                    deepest[i] = std::max(deepest[i], -gap(i, x));
+                    mode[i] = p_.rebound > 0.0 ? Mode::spring : Mode::away;
+                } else {
+                    const bool slow = p_.law == kKelvinVoigt ? p_.damping > 0.0 : which == 0;
+                    mode[i] = slow ? Mode::lagging : Mode::away;
+                }
+                break;
+            case Mode::lagging: mode[i] = which == 0 ? Mode::pressing : Mode::away; break;
+            default: mode[i] = which == 0 ? Mode::pressing : Mode::away;
+        }
+    }
+
+    void begin(const Place& x) {
+        for (std::int64_t i = 0; i < p_.points.count; ++i) {
+            const double d = -gap(i, x), v = -rate(i, x);
+            mode[i] = Mode::away;
+            if (d < 0.0 || (d == 0.0 && v <= 0.0)) continue;
+            mode[i] = Mode::pressing;
+            if (p_.law == kPlastic && v <= 0.0) {
+                deepest[i] = d;
+                mode[i] = p_.rebound > 0.0 ? Mode::spring : Mode::away;
+            } else if (p_.law != kPlastic && push(d, v) <= 0.0) {
+                mode[i] = Mode::lagging;
+            }
+        }
+    }
+
+private:
+    const Problem& p_;
+    Sums elastic_, viscous_, lost_;
+    double offset_ = 0.0, offset_s_ = 0.0, offset_z_ = 0.0;
+
+    double power(double d) const { return p_.exponent == 1.5 ? d * std::sqrt(d) : std::pow(d, p_.exponent); }
+    double push(double d, double v) const {
+        return p_.law == kKelvinVoigt ? p_.stiffness * d + p_.damping * v : 1.0 + p_.viscosity * v;
+    }
+    Load sum_over_points(const Place& x) const {
+        Load l;
+        for (std::int64_t i = 0; i < p_.points.count; ++i) {
+            if (mode[i] == Mode::away) continue;
+            const double d = -gap(i, x), v = -rate(i, x);
+            if (d <= 0.0) continue;
+            const double spring = p_.points.share[i] * p_.stiffness * power(d);
+            if (mode[i] == Mode::lagging) {
+                l.loss -= spring * v;
+                continue;
+            }
+            const double f = spring * (1.0 + p_.viscosity * v);
+            l.force += f;
+            l.moment += f * p_.points.at[i];
+            l.tilt += f * p_.points.height[i];
+            l.loss += spring * p_.viscosity * v * v;
+        }
+        return l;
+    }
+
+public:
+    std::vector<Mode> mode;
+    std::vector<double> deepest;
+    std::int64_t pressing = 0;
+};
+
+}  // namespace rocking::bed

@@ -1,0 +1,88 @@
+// The body on the bed: accelerations, friction, energy. Velocities are resolved along and across the base line.
+#pragma once
+#include "contact.hpp"
+
+namespace rocking::bed {
+
+struct Rates {
+    State slope;
+    double normal, shear, moment, tilt, bed_loss, friction_loss, travel;
+};
+
+class Motion {
+public:
+    Motion(const Problem& p, Bed& bed) : p_(p), bed_(bed) {}
+
+    int slip = 0;  // Coulomb: 0 sticks, +1 or -1 slides that way
+
+    Rates rates(const State& x) const {
+        const Place at = place(x, p_.exact);
+        const Load l = bed_.load(at);
+        const double m = p_.mass, h = p_.height, u = x[kU], w = x[kW], omega = x[kOmega];
+        const double c = p_.exact ? std::cos(x[kTheta]) : 1.0, s = p_.exact ? at.sigma : 0.0;
+        double along = -m * p_.push * c + s * (m * p_.gravity - l.force), across = c * (l.force - m * p_.gravity) - s * m * p_.push;
+        double turning = m * h * (p_.gravity * std::sin(x[kTheta]) - p_.push * std::cos(x[kTheta])) - l.moment * c - l.tilt * s;
+        if (p_.exact) {
+            along -= m * w * omega;
+            across += m * (u + h * omega) * omega;
+            turning -= m * h * w * omega;
+        }
+        Rates r;
+        r.normal = l.force;
+        r.moment = l.moment;
+        r.tilt = l.tilt;
+        r.bed_loss = l.loss;
+        const bool held = p_.kind == kSticking || (p_.kind == kCoulomb && slip == 0);
+        if (held) {
+            const double turn = turning / (p_.inertia + m * h * h);
+            r.shear = m * h * turn - along;
+            r.slope = {at.dy, omega, 0.0, across / m, turn};
+        } else {
+            r.shear = p_.kind == kCoulomb ? -slip * p_.friction * l.force : -p_.friction * l.force * u / std::hypot(u, p_.creep);
+            along += r.shear;
+            const double turn = (turning - h * along) / p_.inertia;
+            r.slope = {at.dy, omega, along / m - h * turn, across / m, turn};
+        }
+        r.friction_loss = held ? 0.0 : -r.shear * u;
+        r.travel = p_.exact ? u * c + w * s : u;
+        return r;
+    }
+
+    State operator()(const State& x) const { return rates(x).slope; }
+
+    double energy(const State& x, double travel) const {
+        const double u = x[kU] + p_.height * x[kOmega], w = x[kW], omega = x[kOmega];
+        const double half = std::sin(0.5 * x[kTheta]);
+        return 0.5 * p_.mass * (u * u + w * w) + 0.5 * p_.inertia * omega * omega +
+               p_.mass * p_.gravity * (x[kY] - 2.0 * p_.height * half * half) +
+               p_.mass * p_.push * (travel + p_.height * std::sin(x[kTheta]));
+    }
+    double stored(const State& x) const {
+        const Place at = place(x, p_.exact);
+        double sum = 0.0;
+        for (std::int64_t i = 0; i < p_.points.count; ++i) sum += bed_.stored(i, at);
+        return sum;
+    }
+
+    // Positive while the friction state holds.
+    double friction_margin(const State& x) const {
+        if (p_.kind != kCoulomb) return 1.0;
+        if (slip != 0) return slip * x[kU];
+        const Rates r = rates(x);
+        return p_.friction * r.normal - std::abs(r.shear);
+    }
+
+    // After a switch: may the base stick, and if not, which way does it slide?
+    void settle_friction(const State& x, bool at_rest, bool leaves = false) {
+        if (p_.kind != kCoulomb || (slip != 0 && !at_rest)) return;
+        slip = 0;
+        const Rates r = rates(x);
+        if (leaves || std::abs(r.shear) > p_.friction * r.normal) slip = r.shear > 0.0 ? -1 : 1;
+    }
+
+private:
+    const Problem& p_;
+    Bed& bed_;
+};
+
+}  // namespace rocking::bed

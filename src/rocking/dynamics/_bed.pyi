@@ -1,0 +1,6 @@
+from typing import Any
+
+def run_batch(
+    at: Any, height: Any, share: Any, numbers: Any, choices: Any, results: Any, counts: Any, threads: int
+) -> None: ...
+def run_single(at: Any, height: Any, share: Any, numbers: Any, choices: Any, results: Any, counts: Any) -> Any: ...

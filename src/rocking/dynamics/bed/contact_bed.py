@@ -1,0 +1,174 @@
+"""The bed: where the base touches, and what stands under each point."""
+
+from dataclasses import dataclass, field
+from typing import Any, Literal, Self, cast
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.conventions import FloatArray, Foot
+from rocking.dynamics.bed.friction import BaseFriction, Sticking
+from rocking.dynamics.bed.law import ContactLaw
+from rocking.errors import InvalidValueError
+from rocking.restitution.contact import contact_of
+
+Kinematics = Literal["exact", "small"]
+Rule = Literal["ends", "trapezoid"]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactBed:
+    """Contact points of a base, seen from the plumb line of the centre of mass, towards the new foot.
+
+    Parameters
+    ----------
+    positions : array_like
+        Where the points are, in growing order [m].
+    law : ContactLaw
+        One copy of the contact law.
+    shares : array_like, optional
+        Copies of the law under each point; by default the law is the whole bed's, shared equally [-].
+    heights : array_like, optional
+        Profile of the base: heights of the points over the base line [m].
+    friction : BaseFriction, optional
+        By default the base cannot slide.
+    kinematics : {"exact", "small"}
+        Points of a rigid body at any rotation, or the small-base kinematics of physics.md 3.4, which lets the base
+        line tilt without moving sideways and is meant for a base that sticks.
+
+    Raises
+    ------
+    InvalidValueError
+        If positions do not grow, or an array has another length or holds what is not a number.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> from rocking.dynamics.bed import KelvinVoigt
+    >>> bed = ContactBed.uniform(Block(width=0.2, height=0.4), 5, KelvinVoigt(1e8, damping_ratio=0.3))
+    >>> bed.positions.round(3).tolist()
+    [-0.1, -0.05, 0.0, 0.05, 0.1]
+    """
+
+    positions: Any
+    law: ContactLaw
+    shares: Any = None
+    heights: Any = None
+    friction: BaseFriction = field(default_factory=Sticking)
+    kinematics: Kinematics = "exact"
+
+    def __post_init__(self) -> None:
+        positions = _line("positions", self.positions)
+        count = len(positions)
+        if count > 1 and not bool((np.diff(positions) > 0.0).all()):
+            raise InvalidValueError("positions of contact points must grow; two points on one place?")
+        shares = np.full(count, 1.0 / count) if self.shares is None else _line("shares", self.shares, count)
+        checks.all_positive("shares", shares)
+        heights = np.zeros(count) if self.heights is None else _line("heights", self.heights, count)
+        law, friction, kinematics = cast("tuple[object, ...]", (self.law, self.friction, self.kinematics))
+        if kinematics not in {"exact", "small"}:
+            raise InvalidValueError(f'kinematics must be "exact" or "small", got {self.kinematics!r}')
+        if not isinstance(law, ContactLaw) or not isinstance(friction, BaseFriction):
+            raise InvalidValueError(f"law and friction must be a contact law and a friction, got {self.law!r:.40}")
+        for name, values in (("positions", positions), ("shares", shares), ("heights", heights)):
+            values.setflags(write=False)
+            object.__setattr__(self, name, values)
+
+    @classmethod
+    def uniform(
+        cls,
+        body: Body,
+        count: int,
+        law: ContactLaw,
+        *,
+        onto: Foot = "right",
+        rule: Rule = "trapezoid",
+        friction: BaseFriction | None = None,
+        kinematics: Kinematics = "exact",
+    ) -> Self:
+        """Return equal points along the base of a body, its feet included; the law is the whole bed's.
+
+        Parameters
+        ----------
+        body : Body
+            The body; where its base is hollow there are no points between the stretches.
+        count : int
+            Number of points, two or more; a body that stands on points has its two feet only.
+        law : ContactLaw
+            The law of the whole bed.
+        onto : {"left", "right"}
+            The new foot.
+        rule : {"trapezoid", "ends"}
+            Half a share for the ends of a stretch, as in the table of physics.md 3.4, or equal shares for all points;
+            the first converges with the square of the spacing to the continuous bed, the second linearly.
+        friction : BaseFriction, optional
+            By default the base cannot slide.
+        kinematics : {"exact", "small"}
+            See `ContactBed`.
+
+        Returns
+        -------
+        ContactBed
+            The bed.
+
+        Raises
+        ------
+        InvalidValueError
+            If there are fewer than two points or the rule is unknown.
+        """
+        given: object = count
+        if isinstance(given, bool) or not isinstance(given, int) or not 2 <= count <= 100_000:
+            raise InvalidValueError(f"count must be a whole number in [2, 100000], got {count!r}")
+        if rule not in {"ends", "trapezoid"}:
+            raise InvalidValueError(f'rule must be "ends" or "trapezoid", got {rule!r}')
+        positions, lengths = _along(contact_of(body, onto), body, count, onto)
+        shares = lengths if rule == "trapezoid" else np.ones(len(positions))
+        return cls(positions, law, shares / shares.sum(), friction=friction or Sticking(), kinematics=kinematics)
+
+    def with_profile(self, heights: Any) -> Self:
+        """Return the same bed under a base that is not flat.
+
+        Parameters
+        ----------
+        heights : array_like
+            Heights of the points over the base line, below zero for a bulge [m].
+
+        Returns
+        -------
+        ContactBed
+            The bed.
+        """
+        return type(self)(self.positions, self.law, self.shares, heights, self.friction, self.kinematics)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """First and last point [m]."""
+        return float(self.positions[0]), float(self.positions[-1])
+
+
+def _line(name: str, values: Any, count: int | None = None) -> FloatArray:
+    line = np.array(checks.real_array(name, values), dtype=np.float64)
+    if line.ndim != 1 or line.size == 0 or (count is not None and line.size != count):
+        wanted = "one or more numbers" if count is None else f"{count} numbers, one for each point"
+        raise InvalidValueError(f"{name} must be a list of {wanted}, got shape {line.shape}")
+    if not bool(np.isfinite(line).all()):
+        raise InvalidValueError(f"{name} must be finite, got {line[~np.isfinite(line)][0]}")
+    return line
+
+
+def _along(patches: FloatArray, body: Body, count: int, onto: Foot) -> tuple[FloatArray, FloatArray]:
+    """Points and the lengths of base they stand for."""
+    left, right = body.local_feet[0] - body.local_moments.x, body.local_feet[1] - body.local_moments.x
+    ends = (left, right) if onto == "right" else (-right, -left)
+    if count == 2 or len(patches) == 0:
+        return np.array(ends), np.ones(2)
+    sizes = patches[:, 1] - patches[:, 0]
+    counts = np.maximum(2, np.rint(count * sizes / sizes.sum())).astype(int)
+    positions, lengths = [], []
+    for (start, stop), number in zip(patches, counts.tolist(), strict=True):
+        weights = np.full(number, (stop - start) / (number - 1))
+        weights[[0, -1]] *= 0.5
+        positions.append(np.linspace(start, stop, number))
+        lengths.append(weights)
+    return np.concatenate(positions), np.concatenate(lengths)

@@ -1,0 +1,162 @@
+"""Rigid rocking on the points of a bed: what an emergent coefficient of restitution is measured against."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.bodies import Body
+from rocking.conventions import FloatArray
+from rocking.dynamics.bed.contact_bed import ContactBed
+
+
+@dataclass(frozen=True)
+class RigidRocking:
+    """The body on rigid points: pivot, potential and inertia at each rotation.
+
+    Parameters
+    ----------
+    mass, inertia : float
+        Mass [kg] and polar moment about the centre of mass [kg m2].
+    height : float
+        Height of the centre of mass over the base line [m].
+    gravity : float
+        Vertical acceleration g + a_z [m/s2].
+    bed : ContactBed
+        Points, profile and kinematics.
+    """
+
+    mass: float
+    inertia: float
+    height: float
+    gravity: float
+    bed: ContactBed
+
+    @classmethod
+    def of_body(cls, body: Body, bed: ContactBed, gravity: float) -> "RigidRocking":
+        """Return the rigid rocking of a body.
+
+        Parameters
+        ----------
+        body : Body
+            The body.
+        bed : ContactBed
+            Its bed.
+        gravity : float
+            Vertical acceleration [m/s2].
+
+        Returns
+        -------
+        RigidRocking
+            The same on rigid points.
+        """
+        moments = body.local_moments
+        return cls(moments.mass, moments.polar, moments.y, gravity, bed)
+
+    def pivot(self, rotation: float) -> int:
+        """Return the point that touches at a rotation.
+
+        Parameters
+        ----------
+        rotation : float
+            theta, positive when the new foot is the pivot [rad].
+
+        Returns
+        -------
+        int
+            Its index.
+        """
+        return int(np.argmax(self._lifts(rotation)))
+
+    def lift(self, rotation: float) -> float:
+        """Return how far the base centre is above the ground at a rotation.
+
+        Parameters
+        ----------
+        rotation : float
+            theta [rad].
+
+        Returns
+        -------
+        float
+            Height of the base centre [m].
+        """
+        return float(self._lifts(rotation).max())
+
+    def _lifts(self, rotation: float) -> FloatArray:
+        if self.bed.kinematics == "small":
+            return np.asarray(self.bed.positions * rotation - self.bed.heights)
+        return np.asarray(self.bed.positions * math.sin(rotation) - self.bed.heights * math.cos(rotation))
+
+    def potential(self, rotation: float) -> float:
+        """Return the potential energy above standing upright on the bed.
+
+        Parameters
+        ----------
+        rotation : float
+            theta [rad].
+
+        Returns
+        -------
+        float
+            m g (lift + h (cos theta - 1)), zero at theta = 0 [J].
+        """
+        fall = 2.0 * self.height * math.sin(0.5 * rotation) ** 2
+        return self.mass * self.gravity * (self.lift(rotation) - self.lift(0.0) - fall)
+
+    def inertia_about(self, point: int) -> float:
+        """Return the inertia of rocking about a point.
+
+        Parameters
+        ----------
+        point : int
+            Index of the pivot.
+
+        Returns
+        -------
+        float
+            I_c + m (h^2 + s^2) [kg m2].
+        """
+        return float(self.inertia + self.mass * (self.height**2 + self.bed.positions[point] ** 2))
+
+    def support(self, rotation: float, velocity: float) -> float:
+        """Return the force on the pivot while the body rocks.
+
+        Parameters
+        ----------
+        rotation, velocity : float
+            theta [rad] and its rate [rad/s].
+
+        Returns
+        -------
+        float
+            Vertical force [N].
+        """
+        point = self.pivot(rotation)
+        s, h = float(self.bed.positions[point]), self.height
+        small = self.bed.kinematics == "small"
+        lever = s if small else s * math.cos(rotation) - h * math.sin(rotation)
+        turning = self.mass * self.gravity * (h * math.sin(rotation) - s * (1.0 if small else math.cos(rotation)))
+        spin = 0.0 if small else (s * math.sin(rotation) + h * math.cos(rotation)) * velocity**2
+        return self.mass * (self.gravity + lever * turning / self.inertia_about(point) - spin)
+
+    def furthest(self, side: float) -> float:
+        """Return the rotation of greatest potential on one side: rigid rocking beyond it topples.
+
+        Parameters
+        ----------
+        side : float
+            +1 for the new foot, -1 for the old one.
+
+        Returns
+        -------
+        float
+            |theta|, at most pi/4 for a squat body [rad].
+        """
+        reach = max(side * self.bed.ends[1 if side > 0 else 0], 0.0)
+        angle = (
+            math.asin(min(reach / self.height, 1.0))
+            if self.bed.kinematics == "small"
+            else math.atan2(reach, self.height)
+        )
+        return min(angle, 0.25 * math.pi)

@@ -1,0 +1,124 @@
+"""Free rocking on a bed, impact after impact."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies import Body
+from rocking.conventions import FloatArray
+from rocking.dynamics.bed import fast, reference
+from rocking.dynamics.bed.contact_bed import ContactBed
+from rocking.dynamics.bed.emergent import BedStatus, status_of
+from rocking.dynamics.bed.impact import MOST_STEPS, setup_of
+from rocking.dynamics.bed.law import LawKind
+from rocking.dynamics.bed.rigid import RigidRocking
+from rocking.dynamics.bed.tables import RESULTS, Setup
+from rocking.errors import InvalidValueError
+
+_MOST_RUNS = 50
+_AT_REST = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class BedRocking:
+    """Peaks of free rocking on a bed.
+
+    Parameters
+    ----------
+    rotations : ndarray
+        |theta| at the start and at each peak [rad].
+    times : ndarray
+        When they are reached [s].
+    coefficients : ndarray
+        Ratio of the velocities at which rigid rocking would leave and reach theta = 0; above one where the energy
+        of a hop comes back [-].
+    """
+
+    rotations: FloatArray
+    times: FloatArray
+    coefficients: FloatArray
+
+
+def bed_free_rocking(
+    body: Body, bed: ContactBed, *, rotation: float, peaks: int, tolerance: float = 1e-9
+) -> BedRocking:
+    """Let a body go on one foot and follow it over several impacts, hops and vibration carried along.
+
+    With light damping (zeta <= 0.1) what an impact leaves in hops goes into the next, and the ratio from peak to peak
+    scatters: it is not a property of the body then (physics.md 3.4).
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    bed : ContactBed
+        Its bed, of a law without memory.
+    rotation : float
+        Rotation at which it is let go [rad].
+    peaks : int
+        How many peaks to follow; fewer are returned where the body no longer rocks from foot to foot.
+    tolerance : float
+        Relative error of a step [-].
+
+    Returns
+    -------
+    BedRocking
+        Rotations, times and ratios.
+
+    Raises
+    ------
+    InvalidValueError
+        If the law has a memory, or `peaks` is not a whole number above zero.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> from rocking.dynamics.bed import ContactBed, KelvinVoigt, bed_free_rocking
+    >>> block = Block(width=0.2, height=0.4)
+    >>> bed = ContactBed.uniform(block, 2, KelvinVoigt(1e9, damping_ratio=1.0))
+    >>> bed_free_rocking(block, bed, rotation=0.2, peaks=3).coefficients.round(2).tolist()
+    [0.7, 0.7, 0.7]
+    """
+    if checks.positive("peaks", peaks) != int(peaks):
+        raise InvalidValueError(f"peaks must be a whole number, got {peaks}")
+    setup = setup_of(body, bed, rotation=rotation, tolerance=tolerance)
+    if setup.law.kind is LawKind.PLASTIC:
+        raise InvalidValueError("plastic points remember their past, which is lost from peak to peak; use another law")
+    rigid = setup.rigid
+    angles, times, now, lingers = [float(rotation)], [0.0], 0.0, False
+    for _ in range(_MOST_RUNS * int(peaks)):
+        results, counts = (fast.one(setup, MOST_STEPS) if fast.available() else reference.one(setup))[:2]
+        row = dict(zip(RESULTS, results.tolist(), strict=True))
+        now += row["time"]
+        if status_of(counts) is not BedStatus.PEAK or abs(row["rotation"]) < _AT_REST * rotation:
+            break
+        if row["rotation"] > 0.0 and not lingers and len(angles) > int(peaks):
+            break
+        if row["rotation"] > 0.0 and not lingers:
+            angles.append(row["rotation"])
+            times.append(now)
+        elif row["rotation"] > angles[-1]:  # vibration made the peak a double one
+            angles[-1], times[-1] = row["rotation"], now
+        lingers = row["rotation"] <= 0.0
+        setup = _turned(setup, row)
+    speeds = [_velocity(rigid, angle if k % 2 else -angle) for k, angle in enumerate(angles)]
+    return BedRocking(np.array(angles), np.array(times), np.array(speeds[1:]) / np.array(speeds[:-1]))
+
+
+def _velocity(rigid: RigidRocking, rotation: float) -> float:
+    inertia = rigid.inertia_about(rigid.pivot(rotation))
+    return float(np.sqrt(2.0 * rigid.potential(rotation) / inertia))
+
+
+def _turned(setup: Setup, row: dict[str, float]) -> Setup:
+    """Return the next half cycle, seen from the other side."""
+    bed, start = setup.rigid.bed, setup.start
+    mirror = replace(bed, positions=-bed.positions[::-1], shares=bed.shares[::-1], heights=bed.heights[::-1])
+    state = (row["y"], -row["rotation"], -row["u"], row["w"], -row["angular_velocity"])
+    last = len(bed.positions) - 1
+    return replace(
+        setup,
+        rigid=replace(setup.rigid, bed=mirror),
+        start=replace(start, state=state, old_foot=last - start.new_foot, new_foot=last - start.old_foot),
+    )

@@ -1,0 +1,186 @@
+"""What describes a bed: laws, points, friction, and what is refused."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rocking.bodies import Block, Region, Section
+from rocking.dynamics.bed import (
+    ContactBed,
+    Coulomb,
+    Hertz,
+    HuntCrossley,
+    KelvinVoigt,
+    PlasticUnloading,
+    RegularisedCoulomb,
+    bed_impact,
+    bed_impacts,
+    fast,
+    setup_of,
+)
+from rocking.dynamics.bed import law as laws
+from rocking.errors import InvalidValueError, MissingExtraError
+
+BLOCK = Block(width=0.2, height=0.4)
+LAW = KelvinVoigt(1e8, damping_ratio=0.5)
+ZERO = np.zeros(1)
+
+
+def test_kelvin_voigt_force() -> None:
+    """F = k d + c d', never below zero, nothing without depth."""
+    law = KelvinVoigt(2.0, damping=3.0).numbers(1.0)
+    depth, speed = np.array([0.5, 0.5, -0.5, 0.5]), np.array([1.0, -1.0, 9.0, 0.0])
+    assert laws.force(law, depth, speed, np.zeros(4)).tolist() == [4.0, 0.0, 0.0, 1.0]
+
+
+def test_hunt_crossley_force() -> None:
+    """F = k d^n (1 + chi d'), zero where the loss would pull."""
+    law = HuntCrossley(2.0, exponent=2.0, viscosity=0.5).numbers(1.0)
+    depth, speed = np.array([3.0, 3.0, -1.0]), np.array([1.0, -3.0, 5.0])
+    assert laws.force(law, depth, speed, np.zeros(3)).tolist() == [27.0, 0.0, 0.0]
+
+
+def test_plastic_unloading_returns_its_share() -> None:
+    """The area under unloading is e^2 times the area under loading, and it is what `stored` says."""
+    law = PlasticUnloading(100.0, rebound=0.5).numbers(1.0)
+    depth = np.linspace(0.0, 2.0, 200_001)
+    back = laws.force(law, depth, -np.ones_like(depth), np.full_like(depth, 2.0))
+    assert np.trapezoid(back, depth) == pytest.approx(0.25 * 200.0, rel=1e-6)
+    assert laws.stored(law, np.array([2.0]), np.array([2.0]))[0] == pytest.approx(50.0)
+
+
+def test_depth_under_a_load() -> None:
+    """The static depth carries the load, for every law with stiffness."""
+    for law in (LAW, HuntCrossley(1e9), Hertz(1e9, 0.01)):
+        numbers = law.numbers(10.0)
+        depth = laws.depth_under(numbers, 500.0)
+        assert laws.force(numbers, np.array([depth]), ZERO, ZERO)[0] == pytest.approx(500.0, rel=1e-12)
+
+
+def test_layer_stiffness() -> None:
+    """k = E_eff A / t (physics.md 3.4)."""
+    assert KelvinVoigt.from_layer(1e9, 0.04, 0.02, confinement=1.5).stiffness == pytest.approx(3e9)
+
+
+def test_uniform_points_reach_both_feet() -> None:
+    """The law is the whole bed's: shares add up to one, ends count half."""
+    bed = ContactBed.uniform(BLOCK, 5, LAW)
+    assert bed.positions == pytest.approx([-0.1, -0.05, 0.0, 0.05, 0.1])
+    assert bed.shares == pytest.approx([0.125, 0.25, 0.25, 0.25, 0.125])
+    assert bed.ends == pytest.approx((-0.1, 0.1))
+
+
+def test_the_other_foot_sees_the_mirror() -> None:
+    """Landing on the left of a body is landing on the right of its mirror image."""
+    body = Section([Region([(0, 0), (0.3, 0), (0.1, 0.6), (0.0, 0.6)], 2000.0)])
+    left = ContactBed.uniform(body, 7, LAW, onto="left")
+    mirror = ContactBed.uniform(body.mirrored(), 7, LAW)
+    assert left.positions == pytest.approx(mirror.positions)
+
+
+def test_a_hollow_base_has_no_points_in_its_gap() -> None:
+    """Points stand where the base touches, and nowhere else."""
+    outline = [(0, 0), (0.1, 0), (0.1, 0.05), (0.3, 0.05), (0.3, 0), (0.4, 0), (0.4, 1), (0, 1)]
+    body = Section([Region(outline, 2000.0)])
+    positions = ContactBed.uniform(body, 10, LAW).positions
+    assert (np.abs(positions) >= 0.1 - 1e-12).all()
+    assert positions[[0, -1]] == pytest.approx([-0.2, 0.2])
+
+
+def test_a_history_hangs_together() -> None:
+    """Forces of the points add up to the normal force, k(t) stays on the base, contacts are in order."""
+    impact = bed_impact(BLOCK, ContactBed.uniform(BLOCK, 5, LAW), angular_velocity=0.8)
+    assert impact.forces.sum(axis=1) == pytest.approx(impact.sample("normal"), rel=1e-9, abs=1e-6)
+    assert (impact.forces >= -1e-6).all()
+    assert np.nanmax(np.abs(impact.impulse_position)) <= 1.0 + 1e-9
+    assert (np.diff(impact.time) >= 0.0).all()
+    assert (impact.intervals[:, 2] >= impact.intervals[:, 1]).all()
+    assert 0.0 < impact.duration < 0.1
+    assert -1.0 < impact.mean_impulse_position < 1.0
+
+
+def test_rotation_and_velocity_are_the_same_start() -> None:
+    """A body let go at a rotation lands with the velocity that energy gives, and the other way round."""
+    alpha = math.atan(0.5)
+    by_rotation = setup_of(BLOCK, ContactBed.uniform(BLOCK, 2, LAW), rotation=0.3 * alpha)
+    height = math.hypot(0.1, 0.2)
+    fall = height * (math.cos(0.7 * alpha) - math.cos(alpha))
+    inertia = 4.0 / 3.0 * BLOCK.mass * height**2
+    landing = math.sqrt(2.0 * BLOCK.mass * by_rotation.gravity * fall / inertia)
+    assert by_rotation.start.landing_velocity == pytest.approx(landing, rel=1e-12)
+    by_velocity = setup_of(BLOCK, ContactBed.uniform(BLOCK, 2, LAW), angular_velocity=landing)
+    assert by_velocity.start.state == pytest.approx(by_rotation.start.state, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: KelvinVoigt(-1.0),
+        lambda: KelvinVoigt(0.0),
+        lambda: KelvinVoigt(math.nan),
+        lambda: KelvinVoigt(1e6, damping=1.0, damping_ratio=0.1),
+        lambda: HuntCrossley(1e6, exponent=0.5),
+        lambda: Hertz(0.0, 0.1),
+        lambda: PlasticUnloading(1e6, rebound=1.5),
+        lambda: Coulomb(-0.1),
+        lambda: RegularisedCoulomb(0.5, creep=0.0),
+        lambda: ContactBed([0.1, -0.1], LAW),
+        lambda: ContactBed([-0.1, math.inf], LAW),
+        lambda: ContactBed([-0.1, 0.1], LAW, shares=[1.0]),
+        lambda: ContactBed([-0.1, 0.1], LAW, shares=[1.0, 0.0]),
+        lambda: ContactBed([-0.1, 0.1], "steel"),
+        lambda: ContactBed([-0.1, 0.1], LAW, kinematics="large"),
+        lambda: ContactBed.uniform(BLOCK, 1, LAW),
+        lambda: ContactBed.uniform(BLOCK, 3, LAW, rule="simpson"),
+        lambda: bed_impacts([]),
+        lambda: bed_impacts([setup_of(BLOCK, ContactBed.uniform(BLOCK, 2, LAW), angular_velocity=1.0)], threads=0),
+    ],
+)
+def test_refusals(make: Any) -> None:
+    """What cannot be a bed is refused with one class of error."""
+    with pytest.raises(InvalidValueError):
+        make()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"rotation": 0.1, "angular_velocity": 1.0},
+        {"rotation": 0.5},
+        {"angular_velocity": math.nan},
+        {"angular_velocity": -1.0},
+        {"angular_velocity": 1.0, "tolerance": 0.1},
+        {"angular_velocity": 1.0, "ground_acceleration": (0.0, -20.0)},
+    ],
+)
+def test_impossible_impacts(options: dict[str, Any]) -> None:
+    """An impact that cannot be is refused before anything is computed."""
+    with pytest.raises(InvalidValueError):
+        bed_impact(BLOCK, ContactBed.uniform(BLOCK, 2, LAW), **options)
+
+
+def test_a_law_that_cannot_carry_the_weight() -> None:
+    """Dashpots alone, or points without rebound, need an impulsive impact."""
+    for law in (KelvinVoigt(0.0, damping=1e6), PlasticUnloading(1e8, rebound=0.0)):
+        with pytest.raises(InvalidValueError, match="impulsive"):
+            bed_impact(BLOCK, ContactBed.uniform(BLOCK, 2, law), angular_velocity=1.0)
+
+
+def test_without_the_fast_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The reference serves where the extension was not built; asking for the fast one says what is missing."""
+    monkeypatch.setattr(fast, "available", lambda: False)
+    bed = ContactBed.uniform(BLOCK, 2, KelvinVoigt(2e9, damping_ratio=1.0))
+    assert bed_impact(BLOCK, bed, angular_velocity=0.5, tolerance=1e-6).coefficient == pytest.approx(0.7, abs=5e-3)
+    assert bed_impacts([setup_of(BLOCK, bed, angular_velocity=0.5, tolerance=1e-6)]).coefficient.shape == (1,)
+    with pytest.raises(MissingExtraError):
+        bed_impact(BLOCK, bed, angular_velocity=0.5, engine="fast")
+
+
+def test_many_points_share_the_weight_at_the_start() -> None:
+    """With hundreds of points the old foot leans on its neighbours: r settles instead of running away."""
+    law = KelvinVoigt(BLOCK.mass * (800.0 * math.pi) ** 2, damping_ratio=1.0)
+    setups = [setup_of(BLOCK, ContactBed.uniform(BLOCK, n, law), angular_velocity=1.0) for n in (81, 161, 641)]
+    assert np.ptp(bed_impacts(setups).coefficient) < 0.01

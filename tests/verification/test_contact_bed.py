@@ -1,0 +1,340 @@
+"""The contact bed against closed forms, against the project's reference values, and against another solver."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rocking.bodies import Block
+from rocking.dynamics.bed import (
+    BedImpact,
+    BedStatus,
+    ContactBed,
+    Coulomb,
+    Hertz,
+    HuntCrossley,
+    KelvinVoigt,
+    PlasticUnloading,
+    RegularisedCoulomb,
+    bed_free_rocking,
+    bed_impact,
+    bed_impacts,
+    fast,
+    reference,
+    setup_of,
+)
+from rocking.dynamics.bed.impact import MOST_STEPS
+from rocking.dynamics.bed.law import LawNumbers
+
+pytestmark = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
+
+# physics.md 1.5, REF: distributed impulse q = 1, and the plastic Winkler bed
+VISCOUS = {1.0: 0.4774610600698219, 2.0: 0.7965354225163898, 4.0: 0.9408847304180785}
+PLASTIC = {1.0: 0.51649094, 2.0: 0.81425939, 4.0: 0.94631022}
+
+# physics.md 3.4, zeta = .3, 1, 3
+TABLE = {
+    (2.0, 2): (0.7, 0.7, 0.7),
+    (2.0, 3): (0.793, 0.766, 0.764),
+    (2.0, 5): (0.840, 0.808, 0.808),
+    (2.0, 11): (0.867, 0.840, 0.845),
+    (2.0, 41): (0.88, 0.850, 0.850),
+    (4.0, 2): (0.912, 0.912, 0.912),
+    (4.0, 3): (0.941, 0.933, 0.934),
+    (4.0, 5): (0.958, 0.948, 0.950),
+}
+
+
+def slender(ratio: float) -> Block:
+    return Block(width=0.2, height=0.2 * ratio)
+
+
+def sprung(block: Block, hertz: float, ratio: float) -> KelvinVoigt:
+    return KelvinVoigt(block.mass * (2.0 * math.pi * hertz) ** 2, damping_ratio=ratio)
+
+
+def dashpots(block: Block) -> KelvinVoigt:
+    return KelvinVoigt(0.0, damping=1e12 * block.mass)
+
+
+def impulsive(block: Block, bed: ContactBed) -> BedImpact:
+    return bed_impact(block, bed, angular_velocity=0.5, impulsive=True)
+
+
+def dropped(law: LawNumbers, speed: float) -> tuple[float, float, float]:
+    """Contact time, greatest depth and velocity ratio of a block of 1000 kg that falls flat on two points."""
+    block = Block(width=1.0, height=1.0, density=1000.0)
+    bed = ContactBed([-0.5, 0.5], KelvinVoigt(1.0))
+    setup = setup_of(block, bed, angular_velocity=1.0, impulsive=True)
+    depth = speed * math.sqrt(block.mass / law.stiffness) if law.exponent == 1.0 else 1e-3
+    start = replace(setup.start, state=(0.0, 0.0, 0.0, -speed, 0.0), depth=depth, speed=speed, old_foot=-1)
+    setup = replace(setup, law=law, start=start, longest=1e3 * depth / speed)
+    results, _, samples, _, intervals = fast.one(setup, MOST_STEPS)
+    assert len(intervals) == 2
+    assert intervals[0, 2] == pytest.approx(intervals[1, 2], rel=1e-12)
+    return float(intervals[0, 2] - intervals[0, 1]), float(-samples[:, 7].min()), float(results[3] / speed)
+
+
+@pytest.mark.parametrize("ratio", [2.0, 4.0])
+@pytest.mark.parametrize("zeta", [0.3, 1.0, 3.0])
+def test_two_points_are_housner(ratio: float, zeta: float) -> None:
+    """Two points give 1 - 1.5 sin^2 alpha (physics.md 1.1): .700 and .912 within what 400 Hz is softer than rigid."""
+    block = slender(ratio)
+    bed = ContactBed.uniform(block, 2, sprung(block, 400.0, zeta), kinematics="small")
+    impact = bed_impact(block, bed, rotation=0.5 * math.atan(1.0 / ratio))
+    assert impact.status is BedStatus.PEAK
+    assert impact.coefficient == pytest.approx(1.0 - 1.5 / (1.0 + ratio**2), abs=2e-3)
+
+
+@pytest.mark.parametrize("case", TABLE)
+def test_the_table_of_points(case: tuple[float, int]) -> None:
+    """The emergent coefficients of physics.md 3.4, within .007: the table has two digits at n = 41.
+
+    They are measured with the exact potential of 3.2.
+    """
+    ratio, count = case
+    block, alpha = slender(ratio), math.atan(1.0 / ratio)
+    for zeta, expected in zip((0.3, 1.0, 3.0), TABLE[case], strict=True):
+        bed = ContactBed.uniform(block, count, sprung(block, 400.0, zeta), kinematics="small")
+        peak = bed_impact(block, bed, rotation=0.5 * alpha).result("rotation")
+        rise = (math.cos(alpha - peak) - math.cos(alpha)) / (math.cos(0.5 * alpha) - math.cos(alpha))
+        assert math.sqrt(rise) == pytest.approx(expected, abs=7e-3)
+
+
+@pytest.mark.parametrize("law", ["viscous", "plastic"])
+@pytest.mark.parametrize("ratio", [1.0, 2.0, 4.0])
+def test_many_points_tend_to_the_continuous_bed(law: str, ratio: float) -> None:
+    """Dashpots tend to distributed impulse q = 1, plastic points to the plastic Winkler bed, with order near 2."""
+    block = slender(ratio)
+    used = dashpots(block) if law == "viscous" else PlasticUnloading(1e14 * block.mass, rebound=0.0)
+    exact = (VISCOUS if law == "viscous" else PLASTIC)[ratio]
+    errors = [abs(impulsive(block, ContactBed.uniform(block, n, used)).coefficient - exact) for n in (41, 81, 161)]
+    assert errors[2] < 4e-5
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (orders > 1.7).all()
+    assert (orders < 2.2).all()
+    # negative control: two points are Housner's impact, far away
+    assert abs(impulsive(block, ContactBed.uniform(block, 2, used)).coefficient - exact) > 0.02
+
+
+def test_equal_shares_converge_only_linearly() -> None:
+    """The rule of equal shares has order 1: the same measurement tells the two rules apart."""
+    block = slender(2.0)
+    beds = [ContactBed.uniform(block, n, dashpots(block), rule="ends") for n in (41, 81, 161)]
+    errors = np.array([abs(impulsive(block, bed).coefficient - VISCOUS[2.0]) for bed in beds])
+    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx([1.0, 1.0], abs=0.2)
+
+
+@pytest.mark.parametrize("wrong", [0.98, 1.02])
+def test_a_wrong_inertia_is_rejected(wrong: float) -> None:
+    """Two points with 2 % more or less inertia miss Housner's r by far more than the tolerance of the claim."""
+    block = slender(2.0)
+    setup = setup_of(block, ContactBed.uniform(block, 2, dashpots(block)), angular_velocity=0.5, impulsive=True)
+    bent = replace(setup, rigid=replace(setup.rigid, inertia=wrong * setup.rigid.inertia))
+    right, off = bed_impacts([setup, bent]).coefficient
+    assert right == pytest.approx(0.7, abs=1e-9)
+    assert abs(off - 0.7) > 1e-4
+
+
+@pytest.mark.parametrize("ratio", [2.0, 3.0])
+@pytest.mark.parametrize("friction", [0.0, 0.1, 0.2, 0.3, 1.0])
+def test_friction_threshold(ratio: float, friction: float) -> None:
+    """Two points that absorb the impact give r(mu) of physics.md 1.2, up to the friction that Housner needs."""
+    block = slender(ratio)
+    needed = 3.0 * ratio / (1.0 + 4.0 * ratio**2)
+    mu, inertia = min(friction, needed), (1.0 + ratio**2) / 3.0
+    exact = (inertia - 1.0 + mu * ratio) / (inertia + 1.0 - mu * ratio)
+    impact = impulsive(block, ContactBed.uniform(block, 2, dashpots(block), friction=Coulomb(friction)))
+    assert impact.coefficient == pytest.approx(exact, abs=1e-8)
+    assert abs(impact.audit) < 1e-10
+    if 0.0 < friction < needed:  # negative control: an audit without the work of friction does not close
+        without = impact.result("energy_end") + impact.result("bed_loss") - impact.result("energy_start")
+        assert abs(without) > 1e-3 * impact.setup.start.energy
+
+
+def test_friction_reference_values() -> None:
+    """physics.md 1.2 at lambda = 2: mu = 0 gives .25, mu = 6/17 gives Housner's .7."""
+    block = slender(2.0)
+    values = [
+        impulsive(block, ContactBed.uniform(block, 2, dashpots(block), friction=Coulomb(mu))).coefficient
+        for mu in (0.0, 6.0 / 17.0)
+    ]
+    assert values == pytest.approx([0.25, 0.7], abs=1e-9)
+
+
+def test_regularised_friction_tends_to_coulomb() -> None:
+    """The smooth law's error falls with its creep speed."""
+    block = slender(2.0)
+
+    def coefficient(creep: float) -> float:
+        friction = RegularisedCoulomb(0.2, creep)
+        return impulsive(block, ContactBed.uniform(block, 2, dashpots(block), friction=friction)).coefficient
+
+    exact = (5.0 / 3.0 - 1.0 + 0.4) / (5.0 / 3.0 + 1.0 - 0.4)
+    errors = [abs(coefficient(creep) - exact) for creep in (1e-3, 1e-4, 1e-5)]
+    assert errors[0] > 5.0 * errors[1] > 25.0 * errors[2]
+    assert errors[2] < 1e-4
+
+
+def test_contact_time_of_a_linear_point() -> None:
+    """A mass on a spring leaves it after pi sqrt(m / k) as fast as it came (physics.md 3.4)."""
+    time, depth, ratio = dropped(KelvinVoigt(1e7).numbers(1000.0), speed=0.3)
+    assert time == pytest.approx(math.pi * math.sqrt(1000.0 / 1e7), rel=1e-9)
+    assert depth == pytest.approx(0.3 * math.sqrt(1000.0 / 1e7), rel=1e-3)  # the samples straddle the peak
+    assert ratio == pytest.approx(1.0, rel=1e-9)
+
+
+def test_contact_time_of_a_hertz_point() -> None:
+    """d_max = (5 m v^2 / 4 k)^(2/5) and t = 2.9432 d_max / v (physics.md 3.4)."""
+    law = Hertz(3e9, 0.05).numbers(1000.0)
+    time, depth, ratio = dropped(law, speed=0.5)
+    greatest = (5.0 * 1000.0 * 0.5**2 / (4.0 * law.stiffness)) ** 0.4
+    assert depth == pytest.approx(greatest, rel=1e-3)
+    exact = 0.8 * math.gamma(0.4) * math.gamma(0.5) / math.gamma(0.9)  # 2 int_0^1 dx / sqrt(1 - x^2.5)
+    assert exact == pytest.approx(2.9432, abs=1e-4)
+    assert time == pytest.approx(exact * greatest / 0.5, rel=1e-8)
+    assert ratio == pytest.approx(1.0, rel=1e-8)
+
+
+@pytest.mark.parametrize("zeta", [0.05, 0.3, 0.8])
+def test_a_point_never_pulls(zeta: float) -> None:
+    """A damped point lets go where its force vanishes; one that pulled until d = 0 would give another ratio."""
+    mass, stiffness = 1000.0, 1e7
+    omega, root = math.sqrt(stiffness / mass), math.sqrt(1.0 - zeta**2)
+    time, _, ratio = dropped(KelvinVoigt(stiffness, damping_ratio=zeta).numbers(mass), speed=0.3)
+    leaves = math.atan2(2.0 * zeta * root, 2.0 * zeta**2 - 1.0) / (omega * root)
+    assert time == pytest.approx(leaves, rel=1e-9)
+    assert ratio == pytest.approx(math.exp(-zeta * omega * leaves), rel=1e-8)
+    assert abs(ratio - math.exp(-zeta * math.pi / root)) > 1e-4
+
+
+@pytest.mark.parametrize("rebound", [0.2, 0.7])
+def test_plastic_point_returns_its_velocity_ratio(rebound: float) -> None:
+    """A point that drops alone comes back with the ratio that names the law, after (1 + e) quarter periods."""
+    time, _, ratio = dropped(PlasticUnloading(1e7, rebound).numbers(1000.0), speed=0.3)
+    assert ratio == pytest.approx(rebound, rel=1e-8)
+    assert time == pytest.approx(0.5 * math.pi * math.sqrt(1000.0 / 1e7) * (1.0 + rebound), rel=1e-8)
+
+
+def laws(block: Block) -> dict[str, ContactBed]:
+    linear, profile = sprung(block, 400.0, 0.5), [0.0, 1e-4, 2e-4, 1e-4, 0.0]
+    return {
+        "kelvin-voigt": ContactBed.uniform(block, 5, linear),
+        "sliding": ContactBed.uniform(block, 5, linear, friction=Coulomb(0.25)),
+        "hunt-crossley": ContactBed.uniform(block, 7, HuntCrossley(1e10, viscosity=2.0)),
+        "plastic": ContactBed.uniform(block, 5, PlasticUnloading(linear.stiffness / 16.0, 0.4)),
+        "hertz": ContactBed.uniform(block, 5, Hertz(1e9, 0.01)),
+        "concave": ContactBed.uniform(block, 5, linear, friction=Coulomb(0.5)).with_profile(profile),
+    }
+
+
+@pytest.mark.parametrize("name", list(laws(slender(2.0))))
+def test_another_solver_agrees(name: str) -> None:
+    """SciPy's DOP853 on forces without branches gives the same r and losses to 1e-6, in a moving frame too."""
+    block = slender(2.0)
+    setup = setup_of(block, laws(block)[name], angular_velocity=1.0, ground_acceleration=(0.3, 0.5))
+    quick = BedImpact(setup, *fast.one(setup, MOST_STEPS))
+    slow = BedImpact(setup, *reference.one(setup, tolerance=1e-12))
+    assert quick.emergent.by_peak == pytest.approx(slow.emergent.by_peak, abs=1e-6)
+    assert quick.emergent.by_energy == pytest.approx(slow.emergent.by_energy, abs=1e-6)
+    assert quick.contacts == slow.contacts
+    for lost in ("bed_loss", "friction_loss"):
+        assert quick.result(lost) == pytest.approx(slow.result(lost), abs=1e-6 * setup.start.energy)
+    assert abs(quick.audit) < 1e-8
+    # negative control: the audit sees the losses of the bed
+    assert abs(quick.audit - quick.result("bed_loss") / setup.start.energy) > 1e-6 or name == "hertz"
+
+
+def test_an_implicit_solver_agrees() -> None:
+    """SciPy's LSODA gives the same as its explicit method and as the fast engine, to 1e-6."""
+    block = slender(2.0)
+    setup = setup_of(block, ContactBed.uniform(block, 3, sprung(block, 200.0, 1.0)), angular_velocity=0.6)
+    quick = BedImpact(setup, *fast.one(setup, MOST_STEPS)).coefficient
+    assert BedImpact(setup, *reference.one(setup, "LSODA", 1e-8)).coefficient == pytest.approx(quick, abs=1e-6)
+
+
+def test_results_do_not_depend_on_the_step() -> None:
+    """A tolerance a thousand times wider, or ten times finer, changes r by less than 1e-4."""
+    block = slender(2.0)
+    for bed in laws(block).values():
+        rows = [setup_of(block, bed, angular_velocity=1.0, tolerance=t) for t in (1e-6, 1e-8, 1e-9, 1e-10)]
+        values = bed_impacts(rows).coefficient
+        assert np.ptp(values) < 1e-4
+        assert np.ptp(values[1:]) < 1e-6
+
+
+def test_energy_audit() -> None:
+    """Kinetic, potential and elastic energy and the losses close to 1e-8 of the energy before, for 41 points."""
+    rows = []
+    for ratio in (1.5, 2.0, 4.0, 8.0):
+        block = slender(ratio)
+        for zeta in (0.05, 0.3, 1.0, 3.0):
+            for friction in (0.2, 0.6):
+                bed = ContactBed.uniform(block, 41, sprung(block, 400.0, zeta), friction=Coulomb(friction))
+                rows.append(setup_of(block, bed, rotation=0.4 * math.atan(1.0 / ratio)))
+    assert np.abs(bed_impacts(rows).audit).max() < 1e-8
+
+
+def test_a_hard_bed_has_a_limit() -> None:
+    """The emergent r of two points tends to Housner's as the bed hardens, by all measures."""
+    block = slender(2.0)
+    for measure in ("by_peak", "by_energy"):
+        errors = []
+        for hertz in (100.0, 400.0, 1600.0):
+            bed = ContactBed.uniform(block, 2, sprung(block, hertz, 1.0))
+            errors.append(abs(getattr(bed_impact(block, bed, angular_velocity=0.8).emergent, measure) - 0.7))
+        assert errors[0] > errors[1] > errors[2]
+        assert errors[2] < 1e-4
+
+
+def test_light_damping_scatters() -> None:
+    """With zeta <= .1 the ratio from peak to peak scatters, above one too (physics.md 3.4: .4 to 1.7): it is shown."""
+    block = slender(2.0)
+
+    def ratios(zeta: float) -> np.ndarray:
+        bed = ContactBed.uniform(block, 2, sprung(block, 400.0, zeta), kinematics="small")
+        return bed_free_rocking(block, bed, rotation=0.5 * math.atan(0.5), peaks=4).coefficients
+
+    loose, damped = ratios(0.02), ratios(1.0)
+    assert np.ptp(loose) > 0.3
+    assert loose.max() > 1.0
+    assert damped == pytest.approx([0.7] * 4, abs=5e-3)
+
+
+def test_threads_and_neighbours_change_no_bit() -> None:
+    """A row has the same bits with one thread or two, alone or among others."""
+    block = slender(2.0)
+    rows = [setup_of(block, bed, angular_velocity=v) for bed in laws(block).values() for v in (0.3, 0.9)]
+    together, alone = bed_impacts(rows, threads=2), bed_impacts(rows[3:4])
+    np.testing.assert_array_equal(bed_impacts(rows).results, together.results)
+    np.testing.assert_array_equal(alone.results[0], together.results[3])
+
+
+def test_a_squat_body_stops() -> None:
+    """Below lambda = 1/sqrt 2 two sticking points stop the body (physics.md 1.2); above, they do not."""
+    for ratio, stops in ((0.6, True), (0.8, False)):
+        block = slender(ratio)
+        impact = impulsive(block, ContactBed.uniform(block, 2, dashpots(block)))
+        assert impact.emergent.stopped is stops
+        assert impact.coefficient == pytest.approx(max(1.0 - 1.5 / (1.0 + ratio**2), 0.0), abs=1e-8)
+
+
+@pytest.mark.parametrize(("name", "allowed"), [("kelvin-voigt", 1e-8), ("plastic", 1e-8), ("hunt-crossley", 1e-7)])
+def test_energy_audit_of_random_impacts(name: str, allowed: float) -> None:
+    """The audit closes for bodies, laws and friction drawn at random; 1e-7 where d^1.5 is rough at each touch."""
+    random = np.random.default_rng(6)
+    rows = []
+    for _ in range(150):
+        ratio, width = random.uniform(1.2, 8.0), 10.0 ** random.uniform(-1.0, 0.3)
+        block = Block(width=width, height=width * ratio)
+        law = {
+            "kelvin-voigt": sprung(block, 10.0 ** random.uniform(1.5, 3.0), 10.0 ** random.uniform(-1.5, 0.5)),
+            "plastic": PlasticUnloading(block.mass * (400.0 * math.pi) ** 2, random.uniform(0.1, 0.9)),
+            "hunt-crossley": HuntCrossley(block.mass * 10.0 ** random.uniform(6.0, 9.0), viscosity=1.0),
+        }[name]
+        bed = ContactBed.uniform(block, 21, law, friction=Coulomb(random.uniform(0.1, 1.0)))
+        rows.append(setup_of(block, bed, rotation=random.uniform(0.1, 0.8) * math.atan(1.0 / ratio)))
+    impacts = bed_impacts(rows)
+    assert np.isfinite(impacts.coefficient).all()
+    assert np.abs(impacts.audit).max() < allowed
