@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rocking import bodies, conventions, dynamics, errors, evidence, motions, plots, report, restitution, studies
-    from rocking.bodies import Block, Body, MassPoints, Region, Section, Side, shapes
+    from rocking.bodies import Block, Body, MassPoints, Region, Section, Side, shapes, solid
     from rocking.bodies.formats import read_body
+    from rocking.bodies.solid import Part, Solid
     from rocking.dynamics import (
         Outcome,
         RandomRestitution,
@@ -16,9 +17,12 @@ if TYPE_CHECKING:
         simulate,
         simulate_many,
     )
+    from rocking.dynamics.bed import ContactBed, bed_impact
+    from rocking.dynamics.planar import PlanarResponse, simulate_with_contact
     from rocking.motions import GroundMotion, pulses, synthetic
     from rocking.motions.formats import read_motion
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
+    from rocking.restitution.spatial import edge_coefficient, impact_in_space
     from rocking.studies.campaign import Campaign
     from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
     from rocking.studies.overturning_map import overturning_map
@@ -30,23 +34,30 @@ __all__ = [
     "Block",
     "Body",
     "Campaign",
+    "ContactBed",
     "GroundMotion",
     "MassPoints",
     "Outcome",
+    "Part",
+    "PlanarResponse",
     "RandomRestitution",
     "Region",
     "Response",
     "RestitutionModel",
     "Section",
     "Side",
+    "Solid",
     "SpeedRestitution",
+    "bed_impact",
     "bodies",
     "coefficient_of_restitution",
     "conventions",
     "dynamics",
+    "edge_coefficient",
     "errors",
     "evidence",
     "free_rocking",
+    "impact_in_space",
     "minimum_overturning_acceleration",
     "motions",
     "overturning_map",
@@ -60,6 +71,8 @@ __all__ = [
     "shapes",
     "simulate",
     "simulate_many",
+    "simulate_with_contact",
+    "solid",
     "studies",
     "synthetic",
 ]
@@ -68,18 +81,25 @@ _HOME = {
     "Block": "rocking.bodies",
     "Body": "rocking.bodies",
     "Campaign": "rocking.studies.campaign",
+    "ContactBed": "rocking.dynamics.bed",
     "GroundMotion": "rocking.motions",
     "MassPoints": "rocking.bodies",
     "Outcome": "rocking.dynamics",
+    "Part": "rocking.bodies.solid",
+    "PlanarResponse": "rocking.dynamics.planar",
     "RandomRestitution": "rocking.dynamics",
     "Region": "rocking.bodies",
     "Response": "rocking.dynamics",
     "RestitutionModel": "rocking.restitution",
     "Section": "rocking.bodies",
     "Side": "rocking.bodies",
+    "Solid": "rocking.bodies.solid",
     "SpeedRestitution": "rocking.dynamics",
+    "bed_impact": "rocking.dynamics.bed",
     "coefficient_of_restitution": "rocking.restitution",
+    "edge_coefficient": "rocking.restitution.spatial",
     "free_rocking": "rocking.dynamics",
+    "impact_in_space": "rocking.restitution.spatial",
     "minimum_overturning_acceleration": "rocking.studies",
     "overturning_map": "rocking.studies",
     "pulses": "rocking.motions",
@@ -89,6 +109,8 @@ _HOME = {
     "shapes": "rocking.bodies",
     "simulate": "rocking.dynamics",
     "simulate_many": "rocking.dynamics",
+    "simulate_with_contact": "rocking.dynamics.planar",
+    "solid": "rocking.bodies",
     "synthetic": "rocking.motions",
 }
 

@@ -15,6 +15,9 @@ from rocking.dynamics.trajectory import EventKind, Trajectory
 _ROUNDING = 1e-9
 
 
+_FOLLOWS = "simulate_with_contact(body, motion, friction=...) follows it"
+
+
 @dataclass(frozen=True)
 class Contact:
     """Forces of the ground at the samples, and the friction that rocking without slip takes.
@@ -73,17 +76,18 @@ class Contact:
         found = []
         if self.loses_contact:
             found.append(
-                "the vertical force falls to zero: the body would leave the ground, which this model cannot do"
+                "the vertical force falls to zero: the body would leave the ground, which pure rocking cannot do; "
+                + _FOLLOWS
             )
         elif self.friction_of_motion > friction:
             found.append(
                 f"rocking without slip takes a coefficient of friction of {self.friction_of_motion:.2f}; "
-                f"with {friction:g} the body would slide"
+                f"with {friction:g} the body would slide; {_FOLLOWS}"
             )
         if self.friction_of_impacts > friction:
             found.append(
                 f"impacts without slip take a coefficient of friction of {self.friction_of_impacts:.2f}; "
-                f"with {friction:g} the foot would slip and lose more energy"
+                f"with {friction:g} the foot would slip and lose more energy; {_FOLLOWS}"
             )
         return found
 

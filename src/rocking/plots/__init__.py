@@ -13,9 +13,11 @@ from rocking.plots.measures import measures_picture
 from rocking.plots.overturning_map import overturning_map_picture
 from rocking.plots.overview import calibration_figure, league_figure, models_and_measurements
 from rocking.plots.paper_figures import figure_3, figure_5, figure_6, figure_7, figure_8, figure_9
+from rocking.plots.regimes import regime_map_picture, regimes_picture
 from rocking.plots.response import response_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 from rocking.plots.sensitivity import sensitivity_picture
+from rocking.plots.solid import energy_picture, slices_picture, solid_picture
 from rocking.plots.style import save, write
 
 __all__ = [
@@ -25,6 +27,7 @@ __all__ = [
     "calibration_figure",
     "coefficient_picture",
     "crossings_picture",
+    "energy_picture",
     "figure_1",
     "figure_2",
     "figure_3",
@@ -41,9 +44,13 @@ __all__ = [
     "measures_picture",
     "models_and_measurements",
     "overturning_map_picture",
+    "regime_map_picture",
+    "regimes_picture",
     "response_picture",
     "rocking_spectrum_picture",
     "save",
     "sensitivity_picture",
+    "slices_picture",
+    "solid_picture",
     "write",
 ]
