@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -11,32 +12,38 @@ enum Outcome : std::int8_t { kNoUplift = 0, kRocked = 1, kOverturned = 2, kFaile
 enum Status : std::int8_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyImpacts = 3, kNotResolved = 4 };
 enum EventKind : std::int8_t { kUplift = 0, kImpact = 1, kRest = 2 };
 
+struct Range {
+    double low, high;
+};
+
 // One ground motion within the common array of coefficients.
 struct Shake {
     std::int64_t first;     // index of its first number
     std::int64_t segments;  // number of stretches
     std::int64_t still;     // stretches of rest after them; the jump to zero is a pair of samples at one instant
     double step;            // duration of a stretch [s]
-    std::int64_t block;     // index of its first block in the bounds
+    std::int64_t block;     // index of its first block in the ranges
+    Range horizontal, vertical;  // of its accelerations, zero included [m/s2]
 };
 
-// Least and largest accelerations within blocks of stretches, and from each block to the end [m/s2].
-struct Bounds {
-    double low, high, vertical_low, vertical_high;
-    double later_low, later_high, later_vertical_low, later_vertical_high;
+constexpr int kBlock = 32;  // stretches whose accelerations have a range of their own
+
+// Least and largest accelerations of one direction [m/s2].
+struct Ranges {
+    std::vector<Range> within;  // each block
+    std::vector<Range> later;   // from each block to the end, zero included
 };
-constexpr int kBlock = 32;
 
 // The motions of a batch. Degree 1: samples one after another, pairs (horizontal, vertical) where there is a vertical
 // part. Degree 7: coefficients of the stretches one after another.
 struct Motions {
     const double* data;
     int degree;
-    bool vertical;
+    bool vertical_part;
     std::vector<Shake> shakes;
-    std::vector<Bounds> bounds;
-    int stride() const { return degree == 1 ? (vertical ? 2 : 1) : degree + 1; }
-    void find_bounds();
+    Ranges horizontal, vertical;  // the second is empty without a vertical part
+    int stride() const { return degree == 1 ? (vertical_part ? 2 : 1) : degree + 1; }
+    void find_ranges();
 };
 
 // How an impact changes the velocity: r = r_side * table(speed), or r_side * quantile(random number).
@@ -70,6 +77,7 @@ struct Rows {
     std::int8_t *outcome, *status, *side;
     double *peak, *peak_time, *peak_velocity, *overturning_time, *first_uplift, *error;
     std::int64_t *impacts, *uplifts;
+    const std::int64_t* list = nullptr;  // the rows to be done; all of them if there is none
 };
 
 struct Settings {
@@ -81,6 +89,25 @@ struct Settings {
     int order;
     bool to_the_ground;   // follow an overturning body until it lies
 };
+
+// How the stretches of a motion are stepped through by a body.
+struct Pace {
+    double parts;  // into which a stretch is cut
+    double reach;  // p times one of them, where the ground shakes with many g more [-]
+};
+
+// A ground that shakes with many g moves the body faster than gravity does.
+inline Pace pace_of(const Shake& shake, double p, double over_gravity, double longest_step) {
+    const double push = std::max(shake.horizontal.high, -shake.horizontal.low);
+    const double lift = std::max(shake.vertical.high, -shake.vertical.low);
+    const double reach = p * shake.step * std::sqrt(std::max(1.0, 0.5 * (std::fabs(over_gravity) * (push + lift))));
+    const double parts = std::max(1.0, std::ceil(reach / longest_step));
+    return {parts, reach / parts};
+}
+
+// Reach up to which order 6 leaves out less, reach^7 / 7! of p alpha, than a hundredth of what order 8 may leave out at
+// its longest step: as good, and quicker.
+inline double reach_of_order_six(double longest_step) { return std::pow(std::pow(longest_step, 9) / 7200.0, 1.0 / 7.0); }
 
 // Rows that wait; threads take a few at a time.
 struct Queue {
@@ -100,6 +127,7 @@ struct Work {
     std::int64_t steps = 0;  // Taylor steps of active lanes
     std::int64_t sweeps = 0; // steps of all lanes together
     std::int64_t events = 0; // visits to the lane-by-lane part
+    std::int64_t orders = 0; // steps times their order
 };
 
 }  // namespace rocking

@@ -7,7 +7,7 @@ namespace ROCKING_ISA {
 
 // Four registers' worth of lanes side by side hide the latency of the multiply-adds, and two groups of them fill the
 // registers of those that land; a single history takes one.
-constexpr int kMany = 4, kGroups = 2;
+constexpr int kMany = 4, kGroups = 6;
 
 Run kernel_for(bool single, const Choice& c) {
     if (c.order == 8) {
@@ -22,8 +22,13 @@ Run kernel_for(bool single, const Choice& c) {
         if (c.linear) return single ? run_rows<1, 1, 8, 1, false, true> : run_rows<kGroups, kMany, 8, 1, false, true>;
         return single ? run_rows<1, 1, 8, 1, false, false> : run_rows<kGroups, kMany, 8, 1, false, false>;
     }
-    if (c.linear || c.vertical) return nullptr;
-    if (c.order == 6) return c.degree == 7 ? run_rows<kGroups, kMany, 6, 7, false, false> : run_rows<kGroups, kMany, 6, 1, false, false>;
+    if (c.linear) return nullptr;
+    if (c.order == 6) {
+        if (c.degree == 7) return run_rows<kGroups, kMany, 6, 7, false, false>;
+        if (c.vertical) return single ? run_rows<1, 1, 6, 1, true, false> : run_rows<kGroups, kMany, 6, 1, true, false>;
+        return single ? run_rows<1, 1, 6, 1, false, false> : run_rows<kGroups, kMany, 6, 1, false, false>;
+    }
+    if (c.vertical) return nullptr;
     if (c.order == 4) return c.degree == 7 ? run_rows<kGroups, kMany, 4, 7, false, false> : run_rows<kGroups, kMany, 4, 1, false, false>;
     return nullptr;
 }

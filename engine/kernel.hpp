@@ -34,14 +34,22 @@ constexpr double kHalfPi = 1.57079632679489661923;
 ROCKING_KERNEL
 class Kernel {
     static constexpr int P = Pack::width, W = G * U * P;
+    static constexpr int M = G > 1 ? 2 : 1;  // registers of lanes that land side by side
 
     // state of the lanes; unused ones stay at rest on stretch zero
     alignas(64) double u[W], v[W], tau[W], len[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], idx[W], last[W],
-        stride[W], err[W], fastest[W], gate[W];
-    alignas(64) double terms[N + 1][W], end_u[W], end_v[W];  // of the step that waits for a visit
+        err[W], fastest[W], gate[W];
+    alignas(64) double fresh[N + 3][U * P];  // terms and ends of the steps that a group has just made
+    alignas(64) double queued[N + 3][W + M * P] = {};  // the same of the lanes that may touch the ground
+    alignas(64) double above[W + M * P] = {}, span[W + M * P] = {};  // their heights and steps
 
-    struct Side {
-        double alpha, p, sine, cosine, r;
+    struct Side {  // kappa, push: of a stretch; calm: speed below which it may come to rest
+        double alpha, p, sine, cosine, r, kappa, push, calm;
+    };
+    struct Step {  // terms of the velocity, and where it ends: columns of a table
+        const double* terms;
+        int pitch;
+        double operator[](int k) const { return terms[k * pitch]; }
     };
     struct Lane {
         std::int64_t row = -1, impacts = 0, uplifts = 0, still = 0;
@@ -50,6 +58,19 @@ class Kernel {
         double scale, ax, az, step, first, peak_signed, peak_time, over_time, first_uplift;
         const Shake* shake;
     } lanes[W];
+    // A highest point that is bounded only: it is solved for if another comes close to it, or when the history ends.
+    struct Top {
+        bool open = false;
+        int side;
+        double c[N + 2], high, index, tau, len;
+    } tops[W];
+    struct {  // the row that comes next, made ready so that no lane waits for memory
+        Lane lane;
+        bool sound, still;         // whether its values are valid, and whether it starts at rest
+        double parts;
+        std::int64_t from;         // before this sample nothing lifts it from rest
+        std::int64_t row = -1;
+    } ready;
 
     const Motions& motions;
     const Law& law;
@@ -58,7 +79,7 @@ class Kernel {
     Trace* trace;
     Queue& queue;
     std::int64_t next = 0, end = 0;  // rows taken from the queue and not yet begun
-    int active = 0, busy[G] = {};
+    int active = 0, used = G, busy[G] = {};
 
   public:
     Work work;
@@ -72,13 +93,24 @@ class Kernel {
     }
 
   private:
-    static Side side_of(double alpha, double p, double r) {
-        Side s{alpha, p, alpha, 1.0, r};
+    Side side_of(double alpha, double p, double r, double step, double push) const {
+        const double unit = p * alpha * step;
+        Side s{alpha, p, alpha, 1.0, r, (p * step) * (p * step), push, std::max(set.rest, kNothing) * unit};
         if (!L) sine_cosine(alpha, s.sine, s.cosine);
         return s;
     }
 
-    const Side& here(int i) const { return lanes[i].sides[lanes[i].side > 0 ? 0 : 1]; }
+    const Side& here(int i) const { return lanes[i].sides[lanes[i].side < 0]; }
+
+    static int count_of(unsigned long bits) {
+#if defined(__GNUC__)
+        return __builtin_popcountl(bits);
+#else
+        int n = 0;
+        for (; bits; bits &= bits - 1) ++n;
+        return n;
+#endif
+    }
 
     static int lowest(unsigned long bits) {
 #if defined(__GNUC__)
@@ -93,8 +125,7 @@ class Kernel {
     // ---- all lanes at once ------------------------------------------------------------------------------------------
     void sweep();
     void step(int group, unsigned long& flagged, unsigned long& near);
-    template <int M>
-    void land(const int* who, int count);
+    void land(const int* who, int from, int count);
     void forcing(int base, const Pack* i0, const Pack* t0, const Pack* h, Pack (*b)[U], Pack (*z)[U]) const;
 
     // ---- one lane ---------------------------------------------------------------------------------------------------
@@ -106,34 +137,41 @@ class Kernel {
     }
     void sample(int i);
     void note(int i, EventKind kind, double time, double before, double after, double coefficient);
-    void touch(int i, double zero, double speed);
-    void visit(int i, bool near);
+    void arc(int i, Step made, double* c) const;
+    void visit(int i, Step made, bool near);
     double first_contact(double* c) const;
     void note_peak(int i, const double* c, double upto);
     void raise_peak(int i, double y, double time);
-    void impact(int i, double at, double speed);
+    void keep_top(int i, const double* c, double low, double high);
+    void settle_peak(int i);
+    bool bounce(int i, double at, double speed);
+    void settle(int i);
     double coefficient(int i, double speed) const;
     void stand(int i);
     void move(int i, double to);
-    void advance(int i, const double* V);
+    void advance(int i, Step made);
     bool over(int i);
     void overturned(int i);
     bool beyond_return(int i) const;
     double next_look(int i) const;
-    const Bounds& bounds_at(int i) const;
+    std::int64_t block_at(int i) const;
+    Range up(const std::vector<Range>& ranges, std::int64_t block) const { return Z ? ranges[block] : Range{0.0, 0.0}; }
+    void still_to_come(int i, double& back, double& weight) const;
     void holding(int i, int side, std::int64_t at, double* d) const;
     double release(int i, int side, std::int64_t at, double from) const;
 
     struct Window {
         double low[2], variation, steepness;
     };
-    bool window(int i, std::int64_t stretches, Window& w) const;
+    bool window(int i, std::int64_t stretches, double most_varies, Window& w) const;
     bool comes_to_rest(int i, double after) const;
 
     double largest(const Side& s) const { return law.kind == LawKind::constant ? s.r : s.r * law.largest; }
     void rest(int i);
+    void await(int i, std::int64_t at);
     std::int64_t first_loud(std::int64_t at, std::int64_t end, double scale, double calm) const;
-    bool may_lift(int i, const Bounds& b) const;
+    bool may_lift(const Lane& lane, Range across, Range up) const;
+    std::int64_t first_block(const Lane& lane, std::int64_t at, std::int64_t stop) const;
     int preferred(int i, std::int64_t at, double from) const;
     void lift(int i, std::int64_t at, int side, double when);
     void conclude(int i);
@@ -144,17 +182,21 @@ class Kernel {
     // ---- lanes and the queue ----------------------------------------------------------------------------------------
     void finish(int i, Outcome outcome, Status status);
     void idle(int i);
+    void close_ranks();
+    void move_lane(int from, int to);
     static bool valid(const Rows& r, std::int64_t k, std::size_t motions);
     void fill(int i);
+    std::int64_t listed(std::int64_t k) const { return rows.list ? rows.list[k] : k; }
     void write_invalid(std::int64_t row);
-    double parts_of_step(const Lane& lane, double p) const;
-    void start(int i, std::int64_t row);
+    void prepare(std::int64_t row);
+    void start(int i);
 };
 
 ROCKING_KERNEL
 Work run_rows(const Motions& m, const Law& law, const Rows& r, const Settings& s, Trace* t, Queue& q) {
     Kernel<G, U, N, D, Z, L> kernel(m, law, r, s, t, q);
     kernel.run();
+    kernel.work.orders = N * kernel.work.steps;
     return kernel.work;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <stdexcept>
 #include <thread>
 
@@ -21,37 +22,40 @@ using In = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 template <class T>
 using Out = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-void Motions::find_bounds() {
-    bounds.clear();
+// Range of an acceleration within a stretch: of its samples, or of a polynomial's terms.
+static void widen(Range& range, const double* a, int degree) {
+    double low = a[0], high = a[0];
+    for (int j = 1; degree > 1 && j <= degree; ++j) (a[j] < 0.0 ? low : high) += a[j];
+    range.low = std::min(range.low, low);
+    range.high = std::max(range.high, high);
+}
+
+static void find_later(Ranges& ranges, std::int64_t block, Range& all) {
+    all = {0.0, 0.0};
+    ranges.later.resize(ranges.within.size());
+    for (std::int64_t b = static_cast<std::int64_t>(ranges.within.size()); b-- > block;) {
+        all = {std::min(all.low, ranges.within[b].low), std::max(all.high, ranges.within[b].high)};
+        ranges.later[b] = all;
+    }
+}
+
+void Motions::find_ranges() {
     const int hop = stride();
     for (Shake& shake : shakes) {
-        shake.block = static_cast<std::int64_t>(bounds.size());
-        const std::int64_t whole = shake.segments + shake.still, blocks = (whole + kBlock - 1) / kBlock;
-        for (std::int64_t b = 0; b < blocks; ++b) {
-            Bounds found{1e300, -1e300, vertical ? 1e300 : 0.0, vertical ? -1e300 : 0.0, 0, 0, 0, 0};
-            const std::int64_t stop = std::min(whole, (b + 1) * kBlock);
-            for (std::int64_t k = b * kBlock; k < stop + (degree == 1); ++k) {
-                const double* a = data + shake.first + k * hop;
-                double low = a[0], high = a[0];
-                if (degree > 1)
-                    for (int j = 1; j <= degree; ++j) (a[j] < 0.0 ? low : high) += a[j];
-                found.low = std::min(found.low, low);
-                found.high = std::max(found.high, high);
-                if (vertical) {
-                    found.vertical_low = std::min(found.vertical_low, a[1]);
-                    found.vertical_high = std::max(found.vertical_high, a[1]);
-                }
+        shake.block = static_cast<std::int64_t>(horizontal.within.size());
+        const std::int64_t whole = shake.segments + shake.still;
+        for (std::int64_t from = 0; from < whole; from += kBlock) {
+            Range across{1e300, -1e300}, up = across;
+            const std::int64_t stop = std::min(whole, from + kBlock) + (degree == 1);
+            for (const double* a = data + shake.first + from * hop; a < data + shake.first + stop * hop; a += hop) {
+                widen(across, a, degree);
+                if (vertical_part) widen(up, a + 1, 1);
             }
-            bounds.push_back(found);
+            horizontal.within.push_back(across);
+            if (vertical_part) vertical.within.push_back(up);
         }
-        double low = 0.0, high = 0.0, vertical_low = 0.0, vertical_high = 0.0;
-        for (std::int64_t b = blocks; b-- > 0;) {
-            Bounds& found = bounds[shake.block + b];
-            found.later_low = low = std::min(low, found.low);
-            found.later_high = high = std::max(high, found.high);
-            found.later_vertical_low = vertical_low = std::min(vertical_low, found.vertical_low);
-            found.later_vertical_high = vertical_high = std::max(vertical_high, found.vertical_high);
-        }
+        find_later(horizontal, shake.block, shake.horizontal);
+        find_later(vertical, vertical_part ? shake.block : 0, shake.vertical);
     }
 }
 
@@ -95,12 +99,12 @@ struct Library {
             throw std::invalid_argument("first, segments, still and step must be of one length");
         motions.data = data.data();
         motions.degree = degree;
-        motions.vertical = vertical;
+        motions.vertical_part = vertical;
         if (data.size() >= (std::size_t(1) << 31)) throw std::invalid_argument("more than 2^31 numbers in one library");
         const auto size = static_cast<std::int64_t>(data.size());
         const int hop = motions.stride(), extra = degree == 1 ? hop : 0;
         for (std::size_t k = 0; k < first.size(); ++k) {
-            const Shake shake{first(k), segments(k), still(k), step(k), 0};
+            const Shake shake{first(k), segments(k), still(k), step(k), 0, {0.0, 0.0}, {0.0, 0.0}};
             const std::int64_t jump = shake.still > 0 ? 1 : 0;
             if (shake.first < 0 || shake.segments < 1 || shake.segments > size || shake.still < 0 || shake.still > size ||
                 (degree > 1 && jump) || !(shake.step > 0.0) ||
@@ -108,7 +112,7 @@ struct Library {
                 throw std::invalid_argument("a motion lies outside the data");
             motions.shakes.push_back(shake);
         }
-        motions.find_bounds();
+        motions.find_ranges();
     }
 };
 
@@ -189,6 +193,35 @@ static Settings settings_of(double gravity, double longest_step, double rest, st
     return {gravity, longest_step, rest, most_impacts, linear, order, ground};
 }
 
+// Whether all steps of a row are so short that order 6 takes the place of order 8.
+static bool takes_order_six(const Motions& m, const Rows& rows, std::int64_t row, const Settings& set, double reach) {
+    if (set.order != 8 || m.degree != 1 || set.linear) return false;
+    if (rows.motion[row] < 0 || rows.motion[row] >= static_cast<std::int64_t>(m.shakes.size())) return false;
+    const double p = std::max(rows.p_right[row], rows.p_left[row]);
+    return pace_of(m.shakes[rows.motion[row]], p, rows.scale[row] / set.gravity, set.longest_step).reach < reach;
+}
+
+// The rows of a list, by all threads together.
+static void share_out(Run run, const Motions& m, const Law& law, Rows rows, const std::vector<std::int64_t>& list,
+                      const Settings& set, int threads, std::int64_t chunk, Work& total) {
+    rows.list = list.data();
+    rows.count = static_cast<std::int64_t>(list.size());
+    Queue queue{rows.count, chunk};
+    std::mutex one_at_a_time;
+    auto labour = [&] {
+        const Work work = run(m, law, rows, set, nullptr, queue);
+        const std::lock_guard<std::mutex> guard(one_at_a_time);
+        total.steps += work.steps;
+        total.sweeps += work.sweeps;
+        total.events += work.events;
+        total.orders += work.orders;
+    };
+    std::vector<std::thread> crew;
+    for (int k = 1; k < threads; ++k) crew.emplace_back(labour);
+    labour();
+    for (std::thread& worker : crew) worker.join();
+}
+
 static nb::dict run_batch(const Library& library, const nb::dict& in, const nb::dict& out, int kind, In<double> at, In<double> value,
                           std::uint64_t seed, double gravity, double longest_step, double rest, std::int64_t most_impacts,
                           bool linear, int order, int threads, std::int64_t chunk, const std::string& isa) {
@@ -196,31 +229,25 @@ static nb::dict run_batch(const Library& library, const nb::dict& in, const nb::
     const Law law = law_of(kind, at, value, seed);
     const Settings set = settings_of(gravity, longest_step, rest, most_impacts, linear, order, false);
     const Motions& m = library.motions;
-    const Run run = kernel(isa, false, {order, m.degree, m.vertical, linear});
+    if (order != 8 && m.vertical_part) throw std::invalid_argument("no kernel for this order, degree and model");
+    const Run run = kernel(isa, false, {order, m.degree, m.vertical_part, linear});
     if (chunk < 1 || threads < 1) throw std::invalid_argument("threads and chunk must be at least 1");
     Work total;
     {
         nb::gil_scoped_release release;
-        Queue queue{rows.count, chunk};
-        std::atomic<std::int64_t> steps{0}, sweeps{0}, events{0};
-        auto labour = [&] {
-            const Work work = run(m, law, rows, set, nullptr, queue);
-            steps += work.steps;
-            sweeps += work.sweeps;
-            events += work.events;
-        };
-        std::vector<std::thread> crew;
-        for (int k = 1; k < threads; ++k) crew.emplace_back(labour);
-        labour();
-        for (std::thread& worker : crew) worker.join();
-        total.steps = steps;
-        total.sweeps = sweeps;
-        total.events = events;
+        std::vector<std::int64_t> near_samples, others;
+        const double reach = reach_of_order_six(set.longest_step);
+        for (std::int64_t row = 0; row < rows.count; ++row)
+            (takes_order_six(m, rows, row, set, reach) ? near_samples : others).push_back(row);
+        if (!near_samples.empty())
+            share_out(kernel(isa, false, {6, 1, m.vertical_part, false}), m, law, rows, near_samples, set, threads, chunk, total);
+        if (!others.empty()) share_out(run, m, law, rows, others, set, threads, chunk, total);
     }
     nb::dict work;
     work["steps"] = total.steps;
     work["sweeps"] = total.sweeps;
     work["events"] = total.events;
+    work["orders"] = total.orders;
     return work;
 }
 
@@ -240,7 +267,8 @@ static nb::list run_single(const Library& library, const nb::dict& in, const nb:
     trace.rotation[0] = rows.rotation[0];
     trace.velocity[0] = rows.velocity[0];
     Queue queue{1, 1};
-    kernel(isa, true, {8, m.degree, m.vertical, linear})(m, law, rows, set, &trace, queue);
+    const int order = takes_order_six(m, rows, 0, set, reach_of_order_six(set.longest_step)) ? 6 : 8;
+    kernel(isa, true, {order, m.degree, m.vertical_part, linear})(m, law, rows, set, &trace, queue);
     nb::list events;
     for (const Event& e : trace.events)
         events.append(nb::make_tuple(e.time, static_cast<int>(e.kind), static_cast<int>(e.side), e.before, e.after, e.coefficient));

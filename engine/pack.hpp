@@ -42,6 +42,17 @@ struct Pack {
     static Pack gather(const double* base, Pack index) {
         return _mm512_i32gather_pd(_mm512_cvtpd_epi32(index.r), base, 8);
     }
+    void store_whole(std::int64_t* p) const { _mm512_store_si512(p, _mm512_cvtpd_epi64(r)); }
+    // Numbers and those next to them in memory: fewer loads than two gathers.
+    static void pairs(const double* base, const std::int64_t* k, Pack& first, Pack& second) {
+        const auto two = [&](int i) {
+            return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(base + k[i])), _mm_loadu_pd(base + k[i + 2]), 1);
+        };
+        const auto four = [&](int i) { return _mm512_insertf64x4(_mm512_castpd256_pd512(two(i)), two(i + 4), 1); };
+        const __m512d even = four(0), odd = four(1);
+        first = _mm512_unpacklo_pd(even, odd);
+        second = _mm512_unpackhi_pd(even, odd);
+    }
 };
 inline Pack operator+(Pack a, Pack b) { return _mm512_add_pd(a.r, b.r); }
 inline Pack operator-(Pack a, Pack b) { return _mm512_sub_pd(a.r, b.r); }
@@ -82,6 +93,17 @@ struct Pack {
     static Pack gather(const double* base, Pack index) {
         return _mm256_i32gather_pd(base, _mm256_cvtpd_epi32(index.r), 8);
     }
+    void store_whole(std::int64_t* p) const {
+        _mm256_store_si256(reinterpret_cast<__m256i*>(p), _mm256_cvtepi32_epi64(_mm256_cvtpd_epi32(r)));
+    }
+    static void pairs(const double* base, const std::int64_t* k, Pack& first, Pack& second) {
+        const auto two = [&](int i) {
+            return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(base + k[i])), _mm_loadu_pd(base + k[i + 2]), 1);
+        };
+        const __m256d even = two(0), odd = two(1);
+        first = _mm256_unpacklo_pd(even, odd);
+        second = _mm256_unpackhi_pd(even, odd);
+    }
 };
 inline Pack operator+(Pack a, Pack b) { return _mm256_add_pd(a.r, b.r); }
 inline Pack operator-(Pack a, Pack b) { return _mm256_sub_pd(a.r, b.r); }
@@ -121,6 +143,10 @@ struct Pack {
     void store(double* p) const { ROCKING_EACH p[i] = r[i]; }
     static Pack gather(const double* base, Pack index) {
         Pack a; ROCKING_EACH a.r[i] = base[static_cast<std::int64_t>(index.r[i])]; return a;
+    }
+    void store_whole(std::int64_t* p) const { ROCKING_EACH p[i] = static_cast<std::int64_t>(r[i]); }
+    static void pairs(const double* base, const std::int64_t* k, Pack& first, Pack& second) {
+        ROCKING_EACH first.r[i] = base[k[i]], second.r[i] = base[k[i] + 1];
     }
 };
 #if defined(__FP_FAST_FMA)

@@ -54,7 +54,7 @@ double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, doubl
 // What holds the body down over some stretches from now on: least moments of both sides, how much they vary in all over
 // their least values, and how steeply they change with the rotation.
 ROCKING_KERNEL
-bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, Window& w) const {
+bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, double most_varies, Window& w) const {
     const Lane& lane = lanes[i];
     const int hop = motions.stride();
     const double* a = motions.data + static_cast<std::int64_t>(idx[i]);
@@ -69,6 +69,7 @@ bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, Window& w) 
             most = std::max(most, x);
             varies += std::fabs(x - last_a);
             last_a = x;
+            if (varies > most_varies) return false;
             if (Z) {
                 const double z = 1.0 + lane.az * a[k * hop + 1];
                 least_weight = std::min(least_weight, z);
@@ -113,7 +114,6 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const Lane& lane = lanes[i];
     const Side &s = here(i), &o = lane.sides[lane.side > 0 ? 1 : 0];
     const double unit = s.p * s.alpha * lane.step;
-    if (!(after <= std::max(set.rest, kNothing) * unit)) return false;
     const std::int64_t at = static_cast<std::int64_t>(idx[i]);
     double d[D + 1];
     holding(i, lane.side, at, d);
@@ -130,8 +130,15 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const double left = 1.0 - tau[i], guess = 1.5 * (flights / rate);
     const std::int64_t rest_of_it = static_cast<std::int64_t>(last[i] - idx[i]) / motions.stride();
     const std::int64_t stretches = guess > left ? std::min(static_cast<std::int64_t>(guess - left) + 2, rest_of_it) : 1;
+    const double end = left + static_cast<double>(stretches - 1);
+    // What follows grows with x = (variation + kHeights) / 2, and all >= flights / rate (1 + x + x^2): beyond this
+    // variation of the ground it is bound to fail, so the rest of the window need not be seen.
+    const double spare = 4.0 * (end * rate) - 3.0 * flights, x_most = std::min(1.0, 0.5 * (std::sqrt(spare / flights) - 1.0));
+    if (!(spare > 0.0 && x_most > 0.5 * kHeights)) return false;
+    const double most_varies = (1.0 + 1e-9) * (2.0 * x_most - kHeights) /
+                               (std::fabs(lane.ax) * std::max(s.cosine / held, o.cosine / across));
     Window w;
-    if (!window(i, stretches, w)) return false;
+    if (!window(i, stretches, most_varies, w)) return false;
     const int k = lane.side > 0 ? 0 : 1;
     const double low = w.low[k], low_ = w.low[1 - k], x = 0.5 * (w.variation + kHeights);
     if (!(x <= 1.0)) return false;
@@ -139,7 +146,7 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const double heights = w.steepness * (after * after) * (gain * gain) / std::min(one * low * low, other * low_ * low_);
     if (!(2.2 * heights * (1.0 + q * q) <= kHeights * (1.0 - r * r * q * q) && heights <= 0.3)) return false;
     const double all = 2.0 * after * gain * (1.0 / (one * low) + q / (other * low_)) / (lost * (1.0 - heights));
-    return all <= left + static_cast<double>(stretches - 1);
+    return all <= end;
 }
 
 // First sample from `at` up to but not including `end` that is not calm; `end` if there is none.
@@ -153,25 +160,42 @@ std::int64_t Kernel<G, U, N, D, Z, L>::first_loud(std::int64_t at, std::int64_t 
     return at;
 }
 
+// First place from `at` on within a block in which the body may be lifted: `at` itself, the start of a later block, or a
+// place that is not before `stop`.
+ROCKING_KERNEL
+std::int64_t Kernel<G, U, N, D, Z, L>::first_block(const Lane& lane, std::int64_t at, std::int64_t stop) const {
+    const std::int64_t first = static_cast<std::int64_t>(lane.first), length = kBlock * motions.stride();
+    for (std::int64_t k = (at - first) / length; at < stop; at = first + ++k * length) {
+        const std::int64_t block = lane.shake->block + k;
+        if (may_lift(lane, motions.horizontal.within[block], up(motions.vertical.within, block))) break;
+    }
+    return at;
+}
+
 // At rest: find where the ground next lifts the body, skipping blocks in which it cannot.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::rest(int i) {
-    Lane& lane = lanes[i];
+    const std::int64_t now_ = block_at(i);
+    const bool ever = may_lift(lanes[i], motions.horizontal.later[now_], up(motions.vertical.later, now_));
+    await(i, static_cast<std::int64_t>(ever ? idx[i] : last[i]));
+}
+
+// From a sample on, at rest up to there.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::await(int i, std::int64_t at) {
+    const Lane& lane = lanes[i];
     const int stride_ = motions.stride();
-    std::int64_t at = static_cast<std::int64_t>(idx[i]);
     const std::int64_t stop = static_cast<std::int64_t>(last[i]);
     double from = tau[i];
-    const Bounds& now_ = bounds_at(i);
-    const Bounds later{now_.later_low, now_.later_high, now_.later_vertical_low, now_.later_vertical_high, 0, 0, 0, 0};
-    if (!may_lift(i, later)) at = stop;
     const double calm = (1.0 - 1e-12) * std::min(lane.sides[0].sine / lane.sides[0].cosine, lane.sides[1].sine / lane.sides[1].cosine);
     while (at < stop) {
-        const std::int64_t k = (at - static_cast<std::int64_t>(lane.first)) / stride_;
-        if (!may_lift(i, motions.bounds[lane.shake->block + k / kBlock])) {
-            at = static_cast<std::int64_t>(lane.first) + (k / kBlock + 1) * kBlock * stride_;
+        const std::int64_t block = first_block(lane, at, stop);
+        if (block > at) {
+            at = block;
             from = 0.0;
             continue;
         }
+        const std::int64_t k = (at - static_cast<std::int64_t>(lane.first)) / stride_;
         if (D == 1 && !Z) {  // samples that cannot lift it, many at once
             const std::int64_t block_end = static_cast<std::int64_t>(lane.first) + (k / kBlock + 1) * kBlock;
             const std::int64_t heard = first_loud(at, std::min(stop, block_end) + 1, std::fabs(lane.ax), calm);
@@ -194,10 +218,9 @@ void Kernel<G, U, N, D, Z, L>::rest(int i) {
 }
 
 ROCKING_KERNEL
-bool Kernel<G, U, N, D, Z, L>::may_lift(int i, const Bounds& b) const {
-    const Lane& lane = lanes[i];
-    const double weight = 1.0 + (Z ? std::min({0.0, lane.az * b.vertical_low, lane.az * b.vertical_high}) : 0.0);
-    const double push = std::max(lane.ax * b.low, lane.ax * b.high), pull = std::max(-lane.ax * b.low, -lane.ax * b.high);
+bool Kernel<G, U, N, D, Z, L>::may_lift(const Lane& lane, Range across, Range up) const {
+    const double weight = 1.0 + (Z ? std::min({0.0, lane.az * up.low, lane.az * up.high}) : 0.0);
+    const double push = std::max(lane.ax * across.low, lane.ax * across.high), pull = std::max(-lane.ax * across.low, -lane.ax * across.high);
     const Side &r = lane.sides[0], &l = lane.sides[1];
     return pull * r.cosine >= weight * r.sine * (1.0 - 1e-12) || push * l.cosine >= weight * l.sine * (1.0 - 1e-12);
 }

@@ -15,6 +15,7 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     }
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const bool good = status == kGood, down = outcome == kOverturned;
+    if (good && !down) settle_peak(i);
     rows.outcome[row] = outcome;
     rows.status[row] = status;
     rows.side[row] = outcome == kOverturned ? static_cast<std::int8_t>(lane.side) : 0;
@@ -34,10 +35,34 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::idle(int i) {
     lanes[i].row = -1;
+    tops[i].open = false;
     u[i] = 0.0;
-    v[i] = tau[i] = kappa[i] = ca[i] = cz[i] = idx[i] = stride[i] = err[i] = fastest[i] = gate[i] = 0.0;
-    len[i] = sub[i] = alpha[i] = peak[i] = 1.0;
+    v[i] = tau[i] = kappa[i] = ca[i] = cz[i] = idx[i] = err[i] = fastest[i] = gate[i] = len[i] = sub[i] = 0.0;
+    alpha[i] = peak[i] = 1.0;
     last[i] = std::numeric_limits<double>::infinity();
+}
+
+// The queue is empty: the lanes of the last group go where others have ended, so that groups are full to the end.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::close_ranks() {
+    --used;
+    int to = 0;
+    for (int i = used * U * P; i < (used + 1) * U * P; ++i) {
+        if (lanes[i].row < 0) continue;
+        while (lanes[to].row >= 0) ++to;
+        move_lane(i, to);
+    }
+}
+
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::move_lane(int from, int to) {
+    for (double* value : {u, v, tau, len, sub, kappa, ca, cz, alpha, peak, idx, last, err, fastest, gate})
+        value[to] = value[from];
+    lanes[to] = lanes[from];
+    tops[to] = tops[from];
+    --busy[from / (U * P)];
+    ++busy[to / (U * P)];
+    idle(from);
 }
 
 ROCKING_KERNEL
@@ -58,9 +83,11 @@ void Kernel<G, U, N, D, Z, L>::fill(int i) {
     idle(i);
     while (lanes[i].row < 0) {
         if (next == end && !queue.take(next, end)) return;
-        const std::int64_t row = next++;
-        if (valid(rows, row, motions.shakes.size())) start(i, row);
+        const std::int64_t row = listed(next++);
+        if (ready.row != row) prepare(row);
+        if (ready.sound) start(i);
         else write_invalid(row);
+        if (next < end) prepare(listed(next));
     }
 }
 
@@ -75,52 +102,61 @@ void Kernel<G, U, N, D, Z, L>::write_invalid(std::int64_t row) {
     rows.impacts[row] = rows.uplifts[row] = 0;
 }
 
-// Into how many parts a stretch is cut: a ground that shakes with many g moves the body faster than gravity does.
+// All that a row needs before a lane is free for it.
 ROCKING_KERNEL
-double Kernel<G, U, N, D, Z, L>::parts_of_step(const Lane& lane, double p) const {
-    const Bounds& b = motions.bounds[lane.shake->block];
-    const double push = std::fabs(lane.ax) * std::max(b.later_high, -b.later_low);
-    const double lift = std::fabs(lane.az) * std::max(b.later_vertical_high, -b.later_vertical_low);
-    return std::max(1.0, std::ceil(p * lane.step * std::sqrt(std::max(1.0, 0.5 * (push + lift))) / set.longest_step));
-}
-
-ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::start(int i, std::int64_t row) {
-    Lane& lane = lanes[i];
-    ++active;
-    ++busy[i / (U * P)];
+void Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
+    ready.row = row;
+    ready.sound = valid(rows, row, motions.shakes.size());
+    if (!ready.sound) return;
+    Lane& lane = ready.lane;
     lane = Lane();
     lane.row = row;
     lane.peak_signed = lane.peak_time = 0.0;
     lane.over_time = lane.first_uplift = std::numeric_limits<double>::quiet_NaN();
     const Shake& shake = motions.shakes[rows.motion[row]];
     lane.shake = &shake;
-    lane.sides[0] = side_of(rows.alpha_right[row], rows.p_right[row], rows.r_right[row]);
-    lane.sides[1] = side_of(rows.alpha_left[row], rows.p_left[row], rows.r_left[row]);
     lane.step = shake.step;
     lane.ax = lane.az = rows.scale[row] / set.gravity;
+    lane.sides[0] = side_of(rows.alpha_right[row], rows.p_right[row], rows.r_right[row], lane.step, lane.ax);
+    lane.sides[1] = side_of(rows.alpha_left[row], rows.p_left[row], rows.r_left[row], lane.step, -lane.ax);
     lane.first = static_cast<double>(shake.first);
-    idx[i] = lane.first;
-    stride[i] = motions.stride();
-    last[i] = lane.first + static_cast<double>(shake.segments) * motions.stride();
     lane.still = shake.still;
-    cz[i] = lane.az;
-    const double parts = parts_of_step(lane, std::max(rows.p_right[row], rows.p_left[row]));
-    sub[i] = 1.0 / parts;
-    tau[i] = 0.0;
-    len[i] = sub[i];
-    if (!(parts * static_cast<double>(shake.segments + shake.still) <= kMostSteps)) return finish(i, kFailed, kNotResolved);
+    ready.parts = pace_of(shake, std::max(rows.p_right[row], rows.p_left[row]), lane.ax, set.longest_step).parts;
     const double angle = rows.rotation[row], speed = rows.velocity[row];
     const Side& turned = lane.sides[angle > 0.0 ? 0 : 1];
-    if (turned.alpha - std::fabs(angle) == turned.alpha && std::fabs(speed) <= kNothing * turned.p * turned.alpha) {
-        peak[i] = 0.0;
-        return rest(i);
+    ready.still = turned.alpha - std::fabs(angle) == turned.alpha && std::fabs(speed) <= kNothing * turned.p * turned.alpha;
+    ready.from = shake.first;
+    if (ready.still) {
+        const std::int64_t stop = shake.first + shake.segments * motions.stride();
+        ready.from = may_lift(lane, shake.horizontal, shake.vertical) ? first_block(lane, ready.from, stop) : stop;
+        if (ready.from >= stop) return;
     }
+    for (int k = 0; k < 6; ++k) __builtin_prefetch(motions.data + ready.from + 8 * k);
+    __builtin_prefetch(&motions.horizontal.later[shake.block + (ready.from - shake.first) / (kBlock * motions.stride())]);
+}
+
+// Puts the row that is ready into a lane.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::start(int i) {
+    Lane& lane = lanes[i];
+    ++active;
+    ++busy[i / (U * P)];
+    lane = ready.lane;
+    const Shake& shake = *lane.shake;
+    idx[i] = lane.first;
+    last[i] = lane.first + static_cast<double>(shake.segments) * motions.stride();
+    cz[i] = lane.az;
+    sub[i] = 1.0 / ready.parts;
+    tau[i] = 0.0;
+    len[i] = sub[i];
+    if (!(ready.parts * static_cast<double>(shake.segments + shake.still) <= kMostSteps)) return finish(i, kFailed, kNotResolved);
+    peak[i] = 0.0;
+    if (ready.still) return await(i, ready.from);
+    const double angle = rows.rotation[lane.row], speed = rows.velocity[lane.row];
     lane.side = angle > 0.0 || (angle == 0.0 && speed > 0.0) ? 1 : -1;
     stand(i);
     u[i] = alpha[i] - std::fabs(angle);
     v[i] = -lane.side * speed * lane.step;
-    peak[i] = 0.0;
     raise_peak(i, std::fabs(angle), 0.0);
     if (u[i] < 0.0) lane.over_time = 0.0;
     lane.uplifts = 1;

@@ -8,28 +8,32 @@ namespace ROCKING_ISA {
 // One Taylor step of every lane, then visits to those that need one. Those that may touch the ground go side by side.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::sweep() {
-    int landing[W + 2 * P], other[W], landings = 0, others = 0;
+    int landing[W], landings = 0;
     ++work.sweeps;
     for (int g = 0; g < G; ++g) {
         if (!busy[g]) continue;
         work.steps += busy[g];
-        // every lane reads a motion of its own, more streams than processors foresee: lines ahead, every eighth turn
-        for (int i = g * U * P + static_cast<int>(work.sweeps % 8); i < (g + 1) * U * P; i += 8)
-            __builtin_prefetch(motions.data + static_cast<std::int64_t>(idx[i]) + 24);
         unsigned long flagged, near;
         step(g, flagged, near);
-        for (unsigned long left = near; left; left &= left - 1) landing[landings++] = g * U * P + lowest(left);
-        for (unsigned long left = flagged & ~near; left; left &= left - 1) other[others++] = g * U * P + lowest(left);
+        work.events += count_of(flagged);
+        for (unsigned long left = near; left; left &= left - 1) {
+            const int k = lowest(left), i = g * U * P + k;
+            ROCKING_UNROLL
+            for (int m = 0; m < N + 3; ++m) queued[m][landings] = fresh[m][k];
+            above[landings] = alpha[i] - u[i];
+            span[landings] = len[i];
+            landing[landings++] = i;
+        }
+        for (unsigned long left = flagged & ~near; left; left &= left - 1) {
+            const int k = lowest(left), i = g * U * P + k;
+            visit(i, {&fresh[0][k], U * P}, false);
+            if (lanes[i].row < 0) fill(i);
+        }
     }
-    work.events += landings + others;
-    int at = 0;
-    for (; landings - at > P; at += 2 * P) land<2>(landing + at, std::min(landings - at, 2 * P));
-    if (landings > at) land<1>(landing + at, landings - at);
-    for (int k = 0; k < others; ++k) visit(other[k], false);
+    for (int at = 0; at < landings; at += M * P) land(landing + at, at, std::min(landings - at, M * P));
     for (int k = 0; k < landings; ++k)
         if (lanes[landing[k]].row < 0) fill(landing[k]);
-    for (int k = 0; k < others; ++k)
-        if (lanes[other[k]].row < 0) fill(other[k]);
+    if (G > 1 && used > 1 && active <= (used - 1) * U * P) close_ranks();
 }
 
 // One Taylor step of a group; lanes that need a visit keep their state until they have had it.
@@ -84,6 +88,7 @@ void Kernel<G, U, N, D, Z, L>::step(int group, unsigned long& flagged, unsigned 
             }
         }
     }
+    const double hop = motions.stride();
     flagged = near = 0;
     ROCKING_LANES {
         const int at = base + j * P;
@@ -108,7 +113,7 @@ void Kernel<G, U, N, D, Z, L>::step(int group, unsigned long& flagged, unsigned 
         const Mask beyond = (u1 < Pack::load(gate + at)) | ((u1 < zero) & (max(u0[j], u1) + sag >= zero));
         const Pack t1 = t0[j] + h[j];
         const Mask done = t1 >= Pack(kWhole);
-        const Pack t2 = select(done, zero, t1), i1 = select(done, i0[j] + Pack::load(stride + at), i0[j]);
+        const Pack t2 = select(done, zero, t1), i1 = select(done, i0[j] + Pack(hop), i0[j]);
         const Mask visit = !clear | beyond | turning | (done & (i1 >= Pack::load(last + at)));
         flagged |= static_cast<unsigned long>(visit.bits()) << (j * P);
         near |= static_cast<unsigned long>((!clear).bits()) << (j * P);
@@ -118,14 +123,14 @@ void Kernel<G, U, N, D, Z, L>::step(int group, unsigned long& flagged, unsigned 
         select(visit, t0[j], t2).store(tau + at);
         select(visit, h[j], min(Pack::load(sub + at), Pack(1.0) - t2)).store(len + at);
         select(visit, i0[j], i1).store(idx + at);
-        u1.store(end_u + at);
-        v1.store(end_v + at);
+        u1.store(&fresh[N + 1][j * P]);
+        v1.store(&fresh[N + 2][j * P]);
         // what happens beyond a quarter turn is of no interest
         (Pack::load(err + at) + select(u1 > Pack(-kHalfPi), abs(V[N][j]), zero)).store(err + at);
         const Pack top = Pack::load(fastest + at);
         select(visit, top, max(top, abs(v1))).store(fastest + at);
         ROCKING_UNROLL
-        for (int k = 0; k <= N; ++k) V[k][j].store(&terms[k][at]);
+        for (int k = 0; k <= N; ++k) V[k][j].store(&fresh[k][j * P]);
     }
     near &= flagged;
     if (trace && lanes[0].row >= 0 && !(flagged & 1) && tau[0] == 0.0) sample(0);
@@ -135,16 +140,27 @@ void Kernel<G, U, N, D, Z, L>::step(int group, unsigned long& flagged, unsigned 
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::forcing(int base, const Pack* i0, const Pack* t0, const Pack* h, Pack (*b)[U], Pack (*z)[U]) const {
     const double* data = motions.data;
+    alignas(64) std::int64_t where[U * P];
+    ROCKING_LANES i0[j].store_whole(where + j * P);
+    // every lane reads a motion of its own, more streams than processors foresee: lines ahead, every eighth turn
+    ROCKING_LANES __builtin_prefetch(data + where[j * P + work.sweeps % P] + 16);
     ROCKING_LANES {
         const Pack c = Pack::load(ca + base + j * P);
         if (D == 1) {
             constexpr int hop = Z ? 2 : 1;
-            const Pack a = Pack::gather(data, i0[j]), da = Pack::gather(data + hop, i0[j]) - a;
+            Pack a, da, g, dg;
+            if (Z) {
+                Pack::pairs(data, where + j * P, a, g);
+                Pack::pairs(data + hop, where + j * P, da, dg);
+            } else {
+                Pack::pairs(data, where + j * P, a, da);
+            }
+            da = da - a;
             b[0][j] = c * fma(da, t0[j], a);
             b[1][j] = c * (da * h[j]);
             if (Z) {
                 const Pack w = Pack::load(cz + base + j * P);
-                const Pack g = Pack::gather(data + 1, i0[j]), dg = Pack::gather(data + hop + 1, i0[j]) - g;
+                dg = dg - g;
                 z[0][j] = w * fma(dg, t0[j], g);
                 z[1][j] = w * (dg * h[j]);
             }

@@ -14,12 +14,10 @@ void Kernel<G, U, N, D, Z, L>::overturned(int i) {
 // strongest acceleration left, with the weakest gravity left, leaves it accelerating outwards.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::beyond_return(int i) const {
-    const Lane& lane = lanes[i];
     if (!(v[i] <= 0.0)) return false;
     if (idx[i] >= last[i]) return true;
-    const Bounds& b = bounds_at(i);
-    const double back = std::max({0.0, ca[i] * b.later_low, ca[i] * b.later_high});
-    const double weight = 1.0 + (Z ? std::min({0.0, lane.az * b.later_vertical_low, lane.az * b.later_vertical_high}) : 0.0);
+    double back, weight;
+    still_to_come(i, back, weight);
     if (L) return weight * -u[i] > back && weight > 0.0;
     if (!(u[i] > -kHalfPi)) return true;
     double s, c;
@@ -31,19 +29,26 @@ bool Kernel<G, U, N, D, Z, L>::beyond_return(int i) const {
 // on, or on the ground; a thousandth further out at least.
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::next_look(int i) const {
-    const Lane& lane = lanes[i];
-    const Bounds& b = bounds_at(i);
-    const double back = std::max({0.0, ca[i] * b.later_low, ca[i] * b.later_high});
-    const double weight = 1.0 + (Z ? std::min({0.0, lane.az * b.later_vertical_low, lane.az * b.later_vertical_high}) : 0.0);
+    double back, weight;
+    still_to_come(i, back, weight);
     const double out = L ? (weight > 0.0 ? back / weight : kHalfPi) : std::atan2(back, weight);
     return std::min(std::max(-out, alpha[i] - kHalfPi), u[i] - 0.001);
 }
 
 ROCKING_KERNEL
-const Bounds& Kernel<G, U, N, D, Z, L>::bounds_at(int i) const {
+std::int64_t Kernel<G, U, N, D, Z, L>::block_at(int i) const {
     const Lane& lane = lanes[i];
     const std::int64_t k = static_cast<std::int64_t>((idx[i] - lane.first) / motions.stride());
-    return motions.bounds[lane.shake->block + k / kBlock];
+    return lane.shake->block + k / kBlock;
+}
+
+// From now on, over gravity: the most that the ground can push the body back, and the least that it can weigh.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::still_to_come(int i, double& back, double& weight) const {
+    const std::int64_t block = block_at(i);
+    const Range across = motions.horizontal.later[block], lift = up(motions.vertical.later, block);
+    back = std::max({0.0, ca[i] * across.low, ca[i] * across.high});
+    weight = 1.0 + std::min({0.0, lanes[i].az * lift.low, lanes[i].az * lift.high});
 }
 
 // The motion is over: energy decides. e = u'^2 / (2 p^2) + cos u - cos alpha against 1 - cos alpha at the top.

@@ -7,33 +7,53 @@ namespace ROCKING_ISA {
 
 // Visits to lanes that may touch the ground, in M registers.
 ROCKING_KERNEL
-template <int M>
-void Kernel<G, U, N, D, Z, L>::land(const int* who, int count) {
-    alignas(64) double rows[N + 3][M * P], zero[M * P], speed[M * P];
-    for (int s = 0; s < M * P; ++s) {  // plain copies: quicker than gathers
-        const int i = who[s < count ? s : 0];
-        rows[0][s] = alpha[i] - u[i];
-        ROCKING_UNROLL
-        for (int k = 0; k <= N; ++k) rows[k + 1][s] = terms[k][i];
-        rows[N + 2][s] = len[i];
-    }
+void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
+    alignas(64) double zero[M * P], speed[M * P];
     Pack raw[N + 2][M];
+    for (int m = 0; m < M; ++m) raw[0][m] = Pack::load(above + from + m * P);
     ROCKING_UNROLL
-    for (int k = 0; k <= N + 1; ++k)
-        for (int m = 0; m < M; ++m) raw[k][m] = Pack::load(rows[k] + m * P);
+    for (int k = 0; k <= N; ++k)
+        for (int m = 0; m < M; ++m) raw[k + 1][m] = Pack::load(&queued[k][from + m * P]);
     Landings<N, M> landings;
-    const unsigned long found = landings.solve(raw);
+    const unsigned long found = landings.solve(raw) & ((1ul << count) - 1);
     if (found) {
         ROCKING_UNROLL
         for (int m = 0; m < M; ++m) {
             landings.zero[m].store(zero + m * P);
-            max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::load(rows[N + 2] + m * P)).store(speed + m * P);
+            max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::load(span + from + m * P)).store(speed + m * P);
         }
     }
-    for (int s = 0; s < count; ++s) {
-        if (found >> s & 1) touch(who[s], zero[s], speed[s]);
-        else visit(who[s], true);
+    // one thing after another for all of them, and without branches that depend on the lane
+    int rising[M * P], settling[M * P], risings = 0, settlings = 0;
+    for (unsigned long left = found; left; left &= left - 1) {
+        const int s = lowest(left), i = who[s];
+        const double y0 = above[from + s], c1 = -queued[0][from + s];
+        rising[risings] = s;
+        risings += (c1 > 0.0) & (y0 + c1 > peak[i]);
     }
+    for (int k = 0; k < risings; ++k) {
+        double c[N + 2];
+        arc(who[rising[k]], {&queued[0][from + rising[k]], W + M * P}, c);
+        note_peak(who[rising[k]], c, zero[rising[k]]);
+    }
+    for (unsigned long left = found; left; left &= left - 1) {
+        const int s = lowest(left);
+        settling[settlings] = who[s];
+        settlings += bounce(who[s], zero[s], speed[s]);
+    }
+    for (int k = 0; k < settlings; ++k) settle(settling[k]);
+    for (unsigned long left = ~found & ((1ul << count) - 1); left; left &= left - 1) {
+        const int s = lowest(left);
+        visit(who[s], {&queued[0][from + s], W + M * P}, true);
+    }
+}
+
+// Height above the ground over the step.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::arc(int i, Step made, double* c) const {
+    c[0] = alpha[i] - u[i];
+    ROCKING_UNROLL
+    for (int k = 0; k <= N; ++k) c[k + 1] = -made[k] * (1.0 / (k + 1));
 }
 
 ROCKING_KERNEL
@@ -50,33 +70,18 @@ void Kernel<G, U, N, D, Z, L>::note(int i, EventKind kind, double time, double b
 }
 
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::touch(int i, double zero, double speed) {
-    const double c0 = alpha[i] - u[i], c1 = -terms[0][i];
-    if (c1 > 0.0 && c0 + c1 > peak[i]) {
-        double c[N + 2] = {c0};
-        for (int k = 0; k <= N; ++k) c[k + 1] = -terms[k][i] * (1.0 / (k + 1));
-        note_peak(i, c, zero);
-    }
-    impact(i, zero, speed);
-}
-
-ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::visit(int i, bool near) {
-    double V[N + 1], c[N + 2];
+void Kernel<G, U, N, D, Z, L>::visit(int i, Step made, bool near) {
+    double c[N + 2];
     double sum = 0.0;
-    for (int k = 0; k <= N; ++k) {
-        V[k] = terms[k][i];
-        c[k + 1] = -V[k] * (1.0 / (k + 1));
-        sum += std::fabs(V[k]);
-    }
-    c[0] = alpha[i] - u[i];
+    for (int k = 0; k <= N; ++k) sum += std::fabs(made[k]);
+    arc(i, made, c);
     if (!(sum < 1e100)) return finish(i, kFailed, kNotFinite);
     const double zero = near ? first_contact(c) : 2.0;
     note_peak(i, c, zero < 1.0 ? zero : 1.0);
-    if (!(zero <= 1.0)) return advance(i, V);
+    if (!(zero <= 1.0)) return advance(i, made);
     double slopes[N + 1];
     slopes_of<N + 1>(c, slopes);
-    impact(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / len[i]));
+    if (bounce(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / len[i]))) settle(i);
 }
 
 // First return to y = 0; a step that starts there is divided by the known zero first.
@@ -100,11 +105,12 @@ void Kernel<G, U, N, D, Z, L>::note_peak(int i, const double* c, double upto) {
     if (!(top > peak[i])) return;
     slopes_of<N + 1>(c, slopes);
     for (int k = 2; k <= N; ++k) sway += std::fabs(slopes[k]);
-    const double start = slopes[0], end = value_of<N>(slopes, upto);
+    const double start = slopes[0];
+    if (start >= 0.0 && slopes[1] > sway) return;  // it rises all the way
+    const double end = value_of<N>(slopes, upto);
     // the slope leaves the straight line between its ends by less than its sway: one turn, none, or any number of them
     if (start > sway && end < -sway) {
-        const double at = first_zero<N>(slopes);
-        if (at <= upto) raise_peak(i, value_of<N + 1>(c, at), now(i, at));
+        keep_top(i, c, std::max(c[0], value_of<N + 1>(c, upto)), top);
     } else if (!(std::min(start, end) > sway) && !(std::max(start, end) < -sway)) {
         each_fall<N>(slopes, [&](double at) {
             if (at <= upto) raise_peak(i, value_of<N + 1>(c, at), now(i, at));
@@ -112,8 +118,45 @@ void Kernel<G, U, N, D, Z, L>::note_peak(int i, const double* c, double upto) {
     }
 }
 
+// Takes over a step with one highest point, known to lie between two bounds.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::keep_top(int i, const double* c, double low, double high) {
+    Top& top = tops[i];
+    if (top.open && low <= top.high) settle_peak(i);
+    if (!(high > peak[i])) return;
+    if (low > peak[i]) {
+        top.open = true;
+        top.side = lanes[i].side;
+        std::copy(c, c + N + 2, top.c);
+        top.high = high;
+        top.index = (idx[i] - lanes[i].first) / motions.stride();
+        top.tau = tau[i];
+        top.len = len[i];
+        peak[i] = low;
+        return;
+    }
+    double slopes[N + 1];
+    slopes_of<N + 1>(c, slopes);
+    const double at = first_zero<N>(slopes);
+    raise_peak(i, value_of<N + 1>(c, at), now(i, at));
+}
+
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::settle_peak(int i) {
+    Top& top = tops[i];
+    if (!top.open) return;
+    top.open = false;
+    double slopes[N + 1];
+    slopes_of<N + 1>(top.c, slopes);
+    const double at = first_zero<N>(slopes);
+    peak[i] = value_of<N + 1>(top.c, at);
+    lanes[i].peak_signed = top.side * peak[i];
+    lanes[i].peak_time = (top.index + (top.tau + at * top.len)) * lanes[i].step;
+}
+
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::raise_peak(int i, double y, double time) {
+    if (y > peak[i]) settle_peak(i);
     if (y > peak[i]) {
         peak[i] = y;
         lanes[i].peak_signed = lanes[i].side * y;
@@ -121,23 +164,36 @@ void Kernel<G, U, N, D, Z, L>::raise_peak(int i, double y, double time) {
     }
 }
 
+// An impact, at a place within the step [rad per stretch]. Whether more comes of it is told by settle().
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::impact(int i, double at, double speed) {  // [rad per stretch]
+bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     Lane& lane = lanes[i];
     const int old = lane.side;
     fastest[i] = std::max(fastest[i], speed);
     lane.side = -old;
-    const double r = coefficient(i, speed), after = r * speed;
+    const Side& s = here(i);
+    const double r = law.kind == LawKind::constant ? s.r : coefficient(i, speed), after = r * speed;
     ++lane.impacts;
     if (trace) note(i, kImpact, now(i, at), -old * speed / lane.step, r * (-old * speed / lane.step), r);
     stand(i);
-    u[i] = alpha[i];
+    u[i] = s.alpha;
     v[i] = -after;
-    move(i, tau[i] + at * len[i]);
-    if (trace && tau[i] == 0.0) sample(i);
-    if (lane.impacts >= set.most_impacts) return finish(i, kFailed, kTooManyImpacts);
+    const double to = tau[i] + at * len[i];
+    const bool whole = to >= kWhole;
+    idx[i] += whole ? motions.stride() : 0;
+    tau[i] = whole ? 0.0 : to;
+    len[i] = std::min(sub[i], 1.0 - tau[i]);
+    if (trace && whole) sample(i);
+    return (lane.impacts >= set.most_impacts) | (idx[i] >= last[i]) | (after <= s.calm);
+}
+
+// What may follow an impact: too many of them, the end of the motion, rest.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::settle(int i) {
+    const double after = -v[i];
+    if (lanes[i].impacts >= set.most_impacts) return finish(i, kFailed, kTooManyImpacts);
     if (over(i)) return conclude(i);
-    if (comes_to_rest(i, after)) {
+    if (after <= here(i).calm && comes_to_rest(i, after)) {
         note(i, kRest, now(i, 0.0), 0.0, 0.0, 0.0);
         rest(i);
     }
@@ -156,11 +212,10 @@ double Kernel<G, U, N, D, Z, L>::coefficient(int i, double speed) const {  // [r
 // Lane variables of the side on which the body stands.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::stand(int i) {
-    const Lane& lane = lanes[i];
     const Side& s = here(i);
     alpha[i] = s.alpha;
-    kappa[i] = (s.p * lane.step) * (s.p * lane.step);
-    ca[i] = lane.side * lane.ax;
+    kappa[i] = s.kappa;
+    ca[i] = s.push;
 }
 
 ROCKING_KERNEL
@@ -188,13 +243,13 @@ bool Kernel<G, U, N, D, Z, L>::over(int i) {
 }
 
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::advance(int i, const double* V) {
+void Kernel<G, U, N, D, Z, L>::advance(int i, Step made) {
     Lane& lane = lanes[i];
-    const double u1 = end_u[i], v1 = end_v[i];
+    const double u1 = made[N + 1], v1 = made[N + 2];
     if (u1 < 0.0) {
         double c[N + 2];
         c[0] = u[i];
-        for (int k = 0; k <= N; ++k) c[k + 1] = V[k] / (k + 1);
+        for (int k = 0; k <= N; ++k) c[k + 1] = made[k] / (k + 1);
         if (c[0] == 0.0) lane.over_time = now(i, 0.0);
         each_fall<N + 1>(c, [&](double at) { lane.over_time = now(i, at); });
     }

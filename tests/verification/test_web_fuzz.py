@@ -125,7 +125,7 @@ def test_requests_from_the_schema(script: TestClient) -> None:
 
         run(share[id(operation)], ask, operation.as_strategy())
     print(f"{sum(seen.values())} requests from the schema: {dict(seen)}")
-    assert sum(seen.values()) >= 0.8 * REQUESTS  # an operation without parameters has few different requests
+    assert sum(seen.values()) >= 0.7 * REQUESTS  # an operation without parameters has few different requests
 
 
 def test_damaged_documents(script: TestClient) -> None:

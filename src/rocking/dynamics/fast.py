@@ -31,7 +31,7 @@ def run_fast(
     segments : Segments
         The motion, of degree 1 or 7 [m/s2].
     settings : Settings
-        How to integrate; the order is 8.
+        How to integrate; the order is 8, or 6 where that is as exact.
     scale : float
         Factor on the motion [-].
     key : int

@@ -1,0 +1,19 @@
+"""Bodies in space: rocking about edges and vertices, rolling on rims, under three components of motion."""
+
+from rocking.dynamics.spatial.histories import free_rocking_spatial, simulate_spatial
+from rocking.dynamics.spatial.impact import SpatialImpactLaw
+from rocking.dynamics.spatial.outcome import Contact, SpatialStatus
+from rocking.dynamics.spatial.response import SpatialResponse
+from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.dynamics.spatial.settings import SpatialSettings
+
+__all__ = [
+    "Contact",
+    "SpatialBody",
+    "SpatialImpactLaw",
+    "SpatialResponse",
+    "SpatialSettings",
+    "SpatialStatus",
+    "free_rocking_spatial",
+    "simulate_spatial",
+]

@@ -1,0 +1,145 @@
+"""What may end a step: gaps that close, and a round base that begins to roll or lies flat."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.spatial.attitude import ROTATION_MAP
+from rocking.dynamics.spatial.outcome import Contact
+from rocking.dynamics.spatial.polynomials import NOTHING, first_zero
+from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.dynamics.spatial.stance import Stance
+
+_UP = ROTATION_MAP[2]
+SLOW_OPENING = 1e-9
+"""Accelerations of a gap below this share of gravity count as none, as in the choice of what stays."""
+
+START_ROLLING, STOP_ROLLING = 1e-11, 1e-13
+"""Sines of the tilt at which a round base rolls, and at which it lies flat."""
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """The series of a step, over a unit of time that is the step.
+
+    Parameters
+    ----------
+    length : float
+        Duration [s].
+    velocities : ndarray, shape (order + 1, 3)
+        Angular velocity in body axes [rad/s].
+    up : ndarray, shape (order + 1, 3)
+        Vertical in body axes [-].
+    field : ndarray, shape (3, degree + 1)
+        Gravity less the acceleration of the ground, in axes of the ground [m/s2].
+    heading : ndarray, shape (3,)
+        Where the edge of the stance points on the ground; zero without an edge [-].
+    """
+
+    length: float
+    velocities: FloatArray
+    up: FloatArray
+    field: FloatArray
+    heading: FloatArray
+
+
+def up_series(squares: FloatArray) -> FloatArray:
+    """Return the series of the vertical in body axes.
+
+    Parameters
+    ----------
+    squares : ndarray, shape (order + 1, 16)
+        Series of the products of the quaternion with itself.
+
+    Returns
+    -------
+    ndarray, shape (order + 1, 3)
+        Coefficients by power [-].
+    """
+    return np.asarray(squares @ _UP.T)
+
+
+def watched(body: SpatialBody, stance: Stance) -> tuple[int, ...]:
+    """Return the vertices whose gaps must be watched: the base is convex, so no other one closes before them.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    stance : Stance
+        On what it stands.
+
+    Returns
+    -------
+    tuple of int
+        Both neighbours of a vertex; the vertex farthest from an edge.
+    """
+    count = len(body.vertices)
+    if stance.contact is Contact.VERTEX and stance.points:
+        return ((stance.points[0] - 1) % count, (stance.points[0] + 1) % count)
+    if stance.contact is Contact.EDGE:
+        distance = (body.vertices[:, :2] - stance.pivot[:2]) @ body.inward[stance.points[0]]
+        return (int(np.argmax(distance)),)
+    return ()
+
+
+def first_contact(body: SpatialBody, stance: Stance, step: Step, touching: tuple[int, ...]) -> tuple[float, int] | None:
+    """Return when a gap first closes.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body, with a polygon for a base.
+    stance : Stance
+        On what it stands.
+    step : Step
+        The step.
+    touching : tuple of int
+        Vertices that leave the ground at its start.
+
+    Returns
+    -------
+    at : float
+        Where, from 0 to 1.
+    vertex : int
+        Which; None instead of both if no gap closes.
+    """
+    found: list[tuple[float, int]] = []
+    floor = 0.5 * SLOW_OPENING * float(np.linalg.norm(step.field[:, 0])) * step.length**2
+    for number in watched(body, stance):
+        gap = step.up @ (body.vertices[number] - stance.pivot)
+        closes = first_zero(gap, started=number in touching, floor=floor)
+        if closes is not None:
+            found.append((closes, number))
+    return min(found) if found else None
+
+
+def rim_events(body: SpatialBody, stance: Stance, step: Step) -> float | None:
+    """Return when a round base begins to roll, or lies flat.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        With a round base.
+    stance : Stance
+        A point of the rim, or rolling.
+    step : Step
+        The step.
+
+    Returns
+    -------
+    float, optional
+        Where, from 0 to 1.
+    """
+    if stance.contact is Contact.ROLLING:
+        first = step.up[0, :2]
+        sine = step.up[:, :2] @ first / math.hypot(first[0], first[1])
+        sine[0] -= STOP_ROLLING
+        return first_zero(sine, started=False)
+    lean = step.up[:, :2] @ stance.pivot[:2] / -body.radius  # sine of the tilt away from the point
+    flat, steep = lean.copy(), -lean
+    steep[0] += START_ROLLING
+    found = [first_zero(flat, started=abs(lean[0]) < NOTHING), first_zero(steep, started=False)]
+    return min((at for at in found if at is not None), default=None)

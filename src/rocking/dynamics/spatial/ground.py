@@ -1,0 +1,153 @@
+"""Three components of ground motion as polynomials on common stretches of time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.taylor import shifted
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
+
+Component = GroundMotion | Pulse | None
+
+_SAME = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialGround:
+    """Accelerations of the ground along x, y and z, from time zero on; at rest after the last stretch.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n + 1,)
+        Ends of the stretches; the first one is zero [s].
+    coefficients : ndarray, shape (n, 3, degree + 1)
+        Accelerations over each stretch by power, over a unit of time that is the stretch [m/s2].
+    """
+
+    times: FloatArray
+    coefficients: FloatArray
+
+    @property
+    def count(self) -> int:
+        """Number of stretches."""
+        return len(self.coefficients)
+
+    @property
+    def end(self) -> float:
+        """When the ground comes to rest [s]."""
+        return float(self.times[-1])
+
+    def part(self, stretch: int, start: float, length: float) -> FloatArray:
+        """Return the accelerations over a part of a stretch.
+
+        Parameters
+        ----------
+        stretch : int
+            Its number; beyond the last one the ground is at rest.
+        start, length : float
+            When the part starts, and its duration [s].
+
+        Returns
+        -------
+        ndarray, shape (3, degree + 1)
+            By power, over a unit of time that is the part [m/s2].
+        """
+        if stretch >= self.count:
+            return np.zeros((3, 1))
+        whole = self.times[stretch + 1] - self.times[stretch]
+        to, width = (start - self.times[stretch]) / whole, length / whole
+        if to == 0.0 and width == 1.0:
+            return np.asarray(self.coefficients[stretch])
+        return np.array([shifted(row.tolist(), to, width) for row in self.coefficients[stretch]])
+
+    def at(self, time: FloatArray) -> FloatArray:
+        """Return the accelerations at some times.
+
+        Parameters
+        ----------
+        time : ndarray, shape (n,)
+            Times [s].
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            Where a motion jumps, the value after the jump [m/s2].
+        """
+        inside = (time >= 0.0) & (time < self.end)
+        k = np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, max(self.count - 1, 0))
+        if not self.count:
+            return np.zeros((time.size, 3))
+        tau = (time - self.times[k]) / (self.times[k + 1] - self.times[k])
+        powers = tau[:, None] ** np.arange(self.coefficients.shape[2])
+        return np.where(inside[:, None], np.einsum("nd,ncd->nc", powers, self.coefficients[k]), 0.0)
+
+
+def ground_of(
+    x: Component = None, y: Component = None, vertical: Component = None, *, until: float = np.inf, scale: float = 1.0
+) -> SpatialGround:
+    """Return three motions with one clock as one.
+
+    Parameters
+    ----------
+    x, y, vertical : GroundMotion or Pulse, optional
+        Components; None for a direction without motion [m/s2].
+    until : float
+        When the ground is taken to stop, if that is before the motions end [s].
+    scale : float
+        Factor on all of them [-].
+
+    Returns
+    -------
+    SpatialGround
+        The motion; no stretches if there is none.
+
+    Raises
+    ------
+    InvalidValueError
+        If a component is none of these, or brings a vertical part of its own.
+    """
+    rows = [_component(name, motion) for name, motion in (("x", x), ("y", y), ("vertical", vertical))]
+    ends = [times for times, _ in rows if times.size]
+    if not ends:
+        return SpatialGround(np.zeros(1), np.zeros((0, 3, 1)))
+    times = np.unique(np.concatenate(ends))
+    least = min(float(np.diff(part).min()) for part in ends)
+    times = times[np.concatenate([[True], np.diff(times) > _SAME * least])]
+    times = times[: np.searchsorted(times, until * (1.0 - 1e-12), side="left") + 1]
+    degree = max(part.shape[1] for _, part in rows)
+    made = np.zeros((len(times) - 1, 3, degree))
+    for which, (stops, polynomials) in enumerate(rows):
+        if stops.size:
+            made[:, which, : polynomials.shape[1]] = scale * _recut(stops, polynomials, times)
+    return SpatialGround(times, made)
+
+
+def _component(name: str, motion: Component) -> tuple[FloatArray, FloatArray]:
+    if motion is None:
+        return np.zeros(0), np.zeros((0, 1))
+    if not isinstance(motion, (GroundMotion, Pulse)):
+        raise InvalidValueError(f"{name} must be a GroundMotion, a pulse or None, got {motion!r:.60}")
+    segments = motion.segments()
+    if segments.vertical is not None:
+        raise InvalidValueError(
+            f"the {name} component must not have a vertical part of its own; hand it over as vertical=GroundMotion(...)"
+        )
+    return np.asarray(np.arange(segments.count + 1) * segments.step, dtype=np.float64), segments.horizontal
+
+
+def _recut(stops: FloatArray, polynomials: FloatArray, times: FloatArray) -> FloatArray:
+    """Rewrite polynomials on the stretches between `times`."""
+    made = np.zeros((len(times) - 1, polynomials.shape[1]))
+    middles = 0.5 * (times[1:] + times[:-1])
+    place = np.searchsorted(stops, middles) - 1
+    for k, inner in enumerate(place):
+        if inner >= len(polynomials):
+            break
+        whole = stops[inner + 1] - stops[inner]
+        to, width = (times[k] - stops[inner]) / whole, (times[k + 1] - times[k]) / whole
+        same = abs(to) < _SAME and abs(width - 1.0) < _SAME
+        made[k] = polynomials[inner] if same else shifted(polynomials[inner].tolist(), to, width)
+    return made

@@ -1,0 +1,167 @@
+"""What an impact, or a moment at which forces decide, leaves a body standing on."""
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.spatial import stance as stances
+from rocking.dynamics.spatial.attitude import cross
+from rocking.dynamics.spatial.events import START_ROLLING, STOP_ROLLING
+from rocking.dynamics.spatial.impact import SpatialImpactLaw, projected
+from rocking.dynamics.spatial.outcome import Contact
+from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.dynamics.spatial.selection import Choice, State, candidates, forces, impulses, of_forces, of_impact
+from rocking.dynamics.spatial.stance import Stance
+
+CLOSED = 1e-12
+"""Gaps below this share of the size of a body are closed."""
+
+
+def landed(body: SpatialBody, state: State, touching: tuple[int, ...], law: SpatialImpactLaw) -> Choice:
+    """Return what an impact on some vertices leaves.
+
+    Where no contact set is without pull (a vertex that grazes the ground while it moves fast along it would stick only
+    if it were pulled down), the one with the least pull is taken; its impulses show it.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    state : State
+        Before the impact.
+    touching : tuple of int
+        Vertices on the ground.
+    law : SpatialImpactLaw
+        What it costs.
+
+    Returns
+    -------
+    Choice
+        What stays, and the angular velocity after.
+    """
+    found = of_impact(body, state, touching, law)
+    return found[0] if found else _least_pull(body, state, touching)
+
+
+def _least_pull(body: SpatialBody, state: State, touching: tuple[int, ...]) -> Choice:
+    best: Choice | None = None
+    for stance in candidates(body, touching):
+        velocity = np.zeros(3)
+        if stance.contact is not Contact.REST:
+            velocity = projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
+        opening = cross(velocity, body.vertices[list(touching)] - stance.pivot) @ state.up
+        if opening.min() < -1e-9 * float(np.abs(velocity).max()) * body.size:
+            continue
+        push = impulses(body, state, stance, velocity)
+        if best is None or push.min() > best.supports.min():
+            best = Choice(stance, velocity, push)
+    assert best is not None  # an edge or a face opens no gap
+    return best
+
+
+def rim_landed(body: SpatialBody, state: State, law: SpatialImpactLaw) -> Choice:
+    """Return what the impact of a round base that falls flat leaves: its far side, or all of it.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        With a round base.
+    state : State
+        Before the impact; the pivot is on the rim.
+    law : SpatialImpactLaw
+        What it costs.
+
+    Returns
+    -------
+    Choice
+        What stays, and the angular velocity after.
+    """
+    far = stances.rim(body, -state.pivot[:2])
+    plastic = projected(body, state.pivot, far.pivot, None, state.velocity)
+    push = impulses(body, state, far, plastic)
+    velocity = law.velocity_after(body, state.pivot, far.pivot, None, state.up, state.velocity)
+    opens = float(cross(velocity, state.pivot - far.pivot) @ state.up) > 0.0
+    if opens and push.min() >= 0.0:
+        return Choice(far, velocity, push)
+    flat = stances.face(body)
+    return Choice(flat, np.zeros(3), impulses(body, state, flat, np.zeros(3)))
+
+
+def settled(
+    body: SpatialBody, state: State, choice: Choice, touching: tuple[int, ...], slow: float, *, weak: bool
+) -> Choice:
+    """Return what a body stands on once points that would fall back at once are taken to stay.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    state : State
+        After the impact, with the pivot of the choice.
+    choice : Choice
+        What the impact left.
+    touching : tuple of int
+        Vertices on the ground.
+    slow : float
+        Speed below which a point that leaves the ground counts as staying [m/s].
+    weak : bool
+        Whether so little energy is left that the whole base counts as touching.
+
+    Returns
+    -------
+    Choice
+        The same stance where forces hold it.
+    """
+    if body.round:
+        push = forces(body, stances.face(body), np.zeros(3), state.up, state.field)[1]
+        rests = (weak or choice.stance.contact is Contact.REST) and push.min() >= 0.0
+        return Choice(stances.face(body), np.zeros(3), choice.supports) if rests else choice
+    opening = cross(choice.velocity, body.vertices - choice.stance.pivot) @ state.up
+    every = range(len(body.vertices)) if weak else touching
+    near = tuple(i for i in every if weak or i in choice.stance.points or opening[i] <= slow)
+    found = of_forces(body, state, near, choice.stance)
+    return Choice(found[0].stance, found[0].velocity, choice.supports) if found else choice
+
+
+def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[Stance, tuple[int, ...]]:
+    """Return the stance that initial conditions imply: the lowest of the touching points stay where they are.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    velocity : ndarray, shape (3,)
+        Angular velocity in body axes [rad/s].
+    up : ndarray, shape (3,)
+        Vertical in body axes [-].
+
+    Returns
+    -------
+    stance : Stance
+        Edge, vertex or rim; the face for a body that stands still on it.
+    touching : tuple of int
+        Vertices on the ground.
+    """
+    if body.round:
+        return _started_round(body, velocity, up), ()
+    height = body.vertices @ up
+    touching = tuple(np.flatnonzero(height - height.min() <= CLOSED * body.size).tolist())
+    size = float(np.abs(velocity).max())
+    if size == 0.0 and len(touching) == len(body.vertices):
+        return stances.face(body), touching
+    rates = cross(velocity, body.vertices) @ up
+    low = [i for i in touching if rates[i] <= min(rates[list(touching)]) + CLOSED * size * body.size]
+    for number in low:
+        along = body.edges[number]
+        alone = float(np.abs(velocity - along * (along @ velocity)).max()) <= CLOSED * size
+        if (number + 1) % len(body.vertices) in low and alone:
+            return stances.edge(body, number), touching
+    return stances.vertex(body, low[0]), touching
+
+
+def _started_round(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> Stance:
+    sine = float(np.hypot(up[0], up[1]))
+    lean = up[:2] if sine > STOP_ROLLING else np.array([-velocity[1], velocity[0]])
+    if not np.any(lean):
+        return stances.face(body)
+    stance = stances.rim(body, -lean)
+    return stances.rolling(stance) if sine > START_ROLLING else stance

@@ -1,0 +1,289 @@
+"""The response of a body in space: attitude, contact, impacts, energy, outcome and its direction."""
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.spatial import attitude
+from rocking.dynamics.spatial.ground import SpatialGround
+from rocking.dynamics.spatial.impact import SpatialImpactLaw
+from rocking.dynamics.spatial.outcome import Contact, SpatialStatus
+from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.dynamics.spatial.settings import SpatialSettings
+from rocking.dynamics.spatial.trajectory import SpatialTrajectory
+from rocking.errors import InvalidValueError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import xarray as xr
+
+    from rocking.dynamics.ledger import ResponseEnergy
+    from rocking.dynamics.spatial.states import States
+
+SPATIAL_IMPACT = np.dtype(
+    [
+        ("time", "f8"),
+        ("energy_before", "f8"),
+        ("energy_after", "f8"),
+        ("impulse", "f8"),
+        ("pull", "f8"),
+        ("contact", "U8"),
+        ("vertices", "U64"),
+    ]
+)
+"""Fields of `SpatialResponse.impacts`: [s], [J], [J], vertical [N s], of that the part the ground would have to pull
+for the points to stick [N s], what stays, and its vertices."""
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialResponse:
+    """What `simulate_spatial` returns; everything that takes time is computed when first asked for.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    ground : SpatialGround
+        The motion as it was integrated [m/s2].
+    law : SpatialImpactLaw
+        What impacts cost.
+    settings : SpatialSettings
+        How it was integrated.
+    time : ndarray
+        Times of the samples, to the end or until the body lies [s].
+    trajectory : SpatialTrajectory
+        What the engine returned.
+    end : float
+        End of the response; the engine may have gone on to find out whether the body overturns [s].
+    names : tuple of str
+        Of the three motions.
+    """
+
+    body: SpatialBody
+    ground: SpatialGround = field(repr=False)
+    law: SpatialImpactLaw
+    settings: SpatialSettings
+    time: FloatArray = field(repr=False)
+    trajectory: SpatialTrajectory = field(repr=False)
+    end: float
+    names: tuple[str, str, str] = ("none", "none", "none")
+
+    def __repr__(self) -> str:
+        """Outcome in words, and which engine found it."""
+        return f"<SpatialResponse: {self.summary} [{self.trajectory.engine}]>"
+
+    @cached_property
+    def states(self) -> "States":
+        """Attitude, velocity and contact at the samples."""
+        return self.at(self.time)
+
+    @property
+    def quaternion(self) -> FloatArray:
+        """Attitude (s, x, y, z) at the samples, body axes to axes of the ground, shape (n, 4) [-]."""
+        return self.states.quaternion
+
+    @property
+    def angular_velocity(self) -> FloatArray:
+        """Angular velocity at the samples in axes of the ground, shape (n, 3) [rad/s]."""
+        return self.states.angular_velocity
+
+    @cached_property
+    def tilt(self) -> FloatArray:
+        """Angle between the axis of the body and the vertical at the samples [rad]."""
+        return attitude.tilt(self.quaternion)
+
+    @cached_property
+    def azimuth(self) -> FloatArray:
+        """Direction in which the body leans at the samples, from x towards y [rad]."""
+        return attitude.azimuth(self.quaternion)
+
+    @property
+    def contact(self) -> IntArray:
+        """Number of the regime at the samples: 0 rest, 1 edge, 2 vertex, 3 rolling."""
+        return self.states.contact
+
+    @cached_property
+    def centre(self) -> FloatArray:
+        """Path of the centre of mass on the ground, z above it, shape (n, 3) [m]."""
+        return self.states.point(self.body.centre)
+
+    @cached_property
+    def top(self) -> FloatArray:
+        """Path of the point above the centre of mass at twice its height, shape (n, 3) [m]."""
+        return self.states.point(self.body.centre * np.array([1.0, 1.0, 2.0]))
+
+    @cached_property
+    def intervals(self) -> list[tuple[float, float, Contact, tuple[int, ...]]]:
+        """Start and end [s], regime, and vertices on the ground, as long as they stay the same."""
+        found: list[tuple[float, float, Contact, tuple[int, ...]]] = []
+        for piece in self.trajectory.pieces:
+            if found and piece.start >= self.end:
+                break
+            now = piece.stance.contact, piece.stance.points
+            if found and found[-1][2:] == now:
+                found[-1] = (found[-1][0], min(piece.end, self.end), *now)
+            else:
+                found.append((piece.start, min(piece.end, self.end), *now))
+        return found
+
+    @cached_property
+    def impacts(self) -> np.ndarray:
+        """Impacts in order: time, energy_before, energy_after, impulse, pull, contact, vertices."""
+        rows = []
+        for event in self.trajectory.impacts:
+            if event.time > self.end:
+                break
+            stays, push = event.stance, event.impulses
+            total = push.sum() if stays.contact is Contact.EDGE else push[-1]
+            vertices = "-".join(map(str, stays.points))
+            pull = max(0.0, -float(push.min()))
+            rows.append((event.time, event.before, event.after, total, pull, stays.contact.name.lower(), vertices))
+        return np.array(rows, dtype=SPATIAL_IMPACT)
+
+    @property
+    def outcome(self) -> Outcome:
+        """How it ended."""
+        return self.trajectory.outcome
+
+    @property
+    def status(self) -> SpatialStatus:
+        """Whether it could be computed."""
+        return self.trajectory.status
+
+    @property
+    def peak_tilt(self) -> float:
+        """Largest tilt, between the samples too; a quarter turn if it overturned [rad]."""
+        return self.trajectory.peak_tilt
+
+    @property
+    def overturning_time(self) -> float:
+        """When the centre of mass passed over the contact for good; NaN if it did not overturn [s]."""
+        return self.trajectory.overturning_time
+
+    @cached_property
+    def overturning_direction(self) -> float:
+        """Direction in which it lies, from x towards y; NaN if it did not overturn [rad]."""
+        if self.outcome is not Outcome.OVERTURNED:
+            return math.nan
+        last = self.trajectory.pieces[-1]
+        return float(attitude.azimuth(last.at(np.array([last.until]))[0][0]))
+
+    @property
+    def overturned_over(self) -> str:
+        """Edge, vertex or rim over which it overturned, in words; empty if it did not."""
+        over = self.trajectory.fell_over
+        if over is None:
+            return ""
+        if not over.points:
+            return "its rim"
+        return f"{over.contact.name.lower()} {'-'.join(map(str, over.points))}"
+
+    @property
+    def summary(self) -> str:
+        """The outcome in one sentence."""
+        run = self.trajectory
+        count = self.impacts.size
+        if run.outcome is Outcome.OVERTURNED:
+            where = f" over {self.overturned_over}" if self.overturned_over else ""
+            return (
+                f"overturned towards {math.degrees(self.overturning_direction):.4g} degrees{where} after {count} "
+                f"impact{'s' * (count != 1)}, past the point of no return at {run.overturning_time:.4g} s"
+            )
+        if run.outcome is Outcome.ROCKED:
+            return (
+                f"rocked and stayed standing: largest tilt {math.degrees(run.peak_tilt):.4g} degrees, {count} "
+                f"impact{'s' * (count != 1)}{self._pulled}"
+            )
+        return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
+
+    @property
+    def _pulled(self) -> str:
+        count = int((self.impacts["pull"] > 1e-9 * np.abs(self.impacts["impulse"])).sum())
+        return f"; at {count} of them a corner would have slipped or bounced rather than stuck" if count else ""
+
+    @cached_property
+    def energy(self) -> "ResponseEnergy":
+        """Kinetic and potential energy, work of the ground and losses at the samples [J]."""
+        from rocking.dynamics.spatial.energy import energy_of
+
+        return energy_of(self)
+
+    def at(self, time: Any) -> "States":
+        """Return the state of the body at any times within the response.
+
+        Parameters
+        ----------
+        time : array_like, shape (n,)
+            Times [s].
+
+        Returns
+        -------
+        States
+            Attitude, velocity, contact, places.
+
+        Raises
+        ------
+        InvalidValueError
+            If a time is not finite, or before the start or after the end by more than rounding.
+        """
+        from rocking.dynamics.spatial.states import states_of
+
+        end = self.trajectory.pieces[-1].end
+        given = np.atleast_1d(checks.real_array("time", time, "s"))
+        bad = given[~((given >= -1e-9 * end) & (given <= (1.0 + 1e-9) * end))]
+        if bad.size:
+            raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
+        return states_of(self.body, self.trajectory, np.clip(given, 0.0, end))
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Return the response as a labelled dataset with units and provenance.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over `time` and `impact`.
+        """
+        from rocking.dynamics.spatial.export import to_xarray
+
+        return to_xarray(self)
+
+    def to_csv(self, path: "str | Path") -> "Path":
+        """Write the samples as comma-separated values.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.dynamics.spatial.export import to_csv
+
+        return to_csv(self, path)
+
+    def to_netcdf(self, path: "str | Path") -> "Path":
+        """Write a netCDF file, which xarray and MATLAB open.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.dynamics.spatial.export import to_netcdf
+
+        return to_netcdf(self, path)

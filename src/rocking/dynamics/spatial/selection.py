@@ -1,0 +1,246 @@
+"""Which points stay on the ground: complementarity over the few contact sets that a convex base allows.
+
+A set of touching points either stays (the ground pushes there) or leaves (its gap opens). On a flat base only three
+kinds of sets can stay: a vertex, an edge, or everything, since a body that turns about any other pair of vertices
+would dip another one into the ground. Each candidate is tried: the motion that it leaves must not close a gap of
+another touching point, and the ground must not pull. This is the linear complementarity problem with sticking points
+(physics: plastic impact as a projection in the kinetic metric, forces by Euler's equations), solved by listing.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.spatial import stance as stances
+from rocking.dynamics.spatial.attitude import cross
+from rocking.dynamics.spatial.impact import SpatialImpactLaw, projected
+from rocking.dynamics.spatial.outcome import Contact
+from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.dynamics.spatial.stance import Stance
+
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A body at an instant, in its own axes.
+
+    Parameters
+    ----------
+    pivot : ndarray, shape (3,)
+        A point at rest on the ground [m].
+    velocity : ndarray, shape (3,)
+        Angular velocity [rad/s].
+    up : ndarray, shape (3,)
+        Vertical [-].
+    field : ndarray, shape (3,)
+        Gravity less the acceleration of the ground [m/s2].
+    """
+
+    pivot: FloatArray
+    velocity: FloatArray
+    up: FloatArray
+    field: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """What stays, and how the body goes on.
+
+    Parameters
+    ----------
+    stance : Stance
+        On what the body stands.
+    velocity : ndarray, shape (3,)
+        Angular velocity, in body axes [rad/s].
+    supports : ndarray
+        Impulses or forces of the ground, as `supports` of the stance has them [N s] or [N].
+    """
+
+    stance: Stance
+    velocity: FloatArray
+    supports: FloatArray
+
+
+def candidates(body: SpatialBody, touching: tuple[int, ...]) -> Iterator[Stance]:
+    """Yield the contact sets that can stay, larger ones first.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    touching : tuple of int
+        Vertices on the ground.
+
+    Yields
+    ------
+    Stance
+        Face, edges, vertices.
+    """
+    count = len(body.vertices)
+    if len(touching) == count:
+        yield stances.face(body)
+    for number in touching:
+        if (number + 1) % count in touching:
+            yield stances.edge(body, number)
+    for number in touching:
+        yield stances.vertex(body, number)
+
+
+def of_impact(body: SpatialBody, state: State, touching: tuple[int, ...], law: SpatialImpactLaw) -> list[Choice]:
+    """Return every contact set that an impact may leave, the largest first.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    state : State
+        Before the impact.
+    touching : tuple of int
+        Vertices on the ground.
+    law : SpatialImpactLaw
+        What the impact costs.
+
+    Returns
+    -------
+    list of Choice
+        One for almost all states.
+    """
+    found = []
+    scale = float(np.abs(state.velocity).max()) * body.size
+    for stance in candidates(body, touching):
+        plastic = _after(body, state, stance)
+        push = impulses(body, state, stance, plastic)
+        if push.min() < -_ROUNDING * body.mass * scale:
+            continue
+        velocity = plastic
+        if stance.contact is not Contact.REST:
+            velocity = law.velocity_after(body, state.pivot, stance.pivot, stance.axis, state.up, state.velocity)
+        if _opening(body, stance, velocity, state.up, touching) >= -_ROUNDING * scale:
+            found.append(Choice(stance, velocity, push))
+    return found
+
+
+def of_forces(body: SpatialBody, state: State, touching: tuple[int, ...], first: Stance | None = None) -> list[Choice]:
+    """Return every contact set that stays when no gap opens with a speed, a preferred one first.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    state : State
+        At an instant at which the gaps of the touching points neither open nor close.
+    touching : tuple of int
+        Vertices on the ground.
+    first : Stance, optional
+        What the body stood on.
+
+    Returns
+    -------
+    list of Choice
+        Empty if the ground would have to pull.
+    """
+    found: list[Choice] = []
+    scale = float(np.linalg.norm(state.field))
+    for stance in [] if first is None else [first]:
+        _try_forces(body, state, stance, touching, scale, found)
+    for stance in candidates(body, touching):
+        if first is None or stance.points != first.points:
+            _try_forces(body, state, stance, touching, scale, found)
+    return found
+
+
+def _try_forces(
+    body: SpatialBody, state: State, stance: Stance, touching: tuple[int, ...], scale: float, found: list[Choice]
+) -> None:
+    velocity = _after(body, state, stance)
+    rate, push = forces(body, stance, velocity, state.up, state.field)
+    if push.min() < -_ROUNDING * body.mass * scale:
+        return
+    spin = cross(velocity, cross(velocity, body.vertices - stance.pivot))
+    opening = (cross(rate, body.vertices - stance.pivot) + spin) @ state.up
+    others = [i for i in touching if i not in stance.points]
+    if not others or opening[others].min() >= -_ROUNDING * scale:
+        found.append(Choice(stance, velocity, push))
+
+
+def impulses(body: SpatialBody, state: State, stance: Stance, velocity: FloatArray) -> FloatArray:
+    """Return the impulses of the ground in an impact.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    state : State
+        Before the impact.
+    stance : Stance
+        What stays on the ground.
+    velocity : ndarray, shape (3,)
+        Angular velocity after, in body axes [rad/s].
+
+    Returns
+    -------
+    ndarray
+        As of `supports` of the stance [N s].
+    """
+    new = body.centre - stance.pivot
+    push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))
+    moment = body.inertia @ (velocity - state.velocity) + cross(new, push)
+    return stances.supports(body, stance, push, moment, state.up)
+
+
+def forces(
+    body: SpatialBody, stance: Stance, velocity: FloatArray, up: FloatArray, field: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the angular acceleration on a stance and the forces of the ground.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    stance : Stance
+        What stays on the ground; not rolling.
+    velocity : ndarray, shape (3,)
+        Angular velocity, in body axes [rad/s].
+    up : ndarray, shape (3,)
+        Vertical in body axes [-].
+    field : ndarray, shape (3,)
+        Gravity less the acceleration of the ground, in body axes [m/s2].
+
+    Returns
+    -------
+    acceleration : ndarray, shape (3,)
+        Angular, in body axes [rad/s2].
+    supports : ndarray
+        As of `supports` of the stance [N].
+    """
+    arm, inertia = body.centre - stance.pivot, body.inertia_about(stance.pivot)
+    rate: FloatArray
+    gyroscopic, weight = cross(velocity, inertia @ velocity), body.mass * cross(arm, field)
+    if stance.contact is Contact.REST:
+        rate = np.zeros(3)
+    elif stance.axis is not None:
+        rate = stance.axis * (stance.axis @ (weight - gyroscopic)) / (stance.axis @ inertia @ stance.axis)
+    else:
+        rate = np.asarray(np.linalg.solve(inertia, weight - gyroscopic), dtype=np.float64)
+    moment = inertia @ rate + gyroscopic - weight
+    force = body.mass * (cross(rate, arm) + cross(velocity, cross(velocity, arm)) - field)
+    return rate, stances.supports(body, stance, force, moment, up)
+
+
+def _after(body: SpatialBody, state: State, stance: Stance) -> FloatArray:
+    if stance.contact is Contact.REST:
+        return np.zeros(3)
+    return projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
+
+
+def _opening(
+    body: SpatialBody, stance: Stance, velocity: FloatArray, up: FloatArray, touching: tuple[int, ...]
+) -> float:
+    """Least speed with which a touching point that does not stay leaves the ground."""
+    others = [i for i in touching if i not in stance.points]
+    if not others:
+        return 0.0
+    return float((cross(velocity, body.vertices[others] - stance.pivot) @ up).min())

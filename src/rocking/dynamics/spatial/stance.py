@@ -1,0 +1,211 @@
+"""On what a body stands: its whole base, an edge, a vertex, a point of its rim; and the forces that it takes there."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.spatial.attitude import cross
+from rocking.dynamics.spatial.outcome import Contact
+from rocking.dynamics.spatial.rocker import SpatialBody
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class Stance:
+    """What stays on the ground.
+
+    Parameters
+    ----------
+    contact : Contact
+        The regime.
+    points : tuple of int
+        Numbers of the vertices that stay; none for round bases.
+    pivot : ndarray, shape (3,)
+        A point that stays, in body axes [m].
+    axis : ndarray, shape (3,), optional
+        Unit vector along an edge that stays, in body axes [-].
+    length : float
+        Length of that edge [m].
+    """
+
+    contact: Contact
+    points: tuple[int, ...]
+    pivot: FloatArray
+    axis: FloatArray | None = None
+    length: float = 0.0
+
+
+def face(body: SpatialBody) -> Stance:
+    """Return standing on the whole base.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+
+    Returns
+    -------
+    Stance
+        At rest.
+    """
+    pivot = np.zeros(3) if body.round else body.vertices[0]
+    return Stance(Contact.REST, tuple(range(len(body.vertices))), pivot)
+
+
+def edge(body: SpatialBody, number: int) -> Stance:
+    """Return standing on an edge.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    number : int
+        Of the edge; it runs from the vertex of that number to the next one.
+
+    Returns
+    -------
+    Stance
+        Turning about the edge.
+    """
+    after = (number + 1) % len(body.vertices)
+    length = float(np.linalg.norm(body.vertices[after] - body.vertices[number]))
+    return Stance(Contact.EDGE, (number, after), body.vertices[number], body.edges[number], length)
+
+
+def vertex(body: SpatialBody, number: int) -> Stance:
+    """Return standing on a vertex.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    number : int
+        Of the vertex.
+
+    Returns
+    -------
+    Stance
+        Turning about the vertex.
+    """
+    return Stance(Contact.VERTEX, (number,), body.vertices[number])
+
+
+def rim(body: SpatialBody, direction: FloatArray) -> Stance:
+    """Return standing on a point of a round base.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    direction : ndarray, shape (2,)
+        From the centre of the base to the point, in body axes, any length above zero.
+
+    Returns
+    -------
+    Stance
+        Turning about that point: what rolling starts with while the base is nearly flat.
+    """
+    unit = direction / np.linalg.norm(direction)
+    return Stance(Contact.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
+
+
+def rolling(stance: Stance) -> Stance:
+    """Return rolling that starts on the point of a stance.
+
+    Parameters
+    ----------
+    stance : Stance
+        On a point of the rim.
+
+    Returns
+    -------
+    Stance
+        Rolling.
+    """
+    return replace(stance, contact=Contact.ROLLING)
+
+
+def supports(body: SpatialBody, stance: Stance, force: FloatArray, moment: FloatArray, up: FloatArray) -> FloatArray:
+    """Return what must not be negative for the ground to give a force without pulling.
+
+    Horizontal forces are free, since nothing slips; what remains is where the vertical one acts. With M the moment
+    about the pivot and Z upwards, Z x M = sum N_i r_i over the points of contact: so an edge has the two forces at its
+    ends, and a face the moments of the vertical forces about each edge, over its distance scale.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    stance : Stance
+        On what it stands.
+    force, moment : ndarray, shape (3,)
+        Force of the ground and its moment about the pivot, in body axes [N], [N m]; or impulses.
+    up : ndarray, shape (3,)
+        Vertical in body axes [-].
+
+    Returns
+    -------
+    ndarray
+        Vertical force at a vertex; at both ends of an edge; for a face N times the distance of its centre of pressure
+        from each edge over the size of the body [N].
+    """
+    normal = float(force @ up)
+    if stance.axis is not None:
+        second = float(cross(up, moment) @ stance.axis) / stance.length
+        return np.array([normal - second, second])
+    if stance.contact is not Contact.REST:
+        return np.array([normal])
+    pressure = cross(up, moment)[:2] + normal * stance.pivot[:2]
+    if body.round:
+        return np.array([normal * body.radius - float(np.hypot(*pressure))]) / body.size
+    inside = ((pressure - normal * body.vertices[:, :2]) * body.inward).sum(axis=1)
+    return np.append(inside / body.size, normal)
+
+
+def touching_point(body: SpatialBody, stance: Stance, up: FloatArray) -> FloatArray:
+    """Return the point of the body that is on the ground.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    stance : Stance
+        On what it stands.
+    up : ndarray, shape (3,)
+        Vertical in body axes [-].
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        The pivot; of a rolling body the lowest point of its rim, in body axes [m].
+    """
+    if stance.contact is not Contact.ROLLING:
+        return stance.pivot
+    level = up[:2] / np.hypot(up[0], up[1])
+    return np.array([-body.radius * level[0], -body.radius * level[1], 0.0])
+
+
+def rise(body: SpatialBody, pivot: FloatArray, up: FloatArray) -> float:
+    """Return how much higher the centre of mass is than at rest.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        The body.
+    pivot : ndarray, shape (3,)
+        A point on the ground, in body axes [m].
+    up : ndarray, shape (3,)
+        Vertical in body axes [-].
+
+    Returns
+    -------
+    float
+        Rise [m].
+    """
+    arm = body.centre - pivot
+    level2 = float(up[0] ** 2 + up[1] ** 2)
+    # 1 - cos(tilt) without the loss of digits
+    sunk = level2 / (1.0 + up[2]) if up[2] > 0.0 else 1.0 - float(up[2])
+    return float(up[:2] @ arm[:2] - sunk * arm[2])

@@ -1,0 +1,138 @@
+"""A response in space: path of the top seen from above, on what the body stands, tilt and direction over time."""
+
+from textwrap import wrap
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.spatial.outcome import Contact
+from rocking.dynamics.spatial.response import SpatialResponse
+from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COLOURS = {
+    Contact.REST: PALE,
+    Contact.EDGE: "#0072B2",
+    Contact.VERTEX: "#E69F00",
+    Contact.ROLLING: "#009E73",
+}
+_IMPACT, _TOP = "#D55E00", "#0072B2"
+_WIDTH = 88
+_SMALL = 1e-3
+"""Below this share of the largest tilt the body leans nowhere in particular."""
+
+
+@in_journal_style
+def spatial_picture(response: SpatialResponse) -> "Figure":
+    """Draw a response in space.
+
+    Parameters
+    ----------
+    response : SpatialResponse
+        What `simulate_spatial` or `free_rocking_spatial` returned.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The path of the top in plan; tilt, direction of leaning and contact over time.
+
+    Examples
+    --------
+    >>> from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial
+    >>> response = free_rocking_spatial(SpatialBody.box(1.0, 1.0, 4.0), tilt=0.1, azimuth=0.3, duration=2.0)
+    >>> len(spatial_picture(response).axes)
+    4
+    """
+    figure, panels = new_figure(DOUBLE, 4.6)
+    panels[0].remove()
+    grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.35], height_ratios=[1.6, 1.2, 0.35])
+    plan = figure.add_subplot(grid[:, 0])
+    tilt = figure.add_subplot(grid[0, 1])
+    direction = figure.add_subplot(grid[1, 1], sharex=tilt)
+    contact = figure.add_subplot(grid[2, 1], sharex=tilt)
+    words = response.summary[:1].upper() + response.summary[1:]
+    figure.suptitle("\n".join(wrap(words, _WIDTH)), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    _plan(plan, response)
+    _tilt(tilt, response)
+    _direction(direction, response)
+    _contact(contact, response)
+    tilt.set_xlim(0.0, max(float(response.time[-1]), 1e-9))
+    for panel in (tilt, direction):
+        panel.tick_params(labelbottom=False)
+    figure.align_ylabels([tilt, direction, contact])
+    return figure
+
+
+def _plan(axes: "Axes", response: SpatialResponse) -> None:
+    outline = _outline(response)
+    axes.fill(outline[:, 0], outline[:, 1], facecolor="none", edgecolor=GREY, linewidth=0.8, label="base at the start")
+    top = response.top
+    axes.plot(top[:, 0], top[:, 1], color=_TOP, linewidth=0.8, label="path of the top")
+    axes.plot(top[:1, 0], top[:1, 1], marker="o", markersize=3.5, color=INK, linestyle="none", label="start")
+    axes.plot(top[-1:, 0], top[-1:, 1], marker="s", markersize=3.5, color=_IMPACT, linestyle="none", label="end")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, borderpad=0.2)
+
+
+def _outline(response: SpatialResponse) -> FloatArray:
+    body, states = response.body, response.at([0.0])
+    if body.round:
+        angle = np.linspace(0.0, 2.0 * np.pi, 73)
+        corners = body.radius * np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+    else:
+        corners = body.vertices
+    return np.array([states.point(corner)[0, :2] for corner in corners])
+
+
+def _tilt(axes: "Axes", response: SpatialResponse) -> None:
+    axes.plot(response.time, np.degrees(response.tilt), color=INK, linewidth=0.9)
+    times = response.impacts["time"]
+    times = times[times <= response.time[-1]]
+    if times.size:
+        heights = np.degrees(np.interp(times, response.time, response.tilt))
+        axes.plot(
+            times, heights, marker="o", markersize=2.6, markerfacecolor="white", color=_IMPACT, linestyle="none",
+            label=f"impacts ({times.size})",
+        )  # fmt: skip
+    reach = float(np.degrees(np.arctan2(response.body.reach, response.body.centre[2])))
+    if response.outcome is Outcome.OVERTURNED or np.degrees(response.tilt).max() > 0.3 * reach:
+        axes.axhline(reach, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label="least slenderness angle")
+    axes.set_ylim(bottom=0.0)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, borderpad=0.2)
+    axes.set_ylabel("tilt\n[degrees]")
+
+
+def _direction(axes: "Axes", response: SpatialResponse) -> None:
+    leans = response.tilt > _SMALL * response.tilt.max(initial=0.0)
+    axes.plot(
+        response.time[leans], np.degrees(response.azimuth[leans]), color=_TOP, marker=".", markersize=1.6,
+        linestyle="none",
+    )  # fmt: skip
+    axes.set_ylim(-190.0, 190.0)
+    axes.set_yticks([-180, -90, 0, 90, 180])
+    axes.grid(axis="y", color=PALE, linewidth=0.5)
+    axes.set_ylabel("leans towards\n[degrees]")
+
+
+def _contact(axes: "Axes", response: SpatialResponse) -> None:
+    seen: set[Contact] = set()
+    for start, end, contact, _ in response.intervals:
+        last = min(end, float(response.time[-1]))
+        if last <= start:
+            continue
+        label = None if contact in seen else contact.name.lower()
+        seen.add(contact)
+        axes.barh(0.0, last - start, left=start, height=0.8, color=_COLOURS[contact], linewidth=0.0, label=label)
+    axes.set_yticks([])
+    axes.set_ylim(-0.5, 0.5)
+    axes.set_ylabel("contact")
+    axes.set_xlabel("time [s]")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.0, borderpad=0.2)

@@ -1,0 +1,122 @@
+"""Bodies and motions in space: what is refused, closed forms, and merging of components."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.dynamics.spatial import SpatialBody, SpatialSettings, attitude
+from rocking.dynamics.spatial.ground import ground_of
+from rocking.dynamics.spatial.impact import FixedSpatial, law_of
+from rocking.dynamics.spatial.selection import forces
+from rocking.dynamics.spatial.stance import edge, face
+from rocking.errors import InvalidValueError, RockingError, UnknownModelError
+
+UP = np.array([0.0, 0.0, 1.0])
+SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+
+
+def test_a_box_is_its_closed_forms():
+    """Mass, inertia, inertia about an edge (m / 3 (b^2 + h^2) of full sizes), reach and p^2 = 3 g / 4 R of a box."""
+    body = SpatialBody.box(0.8, 1.1, 3.0, density=2000.0)
+    mass = 2000.0 * 0.8 * 1.1 * 3.0
+    assert body.mass == pytest.approx(mass)
+    about = body.edges[1] @ body.inertia_about(body.vertices[1]) @ body.edges[1]  # the edge x = 0.4
+    assert about == pytest.approx(mass * (0.8**2 + 3.0**2) / 3.0)
+    assert body.reach == pytest.approx(0.4)
+    assert body.frequency(9.81) == pytest.approx(math.sqrt(3.0 * 9.81 / (4.0 * 0.5 * math.hypot(1.1, 3.0))))
+    assert body.lift == pytest.approx(math.hypot(0.4, 1.5) - 1.5)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"base": SQUARE[::-1]}, "counter-clockwise"),
+        ({"base": SQUARE[[0, 1, 1, 2]]}, "convex"),
+        ({"base": np.array([[0, 0], [1, 0], [0.6, 0.5], [1, 1], [0, 1.0]])}, "convex"),
+        ({"centre": [1.5, 0.5, 1.0]}, "would fall over by itself"),
+        ({"centre": [0.5, 0.5, -1.0]}, "height of the centre"),
+        ({"centre": [0.5, math.nan, 1.0]}, "finite"),
+        ({"inertia": np.diag([1.0, 1.0, 3.0])}, "principal moments"),
+        ({"inertia": np.ones((3, 3))}, "principal moments"),
+        ({"mass": 0.0}, "mass must be > 0"),
+        ({"base": -1.0}, "radius"),
+    ],
+)
+def test_what_is_no_body_is_refused(changes, words):
+    """Polygons, centres, inertias and masses that no body has: each refused in words that name the cause."""
+    given = {"mass": 2.0, "centre": [0.5, 0.5, 1.0], "inertia": np.eye(3), "base": SQUARE}
+    SpatialBody(**given)
+    with pytest.raises(RockingError, match=words):
+        SpatialBody(**(given | changes))
+
+
+def test_any_object_with_the_four_attributes_serves():
+    """A body given by attributes, its base at another height or a circle off the origin, is moved into place."""
+
+    class Base:
+        radius, centre, height = 0.5, np.array([3.0, 1.0]), 2.0
+
+    class Body:
+        mass, inertia, base = 5.0, np.eye(3), Base()
+        centre = np.array([3.1, 1.0, 3.0])
+
+    made = SpatialBody.of(Body())
+    np.testing.assert_allclose(made.centre, [0.1, 0.0, 1.0], atol=1e-15)
+    assert made.round
+    assert made.reach == pytest.approx(0.4)
+    with pytest.raises(InvalidValueError, match="without"):
+        SpatialBody.of(rk.Block(width=1.0, height=2.0))
+
+
+def test_the_ground_bears_a_body_at_rest_by_the_lever_rule():
+    """Off the middle the edge bears (L - s) / L and s / L of the weight; outside the base a face is refused."""
+    body = SpatialBody(3.0, np.array([0.5, 0.2, 1.0]), np.eye(3), SQUARE)
+    field = np.array([0.0, 0.0, -10.0])
+    # tilted until the centre is over the edge x = 1, which runs from (1, 0) to (1, 1): static, so nothing turns
+    turned = attitude.matrix(attitude.turn([0.0, 1.0, 0.0], math.atan2(0.5, 1.0)))
+    rate, push = forces(body, edge(body, 1), np.zeros(3), turned[2], turned.T @ field)
+    np.testing.assert_allclose(rate, 0.0, atol=1e-14)
+    np.testing.assert_allclose(push, [0.8 * 30.0, 0.2 * 30.0], rtol=1e-12)
+    level = forces(body, face(body), np.zeros(3), UP, field)[1]
+    assert level.min() > 0.0
+    assert forces(body, face(body), np.zeros(3), UP, field + np.array([2.1, 0.0, 0.0]))[1].min() > 0.0
+    assert forces(body, face(body), np.zeros(3), UP, field + np.array([0.0, -2.1, 0.0]))[1].min() < 0.0
+
+
+def test_components_with_different_steps_are_one_motion():
+    """Records of 0.02 and 0.03 s and a pulse, merged: the values of each at any time to 1e-12, zero after its end."""
+    x = rk.GroundMotion(np.sin(np.arange(50) * 0.3), 0.02)
+    y = rk.GroundMotion(np.cos(np.arange(20) * 0.7), 0.03)
+    pulse = rk.pulses.sine(amplitude=2.0, period=0.5)
+    ground = ground_of(x, y, pulse, scale=2.0)
+    time = np.linspace(0.001, 0.9, 200)
+    found = ground.at(time)
+    np.testing.assert_allclose(found[:, 0], 2.0 * np.interp(time, x.time, x.acceleration), atol=1e-12)
+    inside = time < 0.57
+    np.testing.assert_allclose(found[inside, 1], 2.0 * np.interp(time[inside], y.time, y.acceleration), atol=1e-12)
+    assert not found[~inside, 1].any()
+    np.testing.assert_allclose(found[:, 2], 2.0 * pulse.acceleration(time), atol=1e-10)
+    with pytest.raises(InvalidValueError, match="vertical part of its own"):
+        ground_of(rk.GroundMotion(x.acceleration, 0.02, x.acceleration))
+    with pytest.raises(InvalidValueError, match="GroundMotion"):
+        ground_of([1.0, 2.0])
+
+
+def test_laws_by_name_by_number_and_by_interface():
+    """Names, coefficients and objects are laws; others are refused with what there is."""
+    assert law_of("housner-3d").label == "housner-3d"
+    assert isinstance(law_of(0.9), FixedSpatial)
+    with pytest.raises(UnknownModelError, match="horizontal-momentum-3d"):
+        law_of("housner")
+    for bad in (1.2, -0.1, math.nan, None, FixedSpatial):
+        with pytest.raises(InvalidValueError):
+            law_of(bad)
+
+
+@pytest.mark.parametrize("bad", [{"order": 1}, {"tolerance": 0.0}, {"rest_speed": 1.0}, {"most_events": True}])
+def test_settings_out_of_range_are_refused(bad):
+    """Each setting has a range, and says so."""
+    with pytest.raises(InvalidValueError, match="must be"):
+        SpatialSettings(**bad)

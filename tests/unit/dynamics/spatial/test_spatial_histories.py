@@ -1,0 +1,130 @@
+"""Histories in space: laws, doors, outcomes, exports."""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.spatial import Contact, SpatialBody, SpatialStatus, free_rocking_spatial, simulate_spatial
+from rocking.dynamics.spatial.impact import HousnerSpatial
+from rocking.errors import InvalidValueError
+
+BOX = SpatialBody.box(1.0, 1.2, 4.0, density=2000.0)
+ALPHA = math.atan(0.25)
+
+
+def test_a_coefficient_is_that_of_the_plane():
+    """With r = 0.9 impacts come at the times of the plane engine with r = 0.9, to 1e-10."""
+    plane = rk.free_rocking(rk.Block(width=1.0, height=4.0), 0.4 * ALPHA, 0.9, engine="reference")
+    space = free_rocking_spatial(BOX, 0.4 * ALPHA, restitution=0.9, duration=6.0)
+    np.testing.assert_allclose(space.impacts["time"][:8], plane.impacts["time"][:8], atol=1e-10)
+    left = space.impacts["energy_after"][:8] / space.impacts["energy_before"][:8]
+    np.testing.assert_allclose(left, 0.81, rtol=1e-12)
+
+
+def test_a_law_of_ones_own_serves():
+    """An object with velocity_after and label: half of the projection leaves a quarter of its energy."""
+
+    class Half:
+        label = "half"
+
+        def velocity_after(self, *args):
+            return 0.5 * HousnerSpatial().velocity_after(*args)
+
+    whole = free_rocking_spatial(BOX, 0.1, 0.5, duration=1.0).impacts[0]
+    half = free_rocking_spatial(BOX, 0.1, 0.5, Half(), duration=1.0).impacts[0]
+    assert half["energy_after"] == pytest.approx(0.25 * whole["energy_after"], rel=1e-12)
+
+
+def test_a_body_that_is_pushed_over_says_where_and_over_what():
+    """A strong pulse along y: overturned towards -y over the edge y = -0.6, number 0-1, at the time of the plane."""
+    pulse = rk.pulses.half_sine(amplitude=8.0, period=1.2)
+    run = simulate_spatial(BOX, y=pulse)
+    plane = rk.simulate(rk.Block(width=1.2, height=4.0), pulse, "housner", engine="reference")
+    assert run.outcome is Outcome.OVERTURNED
+    assert run.overturning_direction == pytest.approx(-0.5 * math.pi, abs=1e-12)
+    assert run.overturned_over == "edge 0-1"
+    assert run.overturning_time == pytest.approx(plane.overturning_time, abs=1e-8)
+    assert "towards -90 degrees over edge 0-1" in run.summary
+
+
+def test_a_body_that_rests_stays_where_it_is():
+    """Under a weak pulse: no uplift, no events, no energy; a body let go upright rests."""
+    for run in (
+        simulate_spatial(BOX, rk.pulses.sine(amplitude=1.0, period=0.5)),
+        free_rocking_spatial(BOX, duration=1.0),
+    ):
+        assert run.outcome is Outcome.NO_UPLIFT
+        assert run.intervals == [(0.0, run.end, Contact.REST, (0, 1, 2, 3))]
+        assert not run.energy.kinetic.any()
+        assert not run.tilt.any()
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"tilt": -0.1},
+        {"tilt": 2.0},
+        {"azimuth": math.nan},
+        {"angular_velocity": (1.0, 2.0)},
+        {"angular_velocity": (math.inf, 0.0, 0.0)},
+        {"gravity": 0.0},
+        {"duration": -1.0},
+        {"tolerance": 1.0},
+        {"colour": "red"},
+    ],
+)
+def test_bad_input_is_refused_at_the_door(bad):
+    """Every argument outside its range is an InvalidValueError, never a number."""
+    with pytest.raises(InvalidValueError):
+        free_rocking_spatial(BOX, **bad)
+
+
+def test_a_motion_is_needed():
+    """No component at all is refused with the name of the function that does without."""
+    with pytest.raises(InvalidValueError, match="free_rocking_spatial"):
+        simulate_spatial(BOX)
+
+
+def test_too_many_events_is_a_status():
+    """A limit on events stops a history without a result."""
+    run = free_rocking_spatial(BOX, 0.1, 0.4, most_events=3)
+    assert (run.outcome, run.status) == (Outcome.FAILED, SpatialStatus.TOO_MANY_EVENTS)
+    assert math.isnan(run.peak_tilt)
+
+
+def test_a_sticking_corner_that_would_need_a_pull_is_counted():
+    """On an edge with a spin about the vertical the struck corner must be held: the impact shows the pull."""
+    run = free_rocking_spatial(BOX, 0.1, 0.0, angular_velocity=(0.0, 0.0, 0.2), duration=1.0)
+    assert run.impacts["pull"].max() > 0.0
+    assert "slipped" in run.summary
+    assert run.energy.closure < 1e-9
+
+
+def test_times_outside_are_refused():
+    """States are known from the start to the end, and nowhere else."""
+    run = free_rocking_spatial(BOX, 0.1, duration=1.0)
+    with pytest.raises(InvalidValueError, match="where the response is known"):
+        run.at([0.5, 9.0])
+    np.testing.assert_allclose(np.linalg.norm(run.quaternion, axis=1), 1.0, atol=1e-15)
+
+
+def test_files_hold_the_samples_with_units(tmp_path):
+    """CSV to the last digit; netCDF with units, provenance and impacts."""
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    run = free_rocking_spatial(BOX, 0.1, 0.7, duration=1.5)
+    with run.to_csv(tmp_path / "run.csv").open(encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    column = rows[0].index("tilt [rad]")
+    assert [float(row[column]) for row in rows[1:]] == run.tilt.tolist()
+    with xarray.open_dataset(run.to_netcdf(tmp_path / "run.nc"), engine="h5netcdf") as data:
+        np.testing.assert_array_equal(data["tilt"], run.tilt)
+        assert data["kinetic_energy"].attrs["units"] == "J"
+        assert data.attrs["restitution"] == "housner-3d"
+        assert data["impact_vertices"].values.tolist() == run.impacts["vertices"].tolist()
+    with pytest.raises(InvalidValueError, match="path"):
+        run.to_csv(tmp_path / "nowhere" / "run.csv")
