@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     )
     from rocking.dynamics.bed import ContactBed, bed_impact
     from rocking.dynamics.planar import PlanarResponse, simulate_with_contact
+    from rocking.dynamics.spatial import SpatialBody, SpatialResponse, free_rocking_spatial, simulate_spatial
     from rocking.motions import GroundMotion, pulses, synthetic
     from rocking.motions.formats import read_motion
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
@@ -47,6 +48,8 @@ __all__ = [
     "Section",
     "Side",
     "Solid",
+    "SpatialBody",
+    "SpatialResponse",
     "SpeedRestitution",
     "bed_impact",
     "bodies",
@@ -57,6 +60,7 @@ __all__ = [
     "errors",
     "evidence",
     "free_rocking",
+    "free_rocking_spatial",
     "impact_in_space",
     "minimum_overturning_acceleration",
     "motions",
@@ -71,6 +75,7 @@ __all__ = [
     "shapes",
     "simulate",
     "simulate_many",
+    "simulate_spatial",
     "simulate_with_contact",
     "solid",
     "studies",
@@ -94,11 +99,14 @@ _HOME = {
     "Section": "rocking.bodies",
     "Side": "rocking.bodies",
     "Solid": "rocking.bodies.solid",
+    "SpatialBody": "rocking.dynamics.spatial",
+    "SpatialResponse": "rocking.dynamics.spatial",
     "SpeedRestitution": "rocking.dynamics",
     "bed_impact": "rocking.dynamics.bed",
     "coefficient_of_restitution": "rocking.restitution",
     "edge_coefficient": "rocking.restitution.spatial",
     "free_rocking": "rocking.dynamics",
+    "free_rocking_spatial": "rocking.dynamics.spatial",
     "impact_in_space": "rocking.restitution.spatial",
     "minimum_overturning_acceleration": "rocking.studies",
     "overturning_map": "rocking.studies",
@@ -109,6 +117,7 @@ _HOME = {
     "shapes": "rocking.bodies",
     "simulate": "rocking.dynamics",
     "simulate_many": "rocking.dynamics",
+    "simulate_spatial": "rocking.dynamics.spatial",
     "simulate_with_contact": "rocking.dynamics.planar",
     "solid": "rocking.bodies",
     "synthetic": "rocking.motions",

@@ -230,6 +230,45 @@ def test_slow_head_is_given_up(impatient: Target, monkeypatch: pytest.MonkeyPatc
     assert trickled(impatient) >= 2.5
 
 
+def test_the_head_of_a_later_request_is_timed_too(impatient: Target) -> None:
+    """After an answered request, half a head is given up in time, also while letters of it go on to arrive."""
+    with socket.create_connection(("127.0.0.1", impatient.port), timeout=5) as line:
+        line.sendall(b"GET /api/session HTTP/1.1\r\n" + impatient.head + b"\r\n")
+        assert line.recv(1 << 16).startswith(b"HTTP/1.1 200")
+        line.sendall(b"GET / HTTP/1.1\r\nX: ")
+        line.settimeout(0.05)
+        assert ended_within(line, 2.5)
+
+
+def ended_within(line: socket.socket, seconds: float) -> bool:
+    start = time.perf_counter()
+    while time.perf_counter() - start < seconds:
+        try:
+            line.sendall(b"a")
+            if not line.recv(1 << 16):
+                return True
+        except TimeoutError:
+            continue
+        except ConnectionError:
+            return True
+    return False
+
+
+def test_a_live_websocket_outlasts_the_patience(impatient: Target) -> None:
+    """What has become a websocket is no unfinished head: it answers a ping long after the patience for heads."""
+    key = b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n"
+    with socket.create_connection(("127.0.0.1", impatient.port), timeout=5) as line:
+        line.sendall(UPGRADE + impatient.head + key)
+        assert line.recv(1 << 16).startswith(b"HTTP/1.1 101")
+        time.sleep(2.0)
+        line.sendall(b"\x89\x80\x00\x00\x00\x00")
+        came = b""
+        while b"\x8a\x00" not in came:
+            piece = line.recv(1 << 16)
+            assert piece, "the websocket was cut"
+            came += piece
+
+
 def test_patience_ends_with_the_first_request(impatient: Target) -> None:
     """A connection that has asked something stays open for the next request."""
     with socket.create_connection(("127.0.0.1", impatient.port), timeout=5) as line:

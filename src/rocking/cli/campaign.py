@@ -58,7 +58,7 @@ def run(
     from rocking.cli import campaign_output as output
     from rocking.studies.job import Job, JobFolder
 
-    with output.codes():
+    with output.codes(out):
         who = output.executor_of(executor, workers, address)
         output.compute(JobFolder.create(out, Job.read(job)), who, as_json)
 
@@ -76,7 +76,7 @@ def resume(
     from rocking.cli import campaign_output as output
     from rocking.studies.job import JobFolder
 
-    with output.codes():
+    with output.codes(folder):
         who = output.executor_of(executor, workers, address)
         output.compute(JobFolder.open(folder, inputs), who, as_json)
 
@@ -86,7 +86,7 @@ def status(folder: Folder, as_json: AsJson = False) -> None:
     """Say how far a campaign is, also while another process runs it."""
     from rocking.cli import campaign_output as output
 
-    with output.codes():
+    with output.codes(folder):
         output.show_status(folder, as_json)
 
 
@@ -121,5 +121,5 @@ def export(
     from rocking.cli import campaign_output as output
     from rocking.cli.campaign_export import write
 
-    with output.codes():
+    with output.codes(folder):
         write(folder, to, what, restitution=restitution, crossing=crossing, inputs=inputs, as_json=as_json)

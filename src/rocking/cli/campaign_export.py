@@ -2,17 +2,22 @@
 
 import hashlib
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from rocking.cli.campaign_output import bar
-from rocking.errors import InvalidValueError
-from rocking.studies.campaign import Progress
-from rocking.studies.job import JobFolder, assessment, export, exports_of, status_of
+from rocking.errors import InvalidValueError, RockingError
+from rocking.studies.campaign import CampaignStorageError, Progress, disk
+from rocking.studies.job import JobFolder, assessment, export, exports_of
 from rocking.studies.job.exporting import write_provenance
+from rocking.studies.job.round_status import finished_rounds
 
 REPORT = "report"
 """The ranked table of an inventory with its lights."""
+
+_SAFE = "the campaign itself is safe"
 
 
 def write(
@@ -53,16 +58,27 @@ def write(
         paths, left_out = _report(opened, to)
     else:
         paths = [_file(opened, to, what, restitution, crossing, quiet=as_json)]
-    status = status_of(folder).status
-    total = opened.campaign.plan.count if status is None else status.histories  # of all rounds
-    facts = [_facts(path, what, total) for path in paths]
+    rounds = finished_rounds(folder)
+    # tables of an adaptive study are made from all its rounds, its histories are those of the first
+    of_all = rounds is not None and what != "histories"
+    total = rounds["histories"] if rounds is not None and of_all else opened.campaign.plan.count
+    more = {} if rounds is None else {"rounds": rounds["rounds"], "all_histories": rounds["histories"]}
+    facts = [_facts(path, what, total) | more for path in paths]
     if as_json:
         print(json.dumps(facts[0] if len(facts) == 1 else facts, indent=1))
         return
     for told in facts:
-        print(f"wrote {told['file']} ({told['bytes']} bytes, {what} of {total} histories)")
+        print(f"wrote {told['file']} ({told['bytes']} bytes, {_words(what, told)})")
     for sentence in left_out:
         print(f"left out: {sentence}")
+
+
+def _words(what: str, told: dict[str, Any]) -> str:
+    if "rounds" not in told:
+        return f"{what} of {told['histories']} histories"
+    if what == "histories":
+        return f"{told['histories']} histories of the first round, of {told['all_histories']} in all rounds"
+    return f"{what} of {told['histories']} histories in {told['rounds']} rounds"
 
 
 def _file(
@@ -86,16 +102,38 @@ def _file(
 
 def _report(folder: JobFolder, to: Path) -> tuple[list[Path], list[str]]:
     """Write the report of an inventory: in one form, or into a folder in all."""
-    from rocking.report.inventory_folder import write_inventory, write_inventory_file
+    from rocking.report.inventory_folder import STEM, check_form, write_inventory, write_inventory_file
 
     found = assessment(folder)
-    if to.suffix:
-        path = write_inventory_file(found, to)
-        write_provenance(folder.job.provenance, path)
-        return [path], []
-    written, left_out = write_inventory(found, to)
-    write_provenance(folder.job.provenance, to / written[0].stem)
-    return written, left_out
+    with _stored(to):
+        if not to.suffix:
+            to.mkdir(parents=True, exist_ok=True)
+            write_provenance(folder.job.provenance, to / STEM)
+            return write_inventory(found, to)
+        check_form(to)
+        if not to.parent.is_dir():
+            raise InvalidValueError(f"cannot write {to}: there is no folder {to.parent}")
+        # before the report: no report is ever there without it
+        beside = write_provenance(folder.job.provenance, to)
+        try:
+            return [write_inventory_file(found, to)], []
+        except BaseException:
+            if not to.exists():
+                beside.unlink(missing_ok=True)
+            raise
+
+
+@contextmanager
+def _stored(to: Path) -> Iterator[None]:
+    """Say that the disk, and not the campaign, is at fault."""
+    with disk.guarded(to, lambda: _SAFE):
+        try:
+            yield
+        except RockingError as error:
+            if not isinstance(error.__cause__, OSError):
+                raise
+            advice = "make room or allow writing, then export again"
+            raise CampaignStorageError(f"{error}; {_SAFE}; {advice}") from error
 
 
 def _facts(path: Path, what: str, total: int) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """What `rocking campaign` prints, shows while it computes, and exits with."""
 
 import json
+import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -19,14 +20,21 @@ from rocking.studies.campaign import (
     Progress,
 )
 from rocking.studies.job import Job, JobFolder, JobStatus, forecast, status_of
+from rocking.studies.job.folder import JOB
+from rocking.studies.job.round_status import resume
 
 INTERRUPTED, STORAGE, BUSY = 3, 4, 5
 """Exit codes beside 0 (done) and 2 (bad input)."""
 
 
 @contextmanager
-def codes() -> Iterator[None]:
+def codes(folder: Path | None = None) -> Iterator[None]:
     """Turn what stops a campaign into a sentence and its exit code; the rest passes.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        The campaign, if it is of one.
 
     Yields
     ------
@@ -46,7 +54,9 @@ def codes() -> Iterator[None]:
         code = next(code for kind, code in kinds if isinstance(error, kind))
         raise typer.Exit(code) from error
     except KeyboardInterrupt as error:
-        print("rocking: stopped; what was recorded before is safe", file=sys.stderr)
+        begun = folder is not None and (folder / JOB).exists()
+        safe = "what was recorded before is safe" if begun else "nothing was begun"
+        print(f"rocking: stopped; {safe}", file=sys.stderr)
         raise typer.Exit(INTERRUPTED) from error
 
 
@@ -117,7 +127,7 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
     for sentence in (*done.set_aside, *done.retries):
         print(f"note: {sentence}")
     target = "report.html" if folder.job.study.assess is not None else "result.nc"
-    print(f"next: rocking campaign export {folder.path} --to {target}")
+    print(f"next: rocking campaign export {shlex.quote(str(folder.path))} --to {target}")
 
 
 def show_status(folder: Path, as_json: bool) -> None:
@@ -166,8 +176,8 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         "kind": job.document.campaign.kind,
         "dimensions": dict(job.study.dims),
         "inputs": job.inputs,
-        **vars(found),
-        **({"first_round_only": True} if job.document.is_adaptive else {}),
+        **{name: value for name, value in vars(found).items() if name != "later"},
+        **({"first_round_only": True, "later": found.later} if job.document.is_adaptive else {}),
     }
     if as_json:
         print(json.dumps(told, indent=1))
@@ -175,12 +185,11 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         over = " x ".join(f"{size} {name}" for name, size in job.study.dims.items())
         print(f"{path}: {told['campaign']} ({told['kind']}), {len(job.inputs)} input files, no mistake found")
         print(f"  histories  {found.histories} = {over}, in {found.chunks} chunks of {found.chunk}")
-        if job.document.is_adaptive:
-            print(
-                "             in the first round, as are time, memory and disk; what it finds decides on later rounds"
-            )
+        if found.later is not None:
+            print("             in the first round, as are time and disk; what it finds decides on later rounds:")
+            print(f"             usually {found.later[0]} to {found.later[1]} more histories, with their time and disk")
         print(f"  time       about {_span(found.seconds)} with {workers} core(s): {found.rate:.0f} histories/s each")
-        print(f"  memory     about {found.memory / 1e6:.0f} MB")
+        print(f"  memory     about {found.memory / 1e6:.0f} MB{'' if found.later is None else ' in all rounds'}")
         free = "" if found.free is None else f", {found.free / 1e6:.0f} MB are free"
         print(f"  disk       {found.disk / 1e6:.1f} MB{free}")
     if found.free is not None and found.free < found.disk:
@@ -211,11 +220,11 @@ def _facts(found: JobStatus) -> dict[str, Any]:
 def _words(found: JobStatus) -> str:
     status, name, folder = found.status, found.name, found.path
     if status is None:
-        return f"{name}: nothing is computed yet; go on with: rocking campaign resume {folder}"
+        return f"{name}: nothing is computed yet; go on with: {resume(folder)}"
     if found.complete:
         many = "" if found.rounds is None else f"{found.rounds} rounds, "
         return f"{name}: all {status.histories} histories ({many}{status.chunks} chunks) are safe in {folder}"
-    now = f"{status.running} runs it" if status.running else f"go on with: rocking campaign resume {folder}"
+    now = f"{status.running} runs it" if status.running else f"go on with: {resume(folder)}"
     share = f"{status.histories_done} of {status.histories} histories ({status.chunks_done} of {status.chunks} chunks)"
     if found.rounds is not None:
         share = f"round {found.rounds} has begun, how many follow is not known; of these rounds {share}"

@@ -1,7 +1,8 @@
 """Who takes part in the league: every model as it is, and families with fitted parameters."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from rocking.restitution import (
     RestitutionModel,
     ShiftedImpulse,
 )
+from rocking.restitution.bed_table import HARDNESS, POINTS
+from rocking.restitution.contact_bed import ContactBedModel
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +123,54 @@ def family(
     return Contender(f"{prefix}{name}({parameter})", (("eta", parameter) if eta else (parameter,)), fit)
 
 
+def best_of(name: str, parameters: tuple[str, ...], members: Sequence[Contender]) -> Contender:
+    """Return a contender that is fitted as several families; the one with the least squares takes part.
+
+    Parameters
+    ----------
+    name : str
+        Name in the league.
+    parameters : tuple of str
+        Names of the fitted parameters, the choice between the families among them.
+    members : sequence of Contender
+        The families.
+
+    Returns
+    -------
+    Contender
+        The best of them, for the data at hand.
+    """
+
+    def fit(data: DataSet) -> RestitutionModel:
+        """Fit every family."""
+        fitted = [member.fit(data) for member in members]
+        return min(
+            fitted, key=lambda model: float(((model.of_slenderness(data.slenderness) - data.coefficient) ** 2).sum())
+        )
+
+    return Contender(name, parameters, fit)
+
+
+def contact_bed(*, eta: bool) -> Contender:
+    """Return the contact bed with its points and its hardness fitted, and an interface factor on request.
+
+    Parameters
+    ----------
+    eta : bool
+        Whether to fit an interface factor as well.
+
+    Returns
+    -------
+    Contender
+        The family; the damping ratio is the model's default.
+    """
+    members = [
+        family(ContactBedModel.name, "hardness", partial(_bed_of, points), HARDNESS, eta=eta) for points in POINTS
+    ]
+    prefix, first = ("eta*", ("eta",)) if eta else ("", ())
+    return best_of(f"{prefix}contact-bed(points, hardness)", (*first, "points", "hardness"), members)
+
+
 def contenders() -> list[Contender]:
     """Return everyone who takes part by default.
 
@@ -137,6 +188,7 @@ def contenders() -> list[Contender]:
         DistributedImpulse(q=1.0),
         DistributedImpulse(q=2.0),
         PlasticWinkler(),
+        ContactBedModel(),
     ]
     factored = [Housner(), Ked(), HorizontalMomentum(), PlasticWinkler()]
     shifted = ("shifted-impulse", "k", ShiftedImpulse, (0.0, 1.0))
@@ -148,7 +200,13 @@ def contenders() -> list[Contender]:
         *(with_interface(model) for model in factored),
         family(*shifted, eta=True),
         family(*distributed, eta=True),
+        contact_bed(eta=False),
+        contact_bed(eta=True),
     ]
+
+
+def _bed_of(points: int, hardness: float) -> RestitutionModel:
+    return ContactBedModel(points=points, hardness=hardness)
 
 
 def _best_eta(model: FloatArray, measured: FloatArray) -> float:

@@ -18,6 +18,7 @@ from rocking.plots.response import response_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 from rocking.plots.sensitivity import sensitivity_picture
 from rocking.plots.solid import energy_picture, slices_picture, solid_picture
+from rocking.plots.spatial import spatial_picture
 from rocking.plots.style import save, write
 
 __all__ = [
@@ -52,5 +53,6 @@ __all__ = [
     "sensitivity_picture",
     "slices_picture",
     "solid_picture",
+    "spatial_picture",
     "write",
 ]

@@ -4,9 +4,11 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from rocking.evidence.calibration import Calibration
+from rocking.evidence.explanation import explanation
 from rocking.evidence.league import LeagueRow
 from rocking.plots.figure_1 import figure_1
 from rocking.plots.figure_2 import figure_2
+from rocking.plots.laboratory import bed_dependence_figure, explanations_figure, residuals_figure
 from rocking.plots.overview import calibration_figure, league_figure, models_and_measurements
 from rocking.plots.paper_figures import figure_3, figure_5, figure_6, figure_7, figure_8, figure_9
 
@@ -44,4 +46,7 @@ def paper_figures() -> dict[str, Draw]:
         "league": lambda league, fit: league_figure(league),
         "models_and_measurements": lambda league, fit: models_and_measurements(fit),
         "calibration": lambda league, fit: calibration_figure(fit),
+        "bed_dependence": lambda league, fit: bed_dependence_figure(),
+        "explanations": lambda league, fit: explanations_figure(explanation()),
+        "explanation_residuals": lambda league, fit: residuals_figure(explanation()),
     }

@@ -27,6 +27,7 @@ MODEL_STYLE: dict[str, dict[str, Any]] = {
     "shifted-impulse": {"color": "#CC79A7", "linestyle": ":", "label": "shifted impulse, k = 2/3"},
     "distributed-impulse": {"color": "#56B4E9", "linestyle": (0, (5, 1, 1, 1, 1, 1)), "label": "distributed, q = 1"},
     "plastic-winkler": {"color": "#E69F00", "linestyle": (0, (6, 2)), "label": "plastic Winkler"},
+    "contact-bed": {"color": "#8C6BB1", "linestyle": (0, (4, 2)), "label": "contact bed"},
 }
 """Okabe and Ito's colours, each with its own line so that grey print keeps them apart."""
 

@@ -31,7 +31,7 @@ def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], l
     Returns
     -------
     written : list of Path
-        The files.
+        The files, each of which is there as a whole or not at all.
     left_out : list of str
         What could not be written and how to get it, one sentence each.
 
@@ -46,14 +46,11 @@ def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], l
         raise RockingError(f"cannot write to {folder}: {error.strerror}") from error
     written: list[Path] = []
     left_out: list[str] = []
-    for suffix, write in _WRITERS.items():
-        path = folder / f"{STEM}.{suffix}"
+    for suffix in _WRITERS:
         try:
-            write(assessment, path)
+            written.append(_write_whole(assessment, folder / f"{STEM}.{suffix}"))
         except MissingExtraError as error:
             left_out.append(str(error))
-        else:
-            written.append(path)
     return written, left_out
 
 
@@ -79,16 +76,39 @@ def write_inventory_file(assessment: Assessment, path: Path) -> Path:
     RockingError
         If the file cannot be written.
     """
-    write = _WRITERS.get(path.suffix.lower().removeprefix("."))
-    if write is None:
+    check_form(path)
+    return _write_whole(assessment, path)
+
+
+def check_form(path: Path) -> None:
+    """Refuse the name of a file in whose form no inventory can be written.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such form.
+    """
+    if _form(path) not in _WRITERS:
         forms = ", ".join(f".{suffix}" for suffix in _WRITERS)
         raise InvalidValueError(f"an inventory can be written as {forms}, got {path.suffix!r:.40}")
+
+
+def _form(path: Path) -> str:
+    return path.suffix.lower().removeprefix(".")
+
+
+def _write_whole(assessment: Assessment, path: Path) -> Path:
     unfinished = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
-        write(assessment, unfinished)
+        _WRITERS[_form(path)](assessment, unfinished)
         unfinished.replace(path)
     except OSError as error:
-        raise RockingError(f"cannot write {path}: {error.strerror}") from error
+        raise RockingError(f"cannot write {path}: {error.strerror or error}") from error
     finally:
         unfinished.unlink(missing_ok=True)
     return path

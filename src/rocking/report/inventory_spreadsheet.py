@@ -1,5 +1,6 @@
 """The ranked table of an inventory as a spreadsheet."""
 
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +43,9 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
         facts.append(["not read", f"columns of the list: {', '.join(assessment.ignored)}"])
     _fill(about, [*lights, *facts, *(["not covered", each] for each in LIMITS)])
     about.column_dimensions["A"].width, about.column_dimensions["B"].width = 14, 110
-    book.save(path)
+    whole = BytesIO()  # a workbook that a full disk cuts off complains for long after it was closed
+    book.save(whole)
+    path.write_bytes(whole.getvalue())
 
 
 def _openpyxl() -> Any:

@@ -3,11 +3,13 @@
 from collections.abc import Sequence
 
 from rocking.evidence.claims import FAILS, HOLDS, IN_PART, Claim
+from rocking.evidence.explanation import explanation
 from rocking.evidence.league import LeagueRow
 from rocking.evidence.measurements import BANDS, GROUPS
 from rocking.evidence.tables import Entry, TableRow
 from rocking.report.document import Cell, Document, Paragraph, Picture, Section, Table, cell
 from rocking.report.error_tables import error_blocks
+from rocking.report.explanation_blocks import explanation_blocks
 from rocking.report.provenance import made_with
 from rocking.report.reproduction import Reproduction
 
@@ -64,6 +66,7 @@ def paper_document(result: Reproduction) -> Document:
             Section("Verdict", [Paragraph(sentence) for sentence in result.verdict]),
             Section("Claims", _claims(result.claims)),
             Section("League table", _league(result)),
+            Section("What explains the measurements", explanation_blocks(explanation())),
             Section("Calibrated default", _calibration(result)),
             Section("Tables", [_paper_table(title, rows) for title, rows in result.tables.items()]),
             Section("Figures", [Paragraph(NO_FIGURE_4), *(Picture(*figure) for figure in FIGURES)]),

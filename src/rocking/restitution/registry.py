@@ -16,6 +16,7 @@ _MODELS: dict[str, type[RestitutionModel] | tuple[str, str]] = {
     "shifted-impulse": ("rocking.restitution.shifted_impulse", "ShiftedImpulse"),
     "distributed-impulse": ("rocking.restitution.distributed_impulse", "DistributedImpulse"),
     "plastic-winkler": ("rocking.restitution.plastic_winkler", "PlasticWinkler"),
+    "contact-bed": ("rocking.restitution.contact_bed", "ContactBedModel"),
     "fixed": ("rocking.restitution.fixed", "Fixed"),
 }
 
@@ -32,7 +33,7 @@ def models() -> dict[str, type[RestitutionModel]]:
     --------
     >>> import rocking as rk
     >>> sorted(rk.restitution.models())[:3]
-    ['distributed-impulse', 'fixed', 'horizontal-momentum']
+    ['contact-bed', 'distributed-impulse', 'fixed']
     """
     return {name: _kind(name) for name in _MODELS}
 

@@ -14,7 +14,7 @@ from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.studies.axis import Axis
 from rocking.studies.contours import chains, crossed_edges, edge_numbers, segments
-from rocking.studies.lattice import Lattice, verdicts
+from rocking.studies.lattice import Lattice, absent, merged, verdicts
 from rocking.studies.plane import Plane
 from rocking.studies.question import FAILED
 
@@ -224,19 +224,19 @@ def _followed(lattice: Lattice, inside: Inside, seeds: tuple[IntArray, IntArray]
     """Return all finest cells that the boundary passes, also those that refinement alone would not have reached."""
     i, j = seeds
     known, seen = np.empty(0, np.int64), np.empty(0, np.int64)
-    new = np.unique(j * lattice.columns + i)
+    new = absent(j * lattice.columns + i, seen)
     while new.size:
         i, j = new % lattice.columns, new // lattice.columns
         corners = lattice.corners(i, j, 1)
         good = (corners != FAILED).all(axis=1)
         i, j, crossed = i[good], j[good], crossed_edges(inside(corners[good]))
-        seen = np.union1d(seen, new)
+        seen = merged(seen, new)
         passed = crossed.any(axis=1)
         i, j, crossed = i[passed], j[passed], crossed[passed]
-        known = np.union1d(known, j * lattice.columns + i)
+        known = merged(known, j * lattice.columns + i)
         steps = ((0, -1), (1, 0), (0, 1), (-1, 0))  # below, right, above, left
         beside = [_cells(lattice, i[crossed[:, k]] + a, j[crossed[:, k]] + b) for k, (a, b) in enumerate(steps)]
-        new = np.setdiff1d(np.concatenate(beside), seen)
+        new = absent(np.concatenate(beside), seen)
     return known % lattice.columns, known // lattice.columns
 
 

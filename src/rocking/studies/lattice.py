@@ -15,6 +15,9 @@ MOST_LEVELS = 12
 
 Label = Callable[[IntArray], Any]
 
+# cells whose corners are looked at together: what is looked at takes many times the room of what is known
+_PIECE = 1 << 17
+
 
 class Lattice:
     """Points between the values of two axes, numbered in steps of the finest level, and what is known of them.
@@ -68,26 +71,26 @@ class Lattice:
         above = np.minimum(whole + 1, axis.values.size - 1)
         return np.asarray(axis.values[whole] + part * (axis.values[above] - axis.values[whole]))
 
-    def base(self) -> tuple[IntArray, IntArray]:
-        """Return the columns and rows of the axes' own values, those of x varying fastest.
+    def base(self) -> IntArray:
+        """Return the numbers of the axes' own values, increasing: those of x vary fastest.
 
         Returns
         -------
-        i, j : ndarray of int
-            One entry a point.
+        ndarray of int
+            Row times the number of columns, plus column.
         """
-        i, j = np.meshgrid(np.arange(0, self.columns, self.step), np.arange(0, self.rows, self.step))
-        return i.ravel(), j.ravel()
+        i, j = np.arange(0, self.columns, self.step), np.arange(0, self.rows, self.step)
+        return np.asarray((j[:, None] * self.columns + i).ravel())
 
-    def compute(self, i: IntArray, j: IntArray) -> None:
+    def compute(self, keys: IntArray) -> None:
         """Compute those of some points that are not known, in one batch.
 
         Parameters
         ----------
-        i, j : ndarray of int
-            Columns and rows.
+        keys : ndarray of int
+            Their numbers: row times the number of columns, plus column.
         """
-        new = np.setdiff1d(j * self.columns + i, self.keys)
+        new = absent(keys, self.keys)
         if not new.size:
             return
         found, _ = self.plane.answers(
@@ -101,16 +104,19 @@ class Lattice:
         Parameters
         ----------
         keys : ndarray of int
-            Their numbers: row times the number of columns, plus column.
+            Their numbers, increasing; none of them is known yet.
         modes : ndarray of int
             Their modes.
         peaks : ndarray
             Their relative peaks [-].
         """
-        keys, modes = np.concatenate([self.keys, keys]), np.concatenate([self.modes, modes])
-        peaks = np.concatenate([self.peaks, peaks])
-        order = np.argsort(keys, kind="stable")
-        self.keys, self.modes, self.peaks = keys[order], modes[order], peaks[order]
+        if not self.keys.size:
+            self.keys, self.modes, self.peaks = keys, modes, peaks
+            return
+        places = np.searchsorted(self.keys, keys)
+        self.keys = np.insert(self.keys, places, keys)
+        self.modes = np.insert(self.modes, places, modes)
+        self.peaks = np.insert(self.peaks, places, peaks)
 
     def modes_at(self, i: IntArray, j: IntArray) -> IntArray:
         """Return the modes of points, computing those that are not known.
@@ -125,8 +131,9 @@ class Lattice:
         ndarray of int
             Modes, of the same shape.
         """
-        self.compute(i.ravel(), j.ravel())
-        return np.asarray(self.modes[np.searchsorted(self.keys, j * self.columns + i)])
+        keys = j * self.columns + i
+        self.compute(keys.ravel())
+        return np.asarray(self.modes[np.searchsorted(self.keys, keys)])
 
     def corners(self, i: IntArray, j: IntArray, step: int) -> IntArray:
         """Return the modes at the corners of cells.
@@ -143,8 +150,7 @@ class Lattice:
         ndarray of int, shape (cells, 4)
             Lower left, lower right, upper right, upper left.
         """
-        across, up = np.array([0, step, step, 0]), np.array([0, 0, step, step])
-        return self.modes_at(i[:, None] + across, j[:, None] + up)
+        return self.modes_at(*_corners(i, j, step))
 
     def finest(self, label: Label) -> tuple[IntArray, IntArray]:
         """Subdivide cells whose corners differ, level by level, and return those of the last level that differ.
@@ -159,18 +165,91 @@ class Lattice:
         i, j : ndarray of int
             Columns and rows of the lower left corners.
         """
-        self.compute(*self.base())
-        cells = np.meshgrid(np.arange(0, self.columns - 1, self.step), np.arange(0, self.rows - 1, self.step))
-        i, j = cells[0].ravel(), cells[1].ravel()
-        for level in range(self.levels + 1):
-            step = self.step >> level
-            mixed = differing(label(self.corners(i, j, step)))
-            i, j = i[mixed], j[mixed]
-            if level < self.levels:
-                half = step // 2
-                i = (i[:, None] + np.array([0, half, 0, half])).ravel()
-                j = (j[:, None] + np.array([0, 0, half, half])).ravel()
+        self.compute(self.base())
+        i, j = self._differing_base(label)
+        for level in range(1, self.levels + 1):
+            half = self.step >> level
+            i = (i[:, None] + np.array([0, half, 0, half])).ravel()
+            j = (j[:, None] + np.array([0, 0, half, half])).ravel()
+            self._compute_corners(i, j, half)
+            parts = (slice(first, first + _PIECE) for first in range(0, i.size, _PIECE))
+            mixed = [differing(label(self.corners(i[part], j[part], half))) for part in parts]
+            kept = np.concatenate([np.empty(0, np.bool_), *mixed])
+            i, j = i[kept], j[kept]
         return i, j
+
+    def _differing_base(self, label: Label) -> tuple[IntArray, IntArray]:
+        """Return the cells between the axes' own values whose corners differ."""
+        across, up = self.plane.x.values.size - 1, self.plane.y.values.size - 1
+        found = [(np.empty(0, np.int64), np.empty(0, np.int64))]
+        for first in range(0, across * up, _PIECE):
+            j, i = np.divmod(np.arange(first, min(first + _PIECE, across * up)), across)
+            mixed = differing(label(self.corners(i * self.step, j * self.step, self.step)))
+            found.append((i[mixed] * self.step, j[mixed] * self.step))
+        columns, rows = zip(*found, strict=True)
+        return np.concatenate(columns), np.concatenate(rows)
+
+    def _compute_corners(self, i: IntArray, j: IntArray, step: int) -> None:
+        """Compute the corners of cells that are not known, in one batch."""
+        new = [np.empty(0, np.int64)]
+        for first in range(0, i.size, _PIECE):
+            columns, rows = _corners(i[first : first + _PIECE], j[first : first + _PIECE], step)
+            new.append(absent((rows * self.columns + columns).ravel(), self.keys))
+        self.compute(np.concatenate(new))
+
+
+def absent(keys: IntArray, known: IntArray) -> IntArray:
+    """Return those of some numbers that are not among others: `numpy.setdiff1d` where the others are sorted already.
+
+    Parameters
+    ----------
+    keys : ndarray of int
+        The numbers, in any order, and more than once.
+    known : ndarray of int
+        The others, increasing.
+
+    Returns
+    -------
+    ndarray of int
+        Increasing, each once.
+
+    Examples
+    --------
+    >>> absent(np.array([7, 3, 5, 3, 9]), np.array([1, 5, 7])).tolist()
+    [3, 9]
+    """
+    if known.size:
+        places = np.searchsorted(known, keys)
+        keys = keys[known[np.minimum(places, known.size - 1)] != keys]
+    keys = np.sort(keys)
+    return keys[np.append(True, keys[1:] != keys[:-1])] if keys.size else keys
+
+
+def merged(known: IntArray, new: IntArray) -> IntArray:
+    """Return two sets of numbers as one.
+
+    Parameters
+    ----------
+    known, new : ndarray of int
+        Each increasing; none is in both.
+
+    Returns
+    -------
+    ndarray of int
+        Increasing.
+
+    Examples
+    --------
+    >>> merged(np.array([1, 5, 7]), np.array([3, 9])).tolist()
+    [1, 3, 5, 7, 9]
+    """
+    return np.insert(known, np.searchsorted(known, new), new)
+
+
+def _corners(i: IntArray, j: IntArray, step: int) -> tuple[IntArray, IntArray]:
+    """Return columns and rows of the corners of cells: lower left, lower right, upper right, upper left."""
+    across, up = np.array([0, step, step, 0]), np.array([0, 0, step, step])
+    return i[:, None] + across, j[:, None] + up
 
 
 def differing(labels: Any) -> BoolArray:

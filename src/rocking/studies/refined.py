@@ -14,6 +14,8 @@ from rocking.studies.axis import Axis
 from rocking.studies.lattice import Lattice
 from rocking.studies.plane import Plane
 
+_PIECE = 1 << 17
+
 
 @dataclass(frozen=True, eq=False)
 class Refined:
@@ -83,17 +85,26 @@ def refine(lattice: Lattice, modes: IntArray, peaks: Any = None) -> tuple[Refine
     cells : tuple of ndarray of int
         Columns and rows of the finest cells whose corners differ: where `rocking.studies.boundary.outlines` begins.
     """
-    i, j = lattice.base()
-    first = j * lattice.columns + i
+    first = lattice.base()
     known = np.full(first.size, np.nan) if peaks is None else np.asarray(peaks, dtype=np.float64).ravel()
     lattice.learn(first, np.asarray(modes, dtype=np.int64).ravel(), known)
     cells = lattice.finest(_whole)
-    new = np.setdiff1d(lattice.keys, first)
-    keys = np.concatenate([first, new])
-    places = np.searchsorted(lattice.keys, keys)
-    x, y = lattice.coordinates(keys % lattice.columns, keys // lattice.columns)
-    base = np.arange(keys.size) < first.size
+    own = np.zeros(lattice.keys.size, dtype=np.bool_)
+    own[np.searchsorted(lattice.keys, first)] = True
+    places = np.concatenate([np.flatnonzero(own), np.flatnonzero(~own)])  # the map's own first
+    x, y = _coordinates(lattice, places)
+    base = np.arange(places.size) < first.size
     return Refined(x, y, lattice.modes[places], lattice.peaks[places], base), cells
+
+
+def _coordinates(lattice: Lattice, places: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return the coordinates of known points, made piece by piece: on the way they take many times their room."""
+    x, y = np.empty(places.size), np.empty(places.size)
+    for first in range(0, places.size, _PIECE):
+        part = slice(first, first + _PIECE)
+        keys = lattice.keys[places[part]]
+        x[part], y[part] = lattice.coordinates(keys % lattice.columns, keys // lattice.columns)
+    return x, y
 
 
 def refined_map(

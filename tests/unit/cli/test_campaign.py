@@ -313,7 +313,7 @@ def test_ctrl_c_before_anything(run, job, tmp_path, monkeypatch):
     monkeypatch.setattr("rocking.studies.job.Job.read", pressed)
     code, out, err = run("run", job(), "--out", tmp_path / "c")
     assert (code, out) == (3, "")
-    assert err == "rocking: stopped; what was recorded before is safe\n"
+    assert err == "rocking: stopped; nothing was begun\n"
 
 
 def started(tmp_path, *words):

@@ -1,6 +1,9 @@
 """`rocking campaign` with studies that ask in rounds, and with inventories."""
 
+import errno
 import json
+import os
+import pathlib
 
 import pytest
 
@@ -54,8 +57,11 @@ def run(capsys, tmp_path, monkeypatch):
 
 def test_rounds_in_words_and_in_json(run, tmp_path):
     """Check is honest about the first round; status counts rounds; a campaign is complete after the last one."""
-    assert "in the first round, as are time, memory and disk" in run("campaign", "check", "map.toml")[1]
-    assert json.loads(run("campaign", "check", "map.toml", "--json")[1])["first_round_only"] is True
+    out = run("campaign", "check", "map.toml")[1]
+    assert "in the first round, as are time and disk; what it finds decides on later rounds" in out
+    checked = json.loads(run("campaign", "check", "map.toml", "--json")[1])
+    assert checked["first_round_only"] is True
+    assert f"usually {checked['later'][0]} to {checked['later'][1]} more histories" in out
     code, out, err = run("campaign", "run", "map.toml", "--out", "c")
     assert (code, err) == (0, "")
     rounds = len(list((tmp_path / "c").glob("round-*")))
@@ -71,7 +77,70 @@ def test_rounds_in_words_and_in_json(run, tmp_path):
     assert run("campaign", "resume", "c", "--workers", "1")[0] == 0
     code, out, _ = run("campaign", "export", "c", "--to", "r.csv", "--what", "boundary")
     assert code == 0
-    assert f"boundary of {told['histories']} histories" in out
+    assert f"boundary of {told['histories']} histories in {rounds} rounds" in out
+    provenance = json.loads((tmp_path / "r.csv.provenance.json").read_text())
+    assert (provenance["rounds"], provenance["all_histories"]) == (rounds, told["histories"])
+    code, out, _ = run("campaign", "export", "c", "--to", "h.csv", "--what", "histories")
+    lines = (tmp_path / "h.csv").read_text().splitlines()
+    assert f"9 histories of the first round, of {told['histories']} in all rounds" in out
+    found = json.loads(run("campaign", "export", "c", "--to", "h.csv", "--what", "histories", "--json")[1])
+    assert found["histories"] == len(lines) - 1 == 9
+    assert (found["rounds"], found["all_histories"]) == (rounds, told["histories"])
+    code, _, err = run("campaign", "export", "c", "--to", "r.nc", "--what", "refined")
+    assert (code, "--what histories) holds points and polylines" in err.replace("\n", " ")) == (2, True)
+
+
+def test_stopped_while_the_job_is_read(run, tmp_path, monkeypatch):
+    """Ctrl-C before there is a campaign: nothing was begun, and nobody says that anything is safe; afterwards it is."""
+    from rocking.studies.job import Job, JobFolder
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Job, "read", stopped)
+    for words in (("check", "map.toml"), ("run", "map.toml", "--out", "c")):
+        assert run("campaign", *words) == (3, "", "rocking: stopped; nothing was begun\n")
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    JobFolder.create("c", Job.read("map.toml"))
+    monkeypatch.setattr(Job, "of_text", stopped)
+    assert run("campaign", "resume", "c") == (3, "", "rocking: stopped; what was recorded before is safe\n")
+
+
+@pytest.mark.parametrize("target", ["r.html", "r.csv", "r.json", "r.xlsx", "all"])
+def test_reports_on_a_full_disk(run, tmp_path, monkeypatch, target):
+    """A write that fails half way: exit code 4 with the path, no report under its name, no half of one beside it."""
+    if target.endswith("xlsx"):
+        pytest.importorskip("openpyxl")
+    assert run("campaign", "run", "inventory.toml", "--out", "c")[0] == 0
+    real = {name: getattr(pathlib.Path, name) for name in ("write_text", "write_bytes")}
+
+    def full(name):
+        def write(self, data, *given, **named):
+            real[name](self, data[: len(data) // 2], *given, **named)
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self))
+
+        return write
+
+    before = set(tmp_path.iterdir())
+    for name in real:
+        monkeypatch.setattr(pathlib.Path, name, full(name))
+    code, out, err = run("campaign", "export", "c", "--to", target)
+    words = err.replace("\n", " ")
+    assert (code, out) == (4, "")
+    assert f"cannot write {target}" in words
+    assert "No space left on device; the campaign itself is safe" in words
+    left = set(tmp_path.rglob("*")) - set((tmp_path / "c").rglob("*")) - before
+    assert left <= {tmp_path / "all", tmp_path / "all" / "inventory.provenance.json"}
+
+
+@pytest.mark.parametrize("key", ["rocking", "overturning_red", "level"])
+def test_thresholds_are_named_with_their_table(run, tmp_path, key):
+    """A threshold that is none is named as it stands in the job."""
+    (tmp_path / "bad.toml").write_text(f"{INVENTORY}[inventory.thresholds]\n{key} = 7.0\n")
+    code, _, err = run("campaign", "check", "bad.toml")
+    assert code == 2
+    assert f"inventory.thresholds.{key} must be" in err.replace("\n", " ")
 
 
 def test_inventory_is_that_of_the_other_command(run, tmp_path):

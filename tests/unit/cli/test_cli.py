@@ -149,7 +149,7 @@ def test_paper_folder(capsys, tmp_path):
     assert "<img" not in html
     assert 'src="http' not in html
     assert "<script" not in html
-    assert html.count("<svg") == 11
+    assert html.count("<svg") == 14
     assert (tmp_path / "report" / "report.pdf").read_bytes().startswith(b"%PDF")
     stems = {"figure_1", "figure_2", "figure_3", "figure_5", "figure_6", "figure_7", "figure_8", "figure_9"}
     for kind in ("png", "svg"):

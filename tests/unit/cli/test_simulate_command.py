@@ -205,7 +205,7 @@ def test_printed_page(capsys):
         assert words in out
     statue = run(capsys, STATUE, "--free", "-0.3")[1]
     table = statue[statue.index("With other") :].splitlines()
-    assert len(table) == 9
+    assert len(table) == 10
     assert all(len(line) <= 80 for line in table)
     assert "left alpha = " in statue
     assert "let go at -6.1" in statue

@@ -34,6 +34,7 @@ def test_names():
         "shifted-impulse",
         "distributed-impulse",
         "plastic-winkler",
+        "contact-bed",
         "fixed",
     }
     assert promised <= set(models())
@@ -49,7 +50,9 @@ def test_unknown_names(which):
         rk.coefficient_of_restitution(BLOCK, which)
 
 
-@pytest.mark.parametrize("which", [None, 3, 0.9, ["ked"], Ked, b"ked", object()], ids=repr)
+@pytest.mark.parametrize(
+    "which", [None, 3, 0.9, ["ked"], Ked, b"ked", object()], ids=lambda value: type(value).__name__
+)
 def test_what_is_no_model(which):
     """What is neither a name nor a model object is refused: also the class instead of an object."""
     with pytest.raises(UnknownModelError, match="a restitution model is a name or a RestitutionModel object"):
@@ -184,7 +187,7 @@ def test_register():
         register(Other)
 
 
-@pytest.mark.parametrize("value", [None, 3, "ked", int, Ked(), Half()], ids=repr)
+@pytest.mark.parametrize("value", [None, 3, "ked", int, Ked(), Half()], ids=lambda value: type(value).__name__)
 @pytest.mark.usefixtures("clean_registry")
 def test_register_refuses(value):
     """Only subclasses of RestitutionModel with a name can be registered."""

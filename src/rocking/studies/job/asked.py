@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking.conventions import IntArray
 from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories, Table, hash_of
 from rocking.studies.motion_set import MotionList, MotionSet
@@ -95,7 +95,7 @@ class AskedBatch(Batch):
         Returns
         -------
         results : dict of str to ndarray
-            One array for each key of `rocking.dynamics.engine.RESULTS`.
+            One array for each key of `rocking.dynamics.engine.RESULTS`; NaN of what a round does not keep.
         work : dict of str to int
             Empty: nobody counts the steps of all rounds.
         """
@@ -104,7 +104,9 @@ class AskedBatch(Batch):
         given = rows(0, count)
         options: dict[str, Any] = {"law": self.law, "settings": self.settings, "engine": self.engine}
         asked = Asked(self.motion_set, given.motion, given.values, given.key, **options)
-        return self.compute(sampled(asked)), {}
+        found = self.compute(sampled(asked))
+        # nobody asks for what a round does not keep, and views of one NaN need no room
+        return {name: found.get(name, np.broadcast_to(np.nan, count)) for name in RESULTS}, {}
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from rocking.studies.job.folder import JobFolder
 from rocking.studies.job.matlab import to_matlab
 from rocking.studies.job.netcdf import to_netcdf
 from rocking.studies.job.results import Results
+from rocking.studies.job.round_status import finished_rounds
 from rocking.studies.job.rows import to_csv, to_excel, to_parquet
 from rocking.studies.job.sheets import SHEET_FORMATS, sheets_to_netcdf
 
@@ -109,7 +110,7 @@ def export(
     what = exports_of(folder)[0] if what is None else what
     _check_what(what, target.suffix.lower(), restitution, crossing, folder)
     refuse_unfinished(folder)
-    results = Results(folder.job.study, folder.campaign, folder.job.provenance, progress)
+    results = Results(folder.job.study, folder.campaign, provenance_of(folder), progress)
     unfinished = target.with_name(f".{target.stem}.{os.getpid()}.part{target.suffix}")
     with disk.guarded(target.parent, lambda: "the campaign itself is safe"):
         try:
@@ -123,6 +124,24 @@ def export(
         finally:
             unfinished.unlink(missing_ok=True)
     return target
+
+
+def provenance_of(folder: JobFolder) -> dict[str, Any]:
+    """Return where the results of a finished campaign come from.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign.
+
+    Returns
+    -------
+    dict
+        That of the job; of an adaptive study also ``rounds`` and ``all_histories``.
+    """
+    if folder.job.study.search is None or (told := finished_rounds(folder.path)) is None:
+        return folder.job.provenance
+    return {**folder.job.provenance, "rounds": told["rounds"], "all_histories": told["histories"]}
 
 
 def write_provenance(provenance: dict[str, Any], beside: Path) -> Path:
@@ -154,6 +173,8 @@ def _check_what(
     allowed = FORMATS if what == "histories" else SPECIAL[what]
     if suffix not in allowed:
         more = "; .xml (NRML) is for the fragility" if suffix == ".xml" and what == "histories" else ""
+        if suffix == ".nc" and what in {"refined", "boundary"}:
+            more = "; the .nc of the histories (--what histories) holds points and polylines too"
         raise InvalidValueError(f"{what} can be written as {', '.join(allowed)}, got {suffix or 'no ending'!r}{more}")
     labels = list(folder.job.parts.choices)
     if what not in _ANALYSES and restitution is not None:

@@ -8,7 +8,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.campaign import CampaignIncompleteError
 from rocking.studies.job.answer import Answer
 from rocking.studies.job.folder import JobFolder
-from rocking.studies.job.round_status import status_of_rounds
+from rocking.studies.job.round_status import resume, status_of_rounds
 from rocking.studies.job.rounds import replayed
 
 if TYPE_CHECKING:
@@ -28,18 +28,21 @@ def refuse_unfinished(folder: JobFolder) -> None:
     CampaignIncompleteError
         If there is something left to do.
     """
+    path = folder.path
     if folder.job.study.search is None:
-        status, complete, many = folder.campaign.status(), folder.campaign.status().complete, ""
+        status = folder.campaign.status()
+        complete, share = status.complete, f"{status.chunks_done} of {status.chunks} chunks of {path} are finished"
     else:
-        known, begun, complete = status_of_rounds(folder.path)
-        status, many = known or folder.campaign.status(), f" of the first {max(begun, 1)} rounds"
-    if complete:
-        return
-    share = f"{status.chunks_done} of {status.chunks} chunks"
-    raise CampaignIncompleteError(
-        f"nothing to export because {share}{many} of {folder.path} are finished; "
-        f"go on with: rocking campaign resume {folder.path}"
-    )
+        known, begun, complete = status_of_rounds(path)
+        status = known or folder.campaign.status()
+        share = f"{path} is not finished: {status.chunks_done} of {status.chunks} chunks of {_rounds(max(begun, 1))}"
+        share += " so far, and more rounds may follow"
+    if not complete:
+        raise CampaignIncompleteError(f"nothing to export because {share}; go on with: {resume(path)}")
+
+
+def _rounds(count: int) -> str:
+    return "one round" if count == 1 else f"{count} rounds"
 
 
 def analyses(folder: JobFolder) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """The folder of a campaign that a job file describes: the job, the hashes of its inputs, and the results."""
 
+import hashlib
 import json
 import os
 from collections.abc import Callable
@@ -23,7 +24,7 @@ from rocking.studies.campaign.identity import NAME
 from rocking.studies.job.inputs import Inputs, refuse_changes
 from rocking.studies.job.job import Job
 from rocking.studies.job.reading import document_of, located
-from rocking.studies.job.round_status import round_folder, status_of_rounds
+from rocking.studies.job.round_status import resume, round_folder, status_of_rounds, way_out
 from rocking.studies.job.rounds import opened, run_rounds
 
 JOB, INPUTS, HISTORIES = "job.toml", "inputs.json", "histories"
@@ -65,7 +66,12 @@ class JobFolder:
             Nothing is computed yet.
         """
         path = Path(folder)
-        content = {"job_file": job.name, "job_folder": str(job.folder), "files": job.inputs}
+        content: dict[str, Any] = {
+            "job_file": job.name,
+            "job_folder": str(job.folder),
+            "job_sha256": _sha256(job.text.encode()),
+        }
+        content |= {"files": job.inputs}
         with disk.guarded(path, lambda: "nothing was written"):
             _refuse_used(path)
             disk.make_folder(path)
@@ -95,9 +101,16 @@ class JobFolder:
         ------
         InvalidValueError
             If a file that the job names is not what it was.
+        CampaignMismatchError
+            If the job itself is not.
         """
         path = Path(folder)
         text, content = _kept(path)
+        if content.get("job_sha256", _sha256(text.encode())) != _sha256(text.encode()):  # older folders have none
+            raise CampaignMismatchError(
+                f"{path / JOB} has changed since the campaign began; restore it, or begin a new campaign in another "
+                "folder"
+            )
         base = Path(content["job_folder"] if inputs is None else inputs)
         if not base.is_dir() and content["files"]:
             raise InvalidValueError(f"{path}: the folder of its inputs, {base}, is not there; give --inputs")
@@ -114,8 +127,11 @@ class JobFolder:
     @cached_property
     def campaign(self) -> Campaign:
         """The campaign, of an adaptive study its first round; begun where a killed process had not come that far."""
-        where = self.path / HISTORIES if self.job.study.search is None else round_folder(self.path, 0)
-        return opened(where, self.job.study.histories, self.job.document.campaign.chunk)
+        chunk = self.job.document.campaign.chunk
+        if self.job.study.search is None:
+            return opened(self.path / HISTORIES, self.job.study.histories, chunk)
+        with way_out(self.path, 0):
+            return opened(round_folder(self.path, 0), self.job.study.histories, chunk)
 
     def run(
         self, executor: str | Executor = "serial", *, workers: int | None = None,
@@ -226,12 +242,16 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
         ) from error
 
 
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
 def _refuse_used(path: Path) -> None:
     if path.exists() and not path.is_dir():
         raise CampaignMismatchError(f"{path}: a file, not a folder")
     there = {entry.name for entry in path.iterdir() if not entry.name.startswith(".")} if path.is_dir() else set()
     if JOB in there:
-        raise CampaignMismatchError(f"{path}: a campaign is here already; go on with: rocking campaign resume {path}")
+        raise CampaignMismatchError(f"{path}: a campaign is here already; go on with: {resume(path)}")
     odd = sorted(there - {INPUTS})
     if odd:
         raise CampaignMismatchError(f"{path}: not empty ({odd[0]} ...); a campaign takes a folder of its own")

@@ -1,5 +1,6 @@
 """What a job will take: time from a short trial, memory and disk."""
 
+import math
 import shutil
 import time
 from dataclasses import dataclass
@@ -8,12 +9,20 @@ from pathlib import Path
 import numpy as np
 
 from rocking.dynamics import engine
+from rocking.motions.pulse import Pulse
 from rocking.studies.campaign.chunks import default_chunk
 from rocking.studies.histories import MOTIONS_AT_ONCE
 from rocking.studies.job.job import Job
 
 BYTES = 75
 """Results of one history [bytes]."""
+
+_KEPT = 100
+"""What an adaptive study keeps of a history, with what it takes for a moment [bytes]."""
+
+# histories of later rounds over those of the first, and over edges and halvings of a line across a map
+_OF_SEARCHES = {"pulses": (2.0, 10.0), "records": (10.0, 100.0)}
+_EDGES = (2.0, 12.0)
 
 _BASE = 150_000_000
 _PIECE = 128
@@ -33,11 +42,14 @@ class Forecast:
     seconds : float
         Time of the workers for all of them [s].
     memory : int
-        Memory of all workers together, roughly [bytes].
+        Memory of all workers together, of an adaptive study with all that its rounds keep, roughly [bytes].
     disk : int
         Room for the results [bytes].
     free : int or None
         Room that there is, where a folder is given [bytes].
+    later : tuple of int, optional
+        Of an adaptive study, whose other numbers are of the first round: between how many and how many histories the
+        later rounds usually have.
     """
 
     histories: int
@@ -48,6 +60,7 @@ class Forecast:
     memory: int
     disk: int
     free: int | None
+    later: tuple[int, int] | None = None
 
 
 def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> Forecast:
@@ -71,17 +84,40 @@ def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> Forecast
     usual = default_chunk(engine.chosen(histories.engine, histories.law))
     chunk = min(job.document.campaign.chunk or usual, histories.count)
     chunks = -(-histories.count // chunk)
-    rate = _trial(job)
+    rate, later = _trial(job), _later(job)
     return Forecast(
         histories.count,
         chunks,
         chunk,
         rate,
         histories.count / rate / workers,
-        workers * (_BASE + 4 * BYTES * chunk + _motions(job)),
+        workers * (_BASE + 4 * BYTES * chunk + _motions(job)) + _held(job, later),
         BYTES * histories.count + 5000 * chunks,
         None if folder is None else shutil.disk_usage(_existing(folder)).free,
+        later,
     )
+
+
+def _later(job: Job) -> tuple[int, int] | None:
+    """Return how many histories later rounds usually have: as jobs of many sizes had them."""
+    if job.study.search is None:
+        return None
+    count, table = job.study.histories.count, job.document.map
+    if table is None or table.refine is None:
+        low, high = _OF_SEARCHES["pulses" if job.parts.motions[0].__class__ is Pulse else "records"]
+        return int(low * count), int(high * count)
+    # a line across the map, cut into edges of the finest level, each found, and halved until it is as short as asked
+    edges = math.sqrt(count) * 2.0**table.refine
+    each = edges * (2.0 + max(0.0, -math.log2(table.tolerance * edges)))
+    return int(_EDGES[0] * each), int(_EDGES[1] * each)
+
+
+def _held(job: Job, later: tuple[int, int] | None) -> int:
+    """Return the room of what an adaptive study keeps of its rounds [bytes]."""
+    if later is None:
+        return 0
+    kept = later[1] if job.document.map is None else later[1] // 4  # halvings of edges are forgotten
+    return _KEPT * (job.study.histories.count + kept)
 
 
 def _trial(job: Job) -> float:

@@ -1,6 +1,12 @@
 """Results as netCDF 4, written chunk by chunk: the file may be larger than the memory."""
 
+import errno
 import json
+import os
+import re
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +15,9 @@ import numpy as np
 from rocking.dynamics.export import extra
 from rocking.studies.job.results import Results
 from rocking.studies.job.study import VARIABLES, Coordinate, blocks
+
+# attributes, and what HDF5 needs for itself [bytes]
+_MARGIN = 150_000
 
 
 def to_netcdf(results: Results, path: Path) -> None:
@@ -22,9 +31,10 @@ def to_netcdf(results: Results, path: Path) -> None:
         The file.
     """
     h5py: Any = extra("h5py", "netCDF")
-    h5netcdf: Any = extra("h5netcdf", "netCDF")
     study = results.study
-    with h5netcdf.File(path, "w") as file:
+    room = study.histories.count * sum(np.dtype(kind).itemsize for kind, _, _ in VARIABLES.values())
+    room += sum(room_of(each.values) for each in study.coordinates.values())
+    with netcdf_file(path, "w", room) as file:
         file.dimensions = dict(study.dims)
         for name, value in results.attributes.items():
             file.attrs[name] = value
@@ -41,6 +51,71 @@ def to_netcdf(results: Results, path: Path) -> None:
                 for place, part in blocks(first, last, study.shape):
                     shape = tuple(s.stop - s.start for s in place)
                     file.variables[name][place] = np.asarray(values)[part].reshape(shape)
+
+
+@contextmanager
+def netcdf_file(path: Path, mode: str, room: int) -> Iterator[Any]:
+    """Open a netCDF file, if the disk has room for it, that is closed whatever happens.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    mode : {"w", "a"}
+        Whether it is made, or added to.
+    room : int
+        What will be written into it, at least [bytes].
+
+    Yields
+    ------
+    File
+        Of h5netcdf.
+
+    Raises
+    ------
+    OSError
+        With one sentence of the system where HDF5 says many lines, if the disk takes no more.
+    RuntimeError
+        If it is about something else.
+    """
+    h5netcdf: Any = extra("h5netcdf", "netCDF")
+    # asked before: HDF5 that cannot write tries again when the process ends, and may crash it
+    if shutil.disk_usage(path.parent).free < room + _MARGIN:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    file = h5netcdf.File(path, mode)
+    try:
+        yield file
+        file.close()
+    except BaseException as error:
+        _dropped(file, path)
+        told = re.search(r"errno = (\d+), error message = '([^']*)'", str(error))
+        if told is None:
+            raise
+        raise OSError(int(told[1]), told[2]) from error
+
+
+def room_of(values: np.ndarray) -> int:
+    """Return the room that some values take in a file.
+
+    Parameters
+    ----------
+    values : ndarray
+        Numbers or words.
+
+    Returns
+    -------
+    int
+        At least [bytes].
+    """
+    return int(values.nbytes if values.dtype.kind in "iufb" else 16 * values.size)
+
+
+def _dropped(file: Any, path: Path) -> None:
+    """Close a file that is of no use."""
+    with suppress(OSError):
+        os.truncate(path, 0)  # there is room again for the little that closing writes
+    with suppress(Exception):
+        file.close()
 
 
 def _coordinate(file: Any, name: str, coordinate: Coordinate, words: Any) -> None:

@@ -1,10 +1,14 @@
 """How far the rounds of an adaptive study are, as their folders say."""
 
 import json
+import shlex
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from rocking.studies.campaign import Campaign, CampaignDamagedError, Status
 from rocking.studies.campaign.identity import NAME
+from rocking.studies.campaign.ledger import NAME as LEDGER
 from rocking.studies.campaign.lock import holder
 
 FINISHED = "finished.json"
@@ -29,6 +33,60 @@ def round_folder(folder: Path, number: int) -> Path:
     return folder / f"round-{number:03}"
 
 
+def resume(folder: Path) -> str:
+    """Return the command that goes on with a campaign.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign of the job.
+
+    Returns
+    -------
+    str
+        As it is typed.
+
+    Examples
+    --------
+    >>> resume(Path("my study"))
+    "rocking campaign resume 'my study'"
+    """
+    return f"rocking campaign resume {shlex.quote(str(folder))}"
+
+
+@contextmanager
+def way_out(folder: Path, number: int) -> Iterator[None]:
+    """Say of a damaged round what its user can do: rounds are not campaigns that anybody began.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign of the job.
+    number : int
+        Number of the round, from 0.
+
+    Yields
+    ------
+    None
+        While it watches.
+
+    Raises
+    ------
+    CampaignDamagedError
+        If the round is damaged, with the way out.
+    """
+    try:
+        yield
+    except CampaignDamagedError as error:
+        path = round_folder(folder, number)
+        whole = next((name for name in (NAME, LEDGER) if name in str(error)), None)
+        if whole is None:  # a shard: whoever goes on computes it again
+            raise CampaignDamagedError(f"{str(error).split('; run ')[0]}; go on with: {resume(folder)}") from error
+        raise CampaignDamagedError(
+            f"{path / whole} is damaged; remove {path} and go on with: {resume(folder)}; the other rounds are kept"
+        ) from error
+
+
 def status_of_rounds(folder: Path) -> tuple[Status | None, int, bool]:
     """Return how far the rounds are that have begun; how many will follow is not known before they do.
 
@@ -48,7 +106,8 @@ def status_of_rounds(folder: Path) -> tuple[Status | None, int, bool]:
     """
     found: list[Status] = []
     while (round_folder(folder, len(found)) / NAME).exists():
-        found.append(Campaign.status_of(round_folder(folder, len(found))))
+        with way_out(folder, len(found)):
+            found.append(Campaign.status_of(round_folder(folder, len(found))))
     if not found:
         return None, 0, False
     sums = {
@@ -86,5 +145,5 @@ def finished_rounds(folder: Path) -> dict[str, int] | None:
     except FileNotFoundError:
         return None
     except (ValueError, KeyError, TypeError) as error:
-        advice = f"remove it, and go on with: rocking campaign resume {folder}"
+        advice = f"remove it, and go on with: {resume(folder)}"
         raise CampaignDamagedError(f"{folder / FINISHED} is damaged ({error}); {advice}") from error

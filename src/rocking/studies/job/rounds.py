@@ -7,24 +7,31 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from rocking.dynamics.engine import Arrays
+import numpy as np
+
+from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.studies.campaign import (
     Campaign,
     CampaignDamagedError,
     CampaignIncompleteError,
     CampaignInterrupted,
+    CampaignStorageError,
     Executor,
     Progress,
     Summary,
     disk,
 )
-from rocking.studies.campaign.identity import NAME
+from rocking.studies.campaign.executors import Job, chosen
+from rocking.studies.campaign.identity import NAME, SHARDS, Identity
 from rocking.studies.campaign.interruption import Interruption
 from rocking.studies.campaign.lock import FolderLock
 from rocking.studies.histories import Histories
 from rocking.studies.job.answer import Answer
-from rocking.studies.job.asked import Compute
-from rocking.studies.job.round_status import FINISHED, finished_rounds, round_folder
+from rocking.studies.job.asked import Compute, first_round
+from rocking.studies.job.round_status import FINISHED, finished_rounds, resume, round_folder, way_out
+
+NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time")
+"""What studies decide on: no more of a round is held in memory."""
 
 _SAFE = "nothing that was recorded before is lost"
 
@@ -65,7 +72,7 @@ class Rounds:
         Returns
         -------
         dict of str to ndarray
-            The keys of `rocking.dynamics.engine.RESULTS`.
+            The keys `NEEDED`.
 
         Raises
         ------
@@ -80,25 +87,49 @@ class Rounds:
         """
         path = round_folder(self.folder, self.number)
         if self.asked_to_stop():
-            raise CampaignInterrupted(_stopped(path))
+            raise CampaignInterrupted(_stopped(self.folder, self.number))
         if self.advance is None and not (path / NAME).exists():
-            raise CampaignIncompleteError(f"{path} is missing; go on with: rocking campaign resume {self.folder}")
-        campaign = opened(path, histories, self.chunk)
-        found = self._results(campaign)
+            raise CampaignIncompleteError(f"{path} is missing; go on with: {resume(self.folder)}")
+        with _of_the_job(self.folder, self.number):
+            found = self._results(opened(path, histories, self.chunk))
         self.number += 1
         self.histories += histories.count
         return found
 
     def _results(self, campaign: Campaign) -> Arrays:
         if self.advance is None:
-            return campaign.results()
+            return _held(campaign)
         if campaign.status().complete:
             try:
-                return campaign.results()
+                return _held(campaign)
             except CampaignDamagedError:  # what is damaged is set aside, said, and computed again
                 pass
         self.advance(campaign)
-        return campaign.results()
+        return _held(campaign)
+
+
+def _held(campaign: Campaign) -> Arrays:
+    """Return what is needed of a round, of which one chunk at a time is in memory as a whole."""
+    found = {name: np.empty(campaign.plan.count, dtype=RESULTS[name]) for name in NEEDED}
+    for piece in campaign.pieces():
+        for name, values in found.items():
+            values[piece.first : piece.last] = piece.results[name]
+    return found
+
+
+@contextmanager
+def _of_the_job(folder: Path, number: int) -> Iterator[None]:
+    """Say what stops a round in words of the job: its user knows that folder, and no other."""
+    try:
+        with way_out(folder, number):
+            yield
+    except CampaignInterrupted as error:
+        raise CampaignInterrupted(_stopped(folder, number)) from error
+    except CampaignStorageError as error:
+        cause = error.__cause__
+        why = getattr(cause, "strerror", None) or cause or error
+        advice = f"make room or allow writing, then go on with: {resume(folder)}"
+        raise CampaignStorageError(f"{folder}: {why} in round {number + 1}; {_SAFE}; {advice}") from error
 
 
 def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
@@ -147,11 +178,13 @@ def replayed(search: Search, folder: Path) -> Answer:
     """
     told = finished_rounds(folder)
     if told is None:
-        raise CampaignIncompleteError(f"{folder}: not finished; go on with: rocking campaign resume {folder}")
+        raise CampaignIncompleteError(f"{folder}: not finished; go on with: {resume(folder)}")
     rounds = Rounds(folder)
     answer = search(rounds.compute)
     if told != _facts(rounds):
-        raise CampaignDamagedError(f"{folder / FINISHED} tells of {told}, and there are {_facts(rounds)}")
+        raise CampaignDamagedError(
+            f"{folder / FINISHED} tells of {told}, and there are {_facts(rounds)}; go on with: {resume(folder)}"
+        )
     return replace(
         answer, attributes={**answer.attributes, "rounds": told["rounds"], "all_histories": told["histories"]}
     )
@@ -174,7 +207,7 @@ class _Run:
         options = {"order_seed": self.options["order_seed"]} if alone else self.options
         self.between.__exit__()  # within a round Ctrl-C and SIGTERM are its campaign's, which knows how to stop
         if self.between.asked():
-            raise CampaignInterrupted(_stopped(campaign.folder))
+            raise CampaignInterrupted("between rounds")  # said in other words by whoever counts them
         self.done.append(campaign.run(who, workers=workers, progress=self.progress, **options))
         self.between = Interruption().__enter__()
 
@@ -225,6 +258,7 @@ def run_rounds(
     Summary
         What was done in the rounds that were not finished before.
     """
+    _check(executor, workers, search, options.get("start_method"))
     run = _Run(executor, workers, progress, **{"order_seed": None, **options})
     rounds = Rounds(folder, chunk, run.advance, run.asked_to_stop)
     with ExitStack() as stack:
@@ -238,8 +272,18 @@ def run_rounds(
     return run.summary()
 
 
-def _stopped(path: Path) -> str:
-    return f"stopped before {path}; {_SAFE}; run the campaign again to go on"
+def _check(executor: str | Executor, workers: int | None, search: Search, start_method: str | None) -> None:
+    """Refuse an executor that cannot compute, also where every round is of one chunk and none would be sent to it."""
+    who = chosen(executor, workers, start_method)
+    if isinstance(executor, Executor):
+        histories = first_round(search)
+        plan = Identity.of(histories).plan
+        nothing = who.run(Job(histories, plan.engine, plan.software, Path(SHARDS)), iter(()), bool, lambda *_: None)
+        assert not list(nothing)
+
+
+def _stopped(folder: Path, number: int) -> str:
+    return f"{folder}: stopped in round {number + 1}; {_SAFE}; go on with: {resume(folder)}"
 
 
 def _facts(rounds: Rounds) -> dict[str, int]:

@@ -12,6 +12,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.tables import safe_cell
 from rocking.studies.job.results import Results
 from rocking.studies.job.study import VARIABLES, Coordinate
+from rocking.studies.job.workbook import new_book, save_book
 
 MOST_ROWS_OF_EXCEL = 1_048_575
 """Rows of a sheet, its header apart."""
@@ -93,8 +94,7 @@ def to_excel(results: Results, path: Path) -> None:
         raise InvalidValueError(
             f"a sheet of Excel has {MOST_ROWS_OF_EXCEL} rows, these are {count} histories; take .nc, .parquet or .csv"
         )
-    openpyxl: Any = extra("openpyxl", "Excel")
-    book = openpyxl.Workbook(write_only=True)
+    book = new_book()
     sheet = book.create_sheet("histories")
     sheet.append(_header(results))
     for first, last, arrays in results.pieces():
@@ -103,7 +103,7 @@ def to_excel(results: Results, path: Path) -> None:
     sheet = book.create_sheet("provenance")
     for name, value in results.attributes.items():
         sheet.append([name, safe_cell(str(value)[:32_000])])
-    book.save(path)
+    save_book(book, path)
 
 
 def _header(results: Results) -> list[str]:

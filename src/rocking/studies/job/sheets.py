@@ -2,7 +2,7 @@
 
 import csv
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,10 @@ from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.tables import safe_cell
 from rocking.studies.job.answer import Column, Sheet
+from rocking.studies.job.netcdf import netcdf_file, room_of
+from rocking.studies.job.results import PIECE
 from rocking.studies.job.rows import MOST_ROWS_OF_EXCEL
+from rocking.studies.job.workbook import new_book, save_book
 
 Attributes = Mapping[str, Any]
 
@@ -32,7 +35,7 @@ def sheet_to_csv(sheet: Sheet, path: Path, attributes: Attributes) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(sheet.header())
-        writer.writerows(zip(*map(_cells, sheet.columns.values()), strict=True))
+        writer.writerows(_rows(sheet))
 
 
 def sheet_to_parquet(sheet: Sheet, path: Path, attributes: Attributes) -> None:
@@ -83,16 +86,15 @@ def sheet_to_excel(sheet: Sheet, path: Path, attributes: Attributes) -> None:
         raise InvalidValueError(
             f"a sheet of Excel has {MOST_ROWS_OF_EXCEL} rows, these are {sheet.rows}; take .parquet or .csv"
         )
-    openpyxl: Any = extra("openpyxl", "Excel")
-    book = openpyxl.Workbook(write_only=True)
+    book = new_book()
     page = book.create_sheet(sheet.dim)
     page.append(sheet.header())
-    for row in zip(*map(_cells, sheet.columns.values()), strict=True):
+    for row in _rows(sheet):
         page.append(row)
     page = book.create_sheet("provenance")
     for name, value in attributes.items():
         page.append([name, safe_cell(str(value)[:32_000])])
-    book.save(path)
+    save_book(book, path)
 
 
 SHEET_FORMATS: dict[str, Callable[[Sheet, Path, Attributes], None]] = {
@@ -116,8 +118,8 @@ def sheets_to_netcdf(sheets: Mapping[str, Sheet], path: Path, attributes: Attrib
         Where they come from.
     """
     h5py: Any = extra("h5py", "netCDF")
-    h5netcdf: Any = extra("h5netcdf", "netCDF")
-    with h5netcdf.File(path, "a") as file:
+    room = sum(room_of(each.values) for sheet in sheets.values() for each in sheet.columns.values())
+    with netcdf_file(path, "a", room) as file:
         for name, value in attributes.items():
             file.attrs[name] = value
         for sheet in sheets.values():
@@ -133,8 +135,16 @@ def _variable(file: Any, sheet: Sheet, name: str, column: Column, words: Any) ->
     made.attrs["units"], made.attrs["long_name"] = column.unit, column.words
 
 
-def _cells(column: Column) -> list[Any]:
-    cells = column.values.tolist()
+def _rows(sheet: Sheet) -> Iterator[tuple[Any, ...]]:
+    """Return the rows, made piece by piece: as Python objects they take many times the room of their numbers."""
+    for first in range(0, sheet.rows, PIECE):
+        part = slice(first, first + PIECE)
+        yield from zip(*(_cells(each, part) for each in sheet.columns.values()), strict=True)
+
+
+def _cells(column: Column, part: slice) -> list[Any]:
+    values = column.values[part]
+    cells = values.tolist()
     if column.is_words:
         return [safe_cell(word) for word in cells]
-    return cells if np.all(np.isfinite(column.values)) else [cell if np.isfinite(cell) else None for cell in cells]
+    return cells if np.all(np.isfinite(values)) else [cell if np.isfinite(cell) else None for cell in cells]

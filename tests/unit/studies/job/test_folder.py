@@ -113,11 +113,15 @@ def test_damaged_notes(job, tmp_path, data):
 
 
 def test_changed_copy_is_refused(job, tmp_path):
-    """A copied job that somebody edits is another campaign, and the difference is named."""
+    """A copied job that somebody edits is said to have changed; of older folders, without its hash, the difference."""
     folder = JobFolder.create(tmp_path / "c", Job.read(job))
     assert folder.campaign.plan.size == 4
     copy = tmp_path / "c" / "job.toml"
     copy.write_text(copy.read_text().replace("8.0", "8.5"))
+    with pytest.raises(CampaignMismatchError, match=r"job\.toml has changed since the campaign began"):
+        JobFolder.open(tmp_path / "c")
+    noted = tmp_path / "c" / "inputs.json"
+    noted.write_text(json.dumps({k: v for k, v in json.loads(noted.read_text()).items() if k != "job_sha256"}))
     with pytest.raises(CampaignMismatchError, match=r"this campaign is of other histories: content\.scales"):
         _ = JobFolder.open(tmp_path / "c").campaign
 

@@ -1,5 +1,7 @@
 /** Okabe and Ito's colours, each with a dash of its own, so that grey print and any eye keep them apart. */
 
+import { svg } from "/app/dom.js";
+
 const STYLES = {
   housner: { colour: "#0072B2", dash: [6, 4] },
   ked: { colour: "#D55E00", dash: [] },
@@ -7,11 +9,12 @@ const STYLES = {
   "shifted-impulse": { colour: "#CC79A7", dash: [2, 3] },
   "distributed-impulse": { colour: "#56B4E9", dash: [8, 2, 2, 2, 2, 2] },
   "plastic-winkler": { colour: "#E69F00", dash: [10, 4] },
+  "contact-bed": { colour: "#8C6BB1", dash: [4, 2] },
   calibrated: { colour: "#8A8A8A", dash: [] },
 };
 
 const SPARE = [
-  { colour: "#8C6BB1", dash: [4, 2] },
+  { colour: "#7A5195", dash: [5, 3, 1, 3] },
   { colour: "#A6761D", dash: [12, 3] },
   { colour: "#4D9221", dash: [3, 2, 8, 2] },
 ];
@@ -23,6 +26,7 @@ const WORDS = {
   "shifted-impulse": "shifted impulse",
   "distributed-impulse": "distributed impulse",
   "plastic-winkler": "plastic Winkler",
+  "contact-bed": "contact bed",
   calibrated: "calibrated",
   fixed: "given value",
 };
@@ -39,6 +43,19 @@ export const modelWords = (label) => {
   const parameter = text.includes(":") ? `, ${text.split(":")[1].replace("=", "\u00a0=\u00a0")}` : "";
   const factor = text.includes("*") ? `${text.split("*")[0]}\u00a0\u00d7\u00a0` : "";
   return WORDS[name] ? `${factor}${WORDS[name]}${parameter}` : text;
+};
+
+/** A short line, or dots where a curve is drawn as such, in a colour and its true dash. */
+export const dashKey = ({ colour, dash = [], dots = false }) => {
+  const stroke = colour.startsWith("--") ? `var(${colour})` : colour;
+  const mark = dots
+    ? [5, 17, 29].map((cx) => svg("circle", { cx, cy: 5, r: 2.5, fill: stroke }))
+    : svg("path", {
+      d: "M0 5H34", fill: "none", stroke, "stroke-width": 2.5, "stroke-dasharray": dash.join(" ") || null,
+    });
+  return svg("svg", {
+    class: "dash-key", width: 34, height: 10, viewBox: "0 0 34 10", "aria-hidden": "true", focusable: "false",
+  }, mark);
 };
 
 /** Colour for the n-th of several curves that are no models. */

@@ -36,8 +36,11 @@ def inventory_study(parts: Parts) -> Study:
     assert table is not None  # the document refuses to be without
     if len(parts.choices) > 1:
         raise InvalidValueError("restitution: an inventory takes one; that of Housner stands beside it")
-    with located("inventory"):
+    try:
         limits = Thresholds(**table.thresholds.model_dump(exclude_none=True))
+    except InvalidValueError as error:  # which begins with the key
+        raise InvalidValueError(f"inventory.thresholds.{error}") from error
+    with located("inventory"):
         objects, hazard = _objects(table, parts), _hazard(table, parts)
         product, finish, items = assessment_plan(
             objects, hazard, restitution=parts.only_choice, thresholds=limits, gravity=parts.settings.gravity

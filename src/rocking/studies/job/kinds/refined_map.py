@@ -17,7 +17,11 @@ from rocking.studies.job.tables import MapTable
 from rocking.studies.lattice import Lattice
 from rocking.studies.overturning_map import VARIABLES
 from rocking.studies.plane import Plane
+from rocking.studies.question import modes_of, peak_ratio
 from rocking.studies.refined import Refined, refine
+
+MOST_POINTS = 10_000_000
+"""Points of a map that is refined: they take less than 2 GiB of memory."""
 
 
 @dataclass(frozen=True)
@@ -65,12 +69,19 @@ class MapSearch:
         Raises
         ------
         InvalidValueError
-            If there are several restitutions, an axis has one value, or the restitution is drawn at random.
+            If there are several restitutions, an axis has one value, the restitution is drawn at random, or there
+            are too many points.
         """
         assert table.refine is not None  # asked before
         if len(planes) > 1:
             raise InvalidValueError(
                 "map.refine is for one restitution: each has boundaries of its own; make a job of each"
+            )
+        points = planes[0].x.values.size * planes[0].y.values.size
+        if points > MOST_POINTS:
+            raise InvalidValueError(
+                f"map.refine is for maps of up to {MOST_POINTS} points, which are in memory together, got {points}; "
+                "take fewer points, and one level more: it halves the spacing"
             )
         with located("map.refine"):
             tolerance = checked(planes[0], table.boundary, table.tolerance)
@@ -105,8 +116,10 @@ class MapSearch:
         modes, peaks = np.empty(count, np.int64), np.empty(count)
         for first in range(0, count, PIECE):
             last = min(first + PIECE, count)
-            piece = self.study.derived(first, last, {name: values[first:last] for name, values in found.items()})
-            modes[first:last], peaks[first:last] = piece["mode"], piece["peak_ratio"]
+            piece = {name: values[first:last] for name, values in found.items()}
+            sides = self.study.histories.rows(first, last).values
+            modes[first:last] = modes_of(piece)
+            peaks[first:last] = peak_ratio(piece["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
         return modes, peaks
 
 

@@ -19,6 +19,8 @@ from rocking.studies.job.table import Values
 from rocking.studies.question import sides_of
 from rocking.studies.sensitivity.sampled import sampled
 
+_LONGEST = 1e100
+
 
 def spectrum_study(parts: Parts) -> Study:
     """Return the study of rocking spectra.
@@ -32,12 +34,19 @@ def spectrum_study(parts: Parts) -> Study:
     -------
     Study
         Over motion, slenderness angle and period, and the restitution where there are several.
+
+    Raises
+    ------
+    InvalidValueError
+        If an angle or a period is outside its range.
     """
     table = parts.document.spectrum
     assert table is not None  # the document refuses to be without
     angles = _row("spectrum.slenderness_angles", table.slenderness_angles, "rad")
     times = _row("spectrum.periods", table.periods, "s")
     scale = checks.within("spectrum.scale", table.scale, -1e6, 1e6)
+    if times.max() > _LONGEST:  # its square would be beyond all numbers
+        raise InvalidValueError(f"spectrum.periods must be up to {_LONGEST:g} s, got {times.max():g}")
     sizes = 0.75 * parts.settings.gravity * (0.5 * times / np.pi) ** 2
     with located("spectrum"):
         blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]

@@ -1,0 +1,208 @@
+"""What could make the measured groups differ, each as a prediction of the contact bed."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.evidence.measurements import GROUPS, DataSet
+from rocking.restitution.bed_table import DAMPING, HARDNESS, bed_table
+from rocking.restitution.impact import ImpactGeometry
+from rocking.restitution.shifted_impulse import shifted
+
+Predict = Callable[[FloatArray, DataSet, int], FloatArray]
+BLOCKS = ("S", "M", "L")
+
+
+@dataclass(frozen=True)
+class Physics:
+    """One explanation, as a family of predictions.
+
+    Parameters
+    ----------
+    name : str
+        Short name.
+    sentence : str
+        What it says.
+    parameters : tuple of str
+        Names of the fitted numbers, the number of points not among them.
+    start : tuple of float
+        Where the fit starts.
+    bounds : tuple of (float, float)
+        Range of each.
+    predict : callable
+        Takes parameters, a `DataSet` and the number of points; returns coefficients.
+    """
+
+    name: str
+    sentence: str
+    parameters: tuple[str, ...]
+    start: tuple[float, ...]
+    bounds: tuple[tuple[float, float], ...]
+    predict: Predict
+
+
+def bed_coefficients(
+    slenderness: FloatArray,
+    points: int,
+    damping: float,
+    hardness: float,
+    *,
+    share: float = 1.0,
+    shift: FloatArray | float = 0.0,
+) -> FloatArray:
+    """Return the bed's coefficients of rectangles that stand on the middle part of their base.
+
+    Parameters
+    ----------
+    slenderness : ndarray
+        h/b [-].
+    points : int
+        Contact points.
+    damping, hardness : float
+        Of the bed, inside the table [-].
+    share : float
+        Part of the base that the bed reaches over [-].
+    shift : ndarray or float
+        Added to the position of the impulse, which stays between the middle and the foot [-].
+
+    Returns
+    -------
+    ndarray
+        theta_dot_after / theta_dot_before [-].
+    """
+    block = ImpactGeometry.of_slenderness(slenderness)
+    lever = share * block.old_lever
+    geometry = ImpactGeometry(block.height, lever, lever, block.spread_x, block.spread_y)
+    flatness = 1.0 / (1.0 + geometry.base_gyration / share**2)
+    table = bed_table()
+    kappa = table.position(table.plane(points, damping, hardness), flatness, np.zeros_like(flatness))
+    return shifted(geometry, np.clip(kappa + shift, 0.0, 1.0))
+
+
+def relative_width(data: DataSet) -> FloatArray:
+    """Return widths of the blocks over that of a 1 kg cube, as far as masses tell: (mass / slenderness)^(1/3).
+
+    The paper gives no widths. Blocks of one material with depth in proportion to width have this scale; nothing but
+    ratios of it enters. Table 1 gives no masses: there the width is infinite, which leaves unevenness out.
+
+    Parameters
+    ----------
+    data : DataSet
+        Measurements.
+
+    Returns
+    -------
+    ndarray
+        Relative widths [-].
+    """
+    width = np.cbrt(data.mass / data.slenderness)
+    return np.where(np.isnan(width), np.inf, width)
+
+
+def explanations() -> tuple[Physics, ...]:
+    """Return the explanations that are compared.
+
+    Returns
+    -------
+    tuple of Physics
+        The plain bed first.
+    """
+    zeta, hard, eta, base = ("damping", DAMPING), ("hardness", HARDNESS), (0.9, 1.0), (0.5, 1.0)
+    bed = ((zeta[0], hard[0]), (1.5, 100.0), (zeta[1], hard[1]))
+    return (
+        Physics("one bed", "all blocks stand on one bed; mass has no effect", *bed, _plain),
+        Physics(
+            "loss beside the bed",
+            "a factor eta for all blocks on tape (S, M, L), none for Table 1",
+            (*bed[0], "eta"), (*bed[1], 0.98), (*bed[2], eta), _common_factor,
+        ),
+        Physics(
+            "loss that does not grow with mass",
+            "a loss of energy that falls as 1/mass in relation, as of a tape under all blocks",
+            (*bed[0], "tape"), (*bed[1], 0.01), (*bed[2], (0.0, 0.2)), _tape,
+        ),
+        Physics(
+            "loss by group",
+            "an interface factor eta of its own for each group",
+            (*bed[0], *_by_group("eta")), (*bed[1], 0.98, 0.98, 0.98), (*bed[2], eta, eta, eta), _factors,
+        ),
+        Physics(
+            "damping by group",
+            "the damping ratio of the bed differs between the groups",
+            ("hardness", "damping Table 1", *_by_group("damping")), (100.0, 1.5, 1.5, 1.5, 1.5),
+            (hard[1], *(DAMPING,) * 4), _dampings,
+        ),
+        Physics(
+            "hardness by group",
+            "the hardness of the bed, or the landing speed, differs between the groups",
+            ("damping", "hardness Table 1", *_by_group("hardness")), (1.5, 100.0, 100.0, 100.0, 100.0),
+            (zeta[1], *(HARDNESS,) * 4), _hardnesses,
+        ),
+        Physics(
+            "narrower base by group",
+            "the base rests on a part of its width that differs between the groups",
+            (*bed[0], *_by_group("share")), (*bed[1], 0.95, 0.95, 0.95), (*bed[2], base, base, base), _shares,
+        ),
+        Physics(
+            "unevenness of one height",
+            "millimetres of the same height under all blocks move the impulse by an amount over the width",
+            (*bed[0], "uneven"), (*bed[1], 0.05), (*bed[2], (-0.5, 0.5)), _uneven,
+        ),
+    )  # fmt: skip
+
+
+def _by_group(word: str) -> tuple[str, ...]:
+    return tuple(f"{word} {group}" for group in BLOCKS)
+
+
+def _plain(p: FloatArray, data: DataSet, points: int) -> FloatArray:
+    return bed_coefficients(data.slenderness, points, float(p[0]), float(p[1]))
+
+
+def _common_factor(p: FloatArray, data: DataSet, points: int) -> FloatArray:
+    return np.asarray(np.where(_is(data, "table1"), 1.0, p[2]) * _plain(p, data, points))
+
+
+def _tape(p: FloatArray, data: DataSet, points: int) -> FloatArray:
+    light = np.where(np.isnan(data.mass), 0.0, 1.0 / np.where(np.isnan(data.mass), 1.0, data.mass))
+    return np.asarray(np.sqrt(np.maximum(1.0 - p[2] * light, 0.0)) * _plain(p, data, points))
+
+
+def _factors(p: FloatArray, data: DataSet, points: int) -> FloatArray:
+    r = _plain(p, data, points)
+    for group, eta in zip(BLOCKS, p[2:].tolist(), strict=True):
+        r = np.where(_is(data, group), eta * r, r)
+    return r
+
+
+def _dampings(p: FloatArray, data: DataSet, points: int) -> FloatArray:
+    return _each(data, p[1:], lambda s, value: bed_coefficients(s, points, value, float(p[0])))
+
+
+def _hardnesses(p: FloatArray, data: DataSet, points: int) -> FloatArray:
+    return _each(data, p[1:], lambda s, value: bed_coefficients(s, points, float(p[0]), value))
+
+
+def _shares(p: FloatArray, data: DataSet, points: int) -> FloatArray:
+    shares = np.array([1.0, *p[2:]])
+    return _each(data, shares, lambda s, x: bed_coefficients(s, points, float(p[0]), float(p[1]), share=x))
+
+
+def _uneven(p: FloatArray, data: DataSet, points: int) -> FloatArray:
+    shift = p[2] / relative_width(data)
+    return bed_coefficients(data.slenderness, points, float(p[0]), float(p[1]), shift=shift)
+
+
+def _is(data: DataSet, group: str) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    return np.array([each == group for each in data.group])
+
+
+def _each(data: DataSet, values: FloatArray, r_of: Callable[[FloatArray, float], FloatArray]) -> FloatArray:
+    r = np.empty(len(data))
+    for group, value in zip(GROUPS, values.tolist(), strict=True):
+        rows = _is(data, group)
+        if rows.any():
+            r[rows] = r_of(data.slenderness[rows], value)
+    return r

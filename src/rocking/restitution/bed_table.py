@@ -1,0 +1,137 @@
+"""Where the impulse of a contact bed acts: a table of resolved impacts, read between its nodes by straight lines."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
+from typing import Final
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+
+POINTS: Final = (2, 3, 5, 11, 41)
+"""Numbers of contact points that were tabulated."""
+
+DAMPING: Final = (1.0, 5.0)
+"""Range of the damping ratio [-]."""
+
+HARDNESS: Final = (30.0, 1000.0)
+"""Range of the hardness [-]."""
+
+STATED_ERROR: Final = 1e-3
+"""Largest difference in r from an impact resolved in time, inside the table [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class BedTable:
+    """Impulse positions kappa over the half base, from its middle (0) to the new foot (1).
+
+    Parameters
+    ----------
+    flatness : ndarray
+        Nodes of 1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-].
+    offset : ndarray
+        Nodes of the way from the plumb line back to the middle of the base, over w [-].
+    damping : ndarray
+        Nodes of the damping ratio [-].
+    hardness : ndarray
+        Nodes of the dimensionless landing speed v sqrt(k / m) / g [-].
+    positions : ndarray
+        kappa by point count, flatness, offset, damping and hardness [-].
+    """
+
+    flatness: FloatArray
+    offset: FloatArray
+    damping: FloatArray
+    hardness: FloatArray
+    positions: FloatArray
+
+    def plane(self, points: int, damping: float, hardness: float) -> FloatArray:
+        """Return the positions of one bed.
+
+        Parameters
+        ----------
+        points : int
+            One of `POINTS`.
+        damping, hardness : float
+            Inside their ranges [-].
+
+        Returns
+        -------
+        ndarray
+            By flatness and offset [-].
+        """
+        found = self.positions[POINTS.index(points)]
+        for nodes, value in ((np.log(self.hardness), hardness), (np.log(self.damping), damping)):
+            low, share = _between(nodes, np.log(np.asarray(value)))
+            found = (1.0 - share) * found[..., int(low)] + share * found[..., int(low) + 1]
+        return np.asarray(found)
+
+    def position(self, plane: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
+        """Return the positions for bodies; those outside the table are given the value at its edge.
+
+        Parameters
+        ----------
+        plane : ndarray
+            From `plane` [-].
+        flatness, offset : ndarray
+            Of the bodies, of one shape [-].
+
+        Returns
+        -------
+        ndarray
+            kappa, of that shape [-].
+        """
+        i, across = _between(self.flatness, flatness)
+        j, along = _between(self.offset, offset)
+        first = (1.0 - along) * plane[i, j] + along * plane[i, j + 1]
+        second = (1.0 - along) * plane[i + 1, j] + along * plane[i + 1, j + 1]
+        return np.asarray((1.0 - across) * first + across * second)
+
+    def coarser(self) -> "BedTable":
+        """Return the table with a quarter of its nodes of damping and hardness: what its error would be then.
+
+        Returns
+        -------
+        BedTable
+            The coarser table.
+        """
+        thin = np.ascontiguousarray(self.positions[..., ::4, ::4])
+        return BedTable(self.flatness, self.offset, self.damping[::4], self.hardness[::4], thin)
+
+
+def nodes() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return the nodes of the table.
+
+    Returns
+    -------
+    flatness, offset, damping, hardness : ndarray
+        As in `BedTable` [-].
+    """
+    return (
+        # flatter bodies almost stop on two points, where r is not smooth
+        np.linspace(0.005, 0.45, 15)[:13],
+        np.linspace(-1.0, 1.0, 5) / 3.0,
+        np.geomspace(*DAMPING, 9),
+        np.geomspace(*HARDNESS, 41),
+    )
+
+
+@lru_cache(maxsize=1)
+def bed_table() -> BedTable:
+    """Return the table that is shipped; `rocking.studies.impact_laboratory.tabulated` computes it again.
+
+    Returns
+    -------
+    BedTable
+        The table, its positions stored as whole multiples of 2^-15.
+    """
+    with files("rocking.restitution").joinpath("data", "contact_bed.npy").open("rb") as file:
+        stored = np.load(file, allow_pickle=False)
+    return BedTable(*nodes(), stored.astype(np.float64) * 2.0**-15)
+
+
+def _between(axis: FloatArray, value: FloatArray) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.intp]], FloatArray]:
+    held = np.clip(value, axis[0], axis[-1])
+    low = np.clip(np.searchsorted(axis, held, side="right") - 1, 0, axis.size - 2)
+    return low, np.asarray((held - axis[low]) / (axis[low + 1] - axis[low]))

@@ -1,0 +1,1 @@
+"""The impact laboratory: what the coefficient of restitution of a contact bed depends on."""

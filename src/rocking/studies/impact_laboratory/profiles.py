@@ -1,0 +1,115 @@
+"""Bases that are not flat: convex, concave, uneven, rough."""
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from rocking import checks
+from rocking.errors import InvalidValueError
+from rocking.studies.impact_laboratory.beds import Laboratory
+from rocking.studies.impact_laboratory.dependence import study
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Shape = Literal["convex", "concave", "tilted", "random"]
+SHAPES: tuple[Shape, ...] = ("convex", "concave", "tilted", "random")
+
+
+def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tuple[float, ...]:
+    """Return heights of contact points over the base line.
+
+    Parameters
+    ----------
+    shape : {"convex", "concave", "tilted", "random"}
+        A parabola that bulges down in the middle, one that is hollow there, a slope with the new foot up, or
+        independent uniform heights in [0, amplitude] from the seed.
+    amplitude : float
+        Difference between the highest and the lowest point, or its bound [m].
+    points : int
+        Number of points.
+    seed : int
+        For "random".
+
+    Returns
+    -------
+    tuple of float
+        Heights [m].
+
+    Raises
+    ------
+    InvalidValueError
+        If the shape is unknown or the amplitude negative.
+
+    Examples
+    --------
+    >>> profile("concave", 0.001, 3)
+    (0.0, 0.001, 0.0)
+    """
+    checks.within("amplitude", amplitude, 0.0, 10.0, unit="m")
+    s = np.linspace(-1.0, 1.0, points)
+    if shape == "concave":
+        heights = amplitude * (1.0 - s**2)
+    elif shape == "convex":
+        heights = amplitude * s**2
+    elif shape == "tilted":
+        heights = 0.5 * amplitude * (1.0 + s)
+    elif shape == "random":
+        heights = np.random.default_rng(seed).uniform(0.0, amplitude, points)
+    else:
+        raise InvalidValueError(f"shape must be one of {', '.join(SHAPES)}, got {shape!r}")
+    return tuple(heights.tolist())
+
+
+def profile_study(
+    shape: Shape, amplitudes: Any, laboratory: Laboratory | None = None, *, seed: int = 0
+) -> "xr.Dataset":
+    """Return r against the unevenness of the base.
+
+    Parameters
+    ----------
+    shape : {"convex", "concave", "tilted", "random"}
+        As in `profile`.
+    amplitudes : array_like
+        Heights of the unevenness [m].
+    laboratory : Laboratory, optional
+        What stays as it is.
+    seed : int
+        For "random".
+
+    Returns
+    -------
+    xarray.Dataset
+        As `study`, over `amplitude`.
+    """
+
+    def uneven(start: Laboratory, amplitude: float) -> Laboratory:
+        """Return the laboratory with a base of that unevenness."""
+        return start.but(profile=profile(shape, amplitude, start.points, seed=seed))
+
+    return study("amplitude", "m", amplitudes, uneven, laboratory)
+
+
+def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None = None) -> "xr.Dataset":
+    """Return r of bases with random unevenness.
+
+    Parameters
+    ----------
+    amplitude : float
+        Bound of the heights [m].
+    seeds : array_like of int
+        One base a seed.
+    laboratory : Laboratory, optional
+        What stays as it is.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `study`, over `seed`.
+    """
+
+    def rough(start: Laboratory, seed: float) -> Laboratory:
+        """Return the laboratory with the base of a seed."""
+        return start.but(profile=profile("random", amplitude, start.points, seed=int(seed)))
+
+    return study("seed", "1", seeds, rough, laboratory)

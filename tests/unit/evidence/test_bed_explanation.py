@@ -1,0 +1,121 @@
+"""The contact bed fitted to measurements: known beds are found again, rankings follow from their numbers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rocking.evidence.bed_fit import fit_bed, left_out
+from rocking.evidence.bed_physics import bed_coefficients, explanations, relative_width
+from rocking.evidence.contenders import contact_bed
+from rocking.evidence.explanation import Explanation, Ranked, explanation
+from rocking.evidence.league import league
+from rocking.evidence.likelihood import interval_log_likelihood, scatter
+from rocking.evidence.measurements import all_measurements, datasets
+from rocking.restitution.contact_bed import ContactBedModel
+
+PHYSICS = {each.name: each for each in explanations()}
+
+
+def simulated(name, values, points, *, floor=0.02, seed=3, decimals=3):
+    """The 39 slendernesses with coefficients of a known bed, scatter, and rounding to three digits."""
+    data = all_measurements()
+    mean = PHYSICS[name].predict(np.array(values), data, points)
+    sd = scatter(mean, floor, 1.0)
+    r = np.round(mean + sd * np.random.default_rng(seed).standard_normal(len(data)), decimals)
+    half = 0.5 * 10.0**-decimals
+    return replace(data, coefficient=r, low=r - half, high=r + half)
+
+
+def test_the_bed_of_the_fit_is_the_model():
+    """Predictions for whole bases are those of the registered model."""
+    ratios = np.array([1.5, 3.0, 9.75])
+    for points, damping, hardness in ((5, 1.0, 100.0), (41, 2.5, 700.0)):
+        expected = ContactBedModel(points, damping, hardness).of_slenderness(ratios)
+        assert bed_coefficients(ratios, points, damping, hardness) == pytest.approx(expected, rel=1e-12)
+    # a bed on half the base is the bed of a block of twice the slenderness and the inertia of this one
+    assert (bed_coefficients(ratios, 5, 1.0, 100.0, share=0.5) > bed_coefficients(ratios, 5, 1.0, 100.0)).all()
+
+
+def test_factors_are_found_again():
+    """Factors of .95, .97 and .99 by group come back within .005 from 39 simulated rows, and so do the points."""
+    data = simulated("loss by group", [1.5, 100.0, 0.95, 0.97, 0.99], 5)
+    fit = fit_bed(PHYSICS["loss by group"], data, points=(2, 5))
+    assert fit.points == 5
+    found = [fit.values[f"eta {name}"] for name in ("S", "M", "L")]
+    assert found == pytest.approx([0.95, 0.97, 0.99], abs=0.005)  # scatter .02 (1 - r) on nine rows each
+    # negative control: one bed for all cannot follow them
+    assert fit_bed(PHYSICS["one bed"], data, points=(5,)).bic > fit.bic + 10.0
+
+
+def test_a_tape_is_told_from_factors():
+    """Rows made with a loss that falls as 1/mass prefer that explanation, and its size comes back."""
+    data = simulated("loss that does not grow with mass", [1.5, 100.0, 0.03], 5)
+    tape = fit_bed(PHYSICS["loss that does not grow with mass"], data, points=(5,))
+    assert tape.values["tape"] == pytest.approx(0.03, abs=0.003)
+    assert tape.bic < fit_bed(PHYSICS["loss beside the bed"], data, points=(5,)).bic - 10.0
+
+
+def test_without_a_mass_effect_one_bed_wins():
+    """Rows of one bed do not prefer a factor by group."""
+    data = simulated("one bed", [1.5, 100.0], 5)
+    assert fit_bed(PHYSICS["one bed"], data, points=(5,)).bic < fit_bed(PHYSICS["loss by group"], data, points=(5,)).bic
+
+
+def test_numbers_of_a_fit_agree():
+    """Likelihood, BIC and RMSE of a fit follow from its predictions."""
+    data = all_measurements()
+    fit = fit_bed(PHYSICS["one bed"], points=(5,))
+    sd = scatter(fit.predicted, fit.floor, fit.slope)
+    log_likelihood = interval_log_likelihood(data.low, data.high, fit.predicted, sd).sum()
+    assert fit.log_likelihood == pytest.approx(log_likelihood, rel=1e-9)
+    assert fit.bic == pytest.approx(5 * np.log(39) - 2.0 * log_likelihood, rel=1e-12)
+    assert fit.rmse == pytest.approx(np.sqrt(np.mean((fit.predicted - data.coefficient) ** 2)), rel=1e-12)
+    scores = left_out(fit)
+    # what was not seen is less likely than what was
+    assert scores.sum() < fit.log_likelihood
+
+
+def test_widths_are_ratios():
+    """(mass / slenderness)^(1/3): eight times the mass at one slenderness is twice the width; Table 1 has none."""
+    group = datasets()["S"]
+    heavier = replace(group, mass=8.0 * group.mass)
+    assert relative_width(heavier) == pytest.approx(2.0 * relative_width(group), rel=1e-12)
+    assert np.isinf(relative_width(datasets()["table1"])).all()
+
+
+def test_bed_in_the_league():
+    """The fitted bed of the league is no worse than its default, nor than its own family with a factor."""
+    rows = {row.name: row for row in league()}
+    fitted, factored = (rows[contact_bed(eta=eta).name] for eta in (False, True))
+    default = rows[ContactBedModel().label]
+    assert factored.rmse <= fitted.rmse <= default.rmse
+    r = fitted.model.of_slenderness(all_measurements().slenderness)
+    assert fitted.rmse == pytest.approx(np.sqrt(np.mean((r - all_measurements().coefficient) ** 2)), rel=1e-9)
+    assert set(fitted.parameters) == {"points", "hardness"}
+
+
+def test_ranking_and_verdict():
+    """Explanations stand in the order of BIC, and the words follow from the numbers."""
+    found = explanation()
+    behind = [each.behind for each in found.ranked]
+    assert behind == sorted(behind)
+    assert behind[0] == 0.0
+    assert found.ranked[0].name in found.verdict[0]
+    assert f"{found.plain.behind:.1f}" in found.verdict[0]
+    shares = found.shares_lost
+    assert f"{100.0 * shares['S']:.1f} % (S)" in found.verdict[3]
+
+
+def test_a_tie_is_called_a_tie():
+    """Two explanations within two of BIC are said to be undecided, and no left-out gain is said to be none."""
+    found = explanation()
+    plain, best = found.plain, found.ranked[0]
+    none = np.zeros(39)
+    near = tuple(
+        Ranked(each.fit, none, 0.0 if each is best else 1.0, 0.0, 0.0) for each in (best, plain) if each is not None
+    )
+    tied = Explanation(near)
+    assert tied.unresolved == (best.name, plain.name)
+    assert "do not decide" in tied.verdict[1]
+    assert "not resolved" in tied.verdict[2]

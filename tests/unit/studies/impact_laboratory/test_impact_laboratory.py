@@ -1,0 +1,164 @@
+"""Studies of the contact bed: each shows what closed forms or the specification say it must."""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.bodies import Block
+from rocking.dynamics.bed import fast
+from rocking.errors import InvalidValueError
+from rocking.studies.impact_laboratory.beds import Laboratory, coefficients
+from rocking.studies.impact_laboratory.convergence import points_convergence, step_convergence
+from rocking.studies.impact_laboratory.dependence import (
+    damping_study,
+    friction_study,
+    mass_study,
+    modulus_study,
+    points_study,
+    size_study,
+    slenderness_study,
+    velocity_study,
+)
+from rocking.studies.impact_laboratory.large_bodies import large_bodies_study
+from rocking.studies.impact_laboratory.profiles import SHAPES, profile, profile_study, random_profiles
+from rocking.studies.impact_laboratory.speed_law import bed_speed_law
+
+pytestmark = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
+
+VISCOUS = {2.0: 0.7965354225163898, 4.0: 0.9408847304180785}  # physics.md 1.5, q = 1
+
+
+def test_two_points_over_slenderness():
+    """On two points the study is Housner's 1 - 1.5 sin^2 alpha (physics.md 1.1), within what 2 kHz is softer."""
+    ratios = np.array([1.5, 2.0, 4.0, 8.0])
+    found = slenderness_study(ratios, Laboratory(points=2, frequency=2000.0))
+    assert found.coefficient.values == pytest.approx(1.0 - 1.5 / (1.0 + ratios**2), abs=1e-3)
+    # negative control: three points are another impact
+    three = slenderness_study(ratios, Laboratory(points=3, frequency=2000.0))
+    assert (three.coefficient.values - found.coefficient.values)[:2].min() > 0.03
+
+
+def test_points_and_damping_of_the_specification():
+    """The row h/b = 2 of physics.md 3.4 for damping 1, to the .007 of its digits, by points and by damping."""
+    found = points_study([2, 3, 5, 11, 41])
+    assert found.coefficient.values == pytest.approx([0.700, 0.766, 0.808, 0.840, 0.850], abs=0.01)
+    assert damping_study([1.0, 3.0], Laboratory(points=5)).coefficient.values == pytest.approx(0.808, abs=0.01)
+    assert np.abs(found.audit.values).max() < 1e-8
+    assert found.landing_velocity.attrs["units"] == "rad/s"
+
+
+def test_size_alone_changes_nothing():
+    """One shape on one layer: k ~ w, m ~ w^2, v^2 ~ g w, so that the hardness and r do not see the size (4.1)."""
+    found = size_study([0.02, 0.2, 2.0])
+    assert np.ptp(found.coefficient.values) < 1e-6
+    assert np.ptp(found.hardness.values) < 1e-6 * found.hardness.values[0]
+    # negative control: mass alone does change the hardness, by its square root
+    heavier = mass_study([1000.0, 4000.0])
+    assert heavier.hardness.values[0] / heavier.hardness.values[1] == pytest.approx(2.0, rel=1e-6)
+    assert abs(float(heavier.coefficient[0] - heavier.coefficient[1])) > 1e-3
+
+
+def test_size_matters_with_unevenness_of_one_height():
+    """A hollow of the same millimetres under a base ten times as wide moves r less: the scale comes from unevenness."""
+    shift = []
+    for width in (0.1, 1.0):
+        lab = Laboratory(width=width, modulus_over_thickness=1e9, profile=profile("concave", 1e-4, 41))
+        flat, uneven = coefficients([lab.but(profile=()), lab])
+        shift.append(flat - uneven)
+    assert shift[0] > 2.0 * shift[1] > 0.0
+
+
+def test_harder_or_faster_is_the_same():
+    """r depends on the speed through the hardness only, as long as rotations are small: modulus against release."""
+    slow = Laboratory(release=0.05, modulus_over_thickness=1e10)
+    speed = velocity_study([0.05, 0.1], slow)
+    factor = float(speed.hardness[1] / speed.hardness[0]) ** 2
+    stiff = modulus_study([1e10 * factor], slow)
+    assert float(stiff.coefficient[0]) == pytest.approx(float(speed.coefficient[1]), abs=5e-4)
+    assert abs(float(speed.coefficient[0] - speed.coefficient[1])) > 2e-3
+
+
+def test_friction_has_a_threshold():
+    """Above the friction that an impact needs r does not change; on too little it does (physics.md 1.2)."""
+    found = friction_study([0.1, 0.5, 1.0]).coefficient.values
+    # hops may touch the limit for a moment: equal to what steps matter
+    assert found[1] == pytest.approx(found[2], abs=1e-5)
+    assert abs(found[0] - found[1]) > 0.1
+
+
+def test_hollow_bases_tend_to_housner_bulging_ones_to_no_loss():
+    """Deep hollows leave the feet alone: r falls towards .7; bulges move the impulse to the middle: r rises."""
+    hollow = profile_study("concave", [0.0, 1e-4, 1e-3]).coefficient.values
+    bulging = profile_study("convex", [0.0, 1e-4, 1e-3]).coefficient.values
+    assert (np.diff(hollow) < 0.0).all()
+    assert hollow[-1] > 0.7
+    assert (np.diff(bulging) > 0.0).all()
+    assert bulging[-1] < 1.0
+
+
+def test_random_bases_follow_their_seed():
+    """The same seed is the same base, another one is another."""
+    first, again = random_profiles(1e-3, [1, 2]), random_profiles(1e-3, [1, 2])
+    assert (first.coefficient.values == again.coefficient.values).all()
+    assert first.coefficient.values[0] != first.coefficient.values[1]
+
+
+@pytest.mark.parametrize("ratio", [2.0, 4.0])
+def test_order_in_points(ratio):
+    """The viscous bed tends to distributed impulse q = 1 (physics.md 1.5) with order 2 in the spacing."""
+    found = points_convergence(slenderness=ratio, limit=VISCOUS[ratio])
+    assert found.error[-1] < 1e-4
+    assert found.order[-1] == pytest.approx(2.0, abs=0.3)
+    # negative control: towards a limit that is off by one in a thousand there is no order
+    assert points_convergence(slenderness=ratio, limit=VISCOUS[ratio] + 1e-3).order[-1] < 0.5
+
+
+def test_steps_do_not_matter():
+    """r is independent of the step to 1e-4 at every tolerance from 1e-6, and the error falls with it."""
+    found = step_convergence((1e-4, 1e-6, 1e-8))
+    assert (found.error[1:] < 1e-4).all()
+    assert found.error[-1] < found.error[0]
+
+
+def test_speed_law_in_a_history():
+    """`simulate` takes r(speed); a faster impact meets a harder bed and loses more than a slow one."""
+    block = Block(width=0.2, height=0.4)
+    law = bed_speed_law(block, 400.0)
+    assert law.factor(0.6, 0, 0) > law.factor(2.0, 0, 0)
+    response = rk.free_rocking(block, 0.5 * math.atan(0.5), restitution=law, duration=2.0)
+    impact = response.impacts
+    assert len(impact) > 1
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_profiles(shape):
+    """Heights lie between zero and the amplitude."""
+    heights = profile(shape, 1e-3, 11, seed=3)
+    assert len(heights) == 11
+    assert 0.0 <= min(heights) <= max(heights) <= 1e-3
+
+
+def test_bad_input():
+    """Shapes, rows and counts that mean nothing are refused with what is allowed."""
+    with pytest.raises(InvalidValueError, match="convex"):
+        profile("wavy", 1e-3, 5)
+    with pytest.raises(InvalidValueError, match="finite"):
+        damping_study([np.nan])
+    with pytest.raises(InvalidValueError, match="doubled"):
+        points_convergence((11, 20, 41))
+    with pytest.raises(InvalidValueError, match="heights"):
+        Laboratory(profile=(0.0,))
+
+
+def test_large_bodies_lose_the_hollow_and_not_the_difference_to_ked():
+    """With size the hollow bed tends to the flat one, which does not see the size; KED is the limit of neither."""
+    found = large_bodies_study([0.1, 1.0, 100.0])
+    away = (found.flat - found.hollow).values
+    assert (np.diff(away) < 0.0).all()
+    assert away[-1] < 1e-3
+    assert np.ptp(found.flat.values) < 1e-5
+    assert abs(float(found.flat[-1] - found.ked[-1])) > 1e-3
+    # negative control: without a hollow nothing changes with size
+    assert np.ptp(large_bodies_study([0.1, 1.0], hollow=0.0).hollow.values) < 1e-5
