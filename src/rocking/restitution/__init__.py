@@ -10,6 +10,7 @@ from rocking.restitution.model import Flag, InertiaModel, Restitution, Restituti
 from rocking.restitution.registry import model, models, register
 
 if TYPE_CHECKING:
+    from rocking.restitution.contact_bed import ContactBedModel
     from rocking.restitution.distributed_impulse import DistributedImpulse
     from rocking.restitution.fixed import Fixed
     from rocking.restitution.horizontal_momentum import HorizontalMomentum
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from rocking.restitution.shifted_impulse import ShiftedImpulse
 
 __all__ = [
+    "ContactBedModel",
     "DistributedImpulse",
     "EnergyLedger",
     "Fixed",
@@ -49,6 +51,7 @@ __all__ = [
 ]
 
 _HOME = {
+    "ContactBedModel": "contact_bed",
     "DistributedImpulse": "distributed_impulse",
     "EnergyLedger": "ledger",
     "Fixed": "fixed",
