@@ -9,6 +9,9 @@ from typing import Any
 
 import pytest
 
+playwright = pytest.importorskip("playwright.sync_api")
+expect = playwright.expect
+
 G = 9.80665
 L_SHAPE = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 4.0), (0.0, 4.0)]
 
@@ -69,7 +72,8 @@ def test_the_unit_changes_the_numbers_typed_and_not_the_body(page: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "sentence"), [("", "A number is needed"), ("wide", "not a number"), ("-1", "At least 0")]
+    ("text", "sentence"),
+    [("", "A number is needed"), ("wide", "not a number"), ("-1", "More than 0"), ("0", "More than 0")],
 )
 def test_a_wrong_number_says_so_and_keeps_the_last_body(page: Any, text: str, sentence: str) -> None:
     """The field is marked, its help says why, and the numbers stay those of the last body."""
@@ -320,3 +324,113 @@ def test_phone(open_page: Callable[..., Any], shot: Callable[..., Any]) -> None:
     )
     assert tops == sorted(tops)
     shot(page, "body-phone")
+
+
+def square(x: float, y: float, width: float, height: float) -> str:
+    """Return the corners of a rectangle as lines to paste."""
+    corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+    return "\n".join(f"{across} {up}" for across, up in corners)
+
+
+def paste(page: Any, text: str, use: str) -> None:
+    """Paste points into the editor and use them."""
+    if not page.get_by_label("Points, x and y on each line").is_visible():
+        page.get_by_text("Paste points from Excel").click()
+    page.get_by_label("Points, x and y on each line").fill(text)
+    page.get_by_role("button", name=use).click()
+
+
+def test_a_drawing_outlasts_a_look_at_another_shape(page: Any) -> None:
+    """Polygon, Block, Polygon: two regions with eight vertices are still there, and so is the way back."""
+    page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+    page.get_by_role("button", name="Add region").click()
+    expect(page.locator(".vertex")).to_have_count(8)
+    page.get_by_label("Shape").select_option("block")
+    page.get_by_role("radio", name="cm", exact=True).check()
+    page.get_by_label("Shape").select_option("section")
+    expect(page.locator(".vertex")).to_have_count(8)
+    settled(page, "Mass kg", 0.5 * 2.5 * 0.5 * 2400.0)
+    page.get_by_role("button", name="Undo").click()
+    expect(page.locator(".vertex")).to_have_count(4)
+    settled(page, "Mass kg", 0.5 * 2.0 * 0.5 * 2400.0)
+
+
+def test_undo_keeps_the_focus_when_nothing_is_left_to_undo(page: Any) -> None:
+    """The keyboard stays on the button that has done its last step."""
+    page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+    page.get_by_role("button", name="Add region").click()
+    undo = page.get_by_role("button", name="Undo")
+    undo.focus()
+    page.keyboard.press("Enter")
+    expect(undo).to_have_attribute("aria-disabled", "true")
+    expect(undo).to_be_focused()
+
+
+def test_refusals_speak_as_the_page_does(page: Any) -> None:
+    """Regions count from one, places are in the unit of the drawing, and no key of the API is named."""
+    page.get_by_role("radio", name="cm", exact=True).check()
+    page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+    refusal = page.get_by_test_id("body-refusal")
+    paste(page, square(0, 100, 50, 150), "Add as region")
+    expect(refusal).to_contain_text("Regions 1 and 2 overlap over 5000 cm\u00b2")
+    page.get_by_role("button", name="Undo").click()
+    expect(refusal).to_be_empty()
+    paste(page, "0 200\n50 250\n50 200\n0 250", "Add as region")
+    expect(refusal).to_contain_text("Region 2: outline crosses or touches itself near x = 25 cm, y = 225 cm")
+    assert "section" not in refusal.inner_text()
+
+
+def test_what_an_empty_field_means_is_said(page: Any) -> None:
+    """Depth, density, one foot alone and a comma that could mean thousands: each says what is taken."""
+
+    def about(label: str) -> str:
+        name = page.get_by_label(label).get_attribute("aria-describedby")
+        return str(page.locator(f"[id='{name}']").inner_text())
+
+    assert "Empty: 1\u00a0m" in about("Depth")
+    assert "Empty: 2400\u00a0kg/m\u00b3" in about("Density")
+    page.get_by_label("Left foot").fill("0.1")
+    assert "one alone is not used" in about("Right foot")
+    page.get_by_label("Name").fill("a name changes nothing about it")
+    assert "one alone is not used" in about("Right foot")
+    expect(page.locator(".card.stale")).to_have_count(2)
+    page.get_by_label("Right foot").fill("0.4")
+    expect(page.locator(".card.stale")).to_have_count(0)
+    page.get_by_role("radio", name="mm", exact=True).check()
+    page.get_by_label("Height").fill("1,000")
+    assert "Read as 1: the comma is the decimal sign" in about("Height")
+    page.get_by_label("Height").fill("1,5")
+    assert about("Height") == ""
+
+
+def test_the_unit_of_a_file_may_be_corrected(page: Any, tmp_path: Path) -> None:
+    """A WKT read in mm and then told to be in cm is read again, without a second drop; an edit is not undone."""
+    page.get_by_label("Unit of the file").select_option("mm")
+    page.get_by_label("Body file").set_input_files(_written(tmp_path / "column.wkt"))
+    settled(page, "Semi-diagonal R m", math.hypot(0.2, 1.5))
+    page.get_by_label("Unit of the file").select_option("cm")
+    settled(page, "Semi-diagonal R m", math.hypot(2.0, 15.0))
+    page.get_by_role("button", name="Add hole").click()
+    page.get_by_label("Unit of the file").select_option("m")
+    page.wait_for_timeout(300)
+    settled(page, "Semi-diagonal R m", math.hypot(2.0, 15.0))
+
+
+def test_a_rounded_zero_is_a_zero(page: Any) -> None:
+    """A centre at -1.67e-18 m stands there as 0; one at a nanometre does not."""
+
+    def answered(route: Any, x: float) -> None:
+        answer = route.fetch()
+        route.fulfill(response=answer, json={**answer.json(), "centre_m": [x, 1.0]})
+
+    page.route("**/api/body", lambda route: answered(route, -1.67e-18))
+    page.get_by_label("Height").fill("2.1")
+    settled(page, "Semi-diagonal R m", math.hypot(0.25, 1.05))
+    assert facts(page)["Centre of mass, x m"] == ["0"]
+    page.unroute("**/api/body")
+    page.route("**/api/body", lambda route: answered(route, -1.67e-9))
+    page.get_by_label("Height").fill("2.2")
+    settled(page, "Centre of mass, x m", -1.67e-9)

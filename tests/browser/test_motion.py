@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from rocking.motions.formats import write_motion
 from rocking.motions.motion import GroundMotion
@@ -122,6 +123,84 @@ def test_a_file_that_is_no_record_is_refused_in_words(view: Any) -> None:
     assert inputs_or_first(view) == before
 
 
+def test_components_can_be_chosen_after_a_reload(view: Any, tmp_path: Path) -> None:
+    """A page loaded again asks the server for the components; neither list offers what the other has taken."""
+    path = tmp_path / "two.csv"
+    write_motion(shaking(), path, "columns")
+    way(view, "Record file")
+    view.get_by_test_id("record-file").set_input_files(path)
+    needs = view.get_by_test_id("record-needs")
+    needs.get_by_label("Unit of the accelerations").select_option("m/s2")
+    needs.get_by_label("Horizontal component").select_option("column 2")
+    needs.get_by_role("button", name="Read it so").click()
+    held = view.get_by_test_id("record-held")
+    expect(held.locator(".record-name")).to_be_focused()
+    view.reload()
+    vertical = held.get_by_label("Vertical component")
+    expect(vertical.locator("option")).to_have_text(["none", "column 3"])
+    vertical.focus()
+    vertical.select_option("column 3")
+    expect(held.get_by_label("Horizontal component").locator("option")).to_have_text(["column 2"])
+    expect(held.get_by_label("Vertical component")).to_be_focused()
+    assert inputs(view)["motion"]["vertical"] == "column 3"
+
+
+def test_a_clash_of_components_is_undone_in_the_page(view: Any, tmp_path: Path) -> None:
+    """With one component for both, as a link may have it, each list is whole and the refusal goes with a choice."""
+    path = tmp_path / "two.csv"
+    write_motion(shaking(), path, "columns")
+    way(view, "Record file")
+    view.get_by_test_id("record-file").set_input_files(path)
+    needs = view.get_by_test_id("record-needs")
+    needs.get_by_label("Unit of the accelerations").select_option("m/s2")
+    needs.get_by_label("Horizontal component").select_option("column 2")
+    needs.get_by_role("button", name="Read it so").click()
+    expect(view.get_by_test_id("record-held").locator(".record-name")).to_be_visible()
+    found = inputs(view)
+    found["motion"] |= {"vertical": "column 2"}
+    view.evaluate("(given) => sessionStorage.setItem('rocking.inputs', JSON.stringify(given))", found)
+    view.reload()
+    expect(view.get_by_test_id("motion-refusal")).not_to_be_empty()
+    view.get_by_test_id("record-held").get_by_label("Horizontal component").select_option("column 3")
+    expect(view.get_by_test_id("motion-refusal")).to_be_empty()
+
+
+def test_without_a_motion_each_way_can_be_chosen(open_page: Callable[..., Any]) -> None:
+    """After free rocking and a reload no way looks chosen; a pulse shakes the body again, and so does the last one."""
+    page = open_page(view="motion")
+    page.get_by_test_id("pulse-parameters").get_by_label("Period, exactly").fill("0.55")
+    page.get_by_role("tab", name="Response").click()
+    page.get_by_label("Let it go from a lean instead").check()
+    page.reload()
+    page.get_by_role("tab", name="Motion").click()
+    expect(page.locator("#view-motion .segment input:checked")).to_have_count(0)
+    way(page, "Pulse")
+    expect(page.get_by_test_id("motion-facts")).to_be_visible()
+    assert "period=0.55" in inputs(page)["motion"]["pulse"]
+    page.get_by_role("tab", name="Response").click()
+    page.get_by_label("Let it go from a lean instead").check()
+    page.reload()
+    page.get_by_label("Let it go from a lean instead").uncheck()
+    expect(page.get_by_test_id("verdict")).to_be_visible()
+    assert "period=0.55" in inputs(page)["motion"]["pulse"]
+
+
+def test_an_unreadable_file_takes_the_question_of_the_last_one_along(view: Any) -> None:
+    """While a file waits the old motion is named as such; after a file that is none nothing is asked any more."""
+    rows = "\n".join(f"{STEP * k:.3f},{math.sin(0.7 * k):.6f}" for k in range(201))
+    way(view, "Record file")
+    pending = view.get_by_test_id("motion-pending")
+    expect(pending).to_contain_text("still")
+    view.evaluate(DROP, ["site.csv", rows + "\n"])
+    expect(view.get_by_test_id("record-needs").get_by_role("button", name="Read it so")).to_be_visible()
+    expect(pending).to_contain_text("not read yet")
+    view.evaluate(DROP, ["README.md", "# Notes\nnothing here\n"])
+    expect(view.locator("[data-testid=record-answer] .note.error")).to_contain_text("README.md")
+    expect(view.get_by_test_id("record-needs")).to_be_empty()
+    way(view, "Pulse")
+    expect(pending).to_be_empty()
+
+
 def inputs_or_first(page: Any) -> Any:
     """Return what the page keeps; nothing before the first change."""
     return page.evaluate("sessionStorage.getItem('rocking.inputs')")
@@ -153,7 +232,7 @@ def test_scaling_scales(view: Any) -> None:
     view.get_by_test_id("motion-facts").filter(has_text="1.5").wait_for()
     assert fact(view, "Peak acceleration").startswith("1.5")
     factor.fill("0")
-    view.get_by_text("nothing would move").wait_for()
+    view.get_by_text("Not 0: nothing would move.", exact=True).wait_for()
     assert inputs(view)["motion"]["scale"] == 0.5
 
 

@@ -9,7 +9,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from rocking.bodies import Block
 from rocking.dynamics.histories import free_rocking, simulate
@@ -110,7 +112,8 @@ def test_one_sees_that_the_model_decides(answered: Callable[..., Any], shot: Cal
     page = answered(link(DECISIVE))
     verdict = page.get_by_test_id("verdict")
     assert verdict.get_attribute("data-kind") == "differs"
-    assert "ked" in verdict.inner_text()
+    assert "KED" in verdict.inner_text()
+    assert "housner" not in verdict.inner_text()
     assert card(page, "ked").get_attribute("data-outcome") == "overturned"
     assert card(page, "housner").get_attribute("data-outcome") == "rocked"
     shot(page, "response-decides")
@@ -125,6 +128,67 @@ def test_a_body_that_overturns_comes_to_lie_and_stays(answered: Callable[..., An
     page.keyboard.press("End")
     assert "90.00\u00b0" in page.get_by_test_id("scene-rotation").inner_text()
     shot(page, "response-overturned")
+
+
+def models_of(page: Any) -> list[str]:
+    """Return the models in the order in which the inputs have them."""
+    found: list[str] = page.evaluate("JSON.parse(sessionStorage.getItem('rocking.inputs')).restitution.models")
+    return found
+
+
+def test_a_ticked_model_comes_last_and_the_main_one_is_chosen_by_name(answered: Callable[..., Any]) -> None:
+    """A third model leaves the first one first; another becomes the main model only where one says so."""
+    page = answered(link(GENTLE, restitution={"models": ["ked"]}))
+    page.get_by_role("checkbox", name="Housner").check()
+    page.get_by_role("checkbox", name="shifted impulse").check()
+    assert models_of(page) == ["ked", "housner", "shifted-impulse"]
+    expect(page.get_by_test_id("outcomes").locator(".outcome").first).to_contain_text("KED")
+    page.get_by_label("Main model").select_option("housner")
+    assert models_of(page) == ["housner", "ked", "shifted-impulse"]
+    expect(page.get_by_test_id("outcomes").locator(".outcome").first).to_contain_text("Housner")
+
+
+def test_the_chosen_model_is_shown_in_every_part_and_file(answered: Callable[..., Any]) -> None:
+    """With Housner's card chosen, energy, impacts and the saved curves are Housner's, after another tick too."""
+    page = answered()
+    card(page, "housner").click()
+    page.get_by_role("checkbox", name="shifted impulse").check()
+    expect(page.get_by_test_id("outcomes").locator(".outcome")).to_have_count(3)
+    expect(card(page, "housner").locator("input")).to_be_checked()
+    expect(page.get_by_test_id("chart-energy").locator("figcaption")).to_have_text("Energy (Housner)")
+    expect(page.locator(".impacts").get_by_label("Model", exact=True)).to_have_value("housner")
+    expect(page.get_by_test_id("files-model")).to_contain_text("Housner")
+    with page.expect_download() as waiting:
+        page.get_by_role("button", name="Curves, CSV").click()
+    assert "housner" in waiting.value.suggested_filename
+    wanted = response(GENTLE, "housner")
+    last = Path(waiting.value.path()).read_text(encoding="utf-8-sig").splitlines()
+    head = next(k for k, line in enumerate(last) if "rotation" in line and not line.startswith("#"))
+    place = next(k for k, name in enumerate(last[head].split(",")) if name.strip('"').startswith("rotation"))
+    rotations = [float(line.split(",")[place]) for line in last[head + 1 :]]
+    assert rotations == wanted.rotation.tolist()
+    assert rotations != response(GENTLE, "ked").rotation.tolist()
+
+
+def test_the_fall_does_not_hide_the_rocking(answered: Callable[..., Any]) -> None:
+    """Velocity is drawn until 1.5 times the slenderness angle; with the whole fall its extreme would be larger."""
+    page = answered(link(DECISIVE, restitution={"models": ["ked"]}))
+    found = response(DECISIVE, "ked")
+    alpha = found.rocker.right.slenderness_angle
+    fallen = int(np.argmax(np.abs(found.rotation) > 1.5 * alpha))
+    shown, whole = np.abs(found.angular_velocity[:fallen]).max(), np.abs(found.angular_velocity).max()
+    assert whole > 1.3 * shown
+    label = page.get_by_test_id("chart-velocity").locator("[role=img]").get_attribute("aria-label")
+    drawn = [abs(float(word.replace("\u2212", "-"))) for word in re.findall(r"[-\u2212]?[0-9.]+(?= (?:to|rad))", label)]
+    assert max(drawn[1:]) < 1.1 * shown
+
+
+def test_models_have_dashes_of_their_own(answered: Callable[..., Any]) -> None:
+    """In the list of models no two lines without regard to colour are alike but that of KED, which is whole."""
+    page = answered()
+    keys = page.locator(".model-row .dash-key path")
+    dashes = [key.get_attribute("stroke-dasharray") for key in keys.all()]
+    assert len(dashes) == len(set(dashes)) >= 6
 
 
 def test_a_coefficient_of_ones_own(answered: Callable[..., Any]) -> None:

@@ -11,6 +11,9 @@ from typing import Any
 
 import pytest
 
+playwright = pytest.importorskip("playwright.sync_api")
+expect = playwright.expect
+
 PHONE, WIDE = {"width": 360, "height": 740}, {"width": 1360, "height": 900}
 STATIC = Path(str(files("rocking"))) / "app" / "static"
 STEPS = ["body", "impact", "motion", "response", "studies", "takeaway"]
@@ -250,8 +253,10 @@ def test_a_chart_is_words_and_table_too(page: Any) -> None:
     assert "Probe, over time from 0 to 3 s" in words
     assert "first from \u22121 to 2 rad" in words
     assert "second from 0 to 1.5 rad" in words
-    page.get_by_text("Show as table").click()
-    assert page.locator(".chart-table tbody tr").count() == 4
+    assert page.locator(".chart .legend path").nth(1).get_attribute("stroke-dasharray") == "4 2"
+    assert page.locator(".chart .legend path").nth(0).get_attribute("stroke-dasharray") is None
+    page.get_by_text("Show as table of Probe").click()
+    expect(page.locator(".chart-table tbody tr")).to_have_count(4)
     with page.expect_download() as saved:
         page.evaluate("void window.probe.toPng()")
     assert saved.value.suggested_filename == "probe.png"
@@ -259,3 +264,184 @@ def test_a_chart_is_words_and_table_too(page: Any) -> None:
     page.get_by_role("button", name="Switch between light and dark").click()
     page.evaluate("window.probe.destroy()")
     assert page.locator(".chart").count() == 0
+
+
+def test_a_link_pasted_into_the_open_tab_is_followed(page: Any, served: Any) -> None:
+    """On another view, the link's inputs and view are taken; the address keeps the view alone."""
+    page.locator("#tab-impact").click()
+    page.get_by_test_id("ledger").wait_for()
+    page.goto(f"{served.url}/#{link_of({'body': {'units': 'cm', 'width': 31.25, 'height': 140}}, 'body')}")
+    expect(page.get_by_label("Width")).to_have_value("31.25")
+    assert page.locator("#tab-body").get_attribute("aria-selected") == "true"
+    assert page.url == f"{served.url}/#view=body"
+    page.go_back()
+    expect(page.locator("#view-impact")).to_be_visible()
+    assert page.evaluate("JSON.parse(sessionStorage['rocking.inputs']).body.width") == 31.25
+
+
+def test_the_skip_link_stays_in_the_view(page: Any) -> None:
+    """Skip to the content, pressed in Impact, moves the focus and nothing else."""
+    page.locator("#tab-impact").click()
+    page.get_by_test_id("ledger").wait_for()
+    page.locator(".skip").focus()
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.id") == "main"
+    page.wait_for_timeout(150)
+    assert page.locator("#view-impact").is_visible()
+    assert page.locator("#view-body").is_hidden()
+
+
+def test_edits_after_a_link_outlast_a_reload(open_page: Callable[..., Any]) -> None:
+    """What was typed after a link was opened is there after a reload, not the link's number."""
+    page = open_page(link_of({"body": {"units": "m", "width": 1, "height": 4}}))
+    page.get_by_label("Width").fill("1.005")
+    page.get_by_test_id("facts-table").wait_for()
+    page.reload()
+    expect(page.get_by_label("Width")).to_have_value("1.005")
+    expect(page.get_by_label("Height")).to_have_value("4")
+
+
+def test_a_new_link_signs_an_open_tab_in_again(open_page: Callable[..., Any], served: Any) -> None:
+    """A session that ended asks for a link over the page; the link opened in that tab lets the work go on."""
+    page = open_page()
+    page.get_by_test_id("facts-table").wait_for()
+    page.context.clear_cookies()
+    page.get_by_label("Width").fill("0.75")
+    door = page.get_by_role("dialog", name="Sign in again")
+    door.wait_for()
+    assert "Authorization" not in page.locator("body").inner_text()
+    page.goto(served.api("session/link")["url"])
+    expect(door).to_have_count(0)
+    expect(page.get_by_label("Width")).to_have_value("0.75")
+    expect(page.get_by_test_id("facts-table")).to_contain_text("2.6667")
+    assert "token" not in page.url
+
+
+def test_the_door_of_an_open_tab_takes_a_pasted_link(open_page: Callable[..., Any], served: Any) -> None:
+    """A wrong link is refused in words and may be corrected on the spot."""
+    page = open_page()
+    page.get_by_test_id("facts-table").wait_for()
+    page.context.clear_cookies()
+    page.get_by_label("Height").fill("3")
+    door = page.get_by_role("dialog", name="Sign in again")
+    door.get_by_label("Link or token").fill(f"{served.url}/#token=nothing")
+    door.get_by_role("button", name="Sign in").click()
+    door.get_by_text("wrong, used up or too old").wait_for()
+    door.get_by_label("Link or token").fill(served.api("session/link")["url"])
+    page.keyboard.press("Enter")
+    expect(door).to_have_count(0)
+    expect(page.get_by_test_id("facts-table")).to_contain_text("1.5207")
+
+
+def test_the_door_keeps_the_link_that_led_to_it(browser: Any, served: Any, signed_in: Any) -> None:
+    """A colleague who opens a permanent link first and signs in then sees its view with its inputs."""
+    page = browser.new_page()
+    page.goto(f"{served.url}/#{link_of({'body': {'units': 'cm', 'width': 42, 'height': 168}}, 'impact')}")
+    page.get_by_label("Link or token").fill(served.api("session/link")["url"])
+    page.get_by_role("button", name="Sign in").click()
+    page.get_by_test_id("ledger").wait_for()
+    page.locator("#tab-body").click()
+    expect(page.get_by_label("Width")).to_have_value("42")
+    page.close()
+
+
+def test_a_signed_in_browser_lets_another_in(page: Any, browser: Any) -> None:
+    """The button at the foot shows a link; another browser opens it and is in."""
+    page.get_by_role("button", name="Link for another browser").click()
+    link = page.get_by_label("Link that signs one more browser in").input_value()
+    other = browser.new_page()
+    other.goto(link)
+    other.get_by_test_id("facts-table").wait_for()
+    other.close()
+    page.get_by_role("button", name="Close").click()
+    expect(page.get_by_role("dialog")).to_have_count(0)
+
+
+@pytest.mark.parametrize("text", ["abc", "1.000,5", "0"])
+def test_a_field_in_error_stops_downloads_and_dims_results(page: Any, text: str) -> None:
+    """Nothing is saved of inputs that are not those on the screen; every view names the field."""
+    page.get_by_test_id("facts-table").wait_for()
+    page.get_by_label("Width").fill(text)
+    expect(page.locator(".card.stale")).to_have_count(2)
+    saved: list[str] = []
+    page.on("download", lambda file: saved.append(file.suggested_filename))
+    page.get_by_role("button", name="as CSV").first.click()
+    expect(page.locator("#status")).to_contain_text("Nothing was saved")
+    expect(page.locator("#status")).to_contain_text("Width")
+    page.locator("#tab-impact").click()
+    expect(page.get_by_test_id("summary-faults")).to_contain_text("Width")
+    expect(page.get_by_test_id("impact-results")).to_have_class(re.compile("stale"))
+    assert saved == []
+    page.locator("#tab-body").click()
+    page.get_by_label("Width").fill("0.6")
+    expect(page.locator(".card.stale")).to_have_count(0)
+    with page.expect_download():
+        page.get_by_role("button", name="as CSV").first.click()
+
+
+def test_a_field_that_was_left_behind_stops_nothing(page: Any) -> None:
+    """The wrong width of a block is forgotten with the block."""
+    page.get_by_label("Width").fill("abc")
+    expect(page.locator(".card.stale")).to_have_count(2)
+    page.get_by_label("Shape").select_option("regular_polygon")
+    expect(page.locator(".card.stale")).to_have_count(0)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"motion": 5}, {"motion": {"pulse": 3}}, {"motion": {}}, {"restitution": []},
+        {"restitution": {"models": "ked"}}, {"response": 1}, {"settings": "all"}, {"elsewhere": {}},
+        {"body": {"units": "m", "width": "x", "height": 1}}, {"body": {"units": "yard", "width": 1, "height": 1}},
+        {"body": {"units": "m", "section": {"region": {}}}},
+        {"body": {"units": "m", "section": {"region": [{"outline": [1, 2, 3]}]}}},
+    ],
+    ids=lambda wrong: re.sub(r"\W+", "-", json.dumps(wrong)).strip("-")[:60],
+)  # fmt: skip
+def test_inputs_of_the_wrong_shape_are_not_taken(open_page: Callable[..., Any], wrong: dict[str, Any]) -> None:
+    """A link with a number for a motion, or the like, is refused in words and no view breaks on it."""
+    page = open_page(link_of({"body": {"units": "m", "width": 1, "height": 4}, **wrong}, "motion"))
+    expect(page.locator("#status")).to_contain_text("no readable inputs")
+    assert "Cannot read" not in page.locator("#view-motion").inner_text()
+
+
+def test_nulls_of_a_link_are_left_out(open_page: Callable[..., Any]) -> None:
+    """Absent tables written as null are absent; the other inputs are taken."""
+    inputs = {"body": {"units": "m", "width": 1, "height": 4, "depth": None}, "response": None, "motion": None}
+    page = open_page(link_of(inputs))
+    expect(page.get_by_label("Height")).to_have_value("4")
+    assert page.evaluate("JSON.parse(sessionStorage['rocking.inputs'])") == {
+        "body": {"units": "m", "width": 1, "height": 4}
+    }
+
+
+def test_a_view_that_did_not_come_is_asked_for_again(browser: Any, served: Any, signed_in: Any) -> None:
+    """A module that fails while the server is down is loaded when the view is next shown."""
+    context = browser.new_context(storage_state=signed_in)
+    page = context.new_page()
+    page.goto(served.url)
+    page.get_by_test_id("facts-table").wait_for()
+    page.route("**/views/impact.js", lambda route: route.abort())
+    page.locator("#tab-impact").click()
+    page.get_by_text("did not come from the server").wait_for()
+    expect(page.get_by_role("button", name="Load the page again")).to_be_visible()
+    page.unroute("**/views/impact.js")
+    page.locator("#tab-body").click()
+    page.locator("#tab-impact").click()
+    page.get_by_test_id("ledger").wait_for()
+    context.close()
+
+
+def test_a_server_that_comes_back_is_asked_again(browser: Any, served: Any, signed_in: Any) -> None:
+    """Numbers that could not be had while the server was away come by themselves once it answers."""
+    context = browser.new_context(storage_state=signed_in)
+    page = context.new_page()
+    page.goto(served.url)
+    page.get_by_test_id("facts-table").wait_for()
+    page.route("**/api/**", lambda route: route.abort())
+    page.get_by_label("Width").fill("0.75")
+    expect(page.get_by_test_id("body-refusal")).to_contain_text("does not answer")
+    page.unroute("**/api/**")
+    expect(page.get_by_test_id("facts-table")).to_contain_text("2.6667", timeout=15_000)
+    expect(page.get_by_test_id("body-refusal")).to_be_empty()
+    context.close()

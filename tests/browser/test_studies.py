@@ -1,6 +1,7 @@
 """Studies, as a user launches, watches, cancels and reads them."""
 
 import json
+import math
 import time
 from base64 import urlsafe_b64encode
 from collections.abc import Callable
@@ -8,6 +9,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
 
+import httpx
 import pytest
 from playwright.sync_api import expect
 
@@ -28,6 +30,18 @@ def counted(page: Any, number: int) -> None:
     """Type how many values both axes have."""
     for field in page.locator("#view-studies").get_by_label("number", exact=True).all():
         field.fill(str(number))
+
+
+def kept_inputs(page: Any) -> dict[str, Any]:
+    """Return the inputs that the page keeps."""
+    found: dict[str, Any] = page.evaluate("JSON.parse(sessionStorage.getItem('rocking.inputs'))")
+    return found
+
+
+def refused(page: Any, words: str) -> None:
+    """Press Launch and read why nothing starts."""
+    page.get_by_test_id("study-launch").click()
+    expect(page.locator("#study-problem")).to_contain_text(words)
 
 
 @pytest.fixture
@@ -61,12 +75,114 @@ def test_a_map_from_launch_to_the_history_of_a_cell(studies: Any, shot: Any, ser
     shot(studies, "studies-map")
     studies.get_by_role("button", name="Open in Response").click()
     studies.wait_for_selector("#view-response[data-ready=true]:not([hidden])")
-    inputs = studies.evaluate("location.hash")
-    assert "view=response" in inputs
+    expect(studies.get_by_test_id("verdict")).to_be_visible()
+    expect(studies.get_by_test_id("response-refusal")).to_be_empty()
+    assert "view=response" in studies.evaluate("location.hash")
+    assert None not in kept_inputs(studies).values()
     found = next(each for each in served.api("studies", method="GET")["studies"] if each["name"] == "first map")
     result = served.api(f"studies/{found['id']}/result", method="GET")
     assert len(result["outcome"]) == 2
     assert len(result["outcome"][0]) == len(result["outcome"][0][0]) == 24
+
+
+def test_the_cell_that_was_clicked_is_opened(studies: Any, served: Any) -> None:
+    """On the way from a clicked cell to the button other cells are passed: the clicked one opens, with a verdict."""
+    launched_map(studies, "clicked cell", 12)
+    canvas = studies.get_by_test_id("map-canvas")
+    box = canvas.bounding_box()
+    go = studies.get_by_role("button", name="Open in Response")
+    canvas.hover(position={"x": 0.4 * box["width"], "y": 0.4 * box["height"]})
+    expect(studies.get_by_test_id("cell-words")).to_contain_text("Click the cell")
+    expect(go).to_be_disabled()
+    canvas.click(position={"x": 0.5 * box["width"], "y": 0.2 * box["height"]})
+    expect(go).to_be_enabled()
+    told, words = (studies.get_by_test_id(name) for name in ("map-told", "cell-words"))
+    clicked, story = told.inner_text(), words.inner_text()
+    canvas.hover(position={"x": 0.8 * box["width"], "y": 0.8 * box["height"]})
+    expect(told).not_to_have_text(clicked)
+    studies.locator("[data-testid=cell-history] h3").hover()
+    expect(told).to_have_text(clicked)
+    expect(words).to_have_text(story)
+    go.click()
+    expect(studies.get_by_test_id("verdict")).to_be_visible()
+    found = kept_inputs(studies)
+    assert None not in found.values()
+    answer = served.api("response", json=found)["answers"][0]
+    assert story.startswith(answer["summary"])
+
+
+def test_a_number_in_error_launches_nothing(studies: Any, served: Any) -> None:
+    """With a field marked wrong nothing is launched: its last good number is not the one on the screen."""
+    before = len(served.api("studies", method="GET")["studies"])
+    studies.locator("#view-studies").get_by_label("from").first.fill("x")
+    refused(studies, "wrong")
+    assert len(served.api("studies", method="GET")["studies"]) == before
+
+
+def test_axes_follow_the_motion_and_names_stay_apart(studies: Any) -> None:
+    """A synthetic motion has no pulse frequency as an axis; the second study of one name gets a number."""
+    across = studies.get_by_label("Across", exact=True)
+    assert across.input_value() == "frequency_ratio"
+    for _ in range(2):
+        launched_map(studies, "one name", 4)
+        expect(studies.locator("#study-name")).to_have_value("")
+    expect(studies.locator(".study strong", has_text="one name 2")).to_have_count(1)
+    studies.get_by_role("tab", name="Motion").click()
+    studies.locator("#view-motion .segment", has_text="Synthetic").click()
+    studies.get_by_role("tab", name="Studies").click()
+    expect(across).to_have_value("scale")
+    expect(across.locator("option[value=frequency_ratio]")).to_have_count(0)
+    counted(studies, 3)
+    studies.get_by_test_id("study-launch").click()
+    expect(studies.locator(".study", has_text="overturning map").first).to_have_attribute(
+        "data-state", "done", timeout=60_000
+    )
+
+
+def table_of(amplitude: float) -> bytes:
+    """Return a record of two columns that does not name its unit."""
+    rows = (f"{0.01 * k:.2f},{amplitude * math.sin(6.0 * k * 0.01):.6f}" for k in range(401))
+    return ("\n".join(rows) + "\n").encode()
+
+
+def sent(served: Any, name: str, content: bytes) -> None:
+    """Upload a record as a script does."""
+    keys = {"Authorization": f"Bearer {served.key}", "Origin": served.url, "Content-Type": "application/octet-stream"}
+    answer = httpx.post(f"{served.url}/api/records", params={"name": name}, content=content, headers=keys)
+    answer.raise_for_status()
+
+
+def test_records_are_ticked_told_and_deleted(studies: Any, served: Any, shot: Any) -> None:
+    """Records without a unit are asked for it once, the ticked ones make a cloud, and one is deleted."""
+    for each in served.api("records", method="GET"):
+        served.api(f"records/{each['record']}", method="DELETE")
+    for k in range(4):
+        sent(served, f"site{k}.csv", table_of(0.3 + 0.1 * k))
+    studies.get_by_role("radio", name="Fragility").check(force=True)
+    studies.get_by_role("radio", name="Cloud").check(force=True)
+    studies.get_by_role("radio", name="Uploaded records").check(force=True)
+    rows = studies.locator(".record-row")
+    expect(rows).to_have_count(4)
+    refused(studies, "No record is ticked")
+    for row in rows.all():
+        row.get_by_label("Unit of the accelerations").select_option("g")
+        row.get_by_role("button", name="Read").click()
+        expect(row.get_by_role("checkbox")).to_be_checked()
+    rows.first.get_by_role("checkbox").uncheck()
+    expect(studies.get_by_test_id("record-choice")).to_contain_text("3 of 4 records are taken")
+    shot(studies, "studies-records")
+    studies.locator("#study-name").fill("cloud of records")
+    studies.get_by_test_id("study-launch").click()
+    studies.get_by_test_id("fragility-fits").first.wait_for(timeout=60_000)
+    assert studies.get_by_test_id("fragility-chart").count() >= 1
+    studies.once("dialog", lambda dialog: dialog.accept())
+    rows.first.get_by_role("button", name="Delete").click()
+    expect(rows).to_have_count(3)
+    assert len(served.api("records", method="GET")) == 3
+    studies.reload()
+    studies.get_by_role("radio", name="Fragility").check(force=True)
+    studies.get_by_role("radio", name="Uploaded records").check(force=True)
+    expect(studies.get_by_test_id("record-choice")).to_contain_text("3 of 3 records are taken")
 
 
 def test_where_the_models_differ(studies: Any, shot: Any) -> None:

@@ -64,6 +64,45 @@ def test_every_file(takeaway: Any, tmp_path: Path, shot: Any) -> None:
         assert found.stat().st_size > 60, testid
 
 
+def test_a_gif_says_that_it_is_drawn_and_can_be_stopped(takeaway: Any) -> None:
+    """While the frames are drawn it says so, a second press asks for nothing more, and Cancel ends it."""
+    asked: list[str] = []
+    takeaway.on("request", lambda request: asked.append(request.url) if "animation.gif" in request.url else None)
+    button = takeaway.get_by_test_id("animation-gif")
+    button.click()
+    expect(takeaway.locator("#view-takeaway").get_by_test_id("film-progress")).to_contain_text("are being drawn")
+    button.dispatch_event("click")
+    takeaway.get_by_role("button", name="Cancel the GIF").click()
+    expect(takeaway.locator("#view-takeaway").get_by_test_id("film-progress")).to_be_hidden()
+    expect(button).to_be_focused()
+    assert len(asked) == 1
+
+
+def test_the_model_of_a_file_is_chosen_and_named(takeaway: Any, tmp_path: Path) -> None:
+    """The response as CSV is that of the model that was chosen; its name says which."""
+    first = saved(takeaway, "table-response-csv", tmp_path)
+    assert "ked" in first.name
+    takeaway.get_by_label("Model in files that hold one").select_option("housner")
+    second = saved(takeaway, "table-response-csv", tmp_path)
+    assert "housner" in second.name
+    assert second.read_bytes() != first.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('units = "m"\n[block]\nwidth = 0.5\nheight = 2.0\n', "step Body"),
+        ('[campaign]\nname = "x"\nkind = "histories"\n', "step Studies"),
+    ],
+)
+def test_a_toml_of_another_kind_is_told_where_it_goes(takeaway: Any, tmp_path: Path, text: str, words: str) -> None:
+    """A body file and a job file are refused with the step that takes them."""
+    path = tmp_path / "other.toml"
+    path.write_text(text, encoding="utf-8")
+    takeaway.get_by_test_id("read-toml").set_input_files(path)
+    expect(takeaway.get_by_text(words).first).to_be_visible()
+
+
 def test_the_toml_on_the_command_line(takeaway: Any, tmp_path: Path, served: Any) -> None:
     """The saved TOML gives on the command line the numbers of the application, to the last digit."""
     path = saved(takeaway, "take-toml", tmp_path)

@@ -16,6 +16,7 @@ from rocking.app.answers import JsonAnswer
 from rocking.app.api import body, impact, info, motion, records, response
 from rocking.app.handlers import install_handlers
 from rocking.app.records import RecordStore
+from rocking.app.schemas.error import ERRORS, describe_key
 from rocking.app.security import session
 from rocking.app.security.failures import Failures
 from rocking.app.security.gate import Gate
@@ -90,7 +91,8 @@ def _add_endpoints(app: FastAPI) -> None:
         documents.router,
         studies.router,
     ):
-        app.include_router(router)
+        app.include_router(router, responses=ERRORS)
+    describe_key(app)
 
 
 def _state(settings: Settings) -> AppState:

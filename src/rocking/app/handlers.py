@@ -1,6 +1,6 @@
 """Errors of the endpoints as JSON: installed on the application once."""
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import Any, cast
 
 from fastapi import FastAPI, Request
@@ -87,8 +87,9 @@ def _refused(error: HTTPException) -> JsonAnswer:
     return answer
 
 
-def _handler(answer: Callable[[Any], JsonAnswer]) -> Callable[[Request, Exception], JsonAnswer]:
-    def handle(request: Request, error: Exception) -> JsonAnswer:
+def _handler(answer: Callable[[Any], JsonAnswer]) -> Callable[[Request, Exception], Awaitable[JsonAnswer]]:
+    # no thread for it: a server that ends would not wait for one
+    async def handle(request: Request, error: Exception) -> JsonAnswer:
         return answer(error)
 
     return handle

@@ -22,7 +22,15 @@ _KINDS: tuple[tuple[type[RockingError], str], ...] = (
     (MissingExtraError, "missing-extra"),
     (RockingError, "invalid-value"),
 )
-_BY_STATUS = {403: "forbidden", 401: "forbidden", 404: "not-found", 413: "too-large", 429: "busy"}
+_BY_STATUS = {
+    401: "forbidden",
+    403: "forbidden",
+    404: "not-found",
+    413: "too-large",
+    429: "busy",
+    503: "busy",
+    507: "no-room",
+}
 
 
 class Problem(RockingError):  # noqa: N818 - the names of the subclasses are what is said of them
@@ -63,6 +71,20 @@ class TooLarge(Problem):
 
     status = 413
     kind = "too-large"
+
+
+class NoRoom(Problem):
+    """The disk of the server takes nothing more."""
+
+    status = 507
+    kind = "no-room"
+
+
+class Ending(Problem):
+    """The server ends, and the computation with it."""
+
+    status = 503
+    kind = "busy"
 
 
 class NotFound(Problem):

@@ -1,18 +1,17 @@
 """Uploaded records: files by the hash of their bytes, and the motions read from them lately."""
 
 import hashlib
-import json
-import os
 import shutil
 import threading
 from collections import OrderedDict
-from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from rocking.app.disk_room import room_on_disk
 from rocking.app.files import safe_name
 from rocking.app.problems import NotFound, TooLarge
+from rocking.app.record_folder import StoredRecord, is_hash, is_own, keep, read_note, sweep
 from rocking.app.settings import Limits
 from rocking.errors import RecordError
 from rocking.motions.formats import read_motion
@@ -21,29 +20,8 @@ from rocking.motions.motion import GroundMotion
 _HELD = 128 * 1024 * 1024
 """Motions that are kept in memory [bytes]."""
 
-_DIGITS = frozenset("0123456789abcdef")
-
-
-@dataclass(frozen=True, slots=True)
-class StoredRecord:
-    """An uploaded file.
-
-    Parameters
-    ----------
-    record : str
-        SHA-256 of its bytes, 64 hexadecimal digits.
-    file_name : str
-        The name it was given, made harmless.
-    bytes : int
-        Its length [bytes].
-    uploaded : str
-        When, in UTC.
-    """
-
-    record: str
-    file_name: str
-    bytes: int
-    uploaded: str
+MOST_RECORDS = 5_000
+"""Files that are kept at once."""
 
 
 class RecordStore:
@@ -60,6 +38,7 @@ class RecordStore:
     def __init__(self, folder: Path, limits: Limits) -> None:
         self.folder = Path(folder) / "records"
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        sweep(self.folder)
         self._limits = limits
         self._lock = threading.RLock()
         self._motions: OrderedDict[tuple[Any, ...], GroundMotion] = OrderedDict()
@@ -85,19 +64,16 @@ class RecordStore:
             If the file is empty.
         TooLarge
             If it is too large, or there is no room for another one.
+        NoRoom
+            If the disk does not take it.
         """
         self.check_upload(content)
         sha = hashlib.sha256(content).hexdigest()
         made = StoredRecord(sha, safe_name(name, "record"), len(content), datetime.now(UTC).isoformat(" ", "seconds"))
         with self._lock:
             self._make_room(made)
-            place = self.folder / sha
-            place.mkdir(mode=0o700, exist_ok=True)
-            for old in place.iterdir():
-                if old.name != made.file_name:
-                    old.unlink()
-            _write(place / made.file_name, content)
-            _write(self.folder / f"{sha}.json", json.dumps(asdict(made)).encode())
+            with room_on_disk():
+                keep(self.folder, made, content)
             self._forget(sha)
         return made
 
@@ -130,8 +106,8 @@ class RecordStore:
             What is kept.
         """
         with self._lock:
-            notes = [note for note in self.folder.glob("*.json") if _is_hash(note.stem)]
-            found = [made for note in notes if (made := _read(note)) is not None]
+            notes = [note for note in self.folder.glob("*.json") if is_hash(note.stem)]
+            found = [made for note in notes if (made := read_note(note)) is not None]
         return sorted(found, key=lambda made: (made.uploaded, made.record), reverse=True)
 
     def get(self, sha: str) -> StoredRecord:
@@ -152,8 +128,8 @@ class RecordStore:
         NotFound
             If there is none.
         """
-        made = _read(self.folder / f"{sha}.json") if _is_hash(sha) else None
-        if made is None or not self._place(made).is_file():
+        made = read_note(self.folder / f"{sha}.json") if is_hash(sha) else None
+        if made is None or not is_own(self._place(made)):
             raise NotFound(f"no record {str(sha)[:12]}... is kept here: upload the file once more")
         return made
 
@@ -176,6 +152,35 @@ class RecordStore:
             If there is none.
         """
         return self._place(self.get(sha))
+
+    def content(self, sha: str) -> bytes:
+        """Return the bytes of a file, as they were uploaded.
+
+        Parameters
+        ----------
+        sha : str
+            SHA-256 of its bytes.
+
+        Returns
+        -------
+        bytes
+            The file.
+
+        Raises
+        ------
+        NotFound
+            If there is none.
+        RecordError
+            If it is not what was uploaded.
+        """
+        path = self.path(sha)
+        try:
+            found = path.read_bytes()
+        except OSError:
+            found = b""
+        if hashlib.sha256(found).hexdigest() != sha:
+            raise RecordError(f"{path.name}: has changed since it was uploaded: upload it once more")
+        return found
 
     def delete(self, sha: str) -> None:
         """Remove a file.
@@ -251,7 +256,10 @@ class RecordStore:
         return self.folder / made.record / made.file_name
 
     def _make_room(self, made: StoredRecord) -> None:
-        used = sum(other.bytes for other in self.stored() if other.record != made.record)
+        others = [other for other in self.stored() if other.record != made.record]
+        if len(others) >= MOST_RECORDS:
+            raise TooLarge(f"up to {MOST_RECORDS} records are kept; delete some that are no longer needed")
+        used = sum(other.bytes for other in others)
         if used + made.bytes > self._limits.records_bytes:
             room = self._limits.records_bytes >> 20
             raise TooLarge(f"records may take up to {room} MiB together; delete some that are no longer needed")
@@ -261,29 +269,5 @@ class RecordStore:
             del self._motions[key]
 
 
-def _is_hash(word: object) -> bool:
-    return isinstance(word, str) and len(word) == 64 and _DIGITS.issuperset(word)
-
-
 def _size(motion: GroundMotion) -> int:
     return int(motion.acceleration.nbytes * (1 if motion.vertical is None else 2))
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Write a file that is there as a whole or not at all, for this user alone."""
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    with os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    part.replace(path)
-
-
-def _read(note: Path) -> StoredRecord | None:
-    try:
-        told = json.loads(note.read_bytes())
-        made = StoredRecord(str(told["record"]), str(told["file_name"]), int(told["bytes"]), str(told["uploaded"]))
-    except (OSError, ValueError, TypeError, KeyError):
-        return None
-    harmless = safe_name(made.file_name, "record") == made.file_name
-    return made if harmless and made.record == note.stem else None

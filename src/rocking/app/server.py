@@ -1,6 +1,8 @@
 """The server: lock, socket, link, and a clean end."""
 
+import asyncio
 import contextlib
+import os
 import signal
 import socket
 import sys
@@ -10,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
@@ -18,6 +21,7 @@ from rocking.app.application import create_app
 from rocking.app.folder import DataFolder
 from rocking.app.settings import DEFAULT_PORT, Settings
 from rocking.app.warm_up import warm_up_later
+from rocking.app.work import WaitingLine
 
 _HEAD_SECONDS = 15.0
 _CONNECTIONS = 512
@@ -74,10 +78,21 @@ def serve(settings: Settings, started: Callable[[Started], None], *, port: int |
     with DataFolder(settings.folder) as folder:
         wanted = DEFAULT_PORT if port is None else port
         with contextlib.closing(listen(settings.host, wanted, search=port is None)) as door:
-            _run(replace(settings, port=door.getsockname()[1]), folder, door, started)
+            left = _run(replace(settings, port=door.getsockname()[1]), folder, door, started)
+    if left.busy and threading.current_thread() is threading.main_thread():
+        _end_at_once()
 
 
-def _run(settings: Settings, folder: DataFolder, door: socket.socket, started: Callable[[Started], None]) -> None:
+def _end_at_once() -> None:
+    """End without the threads that still compute: Python itself would wait for them, however long that takes."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
+
+
+def _run(
+    settings: Settings, folder: DataFolder, door: socket.socket, started: Callable[[Started], None]
+) -> WaitingLine:
     app = create_app(settings)
     sessions = app.state.rocking.sessions
     key_file = folder.publish(settings.origin, sessions.key)
@@ -90,6 +105,8 @@ def _run(settings: Settings, folder: DataFolder, door: socket.socket, started: C
     server = _Server(_config(app), tell)
     with contextlib.suppress(KeyboardInterrupt), _ended_like_ctrl_c():  # the end that was asked for
         server.run(sockets=[door])
+    line: WaitingLine = app.state.rocking.heavy
+    return line
 
 
 @contextlib.contextmanager
@@ -137,13 +154,34 @@ class _Server(uvicorn.Server):
 
 
 class _PatientProtocol(H11Protocol):
-    """Ends a connection on which the head of the first request does not arrive in time."""
+    """Ends a connection on which the head of a request, the first or a later one, does not arrive in time."""
+
+    _patience: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: Any) -> None:
         super().connection_made(transport)
-        self._patience = self.loop.call_later(_HEAD_SECONDS, self._lose_patience)
+        self._wait_for_head()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._have_head()
+        super().connection_lost(exc)
+
+    def handle_events(self) -> None:
+        super().handle_events()
+        if self.conn.their_state is not h11.IDLE:  # a head is whole, or the connection is a websocket's now
+            self._have_head()
+        elif self.conn.trailing_data[0]:
+            self._wait_for_head()
+
+    def _wait_for_head(self) -> None:
+        if self._patience is None:  # further letters of the same head buy no time
+            self._patience = self.loop.call_later(_HEAD_SECONDS, self._lose_patience)
+
+    def _have_head(self) -> None:
+        if self._patience is not None:
+            self._patience.cancel()
+            self._patience = None
 
     def _lose_patience(self) -> None:
-        cycle: object | None = self.cycle  # None until the head of a first request is whole
-        if cycle is None and not self.transport.is_closing():
+        if not self.transport.is_closing():
             self.transport.close()

@@ -8,7 +8,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from starlette.requests import HTTPConnection
 
-from rocking.app.problems import Busy
+from rocking.app.problems import Busy, Ending
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -63,6 +63,12 @@ class WaitingLine:
         future.add_done_callback(self._leave)
         return future
 
+    @property
+    def busy(self) -> bool:
+        """Whether something is still being computed."""
+        with self._lock:
+            return self._inside > 0
+
     def close(self) -> None:
         """Start nothing more; what runs ends by itself."""
         self._threads.shutdown(wait=False, cancel_futures=True)
@@ -88,6 +94,14 @@ async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args
     -------
     T
         What the function returns.
+
+    Raises
+    ------
+    Ending
+        If the server ends before.
     """
     line: WaitingLine = request.app.state.rocking.heavy
-    return await asyncio.wrap_future(line.submit(function, *args, **kwargs))
+    try:
+        return await asyncio.wrap_future(line.submit(function, *args, **kwargs))
+    except asyncio.CancelledError as error:  # only a server that ends cancels a request
+        raise Ending("the server ends before this is computed; start it again, then ask again") from error

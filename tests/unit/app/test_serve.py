@@ -4,6 +4,7 @@ import json
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -87,6 +88,45 @@ def test_sigterm_ends_it_like_ctrl_c(tmp_path: Path) -> None:
         assert (tmp_path / "api-key").exists()
         process.terminate()
         assert process.wait(10) == 0
+    assert not (tmp_path / "api-key").exists()
+
+
+LONG = """
+import sys, threading, time
+from rocking.app.api import response
+from rocking.cli import main
+response._answer = lambda *_: time.sleep(60)
+main(["serve", "--json", "--port", "0", "--data", sys.argv[1]])
+"""
+
+
+def test_the_end_does_not_wait_for_a_long_computation(tmp_path: Path) -> None:
+    """SIGTERM while something computes for a minute: that request is told so as JSON, and the end comes in seconds."""
+    command = [sys.executable, "-c", LONG, str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        told = json.loads(process.stdout.readline())
+        key = Path(told["key_file"]).read_text(encoding="utf-8")
+        asked = {"body": {"units": "m", "width": 1, "height": 3}, "response": {"free": 0.5}}
+        answers: list[tuple[int, Any]] = []
+
+        def ask() -> None:
+            with pytest.raises(HTTPError) as ended:
+                post(told["url"], "/api/response", asked, Authorization=f"Bearer {key}")
+            answers.append((ended.value.code, json.load(ended.value)))
+            ended.value.close()
+
+        asking = threading.Thread(target=ask)
+        asking.start()
+        time.sleep(0.7)
+        process.terminate()
+        try:
+            assert process.wait(15) == 0
+        finally:
+            process.kill()
+        asking.join(10)
+    assert answers[0][0] == 503
+    assert answers[0][1]["error"]["kind"] == "busy"
     assert not (tmp_path / "api-key").exists()
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rocking.app.api.curves import response_series
+from rocking.app.problems import TooLarge
 from rocking.app.question import Question
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
@@ -14,6 +15,9 @@ from rocking.report.facts.verdict import Verdict
 
 MOST_SAMPLES = 500_000
 """Samples of a response whose forces and energy are computed here."""
+
+MOST_TOGETHER = 3_000_000
+"""Samples of all responses of one question, those after an overturning among them: they are computed as well."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +53,15 @@ class ResponseAnswers:
         ------
         InvalidValueError
             If none of the restitutions has a response.
+        TooLarge
+            If the responses together have too many samples.
         """
-        found = {label: _tried(question, choice) for label, choice in question.choices.items()}
+        found: dict[str, Response | str] = {}
+        samples = 0
+        for label, choice in question.choices.items():
+            found[label] = tried = _tried(question, choice)
+            samples += tried.segments.count if isinstance(tried, Response) else 0
+            _refuse_long(samples, len(found), len(question.choices))
         reasons = [reason for reason in found.values() if isinstance(reason, str)]
         if len(reasons) == len(found):
             raise InvalidValueError(reasons[0])
@@ -109,6 +120,14 @@ def answer_facts(label: str, response: Response, question: Question, points: int
     """
     facts = response_facts(response, question.friction)
     return {"label": label, **facts, "series": response_series(response, points)}
+
+
+def _refuse_long(samples: int, done: int, asked: int) -> None:
+    if samples > MOST_TOGETHER:
+        raise TooLarge(
+            f"{done} of {asked} responses together take {samples} steps, more than the {MOST_TOGETHER} that are "
+            "computed at once; fewer restitutions, a motion with longer steps, or the command line"
+        )
 
 
 def _tried(question: Question, restitution: Any) -> Response | str:

@@ -5,7 +5,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from rocking.app.disk_room import room_on_disk
 from rocking.app.files import safe_name
+from rocking.app.schemas.caps import check_record, check_samples
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import RecordError
 from rocking.motions.formats import formats, read_record
@@ -77,10 +79,14 @@ class Looked:
         ------
         RecordError
             If it cannot be read, whatever is told.
+        TooLarge
+            If it has too many samples.
         """
+        check_record(content)
         with TemporaryDirectory(prefix="rocking-") as folder:
             path = Path(folder) / safe_name(name, "record")
-            path.write_bytes(content)
+            with room_on_disk():
+                path.write_bytes(content)
             return cls._of(path, told)
 
     @classmethod
@@ -101,6 +107,7 @@ class Looked:
                     return cls(None, needs, reasons[0])
                 given[missing] = _STAND_IN[missing]
             else:
+                check_samples(sum(part.acceleration.size for part in record.components))
                 if len(record.components) > 1:
                     needs.append("component")
                     names = ", ".join(part.name for part in record.components)

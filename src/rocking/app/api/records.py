@@ -12,6 +12,7 @@ from rocking.app.api.uploads import OCTETS
 from rocking.app.records import RecordStore
 from rocking.app.state import state_of
 from rocking.app.work import heavy
+from rocking.errors import RecordError
 
 router = APIRouter(prefix="/api/records", tags=["records"])
 
@@ -70,6 +71,38 @@ def list_records(request: Request) -> JsonAnswer:
     return JsonAnswer([asdict(made) for made in state_of(request).records.stored()])
 
 
+@router.get(
+    "/{record}", summary="What a record file holds", description="As when it was sent.", response_class=JsonAnswer
+)
+async def look_at_record(
+    request: Request,
+    record: Annotated[str, InPath(min_length=1, max_length=200, description="SHA-256")],
+    format: Word = None,
+    units: Word = None,
+    time_step: Annotated[float | None, Query(gt=0.0, allow_inf_nan=False, description="s")] = None,
+) -> JsonAnswer:
+    """Answer with what a kept file holds and what must still be told.
+
+    Parameters
+    ----------
+    request : Request
+        The request.
+    record : str
+        SHA-256 of its bytes.
+    format, units : str, optional
+        What the user says about it.
+    time_step : float, optional
+        Step between samples, where the file does not state it [s].
+
+    Returns
+    -------
+    JsonAnswer
+        Facts of the file.
+    """
+    told = Told(format, units, time_step)
+    return JsonAnswer(await heavy(request, _looked, state_of(request).records, record, told))
+
+
 @router.delete(
     "/{record}", summary="Remove a record file", description="Gone, from memory too.", response_class=JsonAnswer
 )
@@ -96,5 +129,23 @@ def delete_record(
 
 def _added(records: RecordStore, content: bytes, name: str, told: Told) -> dict[str, Any]:
     records.check_upload(content)
-    looked = Looked.at(content, name, told)
+    looked = _read(content, name, told)
     return {**asdict(records.add(content, name)), **looked.facts()}
+
+
+def _looked(records: RecordStore, record: str, told: Told) -> dict[str, Any]:
+    stored = records.get(record)
+    return {**asdict(stored), **_read(records.content(record), stored.file_name, told).facts()}
+
+
+def _read(content: bytes, name: str, told: Told) -> Looked:
+    try:
+        return Looked.at(content, name, told)
+    except RecordError as error:
+        if "with_response" not in str(error):
+            raise
+        words = (
+            f"{name}: the samples are counts of the instrument, whose response lies in a StationXML file of its own; "
+            "this page takes no StationXML. Convert the file to m/s2 first, as `MiniSeed.with_response` does in Python"
+        )
+        raise RecordError(words) from error

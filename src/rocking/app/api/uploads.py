@@ -5,9 +5,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from rocking.app.disk_room import room_on_disk
 from rocking.app.files import safe_name
+from rocking.app.problems import Refused
 from rocking.app.schemas.body import BodyInput
 from rocking.app.schemas.caps import check_file
+from rocking.app.schemas.toml_text import parsed_toml
 from rocking.bodies.formats import read_body
 from rocking.bodies.formats.body_writer import body_to_toml
 from rocking.bodies.formats.source import blamed
@@ -52,7 +55,8 @@ def body_in_file(content: bytes, name: str, units: str | None, density: float | 
         return _toml(content, shown, units)
     with TemporaryDirectory(prefix="rocking-") as folder:
         path = Path(folder) / shown
-        path.write_bytes(content)
+        with room_on_disk():
+            path.write_bytes(content)
         body = read_body(path, units=units, density=density)
     return BodyInput.model_validate({**tomllib.loads(body_to_toml(body)), "name": Path(shown).stem})
 
@@ -60,8 +64,8 @@ def body_in_file(content: bytes, name: str, units: str | None, density: float | 
 def _toml(content: bytes, name: str, units: str | None) -> BodyInput:
     with blamed(name):
         try:
-            given = tomllib.loads(content.decode("utf-8-sig"))
-        except (ValueError, RecursionError) as error:
+            given = parsed_toml(content.decode("utf-8-sig"))
+        except (UnicodeDecodeError, Refused) as error:
             raise BodyFileError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
         if "body" in given and isinstance(given["body"], dict):
             given = given["body"]

@@ -2,6 +2,8 @@
 
 import re
 
+import numpy as np
+
 from rocking.app.problems import TooLarge
 from rocking.bodies import Body
 from rocking.bodies.formats.body_schema import Document
@@ -12,8 +14,13 @@ MOST_VERTICES = 10_000
 MOST_POINTS = 10_000
 MOST_STRETCHES = 40
 MOST_RESTITUTIONS = 24
+MOST_RECORD_SAMPLES = 2_000_000
+MOST_DRAWING_BYTES = 4 << 20
+MOST_ENTITIES = 20_000
 
 _X_IN_DXF = re.compile(rb"^[ \t]*10[ \t]*\r?$", re.MULTILINE)
+
+_ENTITY_IN_DXF = re.compile(rb"^[ \t]*0[ \t]*\r?$", re.MULTILINE)
 
 CAPS = {
     "regions": MOST_REGIONS,
@@ -22,6 +29,9 @@ CAPS = {
     "mass_points": MOST_POINTS,
     "contact_stretches": MOST_STRETCHES,
     "restitutions": MOST_RESTITUTIONS,
+    "record_samples": MOST_RECORD_SAMPLES,
+    "drawing_bytes": MOST_DRAWING_BYTES,
+    "drawing_entities": MOST_ENTITIES,
 }
 """What one body and one question may hold, as the API tells it."""
 
@@ -84,12 +94,53 @@ def check_file(content: bytes, name: str) -> None:
     Raises
     ------
     TooLarge
-        If it has too many points.
+        If it has too many points, or is a drawing with too much in it.
     """
     drawing = name.lower().endswith(".dxf")
+    if drawing:
+        way_out = "save only the outline in a drawing of its own"
+        refuse_more(len(content), MOST_DRAWING_BYTES, "a drawing has up to {most} bytes", way_out)
+        refuse_more(len(_ENTITY_IN_DXF.findall(content)), MOST_ENTITIES, "a drawing has up to {most} parts", way_out)
     # a drawing may hold much that is no outline; in text a comma or a bracket stands before every point
     points = len(_X_IN_DXF.findall(content)) // 4 if drawing else max(content.count(b","), content.count(b"[")) // 3
     refuse_more(points, MOST_VERTICES, "a body file may describe up to {most} vertices", "simplify the outlines")
+
+
+def check_record(content: bytes) -> None:
+    """Refuse a record file of far more numbers than a record has, before any of them is read.
+
+    Parameters
+    ----------
+    content : bytes
+        The file; what is no text is left to its reader.
+
+    Raises
+    ------
+    TooLarge
+        If there are too many numbers.
+    """
+    if len(content) <= MOST_RECORD_SAMPLES or b"\0" in content:
+        return
+    octets = np.frombuffer(content, dtype=np.uint8)
+    between = (octets <= 32) | np.isin(octets, (44, 59))  # white space, comma, semicolon
+    check_samples(int(np.count_nonzero(between[:-1] & ~between[1:])) + int(not between[0]))
+
+
+def check_samples(count: int) -> None:
+    """Refuse a record of too many samples.
+
+    Parameters
+    ----------
+    count : int
+        Samples of all its components.
+
+    Raises
+    ------
+    TooLarge
+        If there are too many.
+    """
+    what = "a record holds up to {most} numbers"
+    refuse_more(count, MOST_RECORD_SAMPLES, what, "cut it, or leave out columns; Python reads longer ones")
 
 
 def check_contact(body: Body) -> Body:

@@ -86,7 +86,9 @@ class JobDocument:
     def _refuse_too_many(self) -> None:
         """Refuse what takes long to be made, however few its histories are."""
         document = self.document
+        regions = sum(_checked_regions(table) for table in document.body or [])
         counts = {
+            "regions of bodies": (regions, 1000),
             "restitutions": (_choices(document), 64),
             "bodies": (len(document.body or []), 1000),
             "states": (len(document.fragility.states) if document.fragility else 0, 20),
@@ -228,6 +230,20 @@ def _choices(document: "Document") -> int:
 
 def _motions(table: Any) -> int:
     return int(table.count or 0) or len(table.records or []) or len(table.pulse or [])
+
+
+def _checked_regions(table: dict[str, Any]) -> int:
+    """Return the regions of a body, unless the body alone is larger than a page takes."""
+    from pydantic import ValidationError
+
+    from rocking.app.schemas.body import BodyInput
+
+    try:
+        body = BodyInput.model_validate(table)
+    except ValidationError:  # the job is read later on, and refused in its own words
+        return 0
+    texts = [region.wkt or "" for region in body.section.region] if body.section else []
+    return sum(max(1, text.count("((")) for text in texts)
 
 
 def _count(values: Any) -> int:

@@ -1,15 +1,23 @@
 """The line of studies: one after another is computed, watched, and told of."""
 
+import logging
 import threading
 from collections.abc import Callable
 from typing import Any
 
 from rocking.app.problems import Busy, NotFound
+from rocking.app.studies.process import StudyProcess
 from rocking.app.studies.study import Study
-from rocking.app.studies.study_folder import FAILED, INTERRUPTED, WAITING
+from rocking.app.studies.study_folder import FAILED, INTERRUPTED, RUNNING, WAITING
 
 LOOK = 0.2
 """Time between looks at what runs [s]."""
+
+SAVE_AGAIN = 2.0
+"""Time after which a state is written again that the disk did not take [s]."""
+
+_LOG = logging.getLogger(__name__)
+_GONE = "there is no such study; it may have been deleted"
 
 
 class Line:
@@ -58,7 +66,7 @@ class Line:
         """
         found = self._studies.get(name)
         if found is None:
-            raise NotFound("there is no such study; it may have been deleted")
+            raise NotFound(_GONE)
         return found
 
     def enter(self, make: Callable[[], Study]) -> Study:
@@ -78,6 +86,8 @@ class Line:
         ------
         Busy
             If too many wait.
+        NotFound
+            If it was deleted meanwhile.
         """
         with self.lock:
             waiting = self._entering + sum(each.meta.state == WAITING for each in self._studies.values())
@@ -87,6 +97,8 @@ class Line:
         try:
             study = make()
             with self.lock:
+                if study.left:
+                    raise NotFound(_GONE)
                 self._studies[study.folder.id] = study
         finally:
             with self.lock:
@@ -94,7 +106,7 @@ class Line:
         self.changed()
         return study
 
-    def leave(self, name: str) -> Study:
+    def leave(self, name: str) -> tuple[Study, StudyProcess | None]:
         """Take a study out for good.
 
         Parameters
@@ -104,24 +116,29 @@ class Line:
 
         Returns
         -------
-        Study
-            The study; its process, if it has one, still runs.
+        study : Study
+            The study, which does not come back.
+        process : StudyProcess, optional
+            What computes it, and still runs.
         """
         with self.lock:
             found = self.study(name)
-            found.cancelled = True
-            return self._studies.pop(name)
+            found.cancelled = found.left = True
+            return self._studies.pop(name), found.process
 
-    def end(self, study: Study) -> None:
-        """Note how a study ended, once its process has.
+    def end(self, study: Study, process: StudyProcess) -> None:
+        """Note how a study ended, once its process has; nothing if it was noted, or another process computes it.
 
         Parameters
         ----------
         study : Study
             The study.
+        process : StudyProcess
+            What computed it.
         """
         with self.lock:
-            study.end(closed=self.closed)
+            if study.process is process:
+                study.end(closed=self.closed)
 
     def subscribe(self, tell: Callable[[], None]) -> Callable[[], None]:
         """Be told of every change, from whatever thread.
@@ -148,7 +165,8 @@ class Line:
     def changed(self) -> None:
         """Look at the line at once."""
         with self.lock:
-            if self._thread is None and not self.closed:
+            dead = self._thread is None or not self._thread.is_alive()
+            if dead and not self.closed:
                 self._thread = threading.Thread(target=self._watch, name="studies", daemon=True)
                 self._thread.start()
         self.publish()
@@ -173,23 +191,47 @@ class Line:
         if self._thread is not None:
             self._thread.join()
         for found in list(self._studies.values()):
-            if found.process is not None:
-                found.process.stop()
-                self.end(found)
+            process = found.process
+            if process is not None:
+                process.stop()
+                self.end(found, process)
             elif found.meta.state == WAITING:
                 found.become(INTERRUPTED, "the server was closed before it began; resume it")
         self.publish()
 
     def _watch(self) -> None:
         while not self.closed:
-            for each in self._running():
-                each.look()
-                if each.process is not None and each.process.code is not None and not each.cancelled:
-                    self.end(each)
-            self._begin_next()
-            self.publish()
-            self._wake.wait(LOOK if self._running() else None)
+            try:
+                for each in self._running():
+                    self._tend(each)
+                self._begin_next()
+                unsaved = self._save_again()
+                self.publish()
+            except Exception:  # noqa: BLE001 - whatever it is, the studies go on
+                _LOG.exception("the line of studies stumbled")
+                unsaved = True
+            self._wake.wait(LOOK if self._running() else SAVE_AGAIN if unsaved else None)
             self._wake.clear()
+
+    def _tend(self, each: Study) -> None:
+        """Look at a study that runs; whatever goes wrong with one does not touch the others."""
+        process = each.process
+        try:
+            each.look()
+            if process is not None and process.code is not None and not each.cancelled:
+                self.end(each, process)
+        except Exception as error:  # noqa: BLE001 - whatever it is, the other studies go on
+            _LOG.exception("study %s could not be looked at", each.folder.id)
+            with self.lock:
+                if each.process is None and each.meta.state == RUNNING:
+                    each.become(FAILED, f"its end could not be noted ({type(error).__name__}); resume it")
+
+    def _save_again(self) -> bool:
+        """Write what the disk did not take, and return whether something is still left."""
+        with self.lock:
+            for each in self._studies.values():
+                each.save()
+            return not all(each.saved for each in self._studies.values())
 
     def _running(self) -> list[Study]:
         with self.lock:
@@ -202,5 +244,8 @@ class Line:
             for each in sorted(waiting, key=lambda one: one.meta.created)[:room]:
                 try:
                     each.begin(self._workers)
-                except OSError as error:
-                    each.become(FAILED, f"its process could not be started ({error.strerror or error}); resume it")
+                except Exception as error:  # noqa: BLE001 - the others wait for their turn
+                    why = (isinstance(error, OSError) and error.strerror) or type(error).__name__
+                    _LOG.warning("study %s could not be begun", each.folder.id, exc_info=True)
+                    each.become(FAILED, f"its process could not be started ({why}); resume it")
+                    self._wake.set()  # there is room for the next one

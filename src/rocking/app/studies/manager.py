@@ -1,11 +1,12 @@
 """The studies of a server: in line, one after another, each in a process of its own."""
 
+import errno
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from rocking.app.problems import NotFound, Refused, TooLarge
+from rocking.app.problems import NoRoom, NotFound, Refused, TooLarge
 from rocking.app.settings import Limits
 from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.line import Line
@@ -28,6 +29,8 @@ from rocking.app.studies.study_folder import (
 
 _BYTES = 100
 """Disk for a history, generously [byte]."""
+
+_FULL = {errno.ENOSPC, errno.EDQUOT} if hasattr(errno, "EDQUOT") else {errno.ENOSPC}
 
 
 class StudyManager:
@@ -74,6 +77,8 @@ class StudyManager:
         ------
         TooLarge
             If it has too many histories, or there is no room for its results.
+        NoRoom
+            If the disk is full.
         """
         document = JobDocument.of(job)
         count = document.most
@@ -163,7 +168,7 @@ class StudyManager:
                 found.become(CANCELLED, "cancelled before it began")
         if process is not None:
             process.stop()
-            self._line.end(found)
+            self._line.end(found, process)
         self._line.changed()
 
     def resume(self, study: str) -> None:
@@ -177,13 +182,15 @@ class StudyManager:
         Raises
         ------
         Refused
-            If it waits, runs or is done.
+            If it waits, runs or is done, or what is on disk is not understood.
         """
 
         def again() -> Study:
             """Return the study, which waits again."""
             with self._line.lock:
                 found = self._line.study(study)
+                if found.unreadable:
+                    raise Refused(found.meta.message)
                 if found.meta.state not in {CANCELLED, INTERRUPTED, FAILED}:
                     raise Refused(f"the study is {found.meta.state}: there is nothing to resume")
                 found.cancelled = False
@@ -200,10 +207,10 @@ class StudyManager:
         study : str
             Its name in addresses.
         """
-        found = self._line.leave(study)
-        if found.process is not None:
-            found.process.stop()
-            found.process.close()
+        found, process = self._line.leave(study)
+        if process is not None:
+            process.stop()
+            process.close()
         self.opened.forget(study)
         remove(found)
         self._line.changed()
@@ -237,5 +244,10 @@ class StudyManager:
         folder = StudyFolder(self._folder / new_id())
         created = datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
         meta = Meta(shown(name), document.kind, created, document.histories)
-        folder.create(meta, document, self._records)
+        try:
+            folder.create(meta, document, self._records)
+        except OSError as error:
+            if error.errno not in _FULL:
+                raise
+            raise NoRoom("the disk is full, and nothing was kept of the study; make room and send it again") from error
         return Study(folder, meta)

@@ -2,6 +2,8 @@
 
 import shutil
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,7 +19,9 @@ from rocking.app.state import state_of
 from rocking.app.studies.exports import MEDIA_TYPES, Kind
 from rocking.app.studies.live import serve
 from rocking.app.studies.manager import StudyManager
+from rocking.app.studies.study_folder import StudyFolder
 from rocking.app.work import heavy
+from rocking.errors import RockingError
 
 router = APIRouter(prefix="/api/studies", tags=["studies"])
 
@@ -145,32 +149,44 @@ def _studies(request: Request) -> StudyManager:
     return state_of(request).studies
 
 
+@contextmanager
+def _there(manager: StudyManager, study: str) -> Iterator[StudyFolder]:
+    """Say that a study is not there, rather than whatever comes of it, where it is deleted while it is read."""
+    folder = manager.finished(study)
+    try:
+        yield folder
+    except (OSError, RockingError):
+        manager.finished(study)
+        raise
+
+
 def _result(manager: StudyManager, study: str) -> bytes:
     from rocking.app.studies.results.kept import keep_result, kept_result
 
-    folder = manager.finished(study)
-    return manager.opened.answer(
-        (study, "result"), lambda: kept_result(folder) or keep_result(manager.opened.get(folder))
-    )
+    with _there(manager, study) as folder:
+        return manager.opened.answer(
+            (study, "result"), lambda: kept_result(folder) or keep_result(manager.opened.get(folder))
+        )
 
 
 def _cell(manager: StudyManager, study: str, point: PointAsked) -> bytes:
     from rocking.app.studies.cells.cell import cell_of
     from rocking.app.studies.cells.place import Place
 
-    opened = manager.opened.get(manager.finished(study))
-    found = Place.of(opened, point.x, point.y, point.restitution, point.motion)
-    key = (study, "cell", found.number, point.points)
-    return manager.opened.answer(key, lambda: _json(cell_of(opened, found, point.points)))
+    with _there(manager, study) as folder:
+        opened = manager.opened.get(folder)
+        found = Place.of(opened, point.x, point.y, point.restitution, point.motion)
+        key = (study, "cell", found.number, point.points)
+        return manager.opened.answer(key, lambda: _json(cell_of(opened, found, point.points)))
 
 
 def _file(manager: StudyManager, study: str, kind: Kind, what: str | None, restitution: int) -> Path:
     from rocking.app.studies.exports import written
 
-    opened = manager.opened.get(manager.finished(study))
     path = Path(tempfile.mkdtemp(prefix="rocking-export-")) / f"study.{kind}"
     try:
-        written(opened, kind, path, what, restitution)
+        with _there(manager, study) as folder:
+            written(manager.opened.get(folder), kind, path, what, restitution)
     except BaseException:
         shutil.rmtree(path.parent, ignore_errors=True)
         raise

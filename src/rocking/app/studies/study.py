@@ -1,5 +1,6 @@
 """A study as the server knows it: its folder, its state, its process while it has one."""
 
+import logging
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -7,6 +8,8 @@ from rocking.app.studies.process import StudyProcess
 from rocking.app.studies.progress import Pace
 from rocking.app.studies.study_folder import CANCELLED, DONE, FAILED, INTERRUPTED, RUNNING, Meta, StudyFolder
 from rocking.errors import RockingError
+
+_LOG = logging.getLogger(__name__)
 
 
 @dataclass
@@ -25,8 +28,12 @@ class Study:
         Histories of the rounds that have begun, and finished ones, at the last look [-].
     rate : float
         Histories a second, at the last look [1/s].
-    cancelled : bool
-        Whether a user wants it to stop.
+    cancelled, left : bool
+        Whether a user wants it to stop, and whether it is being deleted.
+    unreadable : bool
+        Whether what is on disk is not understood: it is shown, and left as it is.
+    saved : bool
+        Whether the disk knows its state.
     """
 
     folder: StudyFolder
@@ -36,6 +43,9 @@ class Study:
     done: int = 0
     rate: float = 0.0
     cancelled: bool = False
+    left: bool = False
+    unreadable: bool = False
+    saved: bool = True
     _pace: Pace = field(default_factory=Pace)
 
     def begin(self, workers: int) -> None:
@@ -51,7 +61,7 @@ class Study:
         self.become(RUNNING)
 
     def become(self, state: str, message: str = "") -> None:
-        """Change the state, here and on disk.
+        """Change the state, here and on disk; where the disk does not take it, here alone until `save` is called.
 
         Parameters
         ----------
@@ -61,7 +71,20 @@ class Study:
             A sentence about it.
         """
         self.meta = replace(self.meta, state=state, message=message)
-        self.folder.write(self.meta)
+        self.saved = False
+        self.save()
+        if not self.saved and not self.left:
+            _LOG.warning("the state of study %s could not be written; it is tried again", self.folder.id)
+
+    def save(self) -> None:
+        """Write the state if the disk does not know it yet; a full disk, or a folder that is gone, is no error."""
+        if self.saved or self.left:
+            return
+        try:
+            self.folder.write(self.meta)
+            self.saved = True
+        except OSError as error:
+            self.saved = isinstance(error, FileNotFoundError)  # there is no folder to write it in, nor will there be
 
     def look(self) -> bool:
         """See how far it is.
@@ -73,7 +96,7 @@ class Study:
         """
         try:
             self.begun, self.done, complete = self.folder.status()
-        except RockingError:  # the ledger is being made, or is damaged: its process will say so
+        except (RockingError, OSError):  # the ledger is being made, or is damaged or gone: its process will say so
             return False
         self.rate = self._pace.look(self.done)
         return complete

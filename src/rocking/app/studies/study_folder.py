@@ -3,12 +3,14 @@
 import json
 import os
 import shutil
+from contextlib import suppress
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
+from rocking.app.problems import NotFound
 from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.names import file_name
 from rocking.errors import InvalidValueError, RockingError
@@ -131,7 +133,10 @@ class StudyFolder:
         try:
             target.hardlink_to(source)
         except OSError:
-            shutil.copyfile(source, target)
+            try:
+                shutil.copyfile(source, target)
+            except FileNotFoundError as error:
+                raise NotFound("a record of the job was deleted meanwhile; upload it again") from error
         return name
 
     def write(self, meta: Meta) -> None:
@@ -191,11 +196,12 @@ class StudyFolder:
             return meta
         try:
             complete = self.status()[2]
-        except RockingError:
+        except (RockingError, OSError):
             complete = False
         words = "" if complete else "the server ended before the study did; what was finished is safe, resume it"
         meta = replace(meta, state=DONE if complete else INTERRUPTED, message=words)
-        self.write(meta)
+        with suppress(OSError):  # a full disk: the next start finds out again
+            self.write(meta)
         return meta
 
     def without_paths(self, words: str) -> str:

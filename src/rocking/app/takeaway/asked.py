@@ -113,6 +113,27 @@ class Asked:
             raise InvalidValueError(one)
         return one
 
+    def words(self, what: str, index: int | None) -> str:
+        """Return what a file of one response is called: with its restitution, where there are several.
+
+        Parameters
+        ----------
+        what : str
+            What the file holds.
+        index : int or None
+            Place among the restitutions, from 0; the first that has a response if None.
+
+        Returns
+        -------
+        str
+            Words without an ending.
+        """
+        chosen = self.inputs.restitution
+        if len(chosen.models or ()) + len(chosen.values or ()) < 2:
+            return f"{self.name or 'rocking'} {what}"
+        label = plain_line(self.chosen(index).rocker.label, 60)
+        return f"{self.name or 'rocking'} {what} {label}"
+
     @cached_property
     def impact(self) -> ImpactAnswer:
         """Coefficients under every model."""

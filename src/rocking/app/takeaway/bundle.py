@@ -29,7 +29,7 @@ def bundle_of(asked: Asked) -> bytes:
     with ZipFile(stream, "w") as archive:
         _add(archive, FILE_NAME, inputs_as_toml(inputs).encode("utf-8"))
         if record is not None and inputs.motion is not None and inputs.motion.record is not None:
-            _add(archive, record, asked.records.path(inputs.motion.record).read_bytes())
+            _add(archive, record, asked.records.content(inputs.motion.record))
         _add(archive, "README.txt", _words(asked, record).encode("utf-8"))
     return stream.getvalue()
 

@@ -77,7 +77,7 @@ async def animation(
     asked = Asked(inputs, state_of(request).records)
     make = page_of if kind == "html" else gif_of
     data = await heavy(request, lambda: make(asked.chosen(restitution)))
-    return attachment(data, _name(asked, f"animation.{kind}"), MEDIA_TYPES[kind])
+    return attachment(data, f"{asked.words('animation', restitution)}.{kind}", MEDIA_TYPES[kind])
 
 
 @router.post("/inputs.toml", response_class=Answer, summary="The inputs as a file of the command line")

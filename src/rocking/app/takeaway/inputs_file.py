@@ -3,7 +3,6 @@
 import hashlib
 import json
 import re
-import tomllib
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -11,6 +10,7 @@ from pydantic import ValidationError
 
 from rocking.app.problems import Refused
 from rocking.app.schemas.inputs import Inputs
+from rocking.app.schemas.toml_text import parsed_toml
 from rocking.app.takeaway.command_words import simulate_words
 from rocking.app.takeaway.plain_text import plain_line, record_file_name
 from rocking.app.takeaway.toml_words import toml_of, toml_value
@@ -19,8 +19,8 @@ from rocking.bodies.formats.words import sentence
 FILE_NAME = "response.toml"
 """What such a file is called."""
 
-_LONGEST = 4 << 20
 _TABLES = ("response", "body", "motion", "restitution", "settings")
+_SHAPES = {"block", "trapezoid", "ellipse", "regular_polygon", "section", "mass_points", "units"}
 _HASH = re.compile(r"[0-9a-f]{64}")
 _RECORD = re.compile(r"^# record: ([0-9a-f]{64}) (\".*\")$", re.MULTILINE)
 
@@ -142,8 +142,12 @@ def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
     Refused
         If it is not TOML, a key or a value is not allowed, or it names a record that was not uploaded.
     """
-    document = _parsed(text)
+    document = parsed_toml(text)
     unknown = sorted(set(document) - set(_TABLES))
+    if unknown and "campaign" in document:
+        raise Refused("this is a job of many histories: set it up in the step Studies, or `rocking run` takes it")
+    if unknown and "body" not in document and _SHAPES & set(document):
+        raise Refused("this is a file of a body alone: drop it in the step Body")
     if unknown:
         raise Refused(f"[{plain_line(unknown[0], 60)}] is no table of inputs; there are {', '.join(_TABLES)}")
     motion = document.get("motion")
@@ -153,17 +157,6 @@ def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
         return Inputs.model_validate(document)
     except ValidationError as error:
         raise Refused(plain_line(sentence(error, None), 500)) from error
-
-
-def _parsed(text: str) -> dict[str, Any]:
-    if len(text) > _LONGEST:
-        raise Refused(f"a file of inputs may have up to {_LONGEST >> 20} MiB, this has {len(text) / 2**20:.1f}")
-    try:
-        return tomllib.loads(text.removeprefix("\ufeff"))
-    except tomllib.TOMLDecodeError as error:
-        raise Refused(f"this is not TOML: {plain_line(str(error), 200)}") from error
-    except (ValueError, RecursionError) as error:
-        raise Refused("this is not TOML that can be read: nested too deeply, or a number is too long") from error
 
 
 def _head(inputs: Inputs) -> list[str]:
@@ -190,7 +183,7 @@ def _stored(word: str, text: str, find: FindRecord) -> dict[str, Any]:
     """Return hash and name of the record that a file of inputs means."""
     noted = _RECORD.search(text)
     if noted is not None:
-        name = tomllib.loads(f"name = {noted[2]}")["name"]
+        name = str(parsed_toml(f"name = {noted[2]}")["name"])
         if record_file_name(name, f"record-{noted[1][:12]}.txt") == word and find(noted[1]) is not None:
             return {"record": noted[1], "file_name": name} if name else {"record": noted[1]}
     found = find(word)

@@ -60,8 +60,14 @@ async def table(
         The file.
     """
     asked = Asked(inputs, state_of(request).records, onto)
-    data = await heavy(request, table_of, what, kind, asked, restitution)
-    return attachment(data, f"{asked.name or 'rocking'} {what}.{kind}", MEDIA_TYPES[kind])
+    data, words = await heavy(request, _named_table, what, kind, asked, restitution)
+    return attachment(data, f"{words}.{kind}", MEDIA_TYPES[kind])
+
+
+def _named_table(what: str, kind: str, asked: Asked, restitution: int | None) -> tuple[bytes, str]:
+    data = table_of(what, kind, asked, restitution)
+    of_one = what == "response" and (kind != "xlsx" or restitution is not None)
+    return data, asked.words(what, restitution) if of_one else f"{asked.name or 'rocking'} {what}"
 
 
 def table_of(what: str, kind: str, asked: Asked, restitution: int | None = None) -> bytes:

@@ -138,3 +138,25 @@ def test_numbers_beyond_all_numbers_are_refused(map_job: Callable[..., dict[str,
     """A whole number that no float64 holds is a refusal, not an accident."""
     with pytest.raises(InvalidValueError, match=r"settings\.gravity"):
         JobDocument.of(map_job(settings={"gravity": 10**400}))
+
+
+def _section(regions: int) -> dict[str, Any]:
+    outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]]
+    return {"units": "m", "section": {"region": [{"outline": outline, "density": 1.0}] * regions}}
+
+
+def test_a_body_is_as_small_as_elsewhere(map_job: Callable[..., dict[str, Any]]) -> None:
+    """A study takes no body that the page of bodies refuses, nor many that are too large together."""
+    JobDocument.of(map_job(body=_section(250)))
+    with pytest.raises(TooLarge, match="250 regions, got 251"):
+        JobDocument.of(map_job(body=_section(251)))
+    points = {"points": [[0.0, 1.0]] * 10_001, "masses": [1.0] * 10_001, "feet": [0.0, 1.0]}
+    with pytest.raises(TooLarge, match="points"):
+        JobDocument.of(map_job(body={"units": "m", "mass_points": points}))
+    many = {
+        "campaign": {"name": "x", "kind": "histories"},
+        "body": [_section(250)] * 5,
+        "motions": {"pulse": "sine:amplitude=3,period=0.6"},
+    }
+    with pytest.raises(TooLarge, match="1250 regions of bodies"):
+        JobDocument.of(many)

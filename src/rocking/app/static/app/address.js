@@ -1,10 +1,16 @@
 /** The fragment of the address: a one-time token, the inputs of a link, the view. */
 
+const OURS = ["token", "in", "view"];
+
 /** What the fragment says, as a plain object. */
 export const read = () => Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
 
+/** Whether a fragment is for the application: empty, or with one of its words. */
+export const isOurs = (parts) => !Object.keys(parts).length || OURS.some((key) => parts[key] !== undefined);
+
 /** Show a view in the address, without a new entry for every keystroke. */
 export const write = (parts, { push = false } = {}) => {
-  const fragment = new URLSearchParams(parts).toString();
+  const given = Object.entries(parts).filter(([, value]) => value !== undefined);
+  const fragment = new URLSearchParams(given).toString();
   history[push ? "pushState" : "replaceState"](null, "", fragment ? `#${fragment}` : location.pathname);
 };

@@ -45,6 +45,8 @@ export const saveBlob = (blob, name) => {
 
 const lines = new Map();
 
+const SIGNED_OUT = "this browser is not signed in; open the link that `rocking serve` prints";
+
 const follow = async (line) => {
   const { path, json, resolve, reject } = line.next;
   line.next = null;
@@ -69,6 +71,7 @@ const send = async (path, { method, json, body, query, signal } = {}) => {
     credentials: "same-origin",
   }).catch((error) => {
     if (superseded(error)) throw error;
+    document.dispatchEvent(new CustomEvent("rocking:offline"));
     throw new ApiError(
       0, { kind: "offline", message: "the server does not answer; is `rocking serve` still running?" },
     );
@@ -88,7 +91,9 @@ const addressOf = (path, query) => {
 const refusalOf = async (answer) => {
   const told = await answer.json().catch(() => ({}));
   if (answer.status === 401) document.dispatchEvent(new CustomEvent("rocking:signed-out"));
-  return { message: `the server answered ${answer.status}`, ...told.error };
+  const words = { message: `the server answered ${answer.status}`, ...told.error };
+  // What the server says of keys is for scripts.
+  return /Authorization/.test(words.message) ? { ...words, message: SIGNED_OUT } : words;
 };
 
 const nameOf = (answer) => {

@@ -1,7 +1,8 @@
 /** The fields of a form, each with a visible label, a unit and a place for its error. */
 
 import { el, fill, freshId } from "/app/dom.js";
-import { editable, number, parseNumber, pretty, tidy } from "/app/format.js";
+import { faults } from "/app/faults.js";
+import { editable, number, parseNumber, pretty, quantity, tidy } from "/app/format.js";
 
 export {
   button, card, iconButton, note, segmented, selectField, switchField, toolbar,
@@ -10,7 +11,7 @@ export { tableOf } from "/app/table.js";
 
 /** A number with its unit; decimal commas and arrow keys work. An element with `value` and `setError`. */
 export const numberField = ({
-  label, unit, value, min, max, step, onChange, help, optional = false, name,
+  label, unit, value, min, above, max, step, onChange, help, optional = false, name,
 }) => {
   const id = freshId("number");
   const input = el("input", {
@@ -23,10 +24,11 @@ export const numberField = ({
     value: editable(value),
     "aria-describedby": `${id}-about`,
   });
+  const limits = { min, above, max, optional, unit };
   const { field, setError } = frame(id, label, unit, input, help);
   const take = () => {
-    const { fault, given } = checked(input.value, { min, max, optional, unit });
-    setError(fault);
+    const { fault, given } = checked(input.value, limits);
+    setError(fault, fault ? "" : decimalWords(input.value, given));
     if (!fault) onChange?.(given);
   };
   input.addEventListener("input", take);
@@ -34,15 +36,18 @@ export const numberField = ({
     const turn = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (!turn) return;
     event.preventDefault();
-    input.value = editable(stepped(input.value, turn * (event.shiftKey ? 10 : 1), { min, max, step }));
+    const turns = turn * (event.shiftKey ? 10 : 1);
+    input.value = editable(stepped(input.value, turns, { min: min ?? above, max, step }));
     take();
   });
   const setValue = (next) => {
-    if (parseNumber(input.value) !== (next ?? null)) input.value = editable(next);
-    setError("");
+    const [typed, given] = [input.value.trim(), next ?? null];
+    const same = typed ? parseNumber(typed) === given && given !== null : given === null;
+    if (!same) input.value = editable(next);
+    setError("", decimalWords(input.value, next));
   };
   return withValue(
-    field, input, () => checked(input.value, { min, max, optional }).given, setValue, setError,
+    field, input, () => checked(input.value, limits).given, setValue, setError,
   );
 };
 
@@ -93,11 +98,12 @@ const frame = (id, label, unit, input, help, beside) => {
   const caption = el(
     "label", { for: id }, label, unit ? el("span", { class: "unit" }, ` ${pretty(unit)}`) : null,
   );
-  const setError = (text) => {
+  const setError = (text, hint = "") => {
+    faults.mark(input, label, text);
     if (text) input.setAttribute("aria-invalid", "true");
     else input.removeAttribute("aria-invalid");
     about.classList.toggle("field-error", Boolean(text));
-    fill(about, text || help || "");
+    fill(about, text || hint || help || "");
   };
   const field = el(
     "div", { class: "field" }, el("div", { class: "field-head" }, caption, beside), input, about,
@@ -110,18 +116,22 @@ const withValue = (field, input, get, set, setError) => {
   return Object.assign(field, { input, setValue: set, setError });
 };
 
-const checked = (text, { min, max, optional, unit = "" }) => {
+const checked = (text, { min, above, max, optional, unit = "" }) => {
   if (!text.trim()) return optional ? { given: null } : { fault: "A number is needed here.", given: null };
   const given = parseNumber(text);
   if (given === null) return { fault: "This is not a number.", given: null };
-  if (min !== undefined && min !== null && given < min) return {
-    fault: `At least ${number(min)} ${unit}.`, given,
-  };
-  if (max !== undefined && max !== null && given > max) return {
-    fault: `At most ${number(max)} ${unit}.`, given,
-  };
-  return { given };
+  const wrong = [
+    [above !== undefined && given <= above, "More than", above],
+    [min !== undefined && min !== null && given < min, "At least", min],
+    [max !== undefined && max !== null && given > max, "At most", max],
+  ].find(([fails]) => fails);
+  return wrong ? { fault: `${wrong[1]} ${quantity(wrong[2], unit)}.`, given } : { given };
 };
+
+// "1,000" is one to us and a thousand to others: say how it was read.
+const decimalWords = (text, given) =>
+  /^\s*[+-]?\d{1,3},\d{3}\s*$/.test(text)
+    ? `Read as ${number(given)}: the comma is the decimal sign. For thousands leave it out.` : "";
 
 const stepped = (text, turns, { min, max, step }) => {
   const value = parseNumber(text) ?? min ?? 0;

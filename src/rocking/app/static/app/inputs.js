@@ -1,5 +1,7 @@
 /** The one document of everything the user chose: frozen, watched, and carried by a link. */
 
+import { inputsOf } from "/app/shape.js";
+
 const KEPT = "rocking.inputs";
 
 const FIRST = {
@@ -11,6 +13,7 @@ const FIRST = {
 /** The store of the inputs: get, set by path, subscribe, replace. */
 export const createInputs = (start) => {
   let current = freeze(start ?? FIRST);
+  keep(current);
   const watchers = new Set();
   const become = (next, changed) => {
     current = freeze(next);
@@ -25,6 +28,8 @@ export const createInputs = (start) => {
       if (JSON.stringify(next[top]) !== JSON.stringify(current[top])) become(next, new Set([top]));
     },
     replace: (document) => become(document, new Set([...Object.keys(current), ...Object.keys(document)])),
+    /** Let every watcher ask again for what it shows. */
+    touch: () => become(current, new Set(Object.keys(current))),
     subscribe: (watcher) => {
       watchers.add(watcher);
       return () => watchers.delete(watcher);
@@ -43,8 +48,7 @@ export const encode = (inputs) => {
 export const decode = (text) => {
   try {
     const raw = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
-    const document = JSON.parse(new TextDecoder().decode(Uint8Array.from(raw, (each) => each.charCodeAt(0))));
-    return document && typeof document.body === "object" && document.body !== null ? document : null;
+    return inputsOf(JSON.parse(new TextDecoder().decode(Uint8Array.from(raw, (each) => each.charCodeAt(0)))));
   } catch {
     return null;
   }
@@ -53,7 +57,7 @@ export const decode = (text) => {
 /** What this browser tab held before it was reloaded. */
 export const kept = () => {
   try {
-    return JSON.parse(sessionStorage.getItem(KEPT));
+    return inputsOf(JSON.parse(sessionStorage.getItem(KEPT)));
   } catch {
     return null;
   }

@@ -4,45 +4,65 @@ import * as address from "/app/address.js";
 import { call, download, latest, superseded } from "/app/api.js";
 import { copyTable } from "/app/copy.js";
 import { createBodyFacts } from "/app/facts.js";
+import { faults } from "/app/faults.js";
 import { createInputs, decode, encode, kept } from "/app/inputs.js";
+import { followAddress, UNREADABLE } from "/app/navigation.js";
+import { whenBack } from "/app/offline.js";
+import { fieldOf, plainWords } from "/app/refusal.js";
 import { say } from "/app/say.js";
-import { exchange, showDoor } from "/app/session.js";
+import { exchange, linkForAnother, showDoor } from "/app/session.js";
 import { mountSummary } from "/app/summary.js";
 import { createTabs } from "/app/tabs.js";
 import { createViews } from "/app/views.js";
 
 const start = async () => {
   const { token, in: shared, view } = address.read();
-  if (token) address.write(view ? { view } : {});
+  if (token) address.write({ in: shared, view });
   const refusal = token ? await exchange(token) : "";
   const info = await call("info").catch((error) => {
     if (error.status !== 401) throw error;
   });
-  if (!info) return showDoor(refusal);
+  if (!info) return waitAtTheDoor(refusal);
+  if (shared) address.write({ view });
   const fromLink = shared ? decode(shared) : null;
   const app = createApp(fromLink ?? kept(), info);
-  if (shared && !fromLink) say("The link carries no readable inputs; the usual start is shown.", "warning");
+  if (shared && !fromLink) say(`${UNREADABLE}; the usual start is shown.`, "warning");
   run(app, view);
 };
 
 const createApp = (inputs, info) => {
-  const app = { inputs: createInputs(inputs), info, call, latest, superseded, copyTable, say };
+  const app = { inputs: createInputs(inputs), info, superseded, copyTable, say, faults };
+  const plainly = (ask) => (...given) => ask(...given).catch((error) => {
+    if (error.kind) inPlainWords(error, app.inputs.get().body);
+    throw error;
+  });
+  [app.call, app.latest] = [call, latest].map(plainly);
+  const save = plainly(download);
   app.link = () => {
     const parts = new URLSearchParams({ in: encode(app.inputs.get()), view: app.view() });
     return `${location.origin}/#${parts}`;
   };
   app.inputs.link = app.link;
-  app.download = (path, json, name) => download(path, json, name).catch(
-    (error) => say(error.message, "error")
-  );
+  // A file of inputs that are not those on the screen would mislead whoever gets it.
+  app.download = async (path, json, name) => {
+    const wrong = json === undefined ? "" : faults.sentence({ inputs: true });
+    if (wrong) return say(`Nothing was saved: put this right first. ${wrong}`, "error");
+    return save(path, json, name).catch((error) => say(error.message, "error"));
+  };
+  app.linkForAnother = () => linkForAnother(app).catch((error) => say(error.message, "error"));
   app.body = createBodyFacts(app);
   return app;
 };
 
+const inPlainWords = (error, body) => {
+  error.field = fieldOf(error.message);
+  error.message = plainWords(error.message, body);
+};
+
 const run = (app, view) => {
   const views = createViews(app);
-  const tabs = createTabs(document.getElementById("steps"), (name, before) => {
-    if (before) address.write({ view: name }, { push: true });
+  const tabs = createTabs(document.getElementById("steps"), (name, before, quiet) => {
+    if (before && !quiet) address.write({ view: name }, { push: true });
     document.body.dataset.view = name;
     views.show(name, before);
   });
@@ -50,22 +70,35 @@ const run = (app, view) => {
   app.go = (name) => tabs.show(name, { focus: true });
   mountSummary(document.getElementById("summary"), app);
   tabs.show(tabs.names.includes(view) ? view : "body");
-  addEventListener("popstate", () => tabs.show(address.read().view ?? "body"));
-  addEventListener("hashchange", () => followLink(app));
+  document.body.dataset.started = "true";
+  followAddress(app, tabs);
+  signingIn(app, views, tabs);
 };
 
-const followLink = (app) => {
-  const { in: shared, view } = address.read();
-  const inputs = shared ? decode(shared) : null;
-  if (inputs) app.inputs.replace(inputs);
-  if (view) app.go(view);
+// A session that ended is noticed by the first call that is refused; after it all is asked again.
+const signingIn = (app, views, tabs) => {
+  document.addEventListener("rocking:signed-out", () => showDoor(""));
+  const again = (words) => () => {
+    say(words);
+    app.inputs.touch();
+    views.show(tabs.current());
+  };
+  document.addEventListener("rocking:signed-in", again("Signed in."));
+  whenBack(again("The server answers again."));
+  document.getElementById("another").addEventListener("click", app.linkForAnother);
+};
+
+const waitAtTheDoor = (refusal) => {
+  showDoor(refusal);
+  addEventListener("hashchange", () => location.reload());
 };
 
 document.getElementById("theme").addEventListener("click", () => {
   document.dispatchEvent(new CustomEvent("rocking:toggle-theme"));
 });
-document.addEventListener("rocking:signed-out", () => {
-  if (!document.body.classList.contains("at-the-door")) say("This browser is no longer signed in.", "error");
+document.querySelector(".skip").addEventListener("click", (event) => {
+  event.preventDefault();
+  document.getElementById("main").focus();
 });
 
 start().catch((error) => showDoor(error.message));

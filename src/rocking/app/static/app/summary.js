@@ -1,5 +1,6 @@
 /** The body column beside every other view: what stands there, at a glance. */
 
+import { note } from "/app/controls.js";
 import { el, fill } from "/app/dom.js";
 import { number, quantity } from "/app/format.js";
 import { bodyPicture } from "/drawing/body-picture.js";
@@ -12,9 +13,19 @@ export const mountSummary = (aside, app) => {
   const edit = el(
     "button", { type: "button", class: "button quiet", onclick: () => app.go("body") }, "Change the body",
   );
-  fill(aside, el("h2", {}, "The body"), name, picture, facts, edit);
-  app.body.subscribe((body, error) => {
-    aside.classList.toggle("stale", Boolean(error));
+  const refusal = el("div", { class: "refusal", "data-testid": "summary-faults" });
+  fill(aside, el("h2", {}, "The body"), refusal, name, picture, facts, edit);
+  const look = () => {
+    const refused = app.body.error()?.message;
+    const wrong = [app.faults.sentence({ inputs: true, but: refused }), refused].filter(Boolean);
+    aside.classList.toggle("stale", wrong.length > 0);
+    if (refusal.dataset.words === wrong.join()) return;
+    refusal.dataset.words = wrong.join();
+    fill(refusal, wrong.map((words) => note(words, "error")));
+  };
+  app.faults.subscribe(look);
+  app.body.subscribe((body) => {
+    look();
     if (!body) return;
     fill(name, body.name ?? "");
     name.hidden = !body.name;

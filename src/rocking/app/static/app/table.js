@@ -10,7 +10,10 @@ export const tableOf = (columns, rows, { caption, csv, testid, copyRows, actions
   const id = freshId("table");
   const heads = columns.map((each) => (typeof each === "string" ? { label: each } : each));
   const tools = [
-    button({ text: "Copy table", kind: "quiet", onClick: () => copyTable(heads, copyRows?.() ?? rows) }),
+    button({
+      text: "Copy table", kind: "quiet", label: caption ? `Copy table: ${caption}` : undefined,
+      onClick: () => copyTable(heads, copyRows?.() ?? rows),
+    }),
     csv ? button(
       { text: "CSV", kind: "quiet", label: `Save ${caption ?? "the table"} as CSV`, onClick: csv }
     ) : null,

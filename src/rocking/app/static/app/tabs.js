@@ -1,11 +1,11 @@
 /** The six steps as tabs: arrow keys move between them, as the ARIA practice has it. */
 
-/** Wire tabs to panels; calls onShow(name) after a change, and returns {show, current}. */
+/** Wire tabs to panels; calls onShow(name, before, quiet) after a change, and returns {show, current}. */
 export const createTabs = (list, onShow) => {
   const tabs = [...list.querySelectorAll("[role=tab]")];
   const nameOf = (tab) => tab.dataset.view;
   let current = null;
-  const show = (name, { focus = false } = {}) => {
+  const show = (name, { focus = false, quiet = false } = {}) => {
     const chosen = tabs.find((tab) => nameOf(tab) === name) ?? tabs[0];
     if (nameOf(chosen) === current) return;
     const before = current;
@@ -16,7 +16,7 @@ export const createTabs = (list, onShow) => {
       document.getElementById(`view-${nameOf(tab)}`).hidden = tab !== chosen;
     }
     if (focus) chosen.focus();
-    onShow(current, before);
+    onShow(current, before, quiet);
   };
   const move = (event) => {
     const at = tabs.indexOf(event.target.closest("[role=tab]"));

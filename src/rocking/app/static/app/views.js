@@ -1,13 +1,13 @@
 /** Loading the views: each is mounted when it is first shown. */
 
-import { note } from "/app/controls.js";
+import { button, note } from "/app/controls.js";
 import { fill } from "/app/dom.js";
 
 /** A keeper of views: show(name, before) mounts and tells them. */
 export const createViews = (app) => {
   const mounted = new Map();
   const mount = (name) => {
-    if (!mounted.has(name)) mounted.set(name, load(name, app));
+    if (!mounted.has(name)) mounted.set(name, load(name, app, () => mounted.delete(name)));
     return mounted.get(name);
   };
   return {
@@ -20,7 +20,7 @@ export const createViews = (app) => {
   };
 };
 
-const load = async (name, app) => {
+const load = async (name, app, forget) => {
   const section = document.getElementById(`view-${name}`);
   try {
     const { mount } = await import(`/views/${name}.js`);
@@ -29,8 +29,15 @@ const load = async (name, app) => {
     section.dataset.ready = "true";
     return view;
   } catch (error) {
-    fill(section, note(`This part could not be shown: ${error.message}`, "error"));
+    forget();
+    fill(section, note(failure(error), "error"),
+      button({ text: "Load the page again", kind: "primary", onClick: () => location.reload() }));
     section.dataset.ready = "failed";
     return {};
   }
 };
+
+// A module that did not come is asked for again when the view is next shown; the inputs outlast a reload.
+const failure = (error) => (/import|fetch/i.test(error.message)
+  ? "This part did not come from the server; is `rocking serve` still running?"
+  : `This part could not be shown: ${error.message}`);

@@ -8,7 +8,8 @@ const MOST = 60;
 /** A "show as table" part under a chart; refresh() after new data. */
 export const chartTable = ({ title, x, y, series }, dataOf) => {
   const place = el("div", {});
-  const element = el("details", { class: "chart-table" }, el("summary", {}, "Show as table"), place);
+  const of = el("span", { class: "visually-hidden" }, ` of ${title}`);
+  const element = el("details", { class: "chart-table" }, el("summary", {}, "Show as table", of), place);
   const columns = [x, ...series.map((each) => ({ label: each.label, unit: y.unit }))];
   const rowsOf = (every) => {
     const data = dataOf();

@@ -6,6 +6,7 @@ import { saveable } from "/charts/save.js";
 import { axes, colour, onTheme } from "/charts/style.js";
 import { el, fill, freshId } from "/app/dom.js";
 import { number, pretty } from "/app/format.js";
+import { dashKey } from "/app/palette.js";
 
 /** Draw curves over one abscissa; see the returned object for what it can do. */
 export const lineChart = (container, options) => {
@@ -37,7 +38,7 @@ export const lineChart = (container, options) => {
       sync: options.sync ? { key: options.sync } : undefined, points: { size: 7 },
       drag: { x: true, y: false },
     },
-    scales: { x: { time: false, distr: x.log ? 3 : 1 }, y: scaleOf(y) },
+    scales: { x: { time: false, ...(x.log ? WHOLE : {}) }, y: scaleOf(y) },
     axes: axes(x, y),
     series: [{ label: axisWords(x) }, ...options.series.map(seriesOf)],
     hooks: {
@@ -86,6 +87,9 @@ export const lineChart = (container, options) => {
   };
 };
 
+// A logarithmic axis ends with the data and not at the next power of ten.
+const WHOLE = { distr: 3, range: (_, low, high) => (low > 0 && high > low ? [low, high] : [0.1, 10]) };
+
 const widthOf = (stage) => Math.max(200, Math.floor(stage.clientWidth));
 
 const axisWords = ({ label, unit }) => (unit && unit !== "-" ? `${label} [${pretty(unit)}]` : label);
@@ -109,12 +113,8 @@ const legendOf = (series) => {
   return el("ul", { class: "legend" }, series.map((each) => el("li", {}, legendKey(each), each.label)));
 };
 
-const legendKey = ({ colour: paint, dash }) => {
-  const key = el("span", { class: "legend-key", "aria-hidden": "true" });
-  key.style.borderTopColor = paint.startsWith("--") ? `var(${paint})` : paint;
-  key.style.borderTopStyle = dash?.length ? (dash[0] < 4 ? "dotted" : "dashed") : "solid";
-  return key;
-};
+const legendKey = ({ colour: paint, dash, points, width }) =>
+  dashKey({ colour: paint, dash, dots: Boolean(points) && width === 0 });
 
 const words = ({ x, y, series }, [at, ...values]) =>
   [`${x.label} ${number(at)} ${pretty(x.unit ?? "")}`]

@@ -19,7 +19,7 @@ export const createPanel = (editor) => {
     ),
   });
   const grid = numberField({
-    label: "Grid step", min: 0, value: editor.step(), onChange: (value) => value > 0 && Object.assign(
+    label: "Grid step", above: 0, value: editor.step(), onChange: (value) => value > 0 && Object.assign(
       editor.state, { step: value },
     ),
     help: "Of the grid and of the arrow keys; with Shift ten times.",
@@ -31,8 +31,8 @@ export const createPanel = (editor) => {
   const follow = () => {
     const regions = editor.regions();
     if (!regions.length) return;
-    undo.disabled = !editor.history.canUndo();
-    redo.disabled = !editor.history.canRedo();
+    able(undo, editor.history.canUndo());
+    able(redo, editor.history.canRedo());
     dropRing.disabled = editor.state.place.ring < 0 && regions.length < 2;
     if (document.activeElement !== grid.input) grid.value = editor.step();
     vertex.follow();
@@ -50,6 +50,12 @@ export const createPanel = (editor) => {
     ),
     follow,
   };
+};
+
+// A button that becomes disabled would drop the focus; one that says that it is keeps it.
+const able = (node, can) => {
+  if (can) node.removeAttribute("aria-disabled");
+  else node.setAttribute("aria-disabled", "true");
 };
 
 const vertexFields = (editor) => {
@@ -70,7 +76,8 @@ const vertexFields = (editor) => {
 };
 
 const densityField = (editor, index) => numberField({
-  label: `Density of region ${index + 1}`, unit: "kg/m3", min: 0, optional: true,
+  label: `Density of region ${index + 1}`, unit: "kg/m3", above: 0, optional: true,
+  help: "Empty: 2400 kg/m\u00b3.",
   onChange: (value) => editor.change(model.withDensity(editor.regions(), index, value)),
 });
 

@@ -6,7 +6,7 @@ import { createPanel } from "/views/body-editor-panel.js";
 import { pastePart } from "/views/body-paste.js";
 import { card, el, fill, tidy } from "/views/body-parts.js";
 import { regionsOf, shapeOf } from "/views/body-shapes.js";
-import { METRES } from "/views/body-units.js";
+import { inUnits, METRES } from "/views/body-units.js";
 import { roundStep } from "/drawing/viewport.js";
 
 /** Put the editor in its place; follow() shows it for a polygon and takes it away for any other shape. */
@@ -35,6 +35,7 @@ const createEditor = (app) => {
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
   const tell = () => watchers.forEach((each) => each());
+  const now = () => ({ regions: regions(), units: body().units });
   const put = (next) => app.inputs.set("body.section.region", next);
   const step = () => state.step ?? firstStep(regions());
   const editor = {
@@ -44,7 +45,7 @@ const createEditor = (app) => {
     metres: () => METRES[body().units],
     watch: (watcher) => watchers.add(watcher),
     change: (next, place = state.place) => {
-      history.keep(regions());
+      history.keep(now());
       editor.adjust(next, place);
     },
     adjust: (next, place = state.place) => {
@@ -52,15 +53,18 @@ const createEditor = (app) => {
       put(next);
       tell();
     },
-    keep: () => history.keep(regions()),
+    keep: () => history.keep(now()),
     select: (place) => {
       state.place = place;
       tell();
     },
     snapped: (point) => model.snapped(point, state.snap ? step() : 0, tidy),
     travel: (direction) => {
-      const next = history[direction](regions());
-      if (next) editor.adjust(next, withinReach(next, state.place));
+      const found = history[direction](now());
+      if (!found) return;
+      const before = { units: found.units, section: { region: found.regions } };
+      const next = inUnits(before, body().units).section.region;
+      editor.adjust(next, withinReach(next, state.place));
     },
     say: app.say,
     tell,

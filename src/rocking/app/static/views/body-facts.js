@@ -14,6 +14,7 @@ export const factsTable = (body, app) => {
   ];
   const row = (label, unit, read) => [label, ...sides.map(read), unit];
   const whole = (label, unit, value) => [label, ...sides.map(() => value), unit];
+  const feet = body.feet_m.map((foot) => settled(foot, body));
   const rows = [
     row("Slenderness h/b", "", (side) => side.slenderness_ratio),
     row("Slenderness angle \u03b1", "rad", (side) => side.slenderness_angle_rad),
@@ -22,9 +23,9 @@ export const factsTable = (body, app) => {
     row("Frequency parameter p", "rad/s", (side) => side.frequency_parameter_rad_s),
     row("Uplift acceleration", "m/s\u00b2", (side) => side.uplift_acceleration_m_s2),
     row("Uplift acceleration", "g", (side) => side.uplift_acceleration_m_s2 / body.gravity_m_s2),
-    ["Foot, x", ...(differ ? body.feet_m : [`${number(body.feet_m[0])}, ${number(body.feet_m[1])}`]), "m"],
-    whole("Centre of mass, x", "m", body.centre_m[0]),
-    whole("Centre of mass, y", "m", body.centre_m[1]),
+    ["Foot, x", ...(differ ? feet : [feet.map((foot) => number(foot)).join(", ")]), "m"],
+    whole("Centre of mass, x", "m", settled(body.centre_m[0], body)),
+    whole("Centre of mass, y", "m", settled(body.centre_m[1], body)),
     whole("Mass", "kg", body.mass_kg),
     whole("Moment of inertia", "kg m\u00b2", body.moment_of_inertia_kg_m2),
   ];
@@ -34,6 +35,10 @@ export const factsTable = (body, app) => {
     csv: () => app.download("table/body.csv", app.inputs.get(), "body.csv"),
   });
 };
+
+// What rounding left of a zero is a zero: smaller than the body by fifteen powers of ten.
+const settled = (length, { sides }) =>
+  (Math.abs(length) < 1e-14 * sides.right.semi_diagonal_m ? 0 : length);
 
 /** Warnings in plain words, or what stands in their place. */
 export const warningsOf = (body) => {

@@ -1,13 +1,20 @@
 /** A drawing or body file, dropped or chosen: DXF, WKT, GeoJSON or TOML. */
 
-import { button, el, selectField } from "/views/body-parts.js";
+import { button, el, fill, note, selectField } from "/views/body-parts.js";
 import { METRES } from "/views/body-units.js";
 
 /** The place to drop a file, and its unit where the file does not say it. */
 export const dropZone = (app) => {
-  let refused = null;
+  let held = null;
+  let placed = "";
+  const said = el("div", { class: "refusal", role: "alert", "data-testid": "file-refusal" });
+  const name = el("p", { class: "field-help", "data-testid": "held-file" });
+  // The file is kept: another unit reads it again, unless the body was changed since by hand.
+  const again = () => {
+    if (held && (!placed || JSON.stringify(app.inputs.get().body) === placed)) take(held);
+  };
   const units = selectField({
-    label: "Unit of the file", value: "", onChange: () => refused && take(refused),
+    label: "Unit of the file", value: "", onChange: again,
     options: [
       {
         value: "", text: "as the file says",
@@ -21,26 +28,28 @@ export const dropZone = (app) => {
     tabindex: "-1", onchange: () => chooser.files[0] && take(chooser.files[0]),
   });
   const take = async (file) => {
-    chooser.value = "";
-    refused = null;
-    units.setError("");
+    [held, placed] = [file, ""];
+    fill(said);
+    fill(name, `File: ${file.name}. Choosing another unit reads it again.`);
     try {
       const query = { name: file.name, units: units.value || undefined };
       const answer = await app.call("body/file", { body: file, query });
       app.inputs.set("body", answer.body);
+      placed = JSON.stringify(app.inputs.get().body);
       app.say(`Read ${file.name}.`);
     } catch (error) {
-      // The file is kept: choosing another unit tries it again.
-      refused = file;
-      units.setError(error.message);
+      fill(said, note(error.message, "error"));
       app.say(error.message, "error");
+      if (/unit/.test(error.message)) units.input.focus();
+    } finally {
+      chooser.value = "";
     }
   };
   const zone = el("div", { class: "drop", "data-testid": "body-drop" },
     el("p", {}, "Drop a DXF, WKT, GeoJSON or TOML file here"),
     button({ text: "Choose a file", onClick: () => chooser.click() }), chooser);
   catchFiles(zone, take);
-  return el("div", { class: "stack" }, units, zone);
+  return el("div", { class: "stack" }, zone, name, said, units);
 };
 
 /** Let an element take a dropped file. */

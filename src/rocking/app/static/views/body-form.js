@@ -14,8 +14,10 @@ export const createForm = (app) => {
     onChange: (next) => {
       const now = body();
       kept.set(shapeOf(now), now);
-      const before = next === "section" ? null : kept.get(next);
-      app.inputs.set("body", before ? inUnits(before, now.units) : asShape(now, next, app.body.get()));
+      const before = kept.get(next);
+      app.inputs.set("body", before
+        ? renamed(inUnits(before, now.units), now.name) : asShape(now, next, app.body.get()));
+      app.faults.refresh();
     },
   });
   const units = segmented({
@@ -47,10 +49,23 @@ export const createForm = (app) => {
     }
     const table = tableOfShape(now);
     for (const [read, field] of fields) field.value = read(table) ?? null;
+    for (const { after } of fields) after?.();
+    app.faults.refresh();
+  };
+  // The field that the server refused is marked too, until the body changes.
+  let refused = null;
+  const refuse = (error) => {
+    const key = error?.field;
+    const found = fields.find(([, , , name]) => key && name === key)?.[1];
+    if (refused && refused !== found) refused.setError("");
+    if (found && !found.input.hasAttribute("aria-invalid")) found.setError(error.message);
+    refused = found ?? null;
   };
   follow();
-  return { element: el("div", { class: "stack" }, shape, units, sizes, feet, name), follow };
+  return { element: el("div", { class: "stack" }, shape, units, sizes, feet, name), follow, refuse };
 };
+
+const renamed = ({ name: _, ...body }, name) => (name ? { ...body, name } : body);
 
 const choices = (current) => {
   const listed = Object.entries(SHAPES).map(([value, { words }]) => ({ value, text: words }));
@@ -74,13 +89,14 @@ const fieldsOf = (app) => {
   const isMassPoints = shapeOf(body) === "mass_points";
   const common = isMassPoints ? [] : [
     [(table) => table.depth, numberField({
-      label: "Depth", unit: units, optional: true, min: 0, onChange: (value) => put("depth", value),
-      help: "Out of the picture; only the mass needs it.",
-    })],
+      label: "Depth", unit: units, optional: true, above: 0, onChange: (value) => put("depth", value),
+      help: "Out of the picture; only the mass needs it. Empty: 1\u00a0m.",
+    }), false, "depth"],
   ];
   const density = [(table) => table.density, numberField({
-    label: "Density", unit: "kg/m3", optional: true, min: 0, onChange: (value) => put("density", value),
-  })];
+    label: "Density", unit: "kg/m3", optional: true, above: 0, onChange: (value) => put("density", value),
+    help: "Empty: 2400\u00a0kg/m\u00b3.",
+  }), false, "density"];
   const hasDensity = !isMassPoints && shapeOf(body) !== "section";
   return [
     ...own, ...common, ...(hasDensity ? [density] : []), ...(isMassPoints ? [] : feetFields(app, units, put))
@@ -89,12 +105,12 @@ const fieldsOf = (app) => {
 
 const sizeField = (key, label, { whole, ...more }, put) => {
   const field = numberField({
-    label, min: 0, ...more,
+    label, ...(more.min === undefined ? { above: 0 } : {}), ...more,
     onChange: (value) => (
       whole && !Number.isInteger(value) ? field.setError("A whole number is needed.") : put(key, value)
     ),
   });
-  return [(table) => table[key], field];
+  return [(table) => table[key], field, false, key];
 };
 
 // Feet narrower than the outline, or two typed places; empty means: as wide as the base.
@@ -107,18 +123,24 @@ const feetFields = (app, units, put) => {
   };
   const take = (index) => (value) => {
     pair[index] = value;
+    lone();
     if (pair.every((each) => each === null)) put("feet", undefined);
     else if (pair.every((each) => each !== null)) put("feet", [...pair]);
   };
-  return ["Left foot", "Right foot"].map((label, index) => [
-    (table) => settled(table)[index],
-    numberField({
-      label, unit: units, optional: true, onChange: take(index),
-      help: index ? "Both empty: the edges of the base." : undefined,
-    }),
-    true,
-  ]);
+  const both = ["Left foot", "Right foot"].map((label, index) => numberField({
+    label, unit: units, optional: true, onChange: take(index),
+    help: index ? "Both empty: the edges of the base." : undefined,
+  }));
+  const lone = () => both.forEach((field, at) => {
+    if (pair[at] === null && pair[1 - at] !== null) field.setError(ALONE);
+    else if (!field.input.value.trim()) field.setError("");
+  });
+  return both.map(
+    (field, index) => Object.assign([(table) => settled(table)[index], field, true], { after: lone })
+  );
 };
+
+const ALONE = "Give both feet, or neither: one alone is not used.";
 
 // Feet of its own stand in a block's table; the short form has none.
 const withFeet = ({ units, name, ...block }, feet) => (

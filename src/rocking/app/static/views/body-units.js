@@ -12,6 +12,7 @@ const LENGTHS = new Set([
 
 /** The same body with its lengths in another unit. */
 export const inUnits = (body, units) => {
+  if (body.units === units) return body;
   const factor = METRES[body.units] / METRES[units];
   return { ...rescaled(body, factor), units };
 };

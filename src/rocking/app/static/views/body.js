@@ -10,6 +10,8 @@ import { pictureTools } from "/drawing/picture-tools.js";
 import { bodyPicture } from "/drawing/body-picture.js";
 import { responsive } from "/drawing/responsive.js";
 
+const OLDER = "The picture and the numbers are those of the last valid sizes.";
+
 /** Show the view. */
 export const mount = (section, app) => {
   const refusal = el("div", { class: "refusal", role: "alert", "data-testid": "body-refusal" });
@@ -40,10 +42,20 @@ export const mount = (section, app) => {
 
   const drawing = mountEditor(editor, app);
   app.inputs.subscribe((_, changed) => changed.has("body") && form.follow());
-  app.body.subscribe((body, error) => {
-    pictureCard.classList.toggle("stale", Boolean(error));
-    numbersCard.classList.toggle("stale", Boolean(error));
-    fill(refusal, error ? note(error.message, "error") : null);
+  let said = "";
+  const look = () => {
+    const wrong = app.body.error()?.message ?? "";
+    const typed = app.faults.sentence({ view: "body", but: wrong });
+    for (const each of [pictureCard, numbersCard]) each.classList.toggle("stale", Boolean(wrong || typed));
+    form.refuse(app.body.error());
+    if (said === wrong + typed) return;
+    said = wrong + typed;
+    fill(refusal, wrong ? note(wrong, "error") : null,
+      typed ? note(`${typed} ${OLDER}`, "warning") : null);
+  };
+  app.faults.subscribe(look);
+  app.body.subscribe((body) => {
+    look();
     if (!body) return;
     picture.redraw();
     fill(warnings, warningsOf(body));

@@ -1,7 +1,7 @@
 /** Coefficients against measurements: a cloud over slenderness, and the intervals of this body. */
 
 import { el, fill, svg } from "/app/dom.js";
-import { GROUPS, modelStyle, modelWords } from "/app/palette.js";
+import { dashKey, GROUPS, modelStyle, modelWords } from "/app/palette.js";
 import { marker } from "/drawing/markers.js";
 import { measuredPicture } from "/drawing/measured-picture.js";
 import { responsive } from "/drawing/responsive.js";
@@ -51,16 +51,10 @@ const legendOf = ({ measured, curves }) => {
   const groups = [...new Set(measured.map((each) => each.group))];
   return el("ul", { class: "legend" },
     groups.map((group) => el("li", {}, groupKey(group), GROUPS[group]?.words ?? group)),
-    curves.map(({ model }) => el("li", {}, curveKey(model), modelWords(model))));
+    curves.map(({ model }) => el("li", {}, dashKey(modelStyle(model)), modelWords(model))));
 };
 
 const groupKey = (group) => svg(
   "svg", { class: "picture key", width: 16, height: 16, "aria-hidden": "true" },
   marker(GROUPS[group]?.marker ?? "circle", 8, 8),
 );
-
-const curveKey = (model) => {
-  const { colour, dash } = modelStyle(model);
-  return svg("svg", { class: "picture key", width: 28, height: 10, "aria-hidden": "true" },
-    svg("path", { d: "M0 5H28", stroke: colour, "stroke-width": 2.5, "stroke-dasharray": dash.join(" ") }));
-};

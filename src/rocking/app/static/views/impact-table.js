@@ -3,7 +3,7 @@
 import { tableOf, note } from "/app/fields.js";
 import { el } from "/app/dom.js";
 import { percent } from "/app/format.js";
-import { modelStyle, modelWords } from "/app/palette.js";
+import { dashKey, modelStyle, modelWords } from "/app/palette.js";
 
 /** One row for each model; copying takes every digit. */
 export const coefficientTable = (answer, foot, app) => {
@@ -53,10 +53,7 @@ export const warningNotes = (answer, foot) => {
 const sentence = (words) => words[0].toUpperCase() + words.slice(1);
 
 /** A model's key and words. */
-export const modelName = (label, title) => {
-  const { colour } = modelStyle(label);
-  const key = el("span", { class: "model-key", "aria-hidden": "true", style: { background: colour } });
-  return el("span", { class: "model-name", title }, key, modelWords(label));
-};
+export const modelName = (label, title) =>
+  el("span", { class: "model-name", title }, dashKey(modelStyle(label)), modelWords(label));
 
 const range = ({ low_95: low, high_95: high }) => `${low.toFixed(4)} \u2026 ${high.toFixed(4)}`;

@@ -12,7 +12,7 @@ import { stagesPicture } from "/drawing/stages-picture.js";
 
 /** Show the view. */
 export const mount = (section, app) => {
-  const state = { answer: null, foot: "right", seen: null, visible: false };
+  const state = { answer: null, foot: "right", error: null, seen: null, visible: false };
   const refusal = el("div", { class: "refusal", role: "alert", "data-testid": "impact-refusal" });
   const feet = segmented({
     label: "The body lands on its", value: "right",
@@ -22,7 +22,9 @@ export const mount = (section, app) => {
       draw();
     },
   });
-  const table = el("div", {}, el("p", { class: "waiting" }, "Computing"));
+  const results = el("div", { class: "stack results", "data-testid": "impact-results", hidden: true });
+  const waiting = el("p", { class: "waiting" }, "Computing");
+  const table = el("div", {});
   const warnings = el("div", { class: "stack", "data-testid": "impact-warnings" });
   const evidence = evidenceParts();
   feet.hidden = true;
@@ -41,7 +43,8 @@ export const mount = (section, app) => {
       el("p", { class: "lead" },
         "Each time the body comes back to the ground it loses speed. Every model says how much; ",
         "the published measurements say how far to trust it.")),
-    refusal, feet,
+    refusal, waiting, results);
+  fill(results, feet,
     card("Coefficient of restitution", table, warnings),
     card("Against the published measurements", ...evidence.nodes, tools("coefficients")),
     el("div", { class: "columns two" },
@@ -69,28 +72,45 @@ export const mount = (section, app) => {
     evidence.follow(answer, state.foot);
     for (const each of [impulse, ledger, stages]) each.redraw();
   };
+  const look = () => {
+    const wrong = state.error?.message ?? app.faults.sentence({ view: "body" });
+    results.classList.toggle("stale", Boolean(wrong));
+    results.hidden = !state.answer;
+    waiting.hidden = Boolean(state.answer || wrong);
+    const older = state.answer ? " What is shown below belongs to the last valid inputs." : "";
+    if (shownWrong === wrong + older) return;
+    shownWrong = wrong + older;
+    fill(refusal, wrong ? note(`${ended(wrong)}${older}`, "error") : null);
+  };
+  let shownWrong = "";
   const ask = async () => {
     const { body, settings } = app.inputs.get();
     const key = JSON.stringify([body, settings]);
     if (!state.visible || key === state.seen) return;
-    state.seen = key;
     try {
       state.answer = await app.latest("impact", "impact", settings ? { body, settings } : { body });
-      fill(refusal);
+      [state.seen, state.error] = [key, null];
+      look();
       draw();
     } catch (error) {
-      if (!app.superseded(error)) fill(refusal, note(error.message, "error"));
+      if (app.superseded(error)) return;
+      [state.seen, state.error] = [null, error];
+      look();
     }
   };
+  app.faults.subscribe(look);
   app.inputs.subscribe((_, changed) => (changed.has("body") || changed.has("settings")) && ask());
   return {
     shown: () => {
       state.visible = true;
+      look();
       return ask();
     },
     hidden: () => (state.visible = false),
   };
 };
+
+const ended = (words) => (/[.?!]$/.test(words) ? words : `${words}.`);
 
 const fieldOf = ({ points_m: points, stages }) => ({
   points, stages: stages.map(({ name, share, velocity_m_s: velocities }) => ({ name, share, velocities })),

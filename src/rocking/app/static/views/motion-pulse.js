@@ -4,6 +4,7 @@ import { numberField, slider } from "/app/fields.js";
 import { readPulse, writePulse } from "/views/motion-pulse-words.js";
 import { pulsesOf } from "/views/motion-pulses.js";
 import { sketch } from "/views/motion-sketch.js";
+import { plainWords } from "/views/studies-words.js";
 
 const USUAL = "sine";
 
@@ -52,7 +53,7 @@ export const pulseEditor = (app, onChange) => {
 
 const aboutOf = ({ summary }) => {
   const text = summary.replace(/^Return /, "").replaceAll("`", "");
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  return plainWords(text.charAt(0).toUpperCase() + text.slice(1));
 };
 
 // amplitude and period stay when one goes from pulse to pulse

@@ -1,20 +1,27 @@
 /** A record file: dropped or chosen, with what it does not say asked for. */
 import { el, fill } from "/app/dom.js";
-import { button, note, selectField } from "/app/fields.js";
+import { button, note } from "/app/fields.js";
+import { componentFields } from "/views/motion-components.js";
 import { answersOf, questionsOf } from "/views/motion-record-needs.js";
+import { rememberTold } from "/views/motion-told.js";
 
 const TOLD = ["format", "units", "time_step"];
 
-/** Returns the editor of a record. */
-export const recordEditor = (app, onChange) => new RecordEditor(app, onChange);
+/** Returns the editor of a record; `onWait` hears when a file begins or ends to wait for answers. */
+export const recordEditor = (app, onChange, onWait) => new RecordEditor(app, onChange, onWait);
+
+const labelOf = (input) => (input ? input.closest(".field")?.querySelector("label").textContent ?? "" : null);
 
 class RecordEditor {
-  constructor(app, onChange) {
+  constructor(app, onChange, onWait) {
     this.app = app;
     this.onChange = onChange;
+    this.onWait = onWait;
+    this.waiting = false;
     this.file = null;
     this.said = el("div", { "aria-live": "polite", "data-testid": "record-answer" });
     this.asked = el("div", { "data-testid": "record-needs" });
+    this.name = el("p", { class: "record-name", tabindex: "-1" });
     this.held = el("div", { class: "record-held", "data-testid": "record-held" });
     this.element = el("div", { class: "record-editor" }, this.dropZone(), this.said, this.asked, this.held);
   }
@@ -29,7 +36,10 @@ class RecordEditor {
       onchange: () => this.take(input.files[0]),
     });
     const choose = button({ text: "Choose a file", kind: "primary", onClick: () => input.click() });
-    const words = "PEER, ESM, COSMOS, CSMIP, USGS, K-NET, CWA, GeoNet, BHRC, miniSEED, SAC or columns";
+    const words = 
+      "PEER, ESM, COSMOS, CSMIP, USGS, K-NET, CWA, GeoNet, BHRC, SAC, columns, " +
+      "and miniSEED that holds accelerations (counts need a StationXML, which is not read here)";
+    this.chooser = choose;
     const zone = el(
       "div",
       { class: "drop", "data-testid": "record-drop" },
@@ -56,7 +66,14 @@ class RecordEditor {
     if (!file) return;
     this.file = file;
     this.given = {};
+    fill(this.asked);
+    this.wait(true);
     this.send();
+  }
+
+  wait(on) {
+    this.waiting = on;
+    this.onWait?.();
   }
 
   async send() {
@@ -64,17 +81,28 @@ class RecordEditor {
     if (most && this.file.size > most) {
       const room = Math.round(most / 2 ** 20);
       const words = `${this.file.name} is larger than the ${room} MiB that the server takes.`;
-      return fill(this.said, note(words, "error"));
+      return this.unread(words);
     }
     fill(this.said, note(`Reading ${this.file.name}`));
     try {
       const query = { name: this.file.name, ...this.told() };
       this.took(await this.app.call("records", { method: "POST", body: this.file, query }));
     } catch (error) {
-      fill(this.said, note(error.message, "error"));
+      this.unread(error.message);
       if (error.needs?.length) this.ask(error);
     }
     return undefined;
+  }
+
+  /** Says why a file was not read; what was asked about an earlier one goes with it. */
+  unread(words) {
+    const stays = this.app.inputs.get().motion ? " The motion stays as it was." : "";
+    const named = words.startsWith(`${this.file.name}:`) ? `The file ${words}` : words;
+    fill(this.said, note(`${named.replace(/([^.?!])$/, "$1.")}${stays}`, "error"));
+    const lost = this.asked.contains(document.activeElement);
+    fill(this.asked);
+    if (lost) this.chooser.focus();
+    this.wait(false);
   }
 
   told() {
@@ -114,6 +142,7 @@ class RecordEditor {
       go.click();
     });
     fill(this.asked, form);
+    this.wait(true);
     form.querySelector("input, select")?.focus();
   }
 
@@ -123,35 +152,41 @@ class RecordEditor {
     for (const key of [...TOLD, "component"]) {
       if (this.given[key] !== undefined) motion[key] = this.given[key];
     }
+    this.wait(false);
     this.onChange(motion);
     this.app.say(`${file_name} is read.`);
+    // the button that was pressed is gone
+    if (document.activeElement === document.body) this.name.focus();
   }
 
   /** Shows which record is the motion. */
   show(motion) {
-    const name = motion.file_name || `record ${motion.record.slice(0, 12)}`;
-    const choices = this.answer?.record === motion.record ? this.componentChoices(motion) : [];
-    fill(this.held, el("p", { class: "record-name" }, name), ...choices);
+    rememberTold(motion);
+    this.shown = motion;
+    fill(this.name, motion.file_name || `record ${motion.record.slice(0, 12)}`);
+    const known = this.answer?.record === motion.record;
+    const names = known ? (this.answer.components || []).map(({ name }) => name) : [];
+    const before = labelOf(this.held.contains(document.activeElement) && document.activeElement);
+    const fields = componentFields(names, motion, (next) => this.onChange(next));
+    fill(this.held, this.name, ...fields);
+    if (before !== null) (fields.find((one) => labelOf(one.input) === before)?.input ?? this.name).focus();
+    if (!known) this.lookUp(motion);
   }
 
-  componentChoices(motion) {
-    const components = (this.answer.components || []).map(({ name }) => name);
-    if (components.length < 2) return [];
-    const options = components.map((name) => ({ value: name, text: name }));
-    const none = { value: "", text: "none" };
-    const main = selectField({
-      label: "Horizontal component",
-      options,
-      value: motion.component ?? components[0],
-      onChange: (component) => this.onChange({ ...motion, component }),
-    });
-    const vertical = selectField({
-      label: "Vertical component",
-      options: [none, ...options],
-      value: motion.vertical ?? "",
-      onChange: (name) => this.onChange(name ? { ...motion, vertical: name } : without(motion, "vertical")),
-    });
-    return [main, vertical];
+  /** Asks what a file holds that was sent before this page was loaded. */
+  async lookUp({ record, format, units, time_step }) {
+    if (this.asking === record) return;
+    this.asking = record;
+    try {
+      const found = await this.app.call(`records/${record}`, { query: { format, units, time_step } });
+      if (this.shown?.record !== record) return;
+      this.answer = found;
+      this.show(this.shown);
+    } catch {
+      // the motion itself is refused in words
+    } finally {
+      this.asking = null;
+    }
   }
 
   /** Nothing is chosen of itself: a file has to be given. */
@@ -165,5 +200,3 @@ class RecordEditor {
     if (error.status === 404) fill(this.said, note(words, "warning"));
   }
 }
-
-const without = (given, key) => Object.fromEntries(Object.entries(given).filter(([name]) => name !== key));

@@ -4,6 +4,7 @@ import { el, fill } from "/app/dom.js";
 import { button, card, tableOf, toolbar } from "/app/fields.js";
 import { pretty, quantity } from "/app/format.js";
 import { spectrumChart } from "/views/motion-spectrum.js";
+import { plainWords } from "/views/studies-words.js";
 
 const TRACES = [
   { key: "acceleration", label: "acceleration", unit: "m/s2", colour: "#0072B2" },
@@ -43,7 +44,7 @@ class MotionResult {
   }
 
   response() {
-    const tools = toolbar(this.saver("CSV", "table/spectrum.csv"));
+    const tools = toolbar(this.saver("CSV", "table/spectrum.csv", "Response spectrum as CSV"));
     return card("Response spectrum", this.spectrum.element, tools);
   }
 
@@ -53,15 +54,15 @@ class MotionResult {
 
   tools() {
     return toolbar(
-      this.saver("PNG", "picture/motion.png"),
-      this.saver("SVG", "picture/motion.svg"),
-      this.saver("CSV", "table/motion.csv"),
+      this.saver("PNG", "picture/motion.png", "Motion as PNG"),
+      this.saver("SVG", "picture/motion.svg", "Motion as SVG"),
+      this.saver("CSV", "table/motion.csv", "Motion as CSV"),
     );
   }
 
-  saver(text, path) {
+  saver(text, path, label) {
     const name = path.replaceAll("/", "-");
-    return button({ text, onClick: () => this.app.download(path, this.app.inputs.get(), name) });
+    return button({ text, label, onClick: () => this.app.download(path, this.app.inputs.get(), name) });
   }
 
   /** Takes everything away. */
@@ -72,7 +73,7 @@ class MotionResult {
   /** Shows an answer. */
   show(answer) {
     this.element.hidden = false;
-    fill(this.name, answer.name);
+    fill(this.name, plainWords(answer.name));
     fill(this.facts, ...factsOf(answer).flatMap(([word, text]) => [el("dt", {}, word), el("dd", {}, text)]));
     const { shown, of } = answer.series;
     fill(this.note, of > shown ? `${shown} of ${of} samples are drawn, the extremes among them.` : "");

@@ -1,6 +1,7 @@
 /** What shakes the ground: a record file, a pulse, or a synthetic motion. */
 import { el, fill } from "/app/dom.js";
-import { card, note, segmented } from "/app/fields.js";
+import { button, card, note, segmented } from "/app/fields.js";
+import { motionBefore, rememberMotion } from "/views/motion-before.js";
 import { pulseEditor } from "/views/motion-pulse.js";
 import { recordEditor } from "/views/motion-record.js";
 import { resultOf } from "/views/motion-result.js";
@@ -14,7 +15,10 @@ const WAYS = [
 ];
 const EDITORS = { record: recordEditor, pulse: pulseEditor, synthetic: syntheticEditor };
 
-const wayOf = (motion) => Object.keys(EDITORS).find((way) => motion?.[way] !== undefined) || "pulse";
+const LEAN = "No motion is chosen: the body is let go from a lean. Choose one here to shake it.";
+
+/** Way of a motion; none while nothing shakes the ground. */
+const wayOf = (motion) => Object.keys(EDITORS).find((way) => motion?.[way] !== undefined) || "";
 
 /** Shows the view of the motion in a section. */
 export const mount = (section, app) => {
@@ -40,6 +44,7 @@ class MotionView {
       onChange: (way) => this.choose(way),
     });
     this.scale = scaleEditor((scale) => this.setScale(scale));
+    this.pending = el("div", { "aria-live": "polite", "data-testid": "motion-pending" });
     this.refusal = el("div", { "aria-live": "polite", "data-testid": "motion-refusal" });
     this.result = resultOf(app);
     this.parts = [this.head(), this.columns()];
@@ -54,12 +59,14 @@ class MotionView {
   columns() {
     const form = card("The motion", this.ways, this.place, this.scale.element);
     const left = el("div", { class: "motion-left" }, form);
-    const right = el("div", { class: "motion-right" }, this.refusal, this.result.element);
+    const right = el("div", { class: "motion-right" }, this.refusal, this.pending, this.result.element);
     return el("div", { class: "columns narrow-wide" }, left, right);
   }
 
   mounted() {
     this.open(this.way);
+    const parts = [this.place, this.scale.element];
+    for (const part of parts) part.addEventListener("input", () => this.markStale());
     this.app.inputs.subscribe((inputs, changed) => {
       if (changed.has("motion") || changed.has("settings")) this.follow(inputs);
     });
@@ -70,21 +77,42 @@ class MotionView {
     const { motion } = this.app.inputs.get();
     if (motion) this.kept[wayOf(motion)] = motion;
     this.open(way);
-    const next = this.kept[way] || this.editors[way].usual();
+    const before = motion ? null : motionBefore();
+    const next = this.kept[way] || (wayOf(before) === way ? before : null) || this.editors[way].usual();
     if (next) this.set(next);
+    this.markStale();
   }
 
+  /** Shows an editor; without a motion none of them, so that each can be chosen. */
   open(way) {
     this.way = way;
     this.ways.value = way;
-    this.editors[way] ||= EDITORS[way](this.app, (motion) => this.set(motion));
-    fill(this.place, this.editors[way].element);
+    const [onChange, onWait] = [(motion) => this.set(motion), () => this.markStale()];
+    if (way) this.editors[way] ||= EDITORS[way](this.app, onChange, onWait);
+    fill(this.place, way ? this.editors[way].element : null);
     this.tell(this.app.inputs.get().motion);
+  }
+
+  /** Says when what is measured is not what the form shows: another way, a file that waits, a field in error. */
+  markStale() {
+    const { motion } = this.app.inputs.get();
+    const wrong = [this.place, this.scale.element].some((part) => part.querySelector("[aria-invalid=true]"));
+    const waits = this.editors[this.way]?.waiting;
+    const stale = Boolean(motion && (wrong || waits || wayOf(motion) !== this.way));
+    const name = motion?.file_name ?? "the motion from before";
+    const file = waits ? "The new file is not read yet" : "No file is chosen yet";
+    const why = wrong ? "A number is marked as wrong" : file;
+    const words = `${why}: what is measured below, and what shakes the body, is still ${name}.`;
+    const told = stale ? words : "";
+    if (told !== this.told) fill(this.pending, told ? note(told, "warning") : null);
+    this.told = told;
+    this.result.element.classList.toggle("stale", stale);
   }
 
   tell(motion) {
     if (motion && wayOf(motion) === this.way) this.editors[this.way].show(motion);
     this.scale.show(motion?.scale ?? 1);
+    this.scale.element.hidden = !motion;
   }
 
   /** Makes a motion the motion; a motion and a free start exclude each other. */
@@ -102,8 +130,10 @@ class MotionView {
 
   follow({ motion }) {
     this.dirty = true;
-    if (motion && wayOf(motion) !== this.way) this.open(wayOf(motion));
+    rememberMotion(motion);
+    if (wayOf(motion) !== this.way) this.open(wayOf(motion));
     else this.tell(motion);
+    this.markStale();
     if (this.visible) this.refresh();
   }
 
@@ -111,8 +141,8 @@ class MotionView {
     const { motion, settings } = this.app.inputs.get();
     this.dirty = false;
     if (!motion) {
-      const words = "No motion is chosen: the body is let go from a lean. Choose one here to shake it.";
-      fill(this.refusal, note(words));
+      const back = button({ text: "Back to the motion before", onClick: () => this.set(motionBefore()) });
+      fill(this.refusal, note(LEAN), el("div", { class: "toolbar" }, back));
       this.result.clear();
       return;
     }
@@ -132,7 +162,7 @@ class MotionView {
   refuse(error) {
     fill(this.refusal, note(error.message, "error"));
     this.result.clear();
-    this.editors[this.way].refused?.(error);
+    this.editors[this.way]?.refused?.(error);
   }
 
   shown() {

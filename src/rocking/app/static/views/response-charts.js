@@ -2,6 +2,7 @@
 import { lineChart } from "/charts/line.js";
 import { el, fill } from "/app/dom.js";
 import { sharesOf } from "/scene/sampled.js";
+import { chosenOf } from "/views/response-chosen.js";
 import { curveKey, styleOf, wordsOf } from "/views/response-labels.js";
 import { together } from "/views/response-series.js";
 
@@ -12,6 +13,14 @@ const FALL_SHOWN = 1.5;
 
 const held = (share) => Math.max(-FALL_SHOWN, Math.min(FALL_SHOWN, share));
 const shareOf = (answer) => sharesOf(answer.series.rotation, answer.body).map(held);
+
+// what follows the point of no return is a fall to the ground, beside which no rocking could be seen
+const untilFall = (answer, values) => {
+  const shares = sharesOf(answer.series.rotation, answer.body);
+  const falls = answer.outcome === "overturned";
+  const fallen = falls ? shares.findIndex((share) => Math.abs(share) > FALL_SHOWN) : -1;
+  return fallen < 0 ? values : values.map((value, k) => (k < fallen ? value : null));
+};
 
 const capped = (values) => values.map((value) => (value === null || value > MOST_FRICTION ? null : value));
 
@@ -33,13 +42,13 @@ const CURVES = [
     key: "velocity",
     title: "Angular velocity",
     y: { label: "", unit: "rad/s" },
-    values: (answer) => answer.series.velocity,
+    values: (answer) => untilFall(answer, answer.series.velocity),
   },
   {
     key: "friction",
     title: "Friction that rocking without slip takes",
     y: { label: "", unit: "-" },
-    values: (answer) => capped(answer.series.friction_demand),
+    values: (answer) => untilFall(answer, capped(answer.series.friction_demand)),
   },
 ];
 const ENERGIES = [
@@ -76,19 +85,17 @@ class ResponseCharts {
     this.showFollowed();
   }
 
-  /** Follows one model with energy and impacts. */
-  follow(label) {
-    this.wanted = curveKey(label);
-    this.showFollowed();
-  }
-
+  /** Shows energy and impacts of the model that is looked at. */
   showFollowed() {
-    const answer = this.answers.find(({ label }) => curveKey(label) === this.wanted) || this.answers[0];
+    if (!this.answers) return;
+    const chosen = chosenOf(this.answers.map(({ label }) => label));
+    const answer = this.answers.find(({ label }) => label === chosen);
     if (curveKey(answer.label) !== this.followed) this.rebuildEnergy(answer.label);
     this.charts.energy.setData(energyOf(answer));
     const vertical = answer.impacts.map(({ time_s: time }) => time);
     this.charts.rotation.setMarks({ vertical, horizontal: [-1, 1] });
-    fill(this.about, `Dotted: impacts of ${wordsOf(answer.label)}; dashed: the slenderness angles.`);
+    const marks = `Dotted: impacts of ${wordsOf(answer.label)}; dashed: the slenderness angles.`;
+    fill(this.about, marks, fallWords(this.answers));
   }
 
   rebuild(answers) {
@@ -118,4 +125,12 @@ class ResponseCharts {
 
 const placeOf = (key) => [key, el("div", { class: "response-chart", "data-testid": `chart-${key}` })];
 
-const energyOf = ({ series }) => [series.time, ...ENERGIES.map(({ key }) => series[key])];
+const fallWords = (answers) =>
+  answers.some(({ outcome }) => outcome === "overturned")
+    ? ` Curves of a body that overturns end at ${FALL_SHOWN} \u03b1; the files have the whole fall.`
+    : "";
+
+const energyOf = (answer) => {
+  const { series } = answer;
+  return [series.time, ...ENERGIES.map(({ key }) => untilFall(answer, series[key]))];
+};

@@ -1,6 +1,7 @@
 /** What one may turn while the answer follows: strength, size, a free start, friction, models. */
 import { el } from "/app/dom.js";
 import { card, numberField, slider, switchField } from "/app/fields.js";
+import { motionBefore, rememberMotion } from "/views/motion-before.js";
 import { modelsOf } from "/views/response-models.js";
 import { canBeScaled, scaledBody } from "/views/response-size.js";
 
@@ -76,16 +77,15 @@ class ResponseControls {
 
   /** Lets the body go from a lean, on ground that stands still. */
   lean() {
-    const { motion } = this.app.inputs.get();
-    if (motion) this.motion = motion;
+    rememberMotion(this.app.inputs.get().motion);
     this.app.inputs.set("response.free", LEAN);
-    this.app.inputs.set("motion", null);
+    this.app.inputs.set("motion", undefined);
   }
 
   /** Brings the motion back. */
   shake() {
     this.app.inputs.set("response.free", undefined);
-    if (this.motion) this.app.inputs.set("motion", this.motion);
+    this.app.inputs.set("motion", motionBefore());
   }
 
   /** Shows what the inputs say. */

@@ -1,7 +1,8 @@
 /** The impacts of one model in a table. */
 import { el, fill } from "/app/dom.js";
 import { selectField, tableOf } from "/app/fields.js";
-import { curveKey, wordsOf } from "/views/response-labels.js";
+import { chosenOf, look } from "/views/response-chosen.js";
+import { wordsOf } from "/views/response-labels.js";
 
 const COLUMNS = [
   { label: "No.", digits: 6 },
@@ -21,12 +22,12 @@ const rowsOf = (impacts) =>
 /** Returns the table of impacts with a choice of the model. */
 export const impactsOf = (app) => {
   const place = el("div", { "data-testid": "impacts" });
-  const which = selectField({ label: "Model", options: [], onChange: (label) => choose(label) });
+  const which = selectField({ label: "Model", options: [], onChange: look });
   const element = el("div", { class: "impacts" }, which, place);
   let answers = [];
-  let wanted = null;
   const draw = () => {
-    const answer = answers.find(({ label }) => curveKey(label) === wanted) || answers[0];
+    const chosen = chosenOf(answers.map(({ label }) => label));
+    const answer = answers.find(({ label }) => label === chosen);
     if (!answer) return fill(place);
     which.value = answer.label;
     const rows = rowsOf(answer.impacts);
@@ -37,10 +38,6 @@ export const impactsOf = (app) => {
     const options = { caption, csv, testid: "impacts-table", copyRows: () => rows };
     return fill(place, tableOf(COLUMNS, rows.slice(0, MOST), options));
   };
-  const choose = (label) => {
-    wanted = curveKey(label);
-    draw();
-  };
   const show = (found) => {
     const before = answers.map(({ label }) => label).join("|");
     answers = found;
@@ -49,5 +46,5 @@ export const impactsOf = (app) => {
     }
     draw();
   };
-  return { element, show, choose };
+  return { element, show, draw };
 };

@@ -1,6 +1,5 @@
 /** Names and marks of the restitutions; every coefficient that was typed looks the same, whatever it is. */
-import { el } from "/app/dom.js";
-import { modelStyle, modelWords } from "/app/palette.js";
+import { dashKey, modelStyle, modelWords } from "/app/palette.js";
 
 const TYPED = "fixed";
 
@@ -13,11 +12,5 @@ export const styleOf = (label) => modelStyle(curveKey(label));
 /** Returns a restitution in words. */
 export const wordsOf = (label) => modelWords(curveKey(label));
 
-/** Returns a short line in the colour and dash of a restitution. */
-export const swatch = (label) => {
-  const { colour, dash } = styleOf(label);
-  const mark = el("span", { class: "swatch", "aria-hidden": "true" });
-  mark.style.borderTopColor = colour;
-  mark.style.borderTopStyle = dash.length ? (dash[0] < 4 ? "dotted" : "dashed") : "solid";
-  return mark;
-};
+/** Returns a short line in the colour and the true dash of a restitution. */
+export const swatch = (label) => dashKey(styleOf(label));

@@ -1,10 +1,12 @@
 /** Which models of the impact are compared, with a coefficient of one's own beside them. */
 import { el, fill } from "/app/dom.js";
-import { numberField, slider, switchField } from "/app/fields.js";
+import { numberField, selectField, slider, switchField } from "/app/fields.js";
+import { look } from "/views/response-chosen.js";
 import { swatch, wordsOf } from "/views/response-labels.js";
 import { readRestitution, writeRestitution } from "/views/response-restitution.js";
 
 const USUAL = 0.9;
+const CALIBRATED = "The calibrated value that Impact shows is a number: type it as a coefficient of your own.";
 
 // a model whose number has to be given is the coefficient of one's own
 const complete = ({ parameters }) => Object.values(parameters).every((one) => one.default !== null);
@@ -16,6 +18,13 @@ class ModelChoice {
   constructor(app) {
     this.app = app;
     this.boxes = new Map();
+    this.main = selectField({
+      label: "Main model",
+      options: [],
+      help: "Its answer comes first: in the files, the report and on the command line.",
+      onChange: (label) => this.lead(label),
+    });
+    this.about = el("p", { class: "field-help" }, CALIBRATED);
     this.list = el("fieldset", { class: "model-list" }, el("legend", { class: "visually-hidden" }, "Models"));
     this.own = switchField({
       label: "A coefficient of my own",
@@ -38,7 +47,8 @@ class ModelChoice {
     this.left = this.footField("Onto the left foot", 0);
     this.right = this.footField("Onto the right foot", 1);
     this.feet = el("div", { class: "fields" }, this.left, this.right);
-    this.element = el("div", { class: "models" }, this.list, this.own, this.value, this.apart, this.feet);
+    const parts = [this.list, this.main, this.own, this.value, this.about, this.apart, this.feet];
+    this.element = el("div", { class: "models" }, parts);
   }
 
   footField(label, index) {
@@ -62,9 +72,14 @@ class ModelChoice {
   }
 
   toggle(label, on) {
-    const order = this.labels();
-    const models = order.filter((one) => (one === label ? on : this.state.models.includes(one)));
-    this.change({ models });
+    const others = this.state.models.filter((one) => one !== label);
+    this.change({ models: on ? [...others, label] : others });
+  }
+
+  /** Puts a model first, and looks at it. */
+  lead(label) {
+    this.change({ models: [label, ...this.state.models.filter((one) => one !== label)] });
+    look(label);
   }
 
   labels() {
@@ -97,6 +112,9 @@ class ModelChoice {
       box.checked = models.includes(label);
       box.disabled = feet !== null;
     }
+    this.main.hidden = models.length < 2 || feet !== null;
+    this.main.setOptions(models.map((label) => ({ value: label, text: wordsOf(label) })));
+    this.main.value = models[0];
     this.own.value = value !== null;
     this.own.hidden = feet !== null;
     this.value.hidden = value === null || feet !== null;

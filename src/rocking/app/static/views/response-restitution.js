@@ -1,6 +1,7 @@
 /** The table `restitution` of the inputs as the form shows it, and back. */
 
-const USUAL = ["ked", "housner"];
+/** What the server takes where nothing is chosen. */
+const USUAL = ["ked"];
 
 /** Returns {models, value, feet} of a table; feet is [left, right] or null. */
 export const readRestitution = (table) => {

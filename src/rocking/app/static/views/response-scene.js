@@ -4,7 +4,8 @@ import { Player } from "/scene/player.js";
 import { actorOf } from "/scene/sampled.js";
 import { shapeOf } from "/scene/shape.js";
 import { peakInstant, Track } from "/scene/track.js";
-import { curveKey, styleOf } from "/views/response-labels.js";
+import { chosenOf } from "/views/response-chosen.js";
+import { styleOf } from "/views/response-labels.js";
 import { sceneWords } from "/views/response-words.js";
 
 const SETTLE = 0.4;
@@ -33,9 +34,11 @@ export const sceneOf = () => {
   const words = "Space plays and pauses; with the picture in focus the arrow keys step.";
   const keys = el("p", { class: "field-help" }, words);
   const element = el("div", { class: "scene-holder" }, player.element, keys);
-  let wanted = null;
   let actors = [];
-  const leadOf = () => Math.max(0, actors.findIndex((actor) => curveKey(actor.label) === wanted));
+  const leadOf = () => {
+    const labels = actors.map(({ label }) => label);
+    return Math.max(0, labels.indexOf(chosenOf(labels)));
+  };
   const show = (answer, answers) => {
     element.hidden = !answers.length;
     if (!answers.length) return;
@@ -46,8 +49,7 @@ export const sceneOf = () => {
     const about = { rest: restOf(actors[lead]), words: sceneWords(answers) };
     player.show({ shape, actors, ground: groundOf(answers), end, ...about }, lead);
   };
-  const follow = (label) => {
-    wanted = curveKey(label);
+  const follow = () => {
     if (player.play) player.show(player.play, leadOf());
   };
   return {

@@ -1,36 +1,49 @@
 /** The verdict in words, and a card for every model. */
 import { el, fill } from "/app/dom.js";
 import { number, quantity } from "/app/format.js";
+import { chosenOf, look } from "/views/response-chosen.js";
 import { curveKey, swatch, wordsOf } from "/views/response-labels.js";
 import { outcomeOf, verdictKind } from "/views/response-words.js";
 
 const SIGNS = { differs: "\u21c4", falls: "\u25b2", rocks: "\u2713", calm: "\u25a0", unknown: "?" };
 
-/** Returns banner and cards; choosing a card calls back with its label. */
-export const verdictOf = (onFollow) => {
+/** Returns banner and cards; choosing a card makes its model the one that is looked at. */
+export const verdictOf = () => {
   const banner = el("div", { class: "verdict", role: "status", "data-testid": "verdict" });
   const cards = el("fieldset", { class: "outcomes", "data-testid": "outcomes" });
   const element = el("div", { class: "verdict-part" }, banner, cards);
-  let chosen = null;
   const show = ({ answers, verdict }) => {
     const found = answers.filter((one) => !one.error);
     const kind = verdict.decides ? "differs" : verdictKind(found);
     banner.className = `verdict verdict-${kind}`;
     banner.dataset.kind = kind;
     const sign = el("span", { class: "verdict-sign", "aria-hidden": "true" }, SIGNS[kind]);
-    fill(banner, sign, el("p", {}, verdict.sentence));
-    const keys = found.map(({ label }) => curveKey(label));
-    if (!keys.includes(chosen)) chosen = keys[0] ?? null;
-    const choose = (label) => {
-      chosen = curveKey(label);
-      onFollow(label);
-    };
+    fill(banner, sign, el("p", {}, inWords(verdict.sentence, answers)));
+    const chosen = curveKey(chosenOf(found.map(({ label }) => label)));
+    const focused = cards.contains(document.activeElement);
     const legend = el("legend", { class: "visually-hidden" }, "Model that is drawn solid in the animation");
-    const cardOf = (one) => (one.error ? refusedCard(one) : outcomeCard(one, chosen, choose));
+    const cardOf = (one) => (one.error ? refusedCard(one) : outcomeCard(one, chosen, look));
     fill(cards, legend, answers.map(cardOf));
+    if (focused) cards.querySelector("input:checked")?.focus();
   };
-  return { element, show };
+  const mark = () => {
+    const inputs = [...cards.querySelectorAll("input")];
+    const chosen = chosenOf(inputs.map(({ value }) => value));
+    for (const input of inputs) input.checked = input.value === chosen;
+  };
+  return { element, show, mark };
 };
+
+/** A sentence of the server with the models by their titles; numbers stay as they are. */
+const inWords = (sentence, answers) =>
+  answers.map(({ label }) => label)
+    .filter((label) => curveKey(label) === label)
+    .sort((a, b) => b.length - a.length)
+    .reduce((text, label) => text.replaceAll(wordOf(label), wordsOf(label)), sentence);
+
+const wordOf = (label) => new RegExp(`(?<![\\w-])${escaped(label)}(?![\\w-])`, "g");
+
+const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
 
 const headOf = (label) => el("span", { class: "outcome-model" }, swatch(label), wordsOf(label));
 

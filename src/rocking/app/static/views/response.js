@@ -1,6 +1,7 @@
 /** How the body rocks: verdict, animation, curves, impacts, for several restitution models at once. */
 import { el, fill } from "/app/dom.js";
 import { button, card, note } from "/app/fields.js";
+import { onLook } from "/views/response-chosen.js";
 import { chartsOf } from "/views/response-charts.js";
 import { controlsOf } from "/views/response-controls.js";
 import { filesOf } from "/views/response-files.js";
@@ -23,7 +24,7 @@ class ResponseView {
     this.app = app;
     this.dirty = true;
     this.asked = false;
-    this.verdict = verdictOf((label) => this.follow(label));
+    this.verdict = verdictOf();
     this.scene = sceneOf();
     this.controls = controlsOf(app);
     this.charts = chartsOf((instant) => this.scene.glance(instant));
@@ -57,7 +58,16 @@ class ResponseView {
       if (this.visible) this.ask();
     });
     this.controls.show(this.app.inputs.get());
+    onLook(() => this.follow());
+    for (const kind of ["input", "change"]) section.addEventListener(kind, () => this.markStale());
     section.addEventListener("keydown", (event) => this.onKey(event));
+  }
+
+  /** What is drawn belongs to the last good numbers while a field is in error. */
+  markStale() {
+    const stale = this.controls.element.querySelector("[aria-invalid=true]") !== null;
+    const parts = [this.verdict.element, this.scene.element, this.results];
+    for (const part of parts) part.classList.toggle("stale", stale);
   }
 
   /** Several changes of one moment are one question. */
@@ -75,7 +85,8 @@ class ResponseView {
     this.dirty = false;
     const free = response?.free !== undefined && response?.free !== null;
     if (!motion && !free) return this.nothingMoves();
-    const given = { body, motion: free ? undefined : motion, restitution, response, settings, points: 900 };
+    const moved = free || !motion ? undefined : motion;
+    const given = { body, motion: moved, restitution, response, settings, points: 900 };
     try {
       this.show(await this.app.latest("response", "response", given));
     } catch (error) {
@@ -115,11 +126,13 @@ class ResponseView {
     this.results.dataset.drawn = String(Number(this.results.dataset.drawn || 0) + 1);
   }
 
-  /** Makes one model the solid body of the animation. */
-  follow(label) {
-    this.scene.follow(label);
-    this.charts.follow(label);
-    this.impacts.choose(label);
+  /** Shows the model that is looked at in every part. */
+  follow() {
+    if (!this.answer) return;
+    this.verdict.mark();
+    this.scene.follow();
+    this.charts.showFollowed();
+    this.impacts.draw();
   }
 
   onKey(event) {

@@ -8,10 +8,10 @@ import { number } from "/app/format.js";
 const MOST = 2;
 const KEYS = ["body", "motion", "restitution", "response", "settings"];
 
-/** Panel of one cell: show(aim, k), open() in the step Response. */
+/** Panel of one cell: show(aim, k, kept), open() in the step Response, for a cell that is kept. */
 export const cellHistory = (app, study) => {
     const title = el("h3", {}, "History of a cell");
-    const words = el("p", { class: "quiet", "data-testid": "cell-words" }, "Point at a cell of the map.");
+    const words = el("p", { class: "quiet", "data-testid": "cell-words" }, "Click a cell of the map.");
     const chartPlace = el("div", { hidden: true });
     let chart = null;
     let inputs = null;
@@ -19,8 +19,10 @@ export const cellHistory = (app, study) => {
     let next = null;
 
     const open = () => {
-        if (!inputs) return;
-        for (const key of KEYS) app.inputs.set(key, inputs[key] ?? null);
+        if (!inputs || go.disabled) return;
+        // what the cell does not have must be absent, not null
+        const there = KEYS.filter((key) => inputs[key] !== undefined && inputs[key] !== null);
+        app.inputs.replace(Object.fromEntries(there.map((key) => [key, inputs[key]])));
         app.go("response");
     };
     const go = button({ text: "Open in Response", kind: "primary", onClick: open });
@@ -43,16 +45,17 @@ export const cellHistory = (app, study) => {
     const ask = async () => {
         if (busy || !next) return;
         busy = true;
-        const { aim, k } = next;
+        const { aim, k, kept } = next;
         next = null;
+        go.disabled = true;
         try {
             const found = await app.call(`/api/studies/${study.id}/cell`, {
                 method: "GET",
                 query: { x: aim.ix, y: aim.iy, restitution: k },
             });
             inputs = found.inputs;
-            go.disabled = !inputs;
-            fill(words, wordsOf(found));
+            go.disabled = !inputs || !kept || next !== null;
+            fill(words, wordsOf(found), kept ? "" : " Click the cell, or press Enter, to keep it.");
             if (found.answer) draw(found);
             else chartPlace.hidden = true;
         } catch (error) {
@@ -71,7 +74,11 @@ export const cellHistory = (app, study) => {
             chartPlace,
             el("div", { class: "toolbar" }, go),
         ),
-        show: (aim, k) => ((next = { aim, k }), ask()),
+        show: (aim, k, kept) => {
+            next = { aim, k, kept };
+            go.disabled = true;
+            ask();
+        },
         open,
         destroy: () => chart?.destroy(),
     };

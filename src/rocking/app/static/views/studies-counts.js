@@ -2,12 +2,13 @@
 import { el } from "/app/dom.js";
 import { tableOf } from "/app/fields.js";
 import { percent } from "/app/format.js";
+import { modelWords } from "/app/palette.js";
 
 /** Show counts of outcomes inside a place. */
 export const showCounts = (place, app, study, found) => {
     (found.shares ?? []).forEach((shares, k) => {
         const rows = shares.map(({ meaning, count, share }) => [meaning, count, percent(share)]);
-        const caption = found.restitutions.length > 1 ? `Outcomes with ${found.restitutions[k]}` : "Outcomes";
+        const caption = found.restitutions.length > 1 ? `Outcomes with ${modelWords(found.restitutions[k])}` : "Outcomes";
         place.append(tableOf(["Outcome", "histories", "share"], rows, { caption, testid: "study-counts" }));
     });
     for (const [name, columns] of Object.entries(found.tables ?? {})) place.append(sheet(name, columns));

@@ -16,8 +16,13 @@ const FILES = [
 const ONLY = { xml: new Set(["stripes", "incremental", "cloud"]) };
 const NO_PICTURE = new Set(["histories"]);
 
+const NO_FIT = "There is no fitted curve, so there is nothing to write as NRML.";
+
+const hasFit = (found) =>
+    (found.analyses ?? []).some(({ curves }) => Object.keys(curves).length > 0);
+
 /** Buttons that save the result of a study. */
-export const exportsOf = (app, study) => {
+export const exportsOf = (app, study, found) => {
     const offered = FILES.filter(([suffix]) => !ONLY[suffix] || ONLY[suffix].has(study.kind)).filter(
         ([suffix]) => !(["png", "svg"].includes(suffix) && NO_PICTURE.has(study.kind)),
     );
@@ -31,8 +36,15 @@ export const exportsOf = (app, study) => {
             "div",
             { class: "toolbar" },
             offered.map(([suffix, text]) =>
-                button({ text, onClick: save(suffix), testid: `export-${suffix}` }),
+                button({
+                    text,
+                    label: `${study.name} as ${text}`,
+                    onClick: save(suffix),
+                    testid: `export-${suffix}`,
+                    disabled: suffix === "xml" && !hasFit(found),
+                }),
             ),
         ),
+        ONLY.xml.has(study.kind) && !hasFit(found) ? el("p", { class: "quiet" }, NO_FIT) : null,
     );
 };

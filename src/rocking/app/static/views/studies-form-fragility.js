@@ -1,7 +1,9 @@
 /** The question of a fragility: which motions, which measure, which levels and states. */
 import { el } from "/app/dom.js";
 import { numberField, segmented, selectField } from "/app/fields.js";
+import { pretty } from "/app/format.js";
 import { rangeFields } from "/views/studies-form-parts.js";
+import { recordChoice } from "/views/studies-form-records.js";
 
 const ANALYSES = [
     { value: "stripes", text: "Stripes" },
@@ -10,7 +12,7 @@ const ANALYSES = [
 ];
 const SOURCES = [
     { value: "synthetic", text: "Synthetic set" },
-    { value: "records", text: "All uploaded records" },
+    { value: "records", text: "Uploaded records" },
 ];
 
 /** Form of a fragility; `tables` gives the tables of its job. */
@@ -19,7 +21,9 @@ export const fragilityQuestion = (app) => {
     const take = (key) => (value) => (chosen[key] = value);
     const families = app.info.families.map((each) => ({ value: each.name, text: each.title ?? each.name }));
     chosen.family = families[0].value;
-    const levels = rangeFields({ name: "Levels of the measure", unit: "", from: 1, to: 12, count: 12 });
+    const records = recordChoice(app);
+    records.node.hidden = true;
+    const levels = levelFields(app, () => chosen.measure);
     const motions = el(
         "div",
         { class: "fields" },
@@ -53,19 +57,26 @@ export const fragilityQuestion = (app) => {
             onChange: (value) => {
                 chosen.source = value;
                 motions.hidden = value !== "synthetic";
+                records.node.hidden = value !== "records";
+                if (value === "records") records.refresh();
             },
         }),
         motions,
+        records.node,
         selectField({
             label: "Intensity measure",
             options: measuresOf(app),
             value: chosen.measure,
-            onChange: take("measure"),
+            onChange: (value) => {
+                chosen.measure = value;
+                levels.build();
+            },
         }),
         levels.node,
         numberField({
             label: "Rocking counts from",
-            unit: "of the slenderness angle",
+            unit: "\u03b1",
+            help: "As a share of the slenderness angle \u03b1: 0.5 is half way to the point of no return.",
             value: chosen.state,
             min: 0.01,
             max: 1,
@@ -75,29 +86,39 @@ export const fragilityQuestion = (app) => {
     );
     return {
         node,
+        refresh: () => chosen.source === "records" && records.refresh(),
         name: () => `fragility, ${chosen.kind}`,
-        tables: (inputs) => tablesOf(app, inputs, chosen, levels),
+        tables: (inputs) => tablesOf(inputs, chosen, levels, records),
     };
 };
 
 const measuresOf = (app) =>
     app.info.measures.map(({ name, words, unit }) => ({
         value: name,
-        text: unit === "1" ? words : `${words} [${unit}]`,
+        text: unit === "1" ? words : `${words} [${pretty(unit)}]`,
     }));
 
-const tablesOf = async (app, inputs, { kind, source, family, count, seed, measure, state }, levels) => {
-    if (!inputs.body) throw new Error("A fragility needs a body: choose one in the step Body.");
-    const set = { synthetic: family, count: Math.round(count), seed: Math.round(seed) };
-    const motions = [source === "synthetic" ? set : await uploaded(app)];
-    const fragility = { measure, states: [state], ...(kind === "cloud" ? {} : { levels: levels.range() }) };
-    return { kind, job: { body: inputs.body, motions, fragility } };
+/** Where the levels of a measure usually lie. */
+const USUAL = { pga: [1, 12], pgv: [0.1, 2] };
+
+const levelFields = (app, measure) => {
+    const node = el("div", {});
+    let fields = null;
+    const build = () => {
+        const { unit, name } = app.info.measures.find((each) => each.name === measure());
+        const [from, to] = USUAL[name] ?? [1, 12];
+        const shown = unit === "1" ? "" : unit;
+        fields = rangeFields({ name: "Levels of the measure", unit: shown, from, to, count: 12 });
+        node.replaceChildren(fields.node);
+    };
+    build();
+    return { node, build, range: () => fields.range() };
 };
 
-const uploaded = async (app) => {
-    const answer = await app.call("records");
-    const records = (answer.records ?? answer).map((each) => each.record);
-    if (!records.length)
-        throw new Error("No record has been uploaded yet: drop some files in the step Motion.");
-    return { records };
+const tablesOf = (inputs, { kind, source, family, count, seed, measure, state }, levels, records) => {
+    if (!inputs.body) throw new Error("A fragility needs a body: choose one in the step Body.");
+    const set = { synthetic: family, count: Math.round(count), seed: Math.round(seed) };
+    const motions = source === "synthetic" ? [set] : records.tables();
+    const fragility = { measure, states: [state], ...(kind === "cloud" ? {} : { levels: levels.range() }) };
+    return { kind, job: { body: inputs.body, motions, fragility } };
 };

@@ -19,22 +19,27 @@ const USUAL = {
     height: [0.5, 6],
     restitution: [0.7, 1],
 };
+/** Axes that only a pulse has. */
+const OF_PULSES = new Set(["frequency_ratio", "amplitude_ratio", "period"]);
 
-/** Form of a map; `tables` gives the tables of its job. */
+const isPulse = (app) => Boolean(app.inputs.get().motion?.pulse);
+const firstAxes = (pulse) =>
+    pulse ? { x: "frequency_ratio", y: "amplitude_ratio" } : { x: "scale", y: "semi_diagonal" };
+
+/** Form of a map; `tables` gives the tables of its job, `refresh` follows the motion of the inputs. */
 export function mapQuestion(app) {
-    const pulse = Boolean(app.inputs.get().motion && app.inputs.get().motion.pulse);
-    const axes = app.info.axes;
-    const chosen = pulse
-        ? { x: "frequency_ratio", y: "amplitude_ratio" }
-        : { x: "scale", y: "semi_diagonal" };
+    let pulse = isPulse(app);
+    let touched = false;
+    let chosen = firstAxes(pulse);
     const ranges = {};
     const node = el("div", { class: "map-question" });
+    const offered = () => app.info.axes.filter(({ name }) => pulse || !OF_PULSES.has(name));
 
     const side = (which, words) => {
         const place = el("div", {});
         const change = (name) => {
             chosen[which] = name;
-            const axis = axes.find((each) => each.name === name);
+            const axis = app.info.axes.find((each) => each.name === name);
             const [from, to] = USUAL[name] || [1, 2];
             ranges[which] = rangeFields({
                 name: `${words}, values`,
@@ -47,18 +52,32 @@ export function mapQuestion(app) {
         };
         const select = selectField({
             label: words,
-            options: axes.map((axis) => ({ value: axis.name, text: greek(axis.words) })),
+            options: offered().map((axis) => ({ value: axis.name, text: greek(axis.words) })),
             value: chosen[which],
-            onChange: change,
+            onChange: (name) => {
+                touched = true;
+                change(name);
+            },
         });
         change(chosen[which]);
-        node.append(select, place);
+        return [select, place];
     };
-    side("x", "Across");
-    side("y", "Up");
+    const build = () => node.replaceChildren(...side("x", "Across"), ...side("y", "Up"));
+    const refresh = () => {
+        if (isPulse(app) === pulse) return;
+        pulse = isPulse(app);
+        const there = new Set(offered().map(({ name }) => name));
+        if (!touched || !there.has(chosen.x) || !there.has(chosen.y)) {
+            touched = false;
+            chosen = firstAxes(pulse);
+        }
+        build();
+    };
+    build();
 
     return {
         node,
+        refresh,
         name: () => "overturning map",
         tables: (inputs) => {
             if (!inputs.body) throw new Error("A map needs a body: choose one in the step Body.");

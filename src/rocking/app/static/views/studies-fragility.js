@@ -1,8 +1,10 @@
 /** A fragility: probability curves with their bands, the points they come from, and what the fit says. */
 import { el, fill } from "/app/dom.js";
 import { note, selectField, tableOf } from "/app/fields.js";
-import { seriesStyle } from "/app/palette.js";
+import { modelWords, seriesStyle } from "/app/palette.js";
 import { lineChart } from "/charts/line.js";
+import { pretty } from "/app/format.js";
+import { greek, plainWords } from "/views/studies-words.js";
 
 /** Show fragility curves inside a place; returns how to clear up. */
 export const showFragility = (place, app, study, found) => {
@@ -14,7 +16,10 @@ export const showFragility = (place, app, study, found) => {
         charts = drawAnalysis(box, found, found.analyses[k]);
     };
     if (found.analyses.length > 1) {
-        const options = found.analyses.map(({ restitution }, value) => ({ value, text: restitution }));
+        const options = found.analyses.map(({ restitution }, value) => ({
+            value,
+            text: modelWords(restitution),
+        }));
         place.append(selectField({ label: "Restitution", options, value: 0, onChange: draw }));
     }
     place.append(box);
@@ -25,23 +30,34 @@ export const showFragility = (place, app, study, found) => {
 const drawAnalysis = (box, found, analysis) => {
     const unit = found.measure.unit === "1" ? "" : found.measure.unit;
     const x = { label: found.measure.words, unit };
-    const charts = Object.entries(analysis.curves).map(([state, curve], index) =>
-        drawCurve(box, { state, curve, points: analysis.points[state] }, index, x),
+    // without a curve the points still show what was found
+    const charts = Object.entries(analysis.points).map(([state, points], index) =>
+        drawCurve(box, { state, curve: analysis.curves[state] ?? NO_CURVE, points }, index, x),
     );
     if (analysis.resurrection) box.append(note(analysis.resurrection, "info"));
-    for (const sentence of analysis.sentences) box.append(note(sentence, "info"));
-    if (found.definition) box.append(el("p", { class: "quiet" }, found.definition));
+    for (const sentence of analysis.sentences) box.append(note(withUnit(sentence, unit), "info"));
+    if (found.definition) box.append(el("p", { class: "quiet" }, plainWords(found.definition)));
     const rows = Object.entries(analysis.fits).map(([state, fit]) => rowOf(state, fit));
     box.append(tableOf(columnsOf(unit), rows, { caption: "Lognormal fits", testid: "fragility-fits" }));
     return charts;
 };
+
+const NO_CURVE = { x: [], probability: [], low: null, high: null };
+
+const LEVEL = /\b(At|at|median) ([0-9][0-9.e+-]*[0-9]|[0-9])(?= |,|:|$)(?! levels?\b)/g;
+
+/** The verdict of a fit names levels without a unit. */
+const withUnit = (sentence, unit) =>
+    plainWords(sentence)
+        .replace(LEVEL, `$1 $2${unit && `\u00a0${pretty(unit)}`}`)
+        .replace(/\b(between \S+ and \S*[0-9])/g, `$1${unit && `\u00a0${pretty(unit)}`}`);
 
 const drawCurve = (box, { state, curve, points }, index, x) => {
     const { colour } = seriesStyle(index);
     const stage = el("div", { "data-testid": "fragility-chart" });
     box.append(stage);
     const chart = lineChart(stage, {
-        title: `Probability: ${state}`,
+        title: `Probability: ${greek(state)}`,
         x,
         height: 260,
         y: { label: "probability", unit: "", range: [0, 1] },
@@ -88,7 +104,7 @@ const rowOf = (state, fit) => {
     const pair = ([low, high]) =>
         low == null && high == null ? "\u2013" : `${shown(low)} to ${shown(high)}`;
     return [
-        state,
+        greek(state),
         fit.median ?? "\u2013",
         pair(fit.median_95),
         fit.dispersion ?? "\u2013",

@@ -54,7 +54,7 @@ export const ticksOf = ({ low, high, log }) => {
     );
 };
 
-/** Painter of a map: draw(paintOf, aim) and cellAt(event). */
+/** Painter of a map: draw(paintOf, [kept, aim], lines) and cellAt(event). */
 export const createGrid = (canvas, x, y) => {
     const across = axisOf(x);
     const up = axisOf(y);
@@ -111,7 +111,7 @@ export const createGrid = (canvas, x, y) => {
         pen.restore();
     };
 
-    const draw = (paintOf, aim, lines = []) => {
+    const draw = (paintOf, [kept, aim], lines = []) => {
         const pen = canvas.getContext("2d");
         pen.clearRect(0, 0, size.width, size.height);
         for (let iy = 0; iy < y.values.length; iy += 1) {
@@ -124,10 +124,14 @@ export const createGrid = (canvas, x, y) => {
         }
         drawLines(pen, lines);
         drawAxes(pen);
-        if (!aim) return;
+        if (aim && aim !== kept) frame(pen, aim, 1.25);
+        if (kept) frame(pen, kept, 3);
+    };
+
+    const frame = (pen, { ix, iy }, thick) => {
         pen.beginPath();
-        cell(pen, aim.ix, aim.iy, 1.5);
-        pen.lineWidth = 2.5;
+        cell(pen, ix, iy, 1.5);
+        pen.lineWidth = thick;
         pen.strokeStyle = colour("--focus");
         pen.stroke();
     };

@@ -1,5 +1,6 @@
 /** What a map can show: the verdict, the peak rotation, the impacts, and where two models differ. */
-import { number } from "/app/format.js";
+import { number, quantity } from "/app/format.js";
+import { modelWords } from "/app/palette.js";
 import { greek } from "/views/studies-words.js";
 
 const FAILED = "#999999";
@@ -65,7 +66,7 @@ export const layersOf = (found, k, other) => {
 
 const difference = (found, k, other) => {
     const [mine, theirs] = [found.outcome[k], found.outcome[other]];
-    const names = [found.restitutions[k], found.restitutions[other]];
+    const names = [k, other].map((place) => modelWords(found.restitutions[place]));
     const legend = [
         { paint: "#F2F0E8", words: "same verdict" },
         { paint: "#D55E00", words: `overturns only with ${names[0]}` },
@@ -82,7 +83,7 @@ const difference = (found, k, other) => {
 export const cellWords = (found, k, { ix, iy }) => {
     const outcome = found.outcome[k][iy][ix];
     const impacts = found.impacts[k][iy][ix];
-    const named = ({ words, values }, place) => `${greek(words)} = ${number(values[place])}`;
+    const named = ({ words, values, unit }, place) => `${greek(words)} = ${quantity(values[place], unit)}`;
     const where = `${named(found.x, ix)}; ${named(found.y, iy)}`;
     const peak = outcome === 1 ? `, peak ${number(found.peak[k][iy][ix])} \u03b1` : "";
     return `${where}: ${VERDICTS[verdictOf(outcome, impacts)].words}${peak}`;

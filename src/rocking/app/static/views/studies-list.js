@@ -38,6 +38,8 @@ const pace = (study) => {
     return parts.join(" \u00b7 ");
 };
 
+const named = (text, study, more) => button({ text, label: `${text}: ${study.name}`, ...more });
+
 /** List of cards; `update` takes the studies, `expect` opens one as soon as it is done. */
 export function studyList(app, { onShow, onGone }) {
     const empty = el(
@@ -48,7 +50,10 @@ export function studyList(app, { onShow, onGone }) {
     const node = el("ul", { class: "study-list", "data-testid": "study-list" });
     const rows = new Map();
     let expected = null;
+    let names = new Set();
 
+    // a button that was pressed may vanish: the one that took its place has the focus then
+    const refocus = (part) => Object.values(part.buttons).find((each) => !each.hidden)?.focus();
     const act =
         (study, what, method = "POST") =>
         async () => {
@@ -86,16 +91,17 @@ export function studyList(app, { onShow, onGone }) {
             tools,
         );
         const buttons = {
-            show: button({ text: "Show result", kind: "primary", onClick: () => onShow(study) }),
-            cancel: button({ text: "Cancel", onClick: act(study, "/cancel") }),
-            resume: button({ text: "Resume", onClick: act(study, "/resume") }),
-            remove: button({ text: "Delete", onClick: remove(study) }),
+            show: named("Show result", study, { kind: "primary", onClick: () => onShow(study) }),
+            cancel: named("Cancel", study, { onClick: act(study, "/cancel") }),
+            resume: named("Resume", study, { onClick: act(study, "/resume") }),
+            remove: named("Delete", study, { onClick: remove(study) }),
         };
         tools.append(...Object.values(buttons));
         return { row, bar, state, facts, buttons, known: "" };
     };
 
     const draw = (part, study) => {
+        const focused = part.row.contains(document.activeElement) ? document.activeElement : null;
         part.row.dataset.state = study.state;
         part.bar.value = study.histories ? (study.histories_done || 0) / study.histories : 0;
         part.bar.hidden = study.state === "done";
@@ -106,6 +112,7 @@ export function studyList(app, { onShow, onGone }) {
         part.buttons.cancel.hidden = !["waiting", "running"].includes(study.state);
         part.buttons.resume.hidden = !["cancelled", "interrupted", "failed"].includes(study.state);
         part.buttons.remove.hidden = ["waiting", "running"].includes(study.state);
+        if (focused?.hidden) refocus(part);
         if (part.known && part.known !== study.state)
             app.say(`${study.name}: ${WORDS[study.state] || study.state}`);
         part.known = study.state;
@@ -113,6 +120,7 @@ export function studyList(app, { onShow, onGone }) {
 
     const update = (studies) => {
         const there = new Set(studies.map((study) => study.id));
+        names = new Set(studies.map((study) => study.name));
         for (const [id, part] of rows) if (!there.has(id)) (part.row.remove(), rows.delete(id), onGone(id));
         for (const study of studies) {
             if (!rows.has(study.id)) rows.set(study.id, make(study));
@@ -126,5 +134,10 @@ export function studyList(app, { onShow, onGone }) {
         if (order.some((row, k) => node.children[k] !== row)) node.replaceChildren(...order);
         empty.hidden = studies.length > 0;
     };
-    return { node: el("div", {}, empty, node), update, expect: (id) => (expected = id) };
+    return {
+        node: el("div", {}, empty, node),
+        update,
+        expect: (id) => (expected = id),
+        names: () => names,
+    };
 }

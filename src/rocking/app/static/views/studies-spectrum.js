@@ -2,7 +2,7 @@
 import { el } from "/app/dom.js";
 import { segmented } from "/app/fields.js";
 import { number } from "/app/format.js";
-import { seriesStyle } from "/app/palette.js";
+import { modelWords, seriesStyle } from "/app/palette.js";
 import { lineChart } from "/charts/line.js";
 
 const SHOWN = [
@@ -43,5 +43,5 @@ export const showSpectrum = (place, app, study, found) => {
 
 const labelOf = (found, { angle, restitution }) => {
     const words = `\u03b1 = ${number(angle, 3)} rad`;
-    return found.restitutions.length > 1 ? `${words}, ${restitution}` : words;
+    return found.restitutions.length > 1 ? `${words}, ${modelWords(restitution)}` : words;
 };

@@ -45,7 +45,7 @@ export function mount(section, app) {
             if (open !== study.id) return;
             result.replaceChildren();
             undo = (SHOW[study.kind] || showCounts)(result, app, study, found) || undo;
-            result.append(exportsOf(app, study));
+            result.append(exportsOf(app, study, found));
             heading.focus();
         } catch (error) {
             result.replaceChildren(el("p", { class: "error-text" }, error.message));
@@ -59,6 +59,7 @@ export function mount(section, app) {
     });
     const live = liveStudies(app, (studies) => list.update(studies));
     const form = studyForm(app, {
+        taken: () => list.names(),
         onLaunched: (id) => {
             app.say("The study has been launched.");
             list.expect(id);

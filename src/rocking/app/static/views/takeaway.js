@@ -1,6 +1,9 @@
 /** Take away: everything that belongs to the inputs, as files, as tables, and as a link. */
 import { el } from "/app/dom.js";
-import { button, card } from "/app/fields.js";
+import { button, card, selectField } from "/app/fields.js";
+import { chosenOf, labelsOf, look, onLook, pathOfChosen } from "/views/response-chosen.js";
+import { wordsOf } from "/views/response-labels.js";
+import { filmButton } from "/views/takeaway-film.js";
 
 const PICTURES = [
     ["body", "Body"],
@@ -32,6 +35,9 @@ const NAMES = {
     pdf: "PDF",
 };
 
+/** Files that hold one model of several. */
+const OF_ONE = /^\/api\/(table\/response\.|animation\.)/;
+
 /** Build the view inside its section. */
 export const mount = (section, app) => {
     const needing = [];
@@ -41,14 +47,25 @@ export const mount = (section, app) => {
             label: `${name} as ${NAMES[suffix] ?? suffix}`,
             testid,
             onClick: async () => {
+                if (node.getAttribute("aria-busy")) return;
                 node.setAttribute("aria-busy", "true");
-                await app.download(path, app.inputs.get(), `rocking.${suffix}`);
+                const inputs = app.inputs.get();
+                const address = OF_ONE.test(path) ? pathOfChosen(path, inputs.restitution) : path;
+                await app.download(address, inputs, `rocking.${suffix}`);
                 node.removeAttribute("aria-busy");
             },
         });
         if (needs) needing.push({ node, needs });
         return node;
     };
+    const film = filmButton(app, { text: "GIF", label: "Animation as GIF", testid: "animation-gif" });
+    needing.push({ node: film.button, needs: "response" });
+    const which = selectField({
+        label: "Model in files that hold one",
+        options: [],
+        help: "Animation, and response as CSV, MATLAB and netCDF; the name of the file says it.",
+        onChange: look,
+    });
     const row = (name, ...buttons) =>
         el("li", { class: "take-row" }, el("span", {}, name), el("div", { class: "toolbar" }, buttons));
 
@@ -71,6 +88,10 @@ export const mount = (section, app) => {
     const refresh = () => {
         const inputs = app.inputs.get();
         link.value = app.inputs.link();
+        const labels = labelsOf(inputs.restitution);
+        which.hidden = labels.length < 2;
+        which.setOptions(labels.map((label) => ({ value: label, text: wordsOf(label) })));
+        which.value = chosenOf(labels);
         const there = {
             motion: Boolean(inputs.motion),
             response: Boolean(inputs.motion) || inputs.response?.free != null,
@@ -111,7 +132,7 @@ export const mount = (section, app) => {
                 "div",
                 { class: "toolbar" },
                 fileButton("/api/inputs.toml", "toml", "Inputs", null, "take-toml"),
-                fileButton("/api/inputs.zip", "zip", "Inputs with the record", null, "take-zip"),
+                fileButton("/api/inputs.zip", "zip", "Inputs", null, "take-zip"),
                 button({ text: "Read a TOML \u2026", onClick: () => chooser.click() }),
             ),
         ),
@@ -149,17 +170,11 @@ export const mount = (section, app) => {
                 ),
                 row(
                     "Animation",
-                    ["html", "gif"].map((suffix) =>
-                        fileButton(
-                            `/api/animation.${suffix}`,
-                            suffix,
-                            "Animation",
-                            "response",
-                            `animation-${suffix}`,
-                        ),
-                    ),
+                    fileButton("/api/animation.html", "html", "Animation", "response", "animation-html"),
+                    film.button,
                 ),
             ),
+            film.progress,
         ),
     );
     const tables = el(
@@ -167,6 +182,7 @@ export const mount = (section, app) => {
         { class: "takeaway-part" },
         card(
             "Tables",
+            which,
             el(
                 "ul",
                 {},
@@ -210,6 +226,7 @@ export const mount = (section, app) => {
     });
     section.append(chooser);
     app.inputs.subscribe(refresh);
+    onLook(refresh);
     refresh();
     return { shown: refresh };
 };

@@ -94,4 +94,5 @@ def _fact(key: str, foot: str, value: float) -> Fact:
     for ending, unit in _UNITS.items():
         if key.endswith(f"_{ending}"):
             return key.removesuffix(f"_{ending}"), foot, value, unit
-    return key, foot, value, "-"
+    # "-" alone in a cell would be taken for the start of a formula
+    return key, foot, value, "1"

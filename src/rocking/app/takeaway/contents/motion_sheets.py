@@ -67,7 +67,7 @@ def measures_sheet(motion: Motion, about: dict[str, str]) -> Sheet:
         Column.of("key", "", list(found)),
         Column.of("measure", "", [one.name for one in found.values()]),
         Column.of("value", "unit of its row", [one.value for one in found.values()]),
-        Column.of("unit", "", [one.unit for one in found.values()]),
+        Column.of("unit", "", ["1" if one.unit == "-" else one.unit for one in found.values()]),
     ]
     return Sheet("measures", columns, about)
 

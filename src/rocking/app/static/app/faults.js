@@ -1,0 +1,42 @@
+/** The fields that hold what is no valid value: the inputs do not have what such a field shows. */
+
+const known = new Map();
+const watchers = new Set();
+
+/** Note what is wrong with a field; no words take it off the list. */
+const mark = (input, label, words) => {
+  if (words ? known.get(input)?.words === words : !known.has(input)) return;
+  if (words) known.set(input, { label, words });
+  else known.delete(input);
+  tell();
+};
+
+// Only fields that someone can see count: those of a shape or a choice that was left are gone.
+const counts = (input) => input.isConnected && !input.closest("[hidden]:not([role=tabpanel])");
+
+const viewOf = (input) => input.closest("[role=tabpanel]")?.id.replace("view-", "") ?? "";
+
+/** Every field in error: {label, words, view, input}; of one view, or `inputs` for all but the studies. */
+const list = ({ inputs = false, view } = {}) =>
+  [...known].filter(([input]) => counts(input))
+    .map(([input, fault]) => ({ ...fault, view: viewOf(input), input }))
+    .filter((fault) => (view ? fault.view === view : !inputs || fault.view !== "studies"));
+
+const any = (which) => list(which).length > 0;
+
+/** The fields in error as one text; nothing if there are none. `but` leaves out what is said elsewhere. */
+const sentence = ({ but, ...which } = {}) =>
+  list(which).filter(({ words }) => words !== but).map(({ label, words }) => `${label}: ${words}`).join(" ");
+
+const tell = () => {
+  for (const watcher of [...watchers]) watcher(list());
+};
+
+/** Be told whenever a field goes wrong or right; returns how to stop. */
+const subscribe = (watcher) => {
+  watchers.add(watcher);
+  return () => watchers.delete(watcher);
+};
+
+/** The register that every field of the page writes to. */
+export const faults = { mark, list, any, sentence, subscribe, refresh: tell };

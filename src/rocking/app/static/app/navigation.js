@@ -1,0 +1,36 @@
+/** What the address says, followed once: a token, the inputs of a link, a view; nothing else is ours. */
+
+import * as address from "/app/address.js";
+import { decode } from "/app/inputs.js";
+import { showDoor, exchange } from "/app/session.js";
+
+/** Follow the address from now on: Back, Forward and links pasted into the tab. */
+export const followAddress = (app, tabs) => {
+  const follow = async () => {
+    const parts = address.read();
+    if (!address.isOurs(parts)) return;
+    const { token, in: shared, view } = parts;
+    // What is used is dropped at once: a reload must not undo the edits that follow.
+    if (token || shared) address.write({ view: view ?? tabs.current() });
+    if (shared) take(app, shared);
+    tabs.show(view ?? (token || shared ? tabs.current() : "body"), { quiet: true });
+    if (token) await enter(token);
+  };
+  addEventListener("popstate", follow);
+  addEventListener("hashchange", follow);
+};
+
+/** The words when a link's inputs cannot be read. */
+export const UNREADABLE = "The link carries no readable inputs";
+
+const take = (app, shared) => {
+  const inputs = decode(shared);
+  if (inputs) app.inputs.replace(inputs);
+  else app.say(`${UNREADABLE}; nothing was changed.`, "warning");
+};
+
+const enter = async (token) => {
+  const refusal = await exchange(token);
+  if (refusal) showDoor(refusal);
+  else document.dispatchEvent(new CustomEvent("rocking:signed-in"));
+};

@@ -1,0 +1,61 @@
+/** The server's refusals in the words of the page: names of fields, regions counted from one, its units. */
+
+import { number, pretty } from "/app/format.js";
+
+const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
+
+const FIELDS = { "settings.gravity": "Gravity", "body.name": "Name", "body.units": "The unit of length" };
+
+/** A refusal in plain words; lengths in metres are told in the body's unit. */
+export const plainWords = (message, body) => {
+  const units = METRES[body?.units] ? body.units : "m";
+  return [withoutPlaces, withFields, withRegions, withLimits, withMore, withChoices, capital]
+    .reduce((words, change) => change(words), inUnits(message, units));
+};
+
+/** The key of the body's field that a refusal is about; nothing if it names none. */
+export const fieldOf = (message) => message.match(/^body\.(?:[a-z_]+\.)?([a-z]+) must /)?.[1] ?? null;
+
+const withoutPlaces = (words) =>
+  words.replace(/^body: /, "")
+    .replace(/^section\.region\[(\d+)\]: region: /, (_, index) => `Region ${Number(index) + 1}: `)
+    .replace(/^(block|trapezoid|ellipse|regular_polygon|section|mass_points): /, "");
+
+const withFields = (words) =>
+  words.replace(/^body\.section\.region\[(\d+)\]\.(\w+)(\[\d+\])*/, (_, index, key) =>
+    `The ${key} of region ${Number(index) + 1}`)
+    .replace(/^[a-z]+\.[a-z_]+(?= must )/, (path) => FIELDS[path] ?? path)
+    .replace(/^body\.(?:[a-z_]+\.)?([a-z]+)(?= must )/, (_, key) => `The ${key}`);
+
+const withRegions = (words) =>
+  words.replace(/\bregions (\d+) and (\d+)\b/g, (_, first, second) =>
+    `regions ${Number(first) + 1} and ${Number(second) + 1}`);
+
+const withLimits = (words) =>
+  words.replace(/must be a number > 0\b/, "must be more than 0")
+    .replace(/must be a number >= (\d+)/, "must be at least $1")
+    .replace(/ \[([^\]\d][^\]]*)\](?=,|$)/, "")
+    .replace(/(?<=must be .*), got '?(.*?)'?(?= \(and|$)/, (_, given) =>
+      (/^[-\d.e]+$/.test(given) ? `; it is ${number(Number(given))}` : ""));
+
+const withMore = (words) => words.replace(/ \(and \d+ more\)$/, "; more is wrong beside it");
+
+const withChoices = (words) =>
+  words.replace(/^(\S+): does not state its unit; give units=.*$/,
+    "$1 does not say its unit: choose the unit of the file.");
+
+const capital = (words) => words.replace(/^[a-z](?!\S*\.)(?![a-z]* ?[=[])/, (first) => first.toUpperCase());
+
+// Lengths and areas of a sentence about a body are in metres, whatever the drawing is in.
+const inUnits = (message, units) => {
+  if (units === "m" || !/^body: /.test(message)) return message;
+  const length = (value) => number(Number(value) / METRES[units]);
+  return message
+    .replace(/\[(-?[\d.e-]+), (-?[\d.e-]+)\] m, got (-?[\d.e-]+)$/, (_, low, high, given) =>
+      `[${length(low)}, ${length(high)}] ${units}; it is ${length(given)} ${units}`)
+    .replace(/\b(-?[\d.]+(?:e-?\d+)?) and (-?[\d.]+(?:e-?\d+)?) m\b(?!2)/g, (_, first, second) =>
+      `${length(first)} and ${length(second)} ${units}`)
+    .replace(/(-?\b[\d.]+(?:e-?\d+)?) m\b(?!2)/g, (_, value) => `${length(value)} ${units}`)
+    .replace(/(\b[\d.]+(?:e-?\d+)?) m2\b/g, (_, value) =>
+      `${number(Number(value) / METRES[units] ** 2)} ${pretty(`${units}2`)}`);
+};

@@ -1,0 +1,63 @@
+/** Inputs that come from outside, checked before a view reads them: the right kinds in the right places. */
+
+const UNITS = new Set(["m", "cm", "mm", "ft", "in"]);
+
+/** The inputs of a document from outside, empty tables left out; null if they cannot be such a document. */
+export const inputsOf = (document) => {
+  if (!isTable(document)) return null;
+  const { motion, ...rest } = document;
+  const inputs = withoutNulls({ ...rest, body: isTable(rest.body) ? withoutNulls(rest.body) : null });
+  const good = Object.keys(inputs).every((key) => CHECKS[key]?.(inputs[key])) && isBody(inputs.body);
+  if (!good || !(motion === undefined || motion === null || isMotion(motion))) return null;
+  return motion ? { ...inputs, motion: withoutNulls(motion) } : inputs;
+};
+
+const isTable = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
+const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
+const isText = (value) => typeof value === "string";
+const isList = (each) => (value) => Array.isArray(value) && value.every(each);
+const isPair = (value) => isList(isNumber)(value) && value.length === 2;
+const isRing = (value) => isList(isPair)(value) && value.length > 2;
+const none = (value) => value === undefined || value === null;
+const maybe = (check) => (value) => none(value) || check(value);
+const eachOf = (table, keys, check) => keys.every((key) => maybe(check)(table[key]));
+
+const withoutNulls = (table) =>
+  Object.fromEntries(Object.entries(table).filter(([, value]) => value !== null && value !== undefined));
+
+const LENGTHS = ["width", "height", "depth", "density", "base", "top", "lean", "sides", "radius", "ground"];
+
+const isSized = (table) => isTable(table) && eachOf(table, LENGTHS, isNumber) && maybe(isPair)(table.feet);
+
+const isRegion = (region) =>
+  isTable(region) && maybe(isRing)(region.outline) && maybe(isList(isRing))(region.holes)
+  && maybe(isNumber)(region.density) && maybe(isText)(region.wkt);
+
+const isSection = (section) =>
+  isSized(section) && isList(isRegion)(section.region) && section.region.length > 0;
+
+const isBody = (body) =>
+  isSized(body) && UNITS.has(body.units) && maybe(isText)(body.name)
+  && eachOf(body, ["block", "trapezoid", "ellipse", "regular_polygon"], isSized)
+  && maybe(isSection)(body.section)
+  && maybe((table) => isTable(table) && isList(isPair)(table.points))(body.mass_points);
+
+const isMotion = (motion) =>
+  isTable(motion) && ["pulse", "record", "synthetic"].filter((key) => !none(motion[key])).length === 1
+  && eachOf(motion, [
+    "pulse", "record", "synthetic", "file_name", "format", "units", "component", "vertical",
+  ], isText)
+  && eachOf(motion, ["scale", "seed", "member", "pga", "pgv", "time_step"], isNumber);
+
+const isSide = (side) =>
+  isTable(side) && eachOf(side, ["model"], isText) && eachOf(side, ["value"], isNumber)
+  && maybe(isList(isText))(side.models) && maybe(isList(isNumber))(side.values);
+
+const isRestitution = (table) => isSide(table) && eachOf(table, ["left", "right"], isNumber);
+
+const CHECKS = {
+  body: isTable,
+  restitution: isRestitution,
+  response: (table) => isTable(table) && eachOf(table, ["free", "friction"], isNumber),
+  settings: isTable,
+};

@@ -1,0 +1,36 @@
+/** What was answered about a record file, kept by its hash in this browser. */
+
+const KEPT = "rocking.told";
+const KEYS = ["format", "units", "time_step", "component", "vertical"];
+const MOST = 500;
+
+const all = () => {
+  try {
+    return JSON.parse(localStorage.getItem(KEPT)) ?? {};
+  } catch {
+    return {};
+  }
+};
+
+const write = (entries) => {
+  try {
+    localStorage.setItem(KEPT, JSON.stringify(Object.fromEntries(entries.slice(-MOST))));
+  } catch {
+    // a browser that keeps nothing asks again
+  }
+};
+
+const others = (record) => Object.entries(all()).filter(([hash]) => hash !== record);
+
+/** Returns what was answered about a record: format, units, time_step, component, vertical. */
+export const toldOf = (record) => all()[record] ?? {};
+
+/** Keeps what a motion says about its record. */
+export const rememberTold = ({ record, ...motion }) => {
+  const given = KEYS.filter((key) => motion[key] !== undefined);
+  const told = Object.fromEntries(given.map((key) => [key, motion[key]]));
+  if (record) write([...others(record), [record, told]]);
+};
+
+/** Forgets a record that was deleted. */
+export const forgetTold = (record) => write(others(record));
