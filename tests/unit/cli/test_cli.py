@@ -155,7 +155,7 @@ def test_paper_folder(capsys, tmp_path):
     for kind in ("png", "svg"):
         assert stems <= {path.stem for path in (tmp_path / "report" / "figures").glob(f"*.{kind}")}
     with (tmp_path / "report" / "tables" / "league.csv").open(encoding="utf-8-sig") as file:
-        assert len(list(csv.reader(file))) == 17
+        assert len(list(csv.reader(file))) == 1 + 16 + 3  # titles, models and fits, three contact beds
 
 
 def test_paper_into_a_file_is_refused(capsys, tmp_path):
