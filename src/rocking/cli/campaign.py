@@ -104,7 +104,8 @@ def export(
         str | None,
         typer.Option(
             help="histories; of fragility campaigns fragility, fema-p58 (.csv); of refined maps refined, boundary; of "
-            "minimum accelerations crossings, minima; of inventories report. What suits the kind if not given."
+            "minimum accelerations crossings, minima; of inventories report; of several restitutions flips, "
+            "differences. What suits the kind if not given."
         ),
     ] = None,
     restitution: Annotated[

@@ -1,5 +1,6 @@
 """Jobs: a TOML file says what a campaign computes; its results become files with their provenance."""
 
+from rocking.studies.job.comparison import comparison
 from rocking.studies.job.exporting import export, exports_of
 from rocking.studies.job.findings import analyses, answer, assessment
 from rocking.studies.job.folder import JobFolder, JobStatus, status_of
@@ -14,6 +15,7 @@ __all__ = [
     "analyses",
     "answer",
     "assessment",
+    "comparison",
     "export",
     "exports_of",
     "forecast",

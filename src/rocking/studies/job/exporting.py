@@ -10,6 +10,7 @@ from typing import Any
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import disk
 from rocking.studies.fragility.nesting import Crossing, check_crossing, nested
+from rocking.studies.job.comparison import COMPARED, comparable, comparison, comparison_sheet
 from rocking.studies.job.findings import answer, refuse_unfinished
 from rocking.studies.job.folder import JobFolder
 from rocking.studies.job.matlab import to_matlab
@@ -37,6 +38,7 @@ SPECIAL: dict[str, tuple[str, ...]] = {
     "boundary": tuple(SHEET_FORMATS),
     "crossings": (".nc", *SHEET_FORMATS),
     "minima": (".nc", *SHEET_FORMATS),
+    **dict.fromkeys(COMPARED, tuple(SHEET_FORMATS)),
 }
 """What can be exported of some kinds beside their histories, and how."""
 
@@ -57,10 +59,11 @@ def exports_of(folder: JobFolder) -> list[str]:
         The first is what is written unless something else is asked for.
     """
     study = folder.job.study
+    compared = COMPARED if comparable(folder) else ()
     if study.finish is not None:
-        return ["histories", *_ANALYSES]
+        return ["histories", *_ANALYSES, *compared]
     if study.search is None:
-        return ["histories"]
+        return ["histories", *compared]
     if folder.job.document.map is not None:
         return ["histories", "refined", "boundary"]
     return ["crossings", "minima", "histories"]
@@ -83,7 +86,9 @@ def export(
         polylines too. Of fragility campaigns ``fragility``, the curves (.nc, .csv, .mat, .xlsx, and .xml for NRML),
         and ``fema-p58``, a table (.csv); of refined maps ``refined``, all points, and ``boundary``, the vertices of the
         polylines (.csv, .parquet, .xlsx); of minimum accelerations ``crossings`` and ``minima`` (the same, and both in
-        one .nc), with ``histories`` for the first samples. The first of `exports_of` if not given.
+        one .nc), with ``histories`` for the first samples; of jobs with several restitutions ``flips``, what each of
+        them changes against the first, and ``differences``, cell by cell (.csv, .parquet, .xlsx). The first of
+        `exports_of` if not given.
     restitution : str, optional
         Label of the restitution whose fragility is meant, where there are several.
     crossing : {"refuse", "common-dispersion"}, optional
@@ -198,6 +203,9 @@ def _check_label(what: str, restitution: str | None, labels: list[str]) -> None:
 def _tables(results: Results, path: Path, what: str, folder: JobFolder) -> None:
     """Write histories, or the tables of an adaptive study."""
     suffix, several = path.suffix.lower(), folder.job.study.search is not None
+    if what in COMPARED:
+        SHEET_FORMATS[suffix](comparison_sheet(comparison(folder), what), path, results.attributes)
+        return
     if what == "histories":
         FORMATS[suffix](results, path)
     if not several or (what == "histories" and (suffix != ".nc" or folder.job.document.map is None)):

@@ -1,0 +1,134 @@
+"""What the choice of the restitution changes in a finished campaign: the comparison, and its tables."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.dynamics.export import extra
+from rocking.dynamics.impact_law import ImpactLaw, RandomRestitution
+from rocking.errors import InvalidValueError
+from rocking.studies.job.answer import Column, Sheet
+from rocking.studies.job.findings import analyses, refuse_unfinished
+from rocking.studies.job.folder import JobFolder
+from rocking.studies.job.results import Results
+from rocking.studies.job.study import VARIABLES
+from rocking.studies.sensitivity.comparison import Sensitivity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+COMPARED = ("flips", "differences")
+"""Tables of a comparison."""
+
+_KEPT = ("outcome", "peak_ratio")
+
+
+def comparable(folder: JobFolder) -> bool:
+    """Return whether a campaign has several restitutions that can be compared.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign.
+
+    Returns
+    -------
+    bool
+        Whether `comparison` has something to say of it.
+    """
+    study = folder.job.study
+    return len(folder.job.parts.choices) > 1 and study.search is None and study.assess is None
+
+
+def comparison(folder: JobFolder) -> Sensitivity:
+    """Return how the restitution changes the results of a finished campaign, as the Python calls do.
+
+    Parameters
+    ----------
+    folder : JobFolder
+        The campaign of a job with several restitutions; the first one is what the others are compared with.
+
+    Returns
+    -------
+    Sensitivity
+        What `map_sensitivity`, `spectrum_sensitivity` and `fragility_sensitivity` return.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is only one restitution, or the kind of the campaign has none to compare.
+    CampaignIncompleteError
+        If the campaign is not finished.
+    """
+    if not comparable(folder):
+        raise InvalidValueError("a comparison needs a map, spectra, fragility or histories with several restitutions")
+    refuse_unfinished(folder)
+    choices = folder.job.parts.choices
+    results = _datasets(folder) if folder.job.study.finish is None else analyses(folder)
+    drawn = [label for label, law in choices.items() if isinstance(law, ImpactLaw) and law.kind == _RANDOM]
+    return Sensitivity(results, baseline=next(iter(choices)), drawn=drawn)
+
+
+def comparison_sheet(found: Sensitivity, what: str) -> Sheet:
+    """Return a table of a comparison.
+
+    Parameters
+    ----------
+    found : Sensitivity
+        The comparison.
+    what : {"flips", "differences"}
+        ``flips``: a row for every choice, with the verdicts that it changes and how its curves move; ``differences``:
+        a row for every choice but the first and every history or cell.
+
+    Returns
+    -------
+    Sheet
+        The table.
+    """
+    return _flips(found) if what == "flips" else _differences(found)
+
+
+_RANDOM = RandomRestitution.kind
+
+
+def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":
+    xarray: Any = extra("xarray", "comparing restitutions")
+    study, labels = folder.job.study, list(folder.job.parts.choices)
+    pieces: dict[str, list[np.ndarray]] = {name: [] for name in _KEPT}
+    for _, _, found in Results(study, folder.campaign, {}).pieces():
+        for name in _KEPT:
+            pieces[name].append(found[name])
+    axis = list(study.dims).index("restitution")
+    whole = {name: np.moveaxis(np.concatenate(parts).reshape(study.shape), axis, 0) for name, parts in pieces.items()}
+    dims = [name for name in study.dims if name != "restitution"]
+    along = {name: study.coordinates[name] for name in dims if name in study.coordinates}
+    coords = {name: each.values for name, each in along.items() if each.dims == (name,)}
+    told = {name: {"units": VARIABLES[name][1], "long_name": VARIABLES[name][2]} for name in _KEPT}
+    return {
+        label: xarray.Dataset({name: (dims, whole[name][k], told[name]) for name in _KEPT}, coords)
+        for k, label in enumerate(labels)
+    }
+
+
+def _flips(found: Sensitivity) -> Sheet:
+    rows = found.summary()
+    names = dict.fromkeys(name for row in rows for name in row)
+    return Sheet("choice", {name: Column(_values([row.get(name) for row in rows])) for name in names})
+
+
+def _values(given: list[Any]) -> np.ndarray:
+    if any(isinstance(value, str) for value in given):
+        return np.array(["" if value is None else str(value) for value in given], dtype=np.str_)
+    return np.array([np.nan if value is None else value for value in given])
+
+
+def _differences(found: Sensitivity) -> Sheet:
+    verdict, peak = found.differences("verdict"), found.differences("peak_ratio")
+    places = np.indices(verdict.shape).reshape(verdict.ndim, -1)
+    columns = {}
+    for place, name in zip(places, verdict.dims, strict=True):
+        values = np.asarray(verdict[name].values)[place]
+        columns[str(name)] = Column(values.astype(np.str_) if values.dtype.kind not in "iufb" else values)
+    columns["verdict"] = Column(verdict.values.ravel(), words=str(verdict.attrs["long_name"]))
+    columns["peak_ratio"] = Column(peak.values.ravel(), words=str(peak.attrs["long_name"]))
+    return Sheet("difference", columns)
