@@ -190,6 +190,9 @@ def test_the_board_by_pointer(page: Any, shot: Callable[..., Any]) -> None:
     page.get_by_label("Shape").select_option("section")
     page.get_by_test_id("board").wait_for()
     settled(page, "Mass kg", 0.5 * 2.0 * 0.5 * 2400.0)
+    page.wait_for_timeout(500)  # the board is drawn anew when the answer comes
+    for name in ("Vertex 2 of region 1", "Vertex 3 of region 1"):
+        page.get_by_role("button", name=name).wait_for()
     handle = page.get_by_role("button", name="Vertex 2 of region 1").bounding_box()
     top = page.get_by_role("button", name="Vertex 3 of region 1").bounding_box()
     height = handle["y"] - top["y"]

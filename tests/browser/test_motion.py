@@ -51,7 +51,8 @@ def fact(page: Any, word: str) -> str:
 
 
 def pasted(page: Any) -> str:
-    """Return what a user pastes after copying."""
+    """Return what a user pastes after copying, once the page says that it has copied."""
+    page.get_by_text("paste them into Excel").wait_for()
     page.evaluate("document.body.append(Object.assign(document.createElement('textarea'), { id: 'paste' }))")
     page.locator("#paste").focus()
     page.keyboard.press("Control+V")

@@ -217,8 +217,10 @@ def test_rocking_spectra(studies: Any, shot: Any) -> None:
     shot(studies, "studies-spectra")
 
 
-def test_cancel_and_resume(studies: Any, shot: Any) -> None:
+def test_cancel_and_resume(open_page: Callable[..., Any], shot: Any) -> None:
     """A long study shows progress, stops within a second of Cancel, keeps what is finished, and goes on."""
+    models = ["ked", "housner", "horizontal-momentum", "shifted-impulse", "distributed-impulse", "plastic-winkler"]
+    studies = open_page(fragment({**PULSE, "restitution": {"models": models, "values": [0.8, 0.85, 0.9, 0.95]}}))
     counted(studies, 400)
     studies.locator("#study-name").fill("long study")
     studies.get_by_test_id("study-launch").click()
