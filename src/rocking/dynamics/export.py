@@ -188,7 +188,7 @@ def to_csv(response: "Response", path: "str | Path") -> "Path":
     """
     import csv
 
-    target = _target(path)
+    target = target_of(path)
     values = columns(response)
     with target.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -216,7 +216,7 @@ def to_mat(response: "Response", path: "str | Path") -> "Path":
 
     from scipy.io import savemat
 
-    target = _target(path)
+    target = target_of(path)
     impacts = {
         name: response.impacts[name].astype(np.float64)
         for name in ("time", "velocity_before", "velocity_after", "coefficient")
@@ -250,7 +250,7 @@ def to_netcdf(response: "Response", path: "str | Path") -> "Path":
     """
     extra("h5py", "netCDF")
     extra("h5netcdf", "netCDF")
-    target = _target(path)
+    target = target_of(path)
     to_xarray(response).to_netcdf(target, engine="h5netcdf")
     return target
 
@@ -261,7 +261,24 @@ def _told(motion: "Motion | None") -> str:
     return "; ".join(getattr(motion, "provenance", ())) or repr(motion)
 
 
-def _target(path: "str | Path") -> "Path":
+def target_of(path: "str | Path") -> "Path":
+    """Return the path of a file that can be written.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    Path
+        The same.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no path, a folder, or in a folder that is not there.
+    """
     from pathlib import Path
 
     given: object = path

@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.export import extra
+from rocking.dynamics.export import extra, target_of
 from rocking.dynamics.planar.mode import Regime
-from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -170,18 +169,10 @@ def to_csv(response: "PlanarResponse", path: "str | Path") -> "Path":
     -------
     Path
         The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no folder to write it into.
     """
     import csv
-    from pathlib import Path
 
-    target = Path(path)
-    if target.is_dir() or not target.parent.is_dir():
-        raise InvalidValueError(f"path must be a file in a folder that exists, got {target}")
+    target = target_of(path)
     named = _named(response)
     with target.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

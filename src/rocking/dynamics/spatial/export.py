@@ -1,14 +1,12 @@
 """A response in space as tables and files: xarray, CSV, netCDF, each with units and provenance."""
 
-import os
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.export import extra
-from rocking.errors import InvalidValueError
+from rocking.dynamics.export import extra, target_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -135,7 +133,7 @@ def to_csv(response: "SpatialResponse", path: "str | Path") -> "Path":
     """
     import csv
 
-    target, values = _target(path), columns(response)
+    target, values = target_of(path), columns(response)
     with target.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow([f"{name} [{'-' if unit == '1' else unit}]" for name, (unit, _, _) in values.items()])
@@ -160,18 +158,6 @@ def to_netcdf(response: "SpatialResponse", path: "str | Path") -> "Path":
     """
     extra("h5py", "netCDF")
     extra("h5netcdf", "netCDF")
-    target = _target(path)
+    target = target_of(path)
     to_xarray(response).to_netcdf(target, engine="h5netcdf")
-    return target
-
-
-def _target(path: "str | Path") -> "Path":
-    from pathlib import Path
-
-    given: object = path
-    if not isinstance(given, (str, os.PathLike)):
-        raise InvalidValueError(f"path must be the path of a file, got {path!r:.60}")
-    target = Path(path)
-    if target.is_dir() or not target.parent.is_dir():
-        raise InvalidValueError(f"path must be the path of a file in a folder that exists, got {target}")
     return target

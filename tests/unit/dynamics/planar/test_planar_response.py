@@ -123,8 +123,9 @@ def test_tables_hold_all_columns(rocked, tmp_path):
 
 def test_csv_needs_a_folder(rocked, tmp_path):
     """A folder, or a file in none, is refused."""
-    for path in (tmp_path, tmp_path / "none" / "planar.csv"):
-        with pytest.raises(InvalidValueError, match="path must be a file"):
+    refused = {tmp_path: "got the folder", tmp_path / "none" / "planar.csv": "no folder", 3: "path of a file, got 3"}
+    for path, words in refused.items():
+        with pytest.raises(InvalidValueError, match=words):
             rocked.to_csv(path)
 
 

@@ -126,5 +126,5 @@ def test_files_hold_the_samples_with_units(tmp_path):
         assert data["kinetic_energy"].attrs["units"] == "J"
         assert data.attrs["restitution"] == "housner-3d"
         assert data["impact_vertices"].values.tolist() == run.impacts["vertices"].tolist()
-    with pytest.raises(InvalidValueError, match="path"):
+    with pytest.raises(InvalidValueError, match="no folder"):
         run.to_csv(tmp_path / "nowhere" / "run.csv")
