@@ -109,17 +109,21 @@ inline Pace pace_of(const Shake& shake, double p, double over_gravity, double lo
 // its longest step: as good, and quicker.
 inline double reach_of_order_six(double longest_step) { return std::pow(std::pow(longest_step, 9) / 7200.0, 1.0 / 7.0); }
 
-// Rows that wait; threads take a few at a time.
+// Rows that wait; threads take a few at a time, fewer towards the end, so that all of them end together.
 struct Queue {
-    std::int64_t end, chunk;
+    std::int64_t end, chunk, threads;
     std::atomic<std::int64_t> next{0};
 
     bool take(std::int64_t& from, std::int64_t& to) {
-        from = next.fetch_add(chunk);
-        to = std::min(from + chunk, end);
-        if (from < end) return true;
-        from = to = end;
-        return false;
+        from = next.load();
+        do {
+            if (from >= end) {
+                from = to = end;
+                return false;
+            }
+            to = from + std::clamp<std::int64_t>((end - from) / (4 * threads), 1, chunk);
+        } while (!next.compare_exchange_weak(from, to));
+        return true;
     }
 };
 

@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "table.hpp"
 
@@ -201,20 +204,42 @@ static bool takes_order_six(const Motions& m, const Rows& rows, std::int64_t row
     return pace_of(m.shakes[rows.motion[row]], p, rows.scale[row] / set.gravity, set.longest_step).reach < reach;
 }
 
-// The rows of a list, by all threads together.
-static void share_out(Run run, const Motions& m, const Law& law, Rows rows, const std::vector<std::int64_t>& list,
-                      const Settings& set, int threads, std::int64_t chunk, Work& total) {
-    rows.list = list.data();
-    rows.count = static_cast<std::int64_t>(list.size());
-    Queue queue{rows.count, chunk};
+// Rows for one kernel, in the order in which threads take them.
+struct Share {
+    Run run;
+    std::vector<std::int64_t> list;
+    Queue queue;
+
+    Share(Run run_, std::vector<std::int64_t> list_, std::int64_t chunk, int threads)
+        : run(run_), list(std::move(list_)), queue{static_cast<std::int64_t>(list.size()), chunk, threads} {}
+};
+
+// The last rows that are taken are the short ones: lanes whose neighbours have ended idle for less time.
+static void short_ones_last(std::vector<std::int64_t>& list, const Motions& m, const Rows& rows, int threads) {
+    const auto length = [&](std::int64_t row) {
+        const std::int64_t motion = rows.motion[row];
+        return motion < 0 || motion >= static_cast<std::int64_t>(m.shakes.size()) ? 0 : m.shakes[motion].segments;
+    };
+    const auto tail = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(list.size()), std::ptrdiff_t{1024} * threads);
+    std::stable_sort(list.end() - tail, list.end(), [&](auto a, auto b) { return length(a) > length(b); });
+}
+
+// Each share in turn, by all threads together; nobody waits for the others in between.
+static void share_out(std::deque<Share>& shares, const Motions& m, const Law& law, const Rows& all, const Settings& set,
+                      int threads, Work& total) {
     std::mutex one_at_a_time;
     auto labour = [&] {
-        const Work work = run(m, law, rows, set, nullptr, queue);
-        const std::lock_guard<std::mutex> guard(one_at_a_time);
-        total.steps += work.steps;
-        total.sweeps += work.sweeps;
-        total.events += work.events;
-        total.orders += work.orders;
+        for (Share& share : shares) {
+            Rows rows = all;
+            rows.list = share.list.data();
+            rows.count = static_cast<std::int64_t>(share.list.size());
+            const Work work = share.run(m, law, rows, set, nullptr, share.queue);
+            const std::lock_guard<std::mutex> guard(one_at_a_time);
+            total.steps += work.steps;
+            total.sweeps += work.sweeps;
+            total.events += work.events;
+            total.orders += work.orders;
+        }
     };
     std::vector<std::thread> crew;
     for (int k = 1; k < threads; ++k) crew.emplace_back(labour);
@@ -239,9 +264,13 @@ static nb::dict run_batch(const Library& library, const nb::dict& in, const nb::
         const double reach = reach_of_order_six(set.longest_step);
         for (std::int64_t row = 0; row < rows.count; ++row)
             (takes_order_six(m, rows, row, set, reach) ? near_samples : others).push_back(row);
+        short_ones_last(near_samples, m, rows, threads);
+        short_ones_last(others, m, rows, threads);
+        std::deque<Share> shares;
         if (!near_samples.empty())
-            share_out(kernel(isa, false, {6, 1, m.vertical_part, false}), m, law, rows, near_samples, set, threads, chunk, total);
-        if (!others.empty()) share_out(run, m, law, rows, others, set, threads, chunk, total);
+            shares.emplace_back(kernel(isa, false, {6, 1, m.vertical_part, false}), std::move(near_samples), chunk, threads);
+        if (!others.empty()) shares.emplace_back(run, std::move(others), chunk, threads);
+        share_out(shares, m, law, rows, set, threads, total);
     }
     nb::dict work;
     work["steps"] = total.steps;
@@ -266,7 +295,7 @@ static nb::list run_single(const Library& library, const nb::dict& in, const nb:
     Trace trace{rotation.data(), velocity.data(), {}};
     trace.rotation[0] = rows.rotation[0];
     trace.velocity[0] = rows.velocity[0];
-    Queue queue{1, 1};
+    Queue queue{1, 1, 1};
     const int order = takes_order_six(m, rows, 0, set, reach_of_order_six(set.longest_step)) ? 6 : 8;
     kernel(isa, true, {order, m.degree, m.vertical_part, linear})(m, law, rows, set, &trace, queue);
     nb::list events;

@@ -31,15 +31,15 @@ using State = Vector<5>;  // y, theta, u, w, omega: height and rotation of the b
 enum { kY, kTheta, kU, kW, kOmega };
 
 struct Place {  // gap = y - s sigma + zeta kappa, and its rate
-    double y, sigma, kappa, dy, dsigma, dkappa;
+    double y, sigma, kappa, dy, dsigma, dkappa, sine, cosine;
     double gap(double s, double zeta) const { return y - s * sigma + zeta * kappa; }
     double rate(double s, double zeta) const { return dy - s * dsigma + zeta * dkappa; }
 };
 
 inline Place place(const State& x, bool exact) {
-    if (!exact) return {x[kY], x[kTheta], 1.0, x[kW], x[kOmega], 0.0};
     const double s = std::sin(x[kTheta]), c = std::cos(x[kTheta]);
-    return {x[kY], s, c, x[kW] * c - x[kU] * s, c * x[kOmega], -s * x[kOmega]};
+    if (!exact) return {x[kY], x[kTheta], 1.0, x[kW], x[kOmega], 0.0, s, c};
+    return {x[kY], s, c, x[kW] * c - x[kU] * s, c * x[kOmega], -s * x[kOmega], s, c};
 }
 
 // Sums over points that make a linear law independent of their number.
@@ -75,11 +75,15 @@ public:
         elastic_ = viscous_ = lost_ = Sums{};
         offset_ = offset_s_ = offset_z_ = 0.0;
         pressing = 0;
+        touching_.clear();
         for (std::int64_t i = 0; i < p_.points.count; ++i) {
             const double s = p_.points.at[i], z = p_.points.height[i], share = p_.points.share[i];
             const double k = p_.stiffness * share;
             if (mode[i] == Mode::pressing || mode[i] == Mode::spring) ++pressing;
-            if (!linear()) continue;
+            if (!linear()) {
+                if (mode[i] != Mode::away) touching_.push_back({s, z, k, mode[i] == Mode::pressing ? 1.0 : 0.0});
+                continue;
+            }
             if (mode[i] == Mode::lagging) lost_.add(-k, s, z);
             if (mode[i] == Mode::pressing) {
                 elastic_.add(k, s, z);
@@ -94,6 +98,7 @@ public:
                 offset_z_ += back * z;
             }
         }
+        while (touching_.size() % kLanes != 0) touching_.push_back({});
     }
 
     Load load(const Place& x) const {
@@ -145,6 +150,25 @@ public:
         }
     }
 
+    // The margins of point i at the start and the nodes of a step; returns how many there are.
+    template <std::size_t K>
+    int margins(std::int64_t i, const Place (&x)[K], double (&g)[2][K]) const {
+        const double s = p_.points.at[i], z = p_.points.height[i];
+        if (mode[i] == Mode::away) {
+            const double from = set(i);
+            for (std::size_t k = 0; k < K; ++k) g[0][k] = from + x[k].gap(s, z);
+            return 1;
+        }
+        const bool one = mode[i] == Mode::pressing && p_.law != kHuntCrossley;
+        if (one && p_.law == kKelvinVoigt) {
+            for (std::size_t k = 0; k < K; ++k) g[0][k] = -(p_.stiffness * x[k].gap(s, z) + p_.damping * x[k].rate(s, z));
+            return 1;
+        }
+        for (int which = 0; which < (one ? 1 : 2); ++which)
+            for (std::size_t k = 0; k < K; ++k) g[which][k] = margin(i, which, x[k]);
+        return one ? 1 : 2;
+    }
+
     void change(std::int64_t i, int which, const Place& x) {  // margin `which` of point i has run out
         switch (mode[i]) {
             case Mode::away: mode[i] = p_.law == kPlastic && deepest[i] > 0.0 && p_.rebound > 0.0 ? Mode::spring : Mode::pressing; break;
@@ -186,25 +210,29 @@ private:
     double push(double d, double v) const {
         return p_.law == kKelvinVoigt ? p_.stiffness * d + p_.damping * v : 1.0 + p_.viscosity * v;
     }
+    // Four points at a time, each with its own sums.
     Load sum_over_points(const Place& x) const {
-        Load l;
-        for (std::int64_t i = 0; i < p_.points.count; ++i) {
-            if (mode[i] == Mode::away) continue;
-            const double d = -gap(i, x), v = -rate(i, x);
-            if (d <= 0.0) continue;
-            const double spring = p_.points.share[i] * p_.stiffness * power(d);
-            if (mode[i] == Mode::lagging) {
-                l.loss -= spring * v;
-                continue;
+        double force[kLanes] = {}, moment[kLanes] = {}, tilt[kLanes] = {}, loss[kLanes] = {};
+        for (std::size_t i = 0; i < touching_.size(); i += kLanes)
+            for (std::size_t j = 0; j < kLanes; ++j) {
+                const Touching& t = touching_[i + j];
+                const double gap = x.gap(t.at, t.height), d = gap < 0.0 ? -gap : 0.0, v = -x.rate(t.at, t.height);
+                const double spring = t.stiffness * (p_.exponent == 1.5 ? d * std::sqrt(d) : power(d)), drag = p_.viscosity * v;
+                const double f = t.pressing * spring * (1.0 + drag);
+                force[j] += f;
+                moment[j] += f * t.at;
+                tilt[j] += f * t.height;
+                loss[j] += spring * v * (t.pressing * (1.0 + drag) - 1.0);
             }
-            const double f = spring * (1.0 + p_.viscosity * v);
-            l.force += f;
-            l.moment += f * p_.points.at[i];
-            l.tilt += f * p_.points.height[i];
-            l.loss += spring * p_.viscosity * v * v;
-        }
-        return l;
+        const auto sum = [](const double (&a)[kLanes]) { return (a[0] + a[1]) + (a[2] + a[3]); };
+        return {sum(force), sum(moment), sum(tilt), sum(loss)};
     }
+
+    static constexpr std::size_t kLanes = 4;
+    struct Touching {
+        double at, height, stiffness, pressing;  // pressing: 1, or 0 where the bed lags behind
+    };
+    std::vector<Touching> touching_;
 
 public:
     std::vector<Mode> mode;

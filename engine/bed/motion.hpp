@@ -15,13 +15,14 @@ public:
 
     int slip = 0;  // Coulomb: 0 sticks, +1 or -1 slides that way
 
-    Rates rates(const State& x) const {
-        const Place at = place(x, p_.exact);
+    Rates rates(const State& x) const { return rates(x, place(x, p_.exact)); }
+
+    Rates rates(const State& x, const Place& at) const {
         const Load l = bed_.load(at);
         const double m = p_.mass, h = p_.height, u = x[kU], w = x[kW], omega = x[kOmega];
-        const double c = p_.exact ? std::cos(x[kTheta]) : 1.0, s = p_.exact ? at.sigma : 0.0;
+        const double c = p_.exact ? at.cosine : 1.0, s = p_.exact ? at.sigma : 0.0;
         double along = -m * p_.push * c + s * (m * p_.gravity - l.force), across = c * (l.force - m * p_.gravity) - s * m * p_.push;
-        double turning = m * h * (p_.gravity * std::sin(x[kTheta]) - p_.push * std::cos(x[kTheta])) - l.moment * c - l.tilt * s;
+        double turning = m * h * (p_.gravity * at.sine - p_.push * at.cosine) - l.moment * c - l.tilt * s;
         if (p_.exact) {
             along -= m * w * omega;
             across += m * (u + h * omega) * omega;
@@ -50,15 +51,16 @@ public:
 
     State operator()(const State& x) const { return rates(x).slope; }
 
-    double energy(const State& x, double travel) const {
+    double energy(const State& x, double travel) const { return energy(x, place(x, p_.exact), travel); }
+
+    // Kinetic, potential and elastic.
+    double energy(const State& x, const Place& at, double travel) const {
         const double u = x[kU] + p_.height * x[kOmega], w = x[kW], omega = x[kOmega];
-        const double half = std::sin(0.5 * x[kTheta]);
-        return 0.5 * p_.mass * (u * u + w * w) + 0.5 * p_.inertia * omega * omega +
-               p_.mass * p_.gravity * (x[kY] - 2.0 * p_.height * half * half) +
-               p_.mass * p_.push * (travel + p_.height * std::sin(x[kTheta]));
+        const double fall = at.sine * at.sine / (1.0 + at.cosine);
+        return 0.5 * p_.mass * (u * u + w * w) + 0.5 * p_.inertia * omega * omega + p_.mass * p_.gravity * (x[kY] - p_.height * fall) +
+               p_.mass * p_.push * (travel + p_.height * at.sine) + stored(at);
     }
-    double stored(const State& x) const {
-        const Place at = place(x, p_.exact);
+    double stored(const Place& at) const {
         double sum = 0.0;
         for (std::int64_t i = 0; i < p_.points.count; ++i) sum += bed_.stored(i, at);
         return sum;
@@ -67,9 +69,11 @@ public:
     // Positive while the friction state holds.
     double friction_margin(const State& x) const {
         if (p_.kind != kCoulomb) return 1.0;
-        if (slip != 0) return slip * x[kU];
-        const Rates r = rates(x);
-        return p_.friction * r.normal - std::abs(r.shear);
+        return slip != 0 ? slip * x[kU] : friction_margin(x, rates(x));
+    }
+    double friction_margin(const State& x, const Rates& r) const {
+        if (p_.kind != kCoulomb) return 1.0;
+        return slip != 0 ? slip * x[kU] : p_.friction * r.normal - std::abs(r.shear);
     }
 
     // After a switch: may the base stick, and if not, which way does it slide?

@@ -50,6 +50,7 @@ constexpr double dense[kStages][kStages] = {
 struct Complex {
     double re = 0.0, im = 0.0;
 };
+inline Complex operator+(Complex a, Complex b) { return {a.re + b.re, a.im + b.im}; }
 inline Complex operator-(Complex a, Complex b) { return {a.re - b.re, a.im - b.im}; }
 inline Complex operator*(Complex a, Complex b) { return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re}; }
 inline Complex inverse(Complex a) {
@@ -96,6 +97,43 @@ struct Solver {
     }
 };
 
+// (lambda / h - J) x = r for a state of two positions and three velocities, by elimination of the positions: a matrix of three
+// rows. What the rates of the positions owe to the positions themselves is left out: Newton's method makes up for it.
+template <class T>
+class Reduced {
+public:
+    void set(T value, const double (&jacobian)[5][5]) {
+        back_ = inverse(value);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+                double through = 0.0;
+                for (int q = 0; q < 2; ++q) through += jacobian[2 + i][q] * jacobian[q][2 + j];
+                const T sum = back_ * T{through};
+                inner_.a[i][j] = (i == j ? value : T{}) - T{jacobian[2 + i][2 + j]} - sum;
+            }
+        inner_.factor();
+        jacobian_ = &jacobian;
+    }
+    void solve(std::array<T, 5>& x) const {
+        const auto& jacobian = *jacobian_;
+        const T p[2] = {back_ * x[0], back_ * x[1]};
+        std::array<T, 3> v;
+        for (int i = 0; i < 3; ++i) v[i] = x[2 + i] + T{jacobian[2 + i][0]} * p[0] + T{jacobian[2 + i][1]} * p[1];
+        inner_.solve(v);
+        for (int q = 0; q < 2; ++q) {
+            T sum{};
+            for (int j = 0; j < 3; ++j) sum = sum + T{jacobian[q][2 + j]} * v[j];
+            x[q] = p[q] + back_ * sum;
+        }
+        for (int i = 0; i < 3; ++i) x[2 + i] = v[i];
+    }
+
+private:
+    T back_{};
+    Solver<3, T> inner_;
+    const double (*jacobian_)[5][5] = nullptr;
+};
+
 // One step: stages, end and error estimate of y' = f(y).
 template <std::size_t N>
 struct Step {
@@ -116,32 +154,56 @@ struct Step {
     }
 };
 
-// Simplified Newton on the collocation equations; false if it does not settle. `unit`: the error allowed per component.
-template <std::size_t N, class Field>
-bool take_step(const Field& f, const Vector<N>& y, double h, const Vector<N>& unit, const Vector<N>& nudge, Step<N>& out) {
-    const Vector<N> slope = f(y);
+// The field at a state and its derivative there: one serves every step that starts from that state.
+template <std::size_t N>
+struct Tangent {
+    Vector<N> slope;
     double jacobian[N][N];
+};
+
+template <std::size_t N, class Field>
+Tangent<N> tangent(const Field& f, const Vector<N>& y, const Vector<N>& nudge) {
+    Tangent<N> t;
+    t.slope = f(y);
     for (std::size_t j = 0; j < N; ++j) {
         Vector<N> moved = y;
         moved[j] += nudge[j];
         const double by = moved[j] - y[j];
         const Vector<N> there = f(moved);
-        for (std::size_t i = 0; i < N; ++i) jacobian[i][j] = (there[i] - slope[i]) / by;
+        for (std::size_t i = 0; i < N; ++i) t.jacobian[i][j] = (there[i] - t.slope[i]) / by;
     }
-    Solver<N, double> first;
-    Solver<N, Complex> other[2];
-    for (std::size_t i = 0; i < N; ++i)
-        for (std::size_t j = 0; j < N; ++j) {
-            first.a[i][j] = (i == j ? radau::real_value / h : 0.0) - jacobian[i][j];
-            for (int q = 0; q < 2; ++q)
-                other[q].a[i][j] = {(i == j ? radau::pair_value[q][0] / h : 0.0) - jacobian[i][j], i == j ? radau::pair_value[q][1] / h : 0.0};
-        }
-    first.factor();
-    other[0].factor();
-    other[1].factor();
+    return t;
+}
+
+// Where Newton's method begins: states at the nodes, read off the polynomial of a step that covers or precedes them.
+template <std::size_t N>
+struct Guess {
+    bool any = false;
+    Vector<N> stage[kStages];
+};
+
+// Simplified Newton on the collocation equations; false if it does not settle. `unit`: the error allowed per component.
+// `contraction`: that of Newton's method in the step before, on return that of this one.
+template <std::size_t N, class Field>
+bool take_step(const Field& f, const Vector<N>& y, double h, const Vector<N>& unit, const Tangent<N>& local, const Guess<N>& guess,
+               double& contraction, Step<N>& out) {
+    Reduced<double> first;
+    Reduced<Complex> other[2];
+    first.set(radau::real_value / h, local.jacobian);
+    for (int q = 0; q < 2; ++q) other[q].set(Complex{radau::pair_value[q][0] / h, radau::pair_value[q][1] / h}, local.jacobian);
     double z[kStages][N] = {};
     Vector<N> w{};
     std::array<Complex, N> v[2]{};
+    if (guess.any)
+        for (int k = 0; k < kStages; ++k)
+            for (std::size_t i = 0; i < N; ++i) {
+                z[k][i] = guess.stage[k][i] - y[i];
+                w[i] += radau::real_row[k] * z[k][i];
+                for (int q = 0; q < 2; ++q) {
+                    v[q][i].re += radau::pair_row[q][0][k] * z[k][i];
+                    v[q][i].im += radau::pair_row[q][1][k] * z[k][i];
+                }
+            }
     bool settled = false;
     double before = 0.0;
     for (int round = 0; round < 12 && !settled; ++round) {
@@ -181,10 +243,10 @@ bool take_step(const Field& f, const Vector<N>& y, double h, const Vector<N>& un
             }
         }
         if (!(change < 1e30)) return false;
-        const double rate = round > 0 && before > 0.0 ? change / before : 1.0;
-        if (round > 1 && rate > 2.0) return false;
-        // what is left is about rate/(1-rate) of the last change
-        settled = change <= 1e-3 || (round > 0 && rate < 0.5 && change * rate / (1.0 - rate) <= 1e-2);
+        if (round > 0) contraction = before > 0.0 ? std::max(change / before, 0.1 * contraction) : contraction;
+        if (round > 1 && contraction > 2.0) return false;
+        // what is left is about rate / (1 - rate) of the last change
+        settled = change <= 1e-3 || (contraction < 0.5 && change * contraction / (1.0 - contraction) <= 1e-2);
         before = change;
     }
     if (!settled) return false;
@@ -194,7 +256,7 @@ bool take_step(const Field& f, const Vector<N>& y, double h, const Vector<N>& un
         for (std::size_t i = 0; i < N; ++i) out.stage[k][i] = y[i] + z[k][i];
     Vector<N> gap;
     for (std::size_t i = 0; i < N; ++i) {
-        gap[i] = slope[i];
+        gap[i] = local.slope[i];
         for (int k = 0; k < kStages; ++k) gap[i] += radau::real_value / h * radau::error_row[k] * z[k][i];
     }
     first.solve(gap);

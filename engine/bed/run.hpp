@@ -38,6 +38,8 @@ struct Trace {
     std::vector<Interval> intervals;
 };
 
+constexpr double kLeak = 0.03;  // energy that one step may lose or find, over tolerance and energy of the impact
+
 class Run {
 public:
     Run(const Problem& p, const Start& start, Trace* trace)
@@ -48,6 +50,11 @@ public:
         for (double& e : unit_) e *= start.tolerance;
         for (double& e : nudge_) e *= 1e-5;
         if (p.kind == kRegularised) nudge_[kU] = std::min(nudge_[kU], 1e-3 * p.creep);
+        const double turn = 0.5 * v / b;
+        leak_ = std::max(kLeak * start.tolerance, 2e-14) * 0.5 * (p.inertia + p.mass * (p.height * p.height + b * b)) * turn * turn;
+        // the estimate has order 5, the step order 9: the power of the two, as in Hairer & Wanner's codes of this family
+        estimate_ = std::max(0.1 * std::pow(start.tolerance, 0.6) / start.tolerance, 1.0);
+        instant_ = std::max(0.1 * start.tolerance, 1e-12) * d / v;
     }
 
     Result run() {
@@ -57,7 +64,7 @@ public:
         motion_.slip = x_[kU] > 0.0 ? 1 : x_[kU] < 0.0 ? -1 : 0;
         motion_.settle_friction(x_, x_[kU] == 0.0);
         out_.contacts = bed_.pressing > 0;
-        out_.energy_start = motion_.energy(x_, 0.0) + motion_.stored(x_);
+        out_.energy_start = motion_.energy(x_, 0.0);
         for (std::int64_t i = 0; i < p_.points.count; ++i) {
             if (!holds(i)) continue;
             if (i != start_.old_foot) out_.touch = 0.0;
@@ -68,8 +75,8 @@ public:
         }
         loop();
         out_.state = x_;
-        out_.stored = motion_.stored(x_);
-        out_.energy_end = motion_.energy(x_, out_.travel) + out_.stored;
+        out_.stored = motion_.stored(place(x_, p_.exact));
+        out_.energy_end = motion_.energy(x_, out_.travel);
         out_.residual = out_.energy_end + out_.bed_loss + out_.friction_loss - out_.energy_start;
         if (trace_)
             for (std::int64_t i = 0; i < p_.points.count; ++i)
@@ -99,31 +106,36 @@ private:
     std::vector<Cause> causes_;
     double touch_impulse_ = 0, touch_moment_ = 0, touch_shear_ = 0;
     double impulse_ = 0, moment_ = 0, shear_ = 0;
-    double first_ = 1.0;
+    double first_ = 1.0, energy_ = 0.0, leak_ = 0.0, estimate_ = 1.0, instant_ = 0.0, contraction_ = 1.0;
     int stuck_ = 0;
+    enum class Known { nothing, ahead, within } known_ = Known::nothing;  // what step_ says about the time after x_
+    bool local_known_ = false;
+    Tangent<5> local_;
+    Place places_[kStages + 1];
+    Rates rates_[kStages + 1];
 
     bool holds(std::int64_t i) const { return bed_.mode[i] == Mode::pressing || bed_.mode[i] == Mode::spring; }
 
     void loop() {
         double h = 1e-3 * start_.depth / start_.speed;
-        const double cap = 0.1 * start_.longest;
+        const double cap = 0.1 * start_.longest, shortest = 1e-14 * start_.depth / start_.speed;
+        energy_ = motion_.energy(x_, out_.travel);
         while (out_.time < start_.longest) {
             if (out_.steps + out_.rejected >= start_.most_steps) {
                 out_.status = kTooManySteps;
                 return;
             }
-            double wanted = std::min({h, cap, start_.longest - out_.time});
-            if (!take_step(motion_, x_, wanted, unit_, nudge_, step_)) {
+            const double wanted = std::min({h, cap, start_.longest - out_.time});
+            if (!attempt(wanted)) {
                 h = 0.25 * wanted;
-                ++out_.rejected;
-                if (h < 1e-14 * start_.depth / start_.speed) {
+                if (h < shortest) {
                     out_.status = kFailed;
                     return;
                 }
                 continue;
             }
-            const double factor = 0.9 * std::pow(std::max(step_.error, 1e-10), -1.0 / 6.0);
-            if (step_.error > 1.0) {
+            const double factor = 0.9 * std::pow(std::max(step_.error / estimate_, 1e-10), -1.0 / 6.0);
+            if (step_.error > estimate_) {
                 h = wanted * std::max(0.1, factor);
                 ++out_.rejected;
                 continue;
@@ -147,13 +159,56 @@ private:
                 ++out_.rejected;
                 continue;
             }
+            const Tally sum = tally();
+            const double after = motion_.energy(step_.end(), places_[kStages], out_.travel + sum.travel);
+            const double leak = std::abs(after - energy_ + sum.bed_loss + sum.friction_loss);
+            if (leak > leak_ && step_.h > 1e5 * shortest && stuck_ == 0) {
+                h = step_.h * std::max(0.1, 0.8 * std::pow(leak_ / leak, 1.0 / 6.0));
+                ++out_.rejected;
+                continue;
+            }
             h = next;
             stuck_ = causes_.empty() || step_.h > 1e-12 * start_.depth / start_.speed ? 0 : stuck_ + 1;
-            accept();
+            accept(sum);
+            energy_ = after;
             if (!causes_.empty() && react()) return;
             if (ended()) return;
         }
         out_.status = kTimeOut;
+    }
+
+    // A step from x_; its guess comes from the last step, which leads up to x_ or was refused from there.
+    bool attempt(double h) {
+        if (!local_known_) local_ = tangent(motion_, x_, nudge_);
+        local_known_ = true;
+        Guess<5> guess;
+        const double reach = h / step_.h;
+        guess.any = known_ != Known::nothing && (known_ == Known::within ? reach <= 1.0 : reach <= 4.0);
+        if (guess.any)
+            for (int k = 0; k < kStages; ++k) guess.stage[k] = step_.at((known_ == Known::ahead ? 1.0 : 0.0) + radau::node[k] * reach);
+        if (!take_step(motion_, x_, h, unit_, local_, guess, contraction_, step_)) {
+            known_ = Known::nothing;
+            contraction_ = 1.0;
+            ++out_.rejected;
+            return false;
+        }
+        known_ = Known::within;
+        look_at_nodes();
+        return true;
+    }
+
+    void look_at_nodes() {
+        for (int k = 0; k <= kStages; ++k) {
+            const State& x = k == 0 ? step_.start : step_.stage[k - 1];
+            places_[k] = place(x, p_.exact);
+            rates_[k] = motion_.rates(x, places_[k]);
+        }
+    }
+
+    void forget() {  // the equations change
+        local_known_ = false;
+        known_ = Known::nothing;
+        contraction_ = 1.0;
     }
 
     double peak_margin(const State& x) const { return start_.end == kAtPeak ? x[kOmega] : 1.0; }
@@ -168,23 +223,18 @@ private:
     double first_cause() {
         causes_.clear();
         first_ = 1.0;
-        const State* at_node[kStages + 1] = {&step_.start};
-        Place places[kStages + 1];
-        for (int k = 0; k < kStages; ++k) at_node[k + 1] = &step_.stage[k];
-        for (int k = 0; k <= kStages; ++k) places[k] = place(*at_node[k], p_.exact);
-        double g[kStages + 1];
-        for (std::int64_t i = 0; i < p_.points.count; ++i)
-            for (int which = 0; which < (bed_.mode[i] == Mode::away ? 1 : 2); ++which) {
-                for (int k = 0; k <= kStages; ++k) g[k] = bed_.margin(i, which, places[k]);
-                look({i, which, 0.0}, g);
-            }
+        double g[2][kStages + 1];
+        for (std::int64_t i = 0; i < p_.points.count; ++i) {
+            const int kinds = bed_.margins(i, places_, g);
+            for (int which = 0; which < kinds; ++which) look({i, which, 0.0}, g[which]);
+        }
         if (p_.kind == kCoulomb) {
-            for (int k = 0; k <= kStages; ++k) g[k] = motion_.friction_margin(*at_node[k]);
-            look({-1, 0, 0.0}, g);
+            for (int k = 0; k <= kStages; ++k) g[0][k] = motion_.friction_margin(k == 0 ? step_.start : step_.stage[k - 1], rates_[k]);
+            look({-1, 0, 0.0}, g[0]);
         }
         if (start_.end == kAtPeak && out_.steps > 0) {
-            for (int k = 0; k <= kStages; ++k) g[k] = (*at_node[k])[kOmega];
-            look({-2, 0, 0.0}, g);
+            for (int k = 0; k <= kStages; ++k) g[0][k] = (k == 0 ? step_.start : step_.stage[k - 1])[kOmega];
+            look({-2, 0, 0.0}, g[0]);
         }
         const double near = first_ + 1e-12;
         causes_.erase(std::remove_if(causes_.begin(), causes_.end(), [near](const Cause& c) { return c.at > near; }), causes_.end());
@@ -193,9 +243,13 @@ private:
 
     // Adds a margin that runs out before those found so far; g: its values at the start and at the nodes.
     void look(Cause c, const double* g) {
-        double low = g[1], high = g[1], from = 0.0, to = 2.0;
-        for (int k = 2; k <= kStages; ++k) low = std::min(low, g[k]), high = std::max(high, g[k]);
-        if (low > 0.6 * (std::max(high, g[0]) - std::min(low, g[0]))) return;  // too far off to dip below zero between nodes
+        double low = g[1], high = g[1];
+        for (int k = 2; k <= kStages; ++k) low = low < g[k] ? low : g[k], high = high > g[k] ? high : g[k];
+        if (low <= 0.6 * (std::max(high, g[0]) - std::min(low, g[0]))) search(c, g, high - low);  // else too far off to dip below zero
+    }
+
+    void search(Cause c, const double* g, double range) {
+        double from = 0.0, to = 2.0;
         for (int k = kStages; k >= 1; --k)
             if (g[k] < 0.0) from = instant(k - 1), to = instant(k);
         for (int k = 1; k < kStages && instant(k - 1) < to; ++k) {  // a dip between nodes, from the parabola through three
@@ -203,7 +257,7 @@ private:
             const double first = (g[k] - g[k - 1]) / (x1 - x0), bend = ((g[k + 1] - g[k]) / (x2 - x1) - first) / (x2 - x0);
             if (!(bend > 0.0)) continue;
             const double dip = 0.5 * (x0 + x1 - first / bend);
-            if (dip <= x0 || dip >= std::min(x2, to) || margin(c, step_.at(dip)) >= -1e-10 * (high - low)) continue;
+            if (dip <= x0 || dip >= std::min(x2, to) || margin(c, step_.at(dip)) >= -1e-10 * range) continue;
             from = g[k] > 0.0 && dip > x1 ? x1 : x0;
             to = dip;
         }
@@ -229,29 +283,45 @@ private:
         return high;
     }
 
+    // Ends the step at the first switch: found on its polynomial, then on that of the shorter step itself.
     bool shorten(double tau) {
         if (tau >= 1.0) return true;
-        Step<5> shorter;
-        if (!take_step(motion_, x_, tau * step_.h, unit_, nudge_, shorter)) return false;
-        step_ = shorter;
+        const Step<5> covering = step_;
+        const Cause cause = *std::min_element(causes_.begin(), causes_.end(), [](const Cause& a, const Cause& b) { return a.at < b.at; });
+        double h = tau * covering.h;
+        for (int round = 0; round < 4; ++round) {
+            Guess<5> guess;
+            guess.any = true;
+            for (int k = 0; k < kStages; ++k) guess.stage[k] = covering.at(radau::node[k] * h / covering.h);
+            if (!take_step(motion_, x_, h, unit_, local_, guess, contraction_, step_)) return false;
+            const double here = margin(cause, step_.end()), fall = (margin(cause, step_.at(0.999)) - here) / (1e-3 * h);
+            const double late = fall > 0.0 ? -here / fall : 0.0;
+            if ((late >= 0.0 && late <= instant_) || std::abs(late) > 0.02 * h || !(fall > 0.0)) break;
+            h += 0.3 * instant_ - late;
+        }
+        look_at_nodes();
         return true;
     }
 
-    void accept() {
+    Tally tally() const {
         Tally sum;
-        Rates r[kStages];
         for (int k = 0; k < kStages; ++k) {
-            r[k] = motion_.rates(step_.stage[k]);
+            const Rates& r = rates_[k + 1];
             const double part = step_.h * radau::weight[k];
-            sum.travel += part * r[k].travel;
-            sum.bed_loss += part * r[k].bed_loss;
-            sum.friction_loss += part * r[k].friction_loss;
-            sum.impulse += part * r[k].normal;
-            sum.moment += part * r[k].moment;
-            sum.shear += part * r[k].shear;
-            sum.slid += part * (r[k].normal > 0.0 ? std::abs(step_.stage[k][kU]) : 0.0);
-            out_.peak_force = std::max(out_.peak_force, r[k].normal);
+            sum.travel += part * r.travel;
+            sum.bed_loss += part * r.bed_loss;
+            sum.friction_loss += part * r.friction_loss;
+            sum.impulse += part * r.normal;
+            sum.moment += part * r.moment;
+            sum.shear += part * r.shear;
+            sum.slid += part * (r.normal > 0.0 ? std::abs(step_.stage[k][kU]) : 0.0);
         }
+        return sum;
+    }
+
+    void accept(const Tally& sum) {
+        const Rates* r = rates_ + 1;
+        for (int k = 0; k < kStages; ++k) out_.peak_force = std::max(out_.peak_force, r[k].normal);
         if (trace_)
             for (int k = 0; k < kStages; ++k) {
                 Tally part;
@@ -263,7 +333,7 @@ private:
                 }
                 record(step_.stage[k], radau::node[k] * step_.h, part);
             }
-        const Place at = place(step_.end(), p_.exact);
+        const Place& at = places_[kStages];
         for (std::int64_t i = 0; i < p_.points.count; ++i) out_.deepest = std::max(out_.deepest, -bed_.gap(i, at));
         out_.time += step_.h;
         out_.travel += sum.travel;
@@ -275,6 +345,8 @@ private:
         shear_ += sum.shear;
         ++out_.steps;
         x_ = step_.end();
+        known_ = Known::ahead;
+        local_known_ = false;
         if (p_.kind == kCoulomb && motion_.slip == 0) x_[kU] = 0.0;
     }
 
@@ -310,6 +382,8 @@ private:
             }
         }
         bed_.gather();
+        forget();
+        energy_ = motion_.energy(x_, out_.travel);
         if (floating && bed_.pressing > 0) ++out_.contacts;
         motion_.settle_friction(x_, rest, leaves);
         if (!peak) return false;
@@ -318,6 +392,7 @@ private:
     }
 
     void calm() {
+        forget();
         if (x_[kU] == 0.0) motion_.slip = 0;
         if (p_.law != kPlastic || p_.rebound == 0.0) return;
         const Place at = place(x_, p_.exact);

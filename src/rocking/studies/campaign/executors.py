@@ -4,7 +4,7 @@ import os
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,6 +33,28 @@ class Done(NamedTuple):
     attempts: int = 1
 
 
+class Pace:
+    """How many histories at a time take as long as nobody minds to wait, learned from one piece to the next."""
+
+    def __init__(self, engine: str) -> None:
+        self.step = _FIRST[kind_of(engine)]
+
+    def took(self, count: int, seconds: float) -> None:
+        """Learn from a piece.
+
+        Parameters
+        ----------
+        count : int
+            Its histories.
+        seconds : float
+            What they took [s].
+        """
+        if count < self.step and seconds < _ASK:
+            return  # the short end of a chunk says nothing about longer pieces
+        wanted = int(count * _ASK / max(seconds, 1e-6))
+        self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
+
+
 @dataclass(frozen=True, eq=False)
 class Job:
     """What workers need: it can be pickled.
@@ -53,6 +75,11 @@ class Job:
     engine: str
     software: str
     folder: Path
+    pace: Pace = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Start with few histories at a time."""
+        object.__setattr__(self, "pace", Pace(self.engine))
 
     def check(self) -> None:
         """Refuse to compute what this campaign would not recognise as its own bits.
@@ -96,14 +123,15 @@ class Job:
         """
         self.check()
         results = empty_results(chunk.last - chunk.first)
-        first, step = chunk.first, _FIRST[kind_of(self.engine)]
+        first = chunk.first
         while first < chunk.last:
             if first > chunk.first and stop():
                 return None
-            start, last = time.perf_counter(), min(first + step, chunk.last)
+            start, last = time.perf_counter(), min(first + self.pace.step, chunk.last)
             for name, values in self.histories.run(first, last, threads=threads).items():
                 results[name][first - chunk.first : last - chunk.first] = values
-            first, step = last, _next_step(step, time.perf_counter() - start)
+            self.pace.took(last - first, time.perf_counter() - start)
+            first = last
         return shard.pack(chunk, results)
 
     def keep(self, chunk: Chunk, data: bytes, seconds: float, worker: str = "") -> Done:
@@ -127,12 +155,6 @@ class Job:
         """
         disk.write_new(self.folder / f"{chunk.name}{SUFFIX}", data)
         return Done(chunk, shard.seal(data), len(data), seconds, worker or f"process {os.getpid()}")
-
-
-def _next_step(step: int, seconds: float) -> int:
-    """Return how many histories take as long as nobody minds to wait, from what the last ones took."""
-    wanted = int(step * _ASK / max(seconds, 1e-6))
-    return max(1, min(wanted, _FASTER * step, DEFAULT_CHUNK))
 
 
 class Executor(ABC):

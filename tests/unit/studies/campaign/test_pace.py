@@ -68,6 +68,16 @@ def test_quick_histories_come_in_large_pieces(tmp_path: Path, make: Any) -> None
     assert max(pieces) <= DEFAULT_CHUNK
 
 
+def test_the_pace_is_kept_from_chunk_to_chunk(tmp_path: Path, make: Any) -> None:
+    """Only the first chunk begins with few histories at a time: small pieces leave most lanes of the engine idle."""
+    work = as_(Watched, make(60_000))
+    object.__setattr__(work, "pieces", pieces := [])
+    Campaign.create(tmp_path / "c", work, 20_000).run(workers=1)
+    assert pieces[0] == 64
+    assert pieces.count(64) == 1
+    assert len(pieces) < 20
+
+
 def test_workers_ask_within_a_chunk(tmp_path: Path, make: Any) -> None:
     """A worker that is to stop leaves a slow chunk unfinished, soon."""
     work = as_(Slow, make(5000))
@@ -79,8 +89,8 @@ def test_workers_ask_within_a_chunk(tmp_path: Path, make: Any) -> None:
 
 
 def test_default_chunk_follows_the_engine(tmp_path: Path, make: Any) -> None:
-    """32768 histories of the fast engine, 256 of the reference engine, whatever is asked for if it is."""
-    assert Campaign.create(tmp_path / "a", make(40_000)).plan.size == 32768
+    """65536 histories of the fast engine, 256 of the reference engine, whatever is asked for if it is."""
+    assert Campaign.create(tmp_path / "a", make(70_000)).plan.size == 65536
     reference = as_(Table, make(300), engine="reference")
     assert Campaign.create(tmp_path / "b", reference).plan.size == 256
     assert Campaign.create(tmp_path / "c", reference, 17).plan.size == 17

@@ -1,0 +1,164 @@
+// Which points stay on the ground: complementarity over the few contact sets that a convex base allows, by listing.
+#pragma once
+#include "law.hpp"
+
+namespace rocking::spatial {
+namespace ROCKING_ISA {
+
+constexpr double kRounding = 1e-9, kClosed = 1e-12, kFar = 1e300;
+constexpr double kStartRolling = 1e-11, kStopRolling = 1e-13;
+
+struct Choice {
+    const Pivot* stance = nullptr;
+    Vec velocity;
+    double push = 0.0;  // the least support: below zero the ground would have to pull
+};
+
+// Calls `attempt` for the contact sets that can stay, the larger ones first, until it accepts one.
+template <class Attempt>
+inline bool any_candidate(const Body& body, std::uint64_t touching, Attempt attempt) {
+    if (touching == body.every() && attempt(body.face)) return true;
+    for (int i = 0; i < body.count; ++i)
+        if ((touching & body.edge[i].points) == body.edge[i].points && attempt(body.edge[i])) return true;
+    for (int i = 0; i < body.count; ++i)
+        if ((touching & bit(i)) && attempt(body.vertex[i])) return true;
+    return false;
+}
+
+// The least of what must not be negative for the ground to give a force with a moment about the pivot.
+inline double least_support(const Body& body, const Pivot& stance, Vec force, Vec moment, Vec up) {
+    const double normal = dot(force, up);
+    const Vec arms = cross(up, moment);
+    if (stance.contact == kEdge) {
+        const double second = dot(arms, stance.axis) / stance.length;
+        return std::fmin(normal - second, second);
+    }
+    if (stance.contact != kRest) return normal;
+    const Vec pressure = arms + normal * stance.at;
+    if (body.round) return (normal * body.radius - std::sqrt(pressure.x * pressure.x + pressure.y * pressure.y)) / body.size;
+    double least = normal;
+    for (int i = 0; i < body.count; ++i) {
+        const Vec arm = pressure - normal * body.vertices[i];
+        least = std::fmin(least, (arm.x * body.inward[i].x + arm.y * body.inward[i].y) / body.size);
+    }
+    return least;
+}
+
+inline double impulse_support(const Body& body, const State& s, const Pivot& stance, Vec velocity) {
+    const Vec push = body.mass * (cross(velocity, stance.arm) - cross(s.velocity, body.centre - s.pivot));
+    return least_support(body, stance, push, body.inertia * (velocity - s.velocity) + cross(stance.arm, push), s.up);
+}
+
+// Least speed with which a touching point that does not stay leaves the ground.
+inline double opening_speed(const Body& body, const Pivot& stance, Vec velocity, Vec up, std::uint64_t touching) {
+    double least = kFar;
+    for (int i = 0; i < body.count; ++i)
+        if ((touching & bit(i)) && !(stance.points & bit(i)))
+            least = std::fmin(least, dot(cross(velocity, body.vertices[i] - stance.at), up));
+    return least;
+}
+
+inline Vec plastic_after(const Body& body, const State& s, const Pivot& stance) {
+    return stance.contact == kRest ? Vec{} : projected(body, s, stance);
+}
+
+// The largest set that takes the impact without pull and lets no point sink; where there is none, the least pull.
+inline Choice landed(const Body& body, const State& s, std::uint64_t touching, int law, double coefficient) {
+    Choice found;
+    const double scale = largest(s.velocity) * body.size;
+    const auto takes = [&](const Pivot& stance) {
+        const Vec plastic = plastic_after(body, s, stance);
+        const double push = impulse_support(body, s, stance, plastic);
+        if (push < -kRounding * body.mass * scale) return false;
+        const Vec after = stance.contact == kRest ? plastic : velocity_after(body, s, stance, law, coefficient);
+        if (!(opening_speed(body, stance, after, s.up, touching) >= -kRounding * scale)) return false;
+        found = {&stance, after, push};
+        return true;
+    };
+    if (any_candidate(body, touching, takes)) return found;
+    any_candidate(body, touching, [&](const Pivot& stance) {
+        const Vec after = plastic_after(body, s, stance);
+        const double opening = opening_speed(body, stance, after, s.up, touching & ~stance.points);
+        const double push = impulse_support(body, s, stance, after);
+        const bool sinks = opening < -kRounding * largest(after) * body.size;
+        if (!sinks && (!found.stance || push > found.push)) found = {&stance, after, push};
+        return false;
+    });
+    return found;
+}
+
+struct Forces {
+    Vec rate;  // angular acceleration
+    double support = 0.0;
+};
+
+inline Forces forces(const Body& body, const Pivot& stance, Vec velocity, Vec up, Vec field) {
+    const Vec gyroscopic = cross(velocity, stance.inertia * velocity), weight = body.mass * cross(stance.arm, field);
+    const Vec rate = stance.contact == kRest ? Vec{} : with_momentum(stance, weight - gyroscopic);
+    const Vec moment = stance.inertia * rate + gyroscopic - weight;
+    const Vec force = body.mass * (cross(rate, stance.arm) + cross(velocity, cross(velocity, stance.arm)) - field);
+    return {rate, least_support(body, stance, force, moment, up)};
+}
+
+// The first contact set that stays when no gap opens with a speed, a preferred one before the others.
+inline Choice held(const Body& body, const State& s, std::uint64_t touching, const Pivot* first) {
+    Choice found;
+    const double scale = norm(s.field);
+    const auto holds = [&](const Pivot& stance) {
+        const Vec velocity = plastic_after(body, s, stance);
+        const Forces made = forces(body, stance, velocity, s.up, s.field);
+        if (made.support < -kRounding * body.mass * scale) return false;
+        for (int i = 0; i < body.count; ++i) {
+            if (!(touching & bit(i)) || (stance.points & bit(i))) continue;
+            const Vec arm = body.vertices[i] - stance.at;
+            if (!(dot(cross(made.rate, arm) + cross(velocity, cross(velocity, arm)), s.up) >= -kRounding * scale)) return false;
+        }
+        found = {&stance, velocity, made.support};
+        return true;
+    };
+    if (first && holds(*first)) return found;
+    any_candidate(body, touching, [&](const Pivot& stance) { return !(first && first->points == stance.points) && holds(stance); });
+    return found;
+}
+
+// What a body stands on once points that would fall back at once are taken to stay.
+inline Choice settled(const Body& body, const State& s, const Choice& choice, std::uint64_t touching, double slow, bool weak) {
+    if (body.round) {
+        const bool flat = weak || choice.stance->contact == kRest;
+        return flat && forces(body, body.face, {}, s.up, s.field).support >= 0.0 ? Choice{&body.face, {}, choice.push} : choice;
+    }
+    std::uint64_t near = weak ? body.every() : choice.stance->points & touching;
+    for (int i = 0; i < body.count && !weak; ++i)
+        if ((touching & bit(i)) && dot(cross(choice.velocity, body.vertices[i] - choice.stance->at), s.up) <= slow) near |= bit(i);
+    const Choice found = held(body, s, near, choice.stance);
+    return found.stance ? found : choice;
+}
+
+// The stance that initial conditions imply: the lowest of the touching points stay where they are.
+inline const Pivot* started(const Body& body, Vec velocity, Vec up, std::uint64_t& touching) {
+    double height[kMostVertices], rate[kMostVertices], low = kFar, slowest = kFar;
+    for (int i = 0; i < body.count; ++i) {
+        height[i] = dot(body.vertices[i], up);
+        rate[i] = dot(cross(velocity, body.vertices[i]), up);
+        low = std::fmin(low, height[i]);
+    }
+    touching = 0;
+    for (int i = 0; i < body.count; ++i)
+        if (height[i] - low <= kClosed * body.size) touching |= bit(i), slowest = std::fmin(slowest, rate[i]);
+    const double size = largest(velocity);
+    if (size == 0.0 && touching == body.every()) return &body.face;
+    std::uint64_t lowest = 0;
+    for (int i = 0; i < body.count; ++i)
+        if ((touching & bit(i)) && rate[i] <= slowest + kClosed * size * body.size) lowest |= bit(i);
+    for (int i = 0; i < body.count; ++i) {
+        const Vec along = body.edges[i];
+        const bool alone = largest(velocity - dot(along, velocity) * along) <= kClosed * size;
+        if ((lowest & body.edge[i].points) == body.edge[i].points && alone) return &body.edge[i];
+    }
+    for (int i = 0; i < body.count; ++i)
+        if (lowest & bit(i)) return &body.vertex[i];
+    return &body.vertex[0];
+}
+
+}  // namespace ROCKING_ISA
+}  // namespace rocking::spatial

@@ -1,0 +1,86 @@
+// Taylor series of a step about a fixed point or edge. With the axes of the ground in axes of the body, X, Y, Z, and
+// G(t) = (Gx, Gy, Gz) gravity less the acceleration of the ground,
+//     X' = X x w, Y' = Y x w, Z' = Z x w,      I_A w' = rho x m (Gx X + Gy Y + Gz Z) - w x I_A w,
+// which is quadratic: coefficients follow from one another by sums of products, three components in a register.
+#pragma once
+#include "body.hpp"
+
+namespace rocking::spatial {
+namespace ROCKING_ISA {
+
+constexpr int kMostOrder = 16, kDegrees = 8;
+
+// Coefficients by power over a unit of time that is the step; velocities in radians a step.
+struct Series {
+    int order = 0;
+    Four x[kMostOrder + 1], y[kMostOrder + 1], z[kMostOrder + 1], w[kMostOrder + 1];
+};
+
+template <int N>
+inline Four turned(const Four* a, const Four* ar, const Four* w, const Four* wr, int k, double inverse) {
+    Four plus = a[0] * wr[k], minus = ar[0] * w[k];
+    ROCKING_EACH_TERM
+    for (int j = 1; j <= k; ++j) {
+        plus = plus + a[j] * wr[k - j];
+        minus = minus + ar[j] * w[k - j];
+    }
+    return (plus - minus) * four(inverse);
+}
+
+// `field` has the coefficients of G by power, axis by axis, over the step; `state` is X, Y, Z and the velocity times the step.
+template <int N, int D, bool edge>
+inline void series(const Pivot& pivot, const Four* state, double length, const double (*field)[3], Series& s) {
+    Four x[N + 1], y[N + 1], z[N + 1], w[N + 1], xr[N + 1], yr[N + 1], zr[N + 1], wr[N + 1];
+    x[0] = state[0], y[0] = state[1], z[0] = state[2], w[0] = state[3];
+    xr[0] = next_of(x[0]), yr[0] = next_of(y[0]), zr[0] = next_of(z[0]), wr[0] = next_of(w[0]);
+    const Four square = four(length * length);
+    const Four t0 = pivot.torque[0] * square, t1 = pivot.torque[1] * square, t2 = pivot.torque[2] * square;
+    ROCKING_EACH_TERM
+    for (int k = 0; k < N; ++k) {
+        const double inverse = 1.0 / (k + 1);
+        Four g = four(field[0][0]) * x[k] + four(field[0][1]) * y[k] + four(field[0][2]) * z[k];
+        ROCKING_EACH_TERM
+        for (int j = 1; j <= (k < D ? k : D); ++j)
+            g = g + four(field[j][0]) * x[k - j] + four(field[j][1]) * y[k - j] + four(field[j][2]) * z[k - j];
+        Four rate = t0 * all_of<0>(g) + t1 * all_of<1>(g) + t2 * all_of<2>(g);
+        if (!edge) {
+            Four same = w[0] * w[k], other = w[0] * wr[k];
+            ROCKING_EACH_TERM
+            for (int j = 1; j <= k; ++j) {
+                same = same + w[j] * w[k - j];
+                other = other + w[j] * wr[k - j];
+            }
+            rate = rate + pivot.gyro[0] * all_of<0>(same) + pivot.gyro[1] * all_of<1>(same);
+            Four rest = pivot.gyro[2] * all_of<2>(same) + pivot.gyro[3] * all_of<0>(other);
+            rest = rest + pivot.gyro[4] * all_of<1>(other) + pivot.gyro[5] * all_of<2>(other);
+            rate = rate + rest;
+        }
+        const Four a = turned<N>(x, xr, w, wr, k, inverse), b = turned<N>(y, yr, w, wr, k, inverse);
+        const Four c = turned<N>(z, zr, w, wr, k, inverse);
+        x[k + 1] = next_of(a), xr[k + 1] = mixed<2, 0, 1, 3>(a);
+        y[k + 1] = next_of(b), yr[k + 1] = mixed<2, 0, 1, 3>(b);
+        z[k + 1] = next_of(c), zr[k + 1] = mixed<2, 0, 1, 3>(c);
+        w[k + 1] = rate * four(inverse), wr[k + 1] = next_of(w[k + 1]);
+    }
+    s.order = N;
+    ROCKING_EACH_TERM
+    for (int k = 0; k <= N; ++k) s.x[k] = x[k], s.y[k] = y[k], s.z[k] = z[k], s.w[k] = w[k];
+}
+
+inline Four value_at(const Four* c, int order, double at) {
+    Four total = c[order];
+    for (int k = order - 1; k >= 0; --k) total = total * four(at) + c[k];
+    return total;
+}
+
+// Makes a part of the step its unit of time; velocities become radians per part.
+inline void shorten(Series& s, double part) {
+    double power = 1.0;
+    for (int k = 0; k <= s.order; ++k, power *= part) {
+        s.x[k] = s.x[k] * four(power), s.y[k] = s.y[k] * four(power), s.z[k] = s.z[k] * four(power);
+        s.w[k] = s.w[k] * four(power * part);
+    }
+}
+
+}  // namespace ROCKING_ISA
+}  // namespace rocking::spatial

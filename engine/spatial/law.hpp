@@ -1,0 +1,73 @@
+// What an impact costs: one law a function. All of them give the angular velocity about the new pivot.
+#pragma once
+#include "body.hpp"
+
+namespace rocking::spatial {
+namespace ROCKING_ISA {
+
+enum Law : int { kHousner = 0, kHorizontal = 1, kFixed = 2, kKed = 3 };
+
+// A body at an instant: a point at rest on the ground, angular velocity, vertical, and gravity less the acceleration of
+// the ground, in its own axes.
+struct State {
+    Vec pivot, velocity, up, field;
+};
+
+// About a pivot, the velocity that has a given angular momentum; about an edge only its component along that counts.
+inline Vec with_momentum(const Pivot& onto, Vec momentum) {
+    if (onto.contact == kEdge) return dot(onto.axis, momentum) / onto.about_axis * onto.axis;
+    return onto.inverse * momentum;
+}
+
+// Plastic impact without slip: the projection of the velocities in the kinetic metric.
+inline Vec projected(const Body& body, const State& s, const Pivot& onto) {
+    const Vec speed = cross(s.velocity, body.centre - s.pivot);
+    return with_momentum(onto, body.inertia * s.velocity + body.mass * cross(onto.arm, speed));
+}
+
+// Only the horizontal velocities of the particles go on.
+inline Vec level_only(const Body& body, const State& s, const Pivot& onto) {
+    const double half = 0.5 * (body.inertia.a.x + body.inertia.b.y + body.inertia.c.z);
+    const Mat second = diagonal(half) - body.inertia;  // integral of x x^T about the centre
+    const Vec speed = cross(s.velocity, body.centre - s.pivot), level = speed - dot(s.up, speed) * s.up;
+    const Vec momentum = body.inertia * s.velocity + cross(s.up, second * cross(s.up, s.velocity));
+    return with_momentum(onto, momentum + body.mass * cross(onto.arm, level));
+}
+
+// Twice the energy that the three stages of KED leave, from the moments of the landing stance in body axes.
+inline double twice_kept(const State& s, const Pivot& onto) {
+    const Vec jump = cross(s.velocity, onto.at - s.pivot), drift = jump - dot(s.up, jump) * s.up;
+    const double u[3] = {drift.x, drift.y, drift.z}, z[3] = {s.up.x, s.up.y, s.up.z};
+    const double w[3][3] = {{0.0, -s.velocity.z, s.velocity.y}, {s.velocity.z, 0.0, -s.velocity.x}, {-s.velocity.y, s.velocity.x, 0.0}};
+    double v[3][3], total = 0.0;  // horizontal part of the cross product with the velocity
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) v[i][j] = w[i][j] - z[i] * (z[0] * w[0][j] + z[1] * w[1][j] + z[2] * w[2][j]);
+    const double *second = onto.kept, *third = onto.kept + 9, *fourth = onto.kept + 36;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            total += u[i] * second[3 * i + j] * u[j];
+            for (int k = 0; k < 3; ++k) {
+                total += 2.0 * u[i] * third[9 * i + 3 * j + k] * v[j][k];
+                for (int l = 0; l < 3; ++l) total += v[i][k] * v[j][l] * fourth[27 * i + 9 * j + 3 * k + l];
+            }
+        }
+    }
+    return total;
+}
+
+inline Vec scaled_to(const Pivot& onto, Vec direction, double twice) {
+    const double left = dot(direction, onto.inertia * direction);
+    return left > 0.0 ? std::sqrt(std::fmax(twice, 0.0) / left) * direction : direction;
+}
+
+inline Vec velocity_after(const Body& body, const State& s, const Pivot& onto, int law, double coefficient) {
+    if (law == kHorizontal) return level_only(body, s, onto);
+    if (law == kKed) return scaled_to(onto, level_only(body, s, onto), twice_kept(s, onto));
+    const Vec plastic = projected(body, s, onto);
+    if (law == kHousner) return plastic;
+    const double before = dot(s.velocity, body.about(s.pivot) * s.velocity);
+    return scaled_to(onto, plastic, coefficient * coefficient * before);
+}
+
+}  // namespace ROCKING_ISA
+}  // namespace rocking::spatial
