@@ -445,3 +445,13 @@ def test_a_server_that_comes_back_is_asked_again(browser: Any, served: Any, sign
     expect(page.get_by_test_id("facts-table")).to_contain_text("2.6667", timeout=15_000)
     expect(page.get_by_test_id("body-refusal")).to_be_empty()
     context.close()
+
+
+def test_a_step_chosen_while_the_page_still_starts_is_taken(open_page: Callable[..., Any]) -> None:
+    """On a slow machine a click on a step waits for the application; it is never swallowed."""
+    page = open_page()
+    second = "new Promise((go) => setTimeout(go, 1000))"
+    page.add_init_script(f"const soon = fetch; window.fetch = (...all) => {second}.then(() => soon(...all));")
+    page.reload()
+    page.get_by_role("tab", name="Impact").click()
+    expect(page.locator("#view-impact")).to_be_visible()

@@ -47,7 +47,10 @@ const createApp = (inputs, info) => {
   app.download = async (path, json, name) => {
     const wrong = json === undefined ? "" : faults.sentence({ inputs: true });
     if (wrong) return say(`Nothing was saved: put this right first. ${wrong}`, "error");
-    return save(path, json, name).catch((error) => say(error.message, "error"));
+    return save(path, json, name).catch((error) => {
+      say(error.message, "error");
+      return error;
+    });
   };
   app.linkForAnother = () => linkForAnother(app).catch((error) => say(error.message, "error"));
   app.body = createBodyFacts(app);
@@ -61,7 +64,8 @@ const inPlainWords = (error, body) => {
 
 const run = (app, view) => {
   const views = createViews(app);
-  const tabs = createTabs(document.getElementById("steps"), (name, before, quiet) => {
+  const steps = document.getElementById("steps");
+  const tabs = createTabs(steps, (name, before, quiet) => {
     if (before && !quiet) address.write({ view: name }, { push: true });
     document.body.dataset.view = name;
     views.show(name, before);
@@ -70,6 +74,7 @@ const run = (app, view) => {
   app.go = (name) => tabs.show(name, { focus: true });
   mountSummary(document.getElementById("summary"), app);
   tabs.show(tabs.names.includes(view) ? view : "body");
+  steps.inert = false; // until here a click would have been lost
   document.body.dataset.started = "true";
   followAddress(app, tabs);
   signingIn(app, views, tabs);
