@@ -10,19 +10,20 @@ from scipy import integrate
 
 import rocking as rk
 from rocking.bodies.solid import (
+    Corner,
     Edge,
     Part,
     Polyhedron,
     Solid,
     box,
     cylinder,
-    ellipsoid,
     extrusion,
     frustum,
     rotation_about,
 )
 from rocking.restitution.spatial import edge_coefficient, energy_left, impact_in_space, spatial_models
-from rocking.restitution.spatial.integrals import line_matrix, line_moment, point_matrix
+from rocking.restitution.spatial.integrals import line_moment
+from rocking.restitution.spatial.moments import kept_moments
 
 PRISM = Solid(Part(box(1.0, 1.0, 4.0)).moved(0.5, 0.5, 0.0))
 MODELS = sorted(spatial_models())
@@ -134,30 +135,6 @@ def test_corner_energy_by_brute_force():
     assert energy_left(impact) == pytest.approx(brute, rel=1e-9)
 
 
-def test_line_matrix_by_brute_force():
-    """The full matrix about a line, spin about the vertical included, from the operators at Gauss points."""
-    solid = Solid(ellipsoid(1.0, 1.4, 2.0, cut_below=0.3, cut_above=0.6))
-    edge = Edge(np.array([0.9, 0.2, 0.0]), np.array([0.6, 0.8, 0.0]))  # outside the body: a smooth integrand
-    turned = solid.local_parts[0]
-    found = line_matrix(solid, edge)
-    nodes, weights = np.polynomial.legendre.leggauss(24)
-    u, w = 0.5 * (1.0 + nodes), 0.5 * weights
-    z = turned.translation[2] + 1.1 * u
-    radius = np.sqrt(1.0 - (1.1 * u - 0.7) ** 2)
-    phi = 2.0 * np.pi * np.arange(48) / 48
-    rho, height, angle = np.meshgrid(u, np.arange(24), phi, indexing="ij")
-    scale = rho * radius[height]
-    s = np.stack([0.5 * scale * np.cos(angle), 0.7 * scale * np.sin(angle), z[height]], axis=-1).reshape(-1, 3)
-    volume = w[:, None, None] * u[:, None, None] * (w * radius**2)[None, :, None] * 1.1 * 0.35 * 2 * np.pi / 48
-    dm = 2400.0 * np.broadcast_to(volume, rho.shape).ravel()
-    arm = s - edge.point
-    across, m = np.cross(edge.direction, arm), np.array([0.8, -0.6, 0.0])
-    for state in ([1.0, 0.0, 0.0], [0.2, -0.7, 0.0], [0.4, 0.3, 0.5]):
-        level = np.cross(state[0] * edge.direction + [0, 0, state[1]], arm) * [1, 1, 0] + state[2] * m
-        kept = np.einsum("nd,nd->n", level, across) ** 2 / np.einsum("nd,nd->n", across, across)
-        assert np.array(state) @ found @ state == pytest.approx(float(dm @ kept), rel=1e-9)
-
-
 # --- the plane -------------------------------------------------------------------------------------
 
 TRAPEZOID = rk.Section.from_trapezoid(1.0, 0.4, 2.5)
@@ -261,10 +238,10 @@ def test_additivity_of_parts():
     whole = Solid(box(1.0, 1.0, 4.0))
     mesh = Solid(Polyhedron(whole.parts[0].shape.vertices, whole.parts[0].shape.faces))
     prism = Solid(extrusion([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)], 4.0))
-    point = np.array([0.5, 0.5, 0.0])
-    expected = point_matrix(whole, point)
+    corner = Corner(np.array([0.5, 0.5, 0.0]))
+    expected = kept_moments(whole, corner).fourth
     for other in (halves, mesh, prism):
-        assert point_matrix(other, point) == pytest.approx(expected, rel=1e-12, abs=1e-9)
+        assert kept_moments(other, corner).fourth == pytest.approx(expected, rel=1e-12, abs=1e-9)
 
 
 @settings(max_examples=30, deadline=None)

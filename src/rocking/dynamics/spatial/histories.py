@@ -50,9 +50,10 @@ def simulate_spatial(  # noqa: PLR0913 - every one of them is a question that us
         The body; its axes are those of the ground at the start, but for `yaw`.
     x, y, vertical : GroundMotion or Pulse, optional
         Components of the motion, all starting at time zero; z is upwards.
-    restitution : str, float or SpatialImpactLaw
-        "housner-3d", "horizontal-momentum-3d", a coefficient r from 0 to 1 (r^2 of the energy goes on, in the direction
-        of the plastic impact), or any object with `velocity_after` and `label`.
+    restitution : str, float, SpatialModel or SpatialImpactLaw
+        A model of `rocking.restitution.spatial` or its name: "housner-3d", "horizontal-momentum-3d", or "ked-3d" for a
+        `Solid`, a box or a cylinder; a coefficient r from 0 to 1 (r^2 of the energy goes on, in the direction of the
+        plastic impact); or any object with `velocity_after` and `label`.
     scale : float
         Factor on all components [-].
     tilt, azimuth : float
@@ -99,7 +100,7 @@ def simulate_spatial(  # noqa: PLR0913 - every one of them is a question that us
     steps = [motion.time_step for motion in motions if isinstance(motion, GroundMotion)]
     names = tuple("none" if motion is None else motion.name for motion in motions)
     start = _initial(made, tilt, azimuth, yaw, angular_velocity)
-    engine = SpatialReference(made, ground, law_of(restitution), settings)
+    engine = SpatialReference(made, ground, law_of(restitution, made), settings)
     found = engine.run(*start, length)
     end = min(length, found.pieces[-1].end)
     time = _samples(min(steps, default=_FINE / p), end)
@@ -126,7 +127,7 @@ def free_rocking_spatial(
         The body.
     tilt, azimuth : float
         How far it leans, and in which direction, from x towards y [rad].
-    restitution : str, float or SpatialImpactLaw
+    restitution : str, float, SpatialModel or SpatialImpactLaw
         As for `simulate_spatial`.
     yaw : float
         Rotation about the vertical before that [rad].
@@ -161,7 +162,7 @@ def free_rocking_spatial(
     p = made.frequency(settings.gravity)
     length = _LONG / p if duration is None else checks.positive("duration", duration, "s")
     start = _initial(made, tilt, azimuth, yaw, angular_velocity)
-    engine = SpatialReference(made, ground_of(), law_of(restitution), settings)
+    engine = SpatialReference(made, ground_of(), law_of(restitution, made), settings)
     found = engine.run(*start, length)
     last = found.pieces[-1]
     rests = duration is None and last.stance.contact is Contact.REST

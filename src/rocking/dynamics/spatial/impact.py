@@ -1,14 +1,18 @@
-"""What an impact leaves of an angular velocity: the interface, the projection, and two laws beside it."""
+"""What an impact leaves of an angular velocity: the interface, and the models of restitution behind it."""
 
+from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from rocking import checks
+from rocking.bodies.solid import Corner, Edge
 from rocking.conventions import FloatArray
-from rocking.dynamics.spatial.attitude import cross
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.errors import InvalidValueError, UnknownModelError
+from rocking.errors import InvalidValueError
+from rocking.restitution.spatial import SpatialHousner, SpatialModel, spatial_model
+from rocking.restitution.spatial.geometry import UP
+from rocking.restitution.spatial.leaning import NO_MATTER, LeaningImpact
 
 
 @runtime_checkable
@@ -55,6 +59,52 @@ class SpatialImpactLaw(Protocol):
         ...
 
 
+@dataclass(frozen=True)
+class ModelLaw:
+    """A model of `rocking.restitution.spatial` as the law of a history.
+
+    Parameters
+    ----------
+    model : SpatialModel
+        The model.
+    """
+
+    model: SpatialModel
+
+    @property
+    def label(self) -> str:
+        """Name of the model."""
+        return self.model.name
+
+    def velocity_after(
+        self,
+        body: SpatialBody,
+        before: FloatArray,
+        after: FloatArray,
+        axis: FloatArray | None,
+        up: FloatArray,
+        velocity: FloatArray,
+    ) -> FloatArray:
+        """Return what the model's equation gives.
+
+        Parameters
+        ----------
+        body, before, after, axis, up, velocity
+            As in `SpatialImpactLaw`.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            Angular velocity after, in body axes [rad/s].
+        """
+        onto = Corner(after) if axis is None else Edge(after, axis)
+        return self.model.turned(LeaningImpact(body.moments, velocity, before, onto, up, body.matter))
+
+
+PLASTIC = ModelLaw(SpatialHousner())
+"""The plastic impact without slip on the points that stay; it does not ask where up is."""
+
+
 def projected(
     body: SpatialBody, before: FloatArray, after: FloatArray, axis: FloatArray | None, velocity: FloatArray
 ) -> FloatArray:
@@ -87,82 +137,7 @@ def projected(
     >>> ratio.round(12).tolist()
     [1.0, -1.0, 0.0]
     """
-    old, new = body.centre - before, body.centre - after
-    momentum = body.inertia @ velocity + body.mass * cross(new, cross(velocity, old))
-    inertia = body.inertia_about(after)
-    if axis is None:
-        return np.asarray(np.linalg.solve(inertia, momentum))
-    return np.asarray(axis * (axis @ momentum) / (axis @ inertia @ axis))
-
-
-class HousnerSpatial:
-    """The plastic impact without slip on the points that stay (Housner 1963 in space)."""
-
-    label = "housner-3d"
-
-    def velocity_after(
-        self,
-        body: SpatialBody,
-        before: FloatArray,
-        after: FloatArray,
-        axis: FloatArray | None,
-        up: FloatArray,
-        velocity: FloatArray,
-    ) -> FloatArray:
-        """Return the projection.
-
-        Parameters
-        ----------
-        body, before, after, axis, up, velocity
-            As in `SpatialImpactLaw`.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            Angular velocity after, in body axes [rad/s].
-        """
-        return projected(body, before, after, axis, velocity)
-
-
-class HorizontalMomentumSpatial:
-    """Only the horizontal velocities of the particles go on: their momentum about the new pivot stays.
-
-    ``I_B w+ = Int rho (S - B) x P_h (w- x (S - A)) dV`` with P_h the horizontal part; about an edge its component
-    along the edge. The integral needs only mass, centre and inertia, since P_h is the same everywhere.
-    """
-
-    label = "horizontal-momentum-3d"
-
-    def velocity_after(
-        self,
-        body: SpatialBody,
-        before: FloatArray,
-        after: FloatArray,
-        axis: FloatArray | None,
-        up: FloatArray,
-        velocity: FloatArray,
-    ) -> FloatArray:
-        """Return the angular velocity with that momentum.
-
-        Parameters
-        ----------
-        body, before, after, axis, up, velocity
-            As in `SpatialImpactLaw`.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            Angular velocity after, in body axes [rad/s].
-        """
-        second = 0.5 * np.trace(body.inertia) * np.eye(3) - body.inertia  # Int rho x x^T about the centre
-        speed = cross(velocity, body.centre - before)
-        level = speed - up * (up @ speed)
-        momentum = body.inertia @ velocity + cross(up, second @ cross(up, velocity))
-        momentum += body.mass * cross(body.centre - after, level)
-        inertia = body.inertia_about(after)
-        if axis is None:
-            return np.asarray(np.linalg.solve(inertia, momentum))
-        return np.asarray(axis * (axis @ momentum) / (axis @ inertia @ axis))
+    return PLASTIC.velocity_after(body, before, after, axis, UP, velocity)
 
 
 class FixedSpatial:
@@ -215,17 +190,15 @@ class FixedSpatial:
         return np.asarray(self.coefficient * np.sqrt(velocity @ body.inertia_about(before) @ velocity / left) * made)
 
 
-LAWS: dict[str, type] = {"housner-3d": HousnerSpatial, "horizontal-momentum-3d": HorizontalMomentumSpatial}
-"""Laws that need nothing but mass, centre and inertia, by name."""
-
-
-def law_of(restitution: Any) -> SpatialImpactLaw:
+def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLaw:
     """Return an impact law.
 
     Parameters
     ----------
-    restitution : str, float or SpatialImpactLaw
-        Name of a law, a coefficient from 0 to 1, or a law.
+    restitution : str, float, SpatialModel or SpatialImpactLaw
+        Name of a model in space, with or without "-3d", a coefficient from 0 to 1, a model, or a law.
+    body : SpatialBody, optional
+        The body that it is for.
 
     Returns
     -------
@@ -235,18 +208,20 @@ def law_of(restitution: Any) -> SpatialImpactLaw:
     Raises
     ------
     UnknownModelError
-        If there is no law of that name.
+        If there is no model of that name.
     InvalidValueError
-        If it is none of these.
+        If it is none of these, or the model needs to know of what the body consists and the body does not.
+
+    Examples
+    --------
+    >>> law_of("ked-3d", SpatialBody.box(1.0, 1.0, 4.0)).label
+    'ked-3d'
     """
-    if isinstance(restitution, str):
-        if restitution not in LAWS:
-            raise UnknownModelError(
-                f"no impact law in space is called {restitution!r}; there are {', '.join(LAWS)}, a coefficient in "
-                "[0, 1], or any object with velocity_after and label"
-            )
-        made: SpatialImpactLaw = LAWS[restitution]()
-        return made
+    if isinstance(restitution, (str, SpatialModel)):
+        model = spatial_model(restitution)
+        if model.needs_solid and body is not None and body.matter is None:
+            raise InvalidValueError(f"restitution {model.name!r}: {NO_MATTER}")
+        return ModelLaw(model)
     if isinstance(restitution, type):
         raise InvalidValueError(f"restitution must be a law, not its class, got {restitution!r:.60}")
     return restitution if isinstance(restitution, SpatialImpactLaw) else FixedSpatial(restitution)

@@ -1,14 +1,16 @@
 """A body in space as the equations see it: mass, centre, inertia, and the base on which it stands."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from rocking import checks
+from rocking.bodies.solid import Solid, SolidMoments
 from rocking.conventions import FloatArray
+from rocking.dynamics.spatial.matter import Matter
 from rocking.errors import GeometryError, InvalidValueError
 
 _ROUNDING = 1e-9
@@ -34,6 +36,11 @@ class SpatialBody:
         Vertices of the convex support polygon, counter-clockwise as seen from above [m]; or the radius of a round base
         about the origin [m].
 
+    Attributes
+    ----------
+    matter : Matter or None
+        Of what it consists; known for a `Solid`, a `box` and a `cylinder`.
+
     Raises
     ------
     InvalidValueError
@@ -52,6 +59,7 @@ class SpatialBody:
     centre: FloatArray
     inertia: FloatArray
     base: FloatArray | float
+    matter: Matter | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check and freeze."""
@@ -89,7 +97,8 @@ class SpatialBody:
         mass = checks.density("density", density) * x * y * z
         inertia = mass / 12.0 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
         corners = 0.5 * np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
-        return cls(mass, np.array([0.0, 0.0, 0.5 * z]), inertia, corners)
+        made = cls(mass, np.array([0.0, 0.0, 0.5 * z]), inertia, corners)
+        return made._made_of(Matter.of_box(x, y, z, density))
 
     @classmethod
     def cylinder(cls, diameter: float, height: float, density: float = 1000.0) -> "SpatialBody":
@@ -110,7 +119,8 @@ class SpatialBody:
         b, z = 0.5 * checks.length("diameter", diameter), checks.length("height", height)
         mass = checks.density("density", density) * math.pi * b * b * z
         across = mass * (b * b / 4.0 + z * z / 12.0)
-        return cls(mass, np.array([0.0, 0.0, 0.5 * z]), np.diag([across, across, 0.5 * mass * b * b]), b)
+        made = cls(mass, np.array([0.0, 0.0, 0.5 * z]), np.diag([across, across, 0.5 * mass * b * b]), b)
+        return made._made_of(Matter.of_cylinder(2.0 * b, z, density))
 
     @classmethod
     def of(cls, body: Any) -> "SpatialBody":
@@ -141,12 +151,23 @@ class SpatialBody:
         if getattr(base, "radius", None) is not None:
             origin[:2] = getattr(base, "centre", (0.0, 0.0))
         shape = next((getattr(base, n) for n in ("radius", "vertices") if getattr(base, n, None) is not None), base)
-        return cls(found["mass"], np.asarray(found["centre"]) - origin, found["inertia"], shape)
+        made = cls(found["mass"], np.asarray(found["centre"]) - origin, found["inertia"], shape)
+        return made._made_of(Matter.of_solid(body, origin)) if isinstance(body, Solid) else made
+
+    def _made_of(self, matter: Matter) -> "SpatialBody":
+        # not an argument: a solid that does not belong to the mass and inertia would give wrong energies
+        object.__setattr__(self, "matter", matter)
+        return self
 
     @property
     def round(self) -> bool:
         """Whether the base is a circle."""
         return np.ndim(self.base) == 0
+
+    @cached_property
+    def moments(self) -> SolidMoments:
+        """Mass, centre and central second moments [kg, m, kg m2]."""
+        return SolidMoments(self.mass, self.centre, 0.5 * np.trace(self.inertia) * np.eye(3) - self.inertia)
 
     @cached_property
     def radius(self) -> float:

@@ -6,9 +6,15 @@ from rocking.restitution.spatial.horizontal_momentum import SpatialHorizontalMom
 from rocking.restitution.spatial.housner import SpatialHousner
 from rocking.restitution.spatial.interface import edge_coefficient, impact_in_space, spatial_model, spatial_models
 from rocking.restitution.spatial.ked import SpatialKed, energy_left
+from rocking.restitution.spatial.leaning import LeaningImpact
 from rocking.restitution.spatial.model import SpatialFlag, SpatialModel, SpatialRestitution
+from rocking.restitution.spatial.moments import KeptMoments, kept_moments
+from rocking.restitution.spatial.rigid import RigidImpact
 
 __all__ = [
+    "KeptMoments",
+    "LeaningImpact",
+    "RigidImpact",
     "SpatialFlag",
     "SpatialHorizontalMomentum",
     "SpatialHousner",
@@ -20,6 +26,7 @@ __all__ = [
     "edge_coefficient",
     "energy_left",
     "impact_in_space",
+    "kept_moments",
     "lost_density",
     "spatial_model",
     "spatial_models",

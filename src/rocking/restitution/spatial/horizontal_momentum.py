@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from rocking.conventions import FloatArray
-from rocking.restitution.spatial.geometry import SpatialImpact, solved
 from rocking.restitution.spatial.model import SpatialModel
+from rocking.restitution.spatial.rigid import RigidImpact, solved
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,12 @@ class SpatialHorizontalMomentum(SpatialModel):
         "no force model stands behind it",
     )
 
-    def on_corner(self, impact: SpatialImpact) -> FloatArray:
+    def on_corner(self, impact: RigidImpact) -> FloatArray:
         """Solve for the angular velocity with the angular momentum of the horizontal velocities.
 
         Parameters
         ----------
-        impact : SpatialImpact
+        impact : RigidImpact
             The impact.
 
         Returns
@@ -43,12 +43,12 @@ class SpatialHorizontalMomentum(SpatialModel):
         """
         return solved(impact.inertia, impact.level_momentum)
 
-    def on_edge(self, impact: SpatialImpact, direction: FloatArray) -> float:
+    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
         """Divide the angular momentum of the horizontal velocities by the moment of inertia about the edge.
 
         Parameters
         ----------
-        impact : SpatialImpact
+        impact : RigidImpact
             The impact.
         direction : ndarray, shape (3,)
             Unit vector along the edge [-].

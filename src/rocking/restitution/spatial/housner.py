@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from rocking.conventions import FloatArray
-from rocking.restitution.spatial.geometry import SpatialImpact, solved
 from rocking.restitution.spatial.model import SpatialModel
+from rocking.restitution.spatial.rigid import RigidImpact, solved
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,12 @@ class SpatialHousner(SpatialModel):
         "loses more than most measurements for bodies of slenderness below about 4",
     )
 
-    def on_corner(self, impact: SpatialImpact) -> FloatArray:
+    def on_corner(self, impact: RigidImpact) -> FloatArray:
         """Solve for the angular velocity that keeps the angular momentum about the corner.
 
         Parameters
         ----------
-        impact : SpatialImpact
+        impact : RigidImpact
             The impact.
 
         Returns
@@ -44,12 +44,12 @@ class SpatialHousner(SpatialModel):
         """
         return solved(impact.inertia, impact.angular_momentum)
 
-    def on_edge(self, impact: SpatialImpact, direction: FloatArray) -> float:
+    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
         """Divide the angular momentum along the edge by the moment of inertia about it.
 
         Parameters
         ----------
-        impact : SpatialImpact
+        impact : RigidImpact
             The impact.
         direction : ndarray, shape (3,)
             Unit vector along the edge [-].

@@ -1,10 +1,8 @@
-"""The integrals of KED in space, about a point and about a line.
+"""Integrals over the mass of a solid that are homogeneous about the place it lands on.
 
-After stage 1 the velocity of a mass point is horizontal, ``v = P_h (omega x s + c)``, with s from the landing point
-and c its velocity. Stage 2 about a point removes ``(s . v)^2/|s|^2``, and ``s . v = g . (omega_x, omega_y, c_x, c_y)``
-with ``g = (-y z, x z, x, y)``. About a line along e it keeps ``((e x s) . v)^2/|e x s|^2``, and
-``(e x s) . v = h . (omega_e, omega_z, c_m)`` with ``h = (z^2, -z sigma, z)``, sigma along the line and m = e x n.
-So one symmetric matrix serves every angular velocity.
+A product of features of degrees i and j about the landing point, divided by a squared length, is homogeneous; over the
+volume it is a sum over the surface (`samples`). About an edge and upright the one integral of the plane, Eq. 17 of
+Mao et al. 2024, is exact for extrusions along it.
 """
 
 from collections.abc import Callable
@@ -24,42 +22,6 @@ _NEGLIGIBLE = 1e-17
 _NEGLIGIBLE_ROUND = 1e-13
 _ALONG = 1e-12
 _CACHED = 256
-
-
-def point_matrix(solid: Solid, point: FloatArray) -> FloatArray:
-    """Return the matrix of what stage 2 removes about a point, ``Int g g^T/|s|^2 dm``.
-
-    Parameters
-    ----------
-    solid : Solid
-        The body.
-    point : ndarray, shape (3,)
-        The point on the ground, in the body's frame [m].
-
-    Returns
-    -------
-    ndarray, shape (4, 4)
-        Twice the energy removed is ``q^T K q`` with ``q = (omega_x, omega_y, c_x, c_y)``.
-    """
-    return _point_matrix(solid, *point.tolist())
-
-
-def line_matrix(solid: Solid, edge: Edge) -> FloatArray:
-    """Return the matrix of what stage 2 keeps about a line, ``Int h h^T/|e x s|^2 dm``.
-
-    Parameters
-    ----------
-    solid : Solid
-        The body.
-    edge : Edge
-        The line on the ground, in the body's frame [m].
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Twice the energy kept is ``q^T K q`` with ``q = (omega_e, omega_z, c_m)``.
-    """
-    return _line_matrix(solid, *edge.point.tolist(), *edge.direction.tolist())
 
 
 def line_moment(solid: Solid, edge: Edge) -> float:
@@ -83,19 +45,6 @@ def line_moment(solid: Solid, edge: Edge) -> float:
 
 
 @lru_cache(maxsize=_CACHED)
-def _point_matrix(solid: Solid, x: float, y: float, z: float) -> FloatArray:
-    return sum(
-        (_of_part(part, np.array([x, y, z]), _about_point, (_norm, None)) for part in solid.local_parts), np.zeros(())
-    )
-
-
-@lru_cache(maxsize=_CACHED)
-def _line_matrix(solid: Solid, x: float, y: float, z: float, *direction: float) -> FloatArray:
-    point, edge = np.array([x, y, z]), np.array(direction)
-    return sum((_line_part(part, point, edge) for part in solid.local_parts), np.zeros(()))
-
-
-@lru_cache(maxsize=_CACHED)
 def _line_moment(solid: Solid, x: float, y: float, z: float, *direction: float) -> float:
     point, edge = np.array([x, y, z]), np.array(direction)
     total = 0.0
@@ -116,26 +65,67 @@ def _extruded(part: Part, prism: Prism, point: FloatArray, edge: FloatArray) -> 
     return prism.length * turned * sum(ring_integral(ring @ plane.T + shift) for ring in prism.region.rings)
 
 
-def _line_part(part: Part, point: FloatArray, edge: FloatArray) -> FloatArray:
-    def features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        return _about_line(s, edge)
-
-    return _of_part(part, point, features, (_distance_to(edge), None))
-
-
 def _line_moment_part(part: Part, point: FloatArray, edge: FloatArray) -> float:
     def features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        return _about_line(s, edge)[0][:, :1], np.ones(1)
+        inverse = 1.0 / np.maximum(distance(s), 1e-300)
+        return (s[:, 2] ** 2 * inverse)[:, None], np.ones(1)
 
-    return float(_of_part(part, point, features, (_distance_to(edge), _height_squared))[0, 0])
+    distance = distance_to(edge)
+    return float(of_part(part, point, features, (distance, _height_squared))[0, 0])
 
 
-def _distance_to(edge: FloatArray) -> Distance:
+def distance_to(edge: FloatArray) -> Distance:
+    """Return the function that measures distances to a line through the origin.
+
+    Parameters
+    ----------
+    edge : ndarray, shape (3,)
+        Unit vector along it [-].
+
+    Returns
+    -------
+    callable
+        Takes points (n, 3) and returns their distances [m].
+    """
     return lambda s: np.linalg.norm(np.cross(edge, s), axis=1)
 
 
-def _of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Distance, Distance | None]) -> FloatArray:
-    """Sum ``f (s . dA)/(k + 3)``, degree k entry by entry."""
+def norm(s: FloatArray) -> FloatArray:
+    """Return the distances of points from the origin.
+
+    Parameters
+    ----------
+    s : ndarray, shape (n, 3)
+        Points [m].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Distances [m].
+    """
+    norms: FloatArray = np.linalg.norm(s, axis=1)
+    return norms
+
+
+def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Distance, Distance | None]) -> FloatArray:
+    """Return ``Int f f^T dm`` over a part: the sum of ``f f^T (s . dA)/(k + 3)``, degree k entry by entry.
+
+    Parameters
+    ----------
+    part : Part
+        The part, in the frame of the body.
+    point : ndarray, shape (3,)
+        The point about which the features are homogeneous [m].
+    features : callable
+        Takes points (n, 3) relative to it; returns features (n, m) and their degrees (m,).
+    graded : tuple of callable and callable or None
+        Distance to where the integrand is singular, and what the integrand cannot exceed, by default 1.
+
+    Returns
+    -------
+    ndarray, shape (m, m)
+        The integrals.
+    """
     distance, bound = graded
     shape, shift = part.shape, part.translation - point
     negligible = (_NEGLIGIBLE if isinstance(shape, Polyhedron) else _NEGLIGIBLE_ROUND) * shape.moments().mass
@@ -153,21 +143,3 @@ def _of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Di
 def _height_squared(s: FloatArray) -> FloatArray:
     squared: FloatArray = s[:, 2] ** 2
     return squared
-
-
-def _norm(s: FloatArray) -> FloatArray:
-    norms: FloatArray = np.linalg.norm(s, axis=1)
-    return norms
-
-
-def _about_point(s: FloatArray) -> tuple[FloatArray, FloatArray]:
-    x, y, z = s.T
-    inverse = 1.0 / np.maximum(_norm(s), 1e-300)
-    # degrees of g/|s|: one less than those of g
-    return np.stack([-y * z, x * z, x, y], axis=1) * inverse[:, None], np.array([1.0, 1.0, 0.0, 0.0])
-
-
-def _about_line(s: FloatArray, edge: FloatArray) -> tuple[FloatArray, FloatArray]:
-    z = s[:, 2]
-    inverse = 1.0 / np.maximum(np.linalg.norm(np.cross(edge, s), axis=1), 1e-300)
-    return np.stack([z * z, -z * (s @ edge), z], axis=1) * inverse[:, None], np.array([1.0, 1.0, 0.0])

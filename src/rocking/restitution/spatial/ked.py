@@ -7,10 +7,11 @@ import numpy as np
 
 from rocking.bodies.solid import Edge
 from rocking.conventions import FloatArray
-from rocking.restitution.spatial.geometry import LEVEL, UP, SpatialImpact
 from rocking.restitution.spatial.horizontal_momentum import SpatialHorizontalMomentum
-from rocking.restitution.spatial.integrals import line_matrix, line_moment, point_matrix
+from rocking.restitution.spatial.integrals import line_moment
 from rocking.restitution.spatial.model import SpatialModel
+from rocking.restitution.spatial.moments import kept_moments
+from rocking.restitution.spatial.rigid import RigidImpact
 
 _PLANE = 1e-14
 
@@ -34,20 +35,25 @@ class SpatialKed(SpatialModel):
         "the vertical velocity of every mass point is lost, then its part along the line to the new corner",
         "the kinetic energy that is left becomes rotation in the direction of the angular momentum that is left",
     )
-    domain = "every impact on one corner or edge; the paper publishes homogeneous rectangles in the plane"
+    needs_solid = True
+    domain = (
+        "every impact on one corner or edge, in any attitude; the paper publishes homogeneous rectangles in the plane"
+    )
     known_defects = (
         "all defects of KED in the plane",
         "the closure is a choice: the paper's energy alone fixes no direction in space",
+        "where the old pivot was hardly matters: a corner that only grazes the ground costs a whole impact, so that a "
+        "wobbling body loses far too much",
         "about a point and about a line through it the coefficients differ (0.9132 and 0.9125 for a prism 1 x 1 x 4 "
         "over its diagonal)",
     )
 
-    def on_corner(self, impact: SpatialImpact) -> FloatArray:
+    def on_corner(self, impact: RigidImpact) -> FloatArray:
         """Return the direction of the momentum left, times what gives it the energy left.
 
         Parameters
         ----------
-        impact : SpatialImpact
+        impact : RigidImpact
             The impact.
 
         Returns
@@ -61,12 +67,12 @@ class SpatialKed(SpatialModel):
             return direction
         return direction * math.sqrt(2.0 * energy_left(impact) / twice)
 
-    def on_edge(self, impact: SpatialImpact, direction: FloatArray) -> float:
+    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
         """Return the angular velocity that the energy left gives, with the sign of the momentum left.
 
         Parameters
         ----------
-        impact : SpatialImpact
+        impact : RigidImpact
             The impact.
         direction : ndarray, shape (3,)
             Unit vector along the edge [-].
@@ -80,41 +86,45 @@ class SpatialKed(SpatialModel):
         return sign * math.sqrt(2.0 * energy_left(impact) / float(direction @ impact.inertia @ direction))
 
 
-def energy_left(impact: SpatialImpact) -> float:
+def energy_left(impact: RigidImpact) -> float:
     """Return the kinetic energy after stage 2, T'' [J].
 
     Parameters
     ----------
-    impact : SpatialImpact
-        The impact.
+    impact : RigidImpact
+        The impact, of a body in any attitude.
 
     Returns
     -------
     float
         Energy [J].
+
+    Raises
+    ------
+    InvalidValueError
+        If the body is known by its mass, centre and inertia alone.
     """
-    if isinstance(impact.onto, Edge):
-        return 0.5 * _kept_about_line(impact, impact.onto)
-    point, drift = impact.onto.point, impact.landing_velocity
-    state = np.array([*impact.velocity[:2], *drift[:2]])
-    return impact.level_energy - 0.5 * float(state @ point_matrix(impact.solid, point) @ state)
+    solid, onto = impact.placed_solid
+    drift, gradient = impact.level @ impact.landing_velocity, impact.level @ impact.spin
+    if isinstance(onto, Edge) and _is_plane(impact, onto, solid.size):
+        return 0.5 * float(impact.velocity @ onto.direction) ** 2 * line_moment(solid, onto)
+    return kept_moments(solid, onto).energy_left(drift, gradient)
 
 
-def _kept_about_line(impact: SpatialImpact, edge: Edge) -> float:
-    velocity, across = impact.velocity, np.cross(edge.direction, UP)
-    state = np.array([velocity @ edge.direction, velocity[2], impact.landing_velocity @ across])
-    slow = _PLANE * impact.speed
-    if abs(state[1]) <= slow and abs(state[2]) <= slow * impact.solid.size:
-        return float(state[0] ** 2) * line_moment(impact.solid, edge)
-    return float(state @ line_matrix(impact.solid, edge) @ state)
+def _is_plane(impact: RigidImpact, edge: Edge, size: float) -> bool:
+    """Whether the velocities across an edge are those of the plane: Eq. 17's one integral, exact for extrusions."""
+    slow, across = _PLANE * impact.speed, np.cross(impact.up, edge.direction)
+    upright = abs(impact.up[0]) + abs(impact.up[1]) <= _PLANE
+    still = abs(float(impact.landing_velocity @ across)) <= slow * size
+    return bool(upright and still and abs(float(impact.velocity @ impact.up)) <= slow)
 
 
-def stage_velocities(impact: SpatialImpact, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def stage_velocities(impact: RigidImpact, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the velocities of mass points before the impact, after stage 1 and after stage 2.
 
     Parameters
     ----------
-    impact : SpatialImpact
+    impact : RigidImpact
         The impact.
     points : ndarray, shape (n, 3)
         Points in the body's frame [m].
@@ -126,7 +136,7 @@ def stage_velocities(impact: SpatialImpact, points: FloatArray) -> tuple[FloatAr
     """
     arms = points - impact.onto.point
     before = impact.velocities(arms)
-    level = before @ LEVEL
+    level = before @ impact.level
     if isinstance(impact.onto, Edge):
         allowed = _unit(np.cross(impact.onto.direction, arms))
         return before, level, allowed * np.einsum("nd,nd->n", allowed, level)[:, None]

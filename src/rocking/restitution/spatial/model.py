@@ -11,6 +11,7 @@ from rocking.bodies.solid import Edge
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.restitution.spatial.geometry import SpatialImpact
+from rocking.restitution.spatial.rigid import RigidImpact
 
 _TOUCH = 1e-12
 
@@ -85,6 +86,8 @@ class SpatialModel(ABC):
         What the model takes for granted, and where that is known to fail.
     domain : str
         Impacts it holds for.
+    needs_solid : bool
+        Whether it needs the distribution of mass, beyond mass, centre and inertia.
     """
 
     name: ClassVar[str]
@@ -93,14 +96,15 @@ class SpatialModel(ABC):
     assumptions: ClassVar[tuple[str, ...]] = ()
     domain: ClassVar[str] = "not stated"
     known_defects: ClassVar[tuple[str, ...]] = ()
+    needs_solid: ClassVar[bool] = False
 
     @abstractmethod
-    def on_corner(self, impact: SpatialImpact) -> FloatArray:
+    def on_corner(self, impact: RigidImpact) -> FloatArray:
         """Return the angular velocity about the corner that the body lands on.
 
         Parameters
         ----------
-        impact : SpatialImpact
+        impact : RigidImpact
             The impact, onto a `Corner`.
 
         Returns
@@ -110,12 +114,12 @@ class SpatialModel(ABC):
         """
 
     @abstractmethod
-    def on_edge(self, impact: SpatialImpact, direction: FloatArray) -> float:
+    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
         """Return the angular velocity about the edge that the body lands on.
 
         Parameters
         ----------
-        impact : SpatialImpact
+        impact : RigidImpact
             The impact, onto an `Edge`.
         direction : ndarray, shape (3,)
             Unit vector along the edge [-].
@@ -125,6 +129,32 @@ class SpatialModel(ABC):
         float
             Angular velocity along the direction [rad/s].
         """
+
+    def turned(self, impact: RigidImpact) -> FloatArray:
+        """Return the angular velocity that the model's equation gives, in any attitude of the body.
+
+        Parameters
+        ----------
+        impact : RigidImpact
+            The impact.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            Angular velocity, along the edge if the body lands on one [rad/s].
+
+        Raises
+        ------
+        InvalidValueError
+            If the model does not give finite numbers.
+        """
+        if isinstance(impact.onto, Edge):
+            raw = self.on_edge(impact, impact.onto.direction) * impact.onto.direction
+        else:
+            raw = self.on_corner(impact)
+        if not np.isfinite(raw).all():
+            raise InvalidValueError(f"model {self.name} gives {raw.tolist()} rad/s for this impact")
+        return raw
 
     def after(self, impact: SpatialImpact) -> SpatialRestitution:
         """Return what the model says about an impact.
@@ -144,14 +174,8 @@ class SpatialModel(ABC):
         InvalidValueError
             If the model does not give finite numbers.
         """
-        on_edge = isinstance(impact.onto, Edge)
-        if isinstance(impact.onto, Edge):
-            raw = self.on_edge(impact, impact.onto.direction) * impact.onto.direction
-        else:
-            raw = self.on_corner(impact)
-        if not np.isfinite(raw).all():
-            raise InvalidValueError(f"model {self.name} gives {raw.tolist()} rad/s for this impact")
+        raw = self.turned(impact)
         sinks = impact.rise(raw) < -_TOUCH * impact.speed * impact.solid.size
-        if sinks and on_edge:
+        if sinks and isinstance(impact.onto, Edge):
             return SpatialRestitution(self, impact, raw, np.zeros(3), (SpatialFlag.STOPS,))
         return SpatialRestitution(self, impact, raw, raw, (SpatialFlag.PENETRATES,) if sinks else ())

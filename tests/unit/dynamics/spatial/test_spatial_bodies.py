@@ -12,6 +12,7 @@ from rocking.dynamics.spatial.impact import FixedSpatial, law_of
 from rocking.dynamics.spatial.selection import forces
 from rocking.dynamics.spatial.stance import edge, face
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
+from rocking.restitution.spatial import SpatialHousner
 
 UP = np.array([0.0, 0.0, 1.0])
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -106,10 +107,10 @@ def test_components_with_different_steps_are_one_motion():
 
 def test_laws_by_name_by_number_and_by_interface():
     """Names, coefficients and objects are laws; others are refused with what there is."""
-    assert law_of("housner-3d").label == "housner-3d"
+    assert law_of("housner-3d").label == law_of("housner").label == law_of(SpatialHousner()).label == "housner-3d"
     assert isinstance(law_of(0.9), FixedSpatial)
     with pytest.raises(UnknownModelError, match="horizontal-momentum-3d"):
-        law_of("housner")
+        law_of("newton")
     for bad in (1.2, -0.1, math.nan, None, FixedSpatial):
         with pytest.raises(InvalidValueError):
             law_of(bad)

@@ -9,7 +9,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import Contact, SpatialBody, SpatialStatus, free_rocking_spatial, simulate_spatial
-from rocking.dynamics.spatial.impact import HousnerSpatial
+from rocking.dynamics.spatial.impact import law_of
 from rocking.errors import InvalidValueError
 
 BOX = SpatialBody.box(1.0, 1.2, 4.0, density=2000.0)
@@ -32,7 +32,7 @@ def test_a_law_of_ones_own_serves():
         label = "half"
 
         def velocity_after(self, *args):
-            return 0.5 * HousnerSpatial().velocity_after(*args)
+            return 0.5 * law_of("housner-3d").velocity_after(*args)
 
     whole = free_rocking_spatial(BOX, 0.1, 0.5, duration=1.0).impacts[0]
     half = free_rocking_spatial(BOX, 0.1, 0.5, Half(), duration=1.0).impacts[0]

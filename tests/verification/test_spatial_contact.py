@@ -1,0 +1,131 @@
+"""What stays on the ground: gaps, pulls, complementarity, uplift, and the way over.
+
+REF numbers: the project's physics specification, by section. With ROCKING_CAMPAIGN=1 the property tests draw ten
+times as many examples.
+"""
+
+import math
+import os
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rocking as rk
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.spatial import (
+    Contact,
+    SpatialBody,
+    SpatialStatus,
+    events,
+    free_rocking_spatial,
+    simulate_spatial,
+)
+from rocking.dynamics.spatial.impact import law_of
+from rocking.dynamics.spatial.selection import State, of_impact
+
+TIMES = 10 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1
+G = 9.81
+UP = np.array([0.0, 0.0, 1.0])
+TOWER = SpatialBody.box(1.0, 1.3, 4.0)
+SQUARE = SpatialBody.box(1.0, 1.0, 4.0)
+CYLINDER = SpatialBody.cylinder(0.5, 2.0)
+ANGLE = st.floats(-math.pi, math.pi)
+SPIN = st.tuples(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4))
+
+
+@settings(max_examples=8 * TIMES)
+@given(ANGLE, st.floats(0.01, 0.2), SPIN)
+def test_nothing_ever_enters_the_ground_and_energy_adds_up(azimuth, tilt, spin):
+    """Wobbling to rest or overturning from any start: gaps >= -1e-12 m, the ledger closes, impacts create no energy."""
+    run = free_rocking_spatial(SQUARE, tilt, azimuth, angular_velocity=spin)
+    assert run.status is SpatialStatus.GOOD or run.outcome is Outcome.OVERTURNED
+    fine = np.linspace(0.0, run.time[-1], 2000)
+    assert run.at(fine).least_gap.min() >= -1e-12
+    assert run.energy.closure < 1e-9
+    assert (run.impacts["energy_after"] <= run.impacts["energy_before"] * (1.0 + 1e-12)).all()
+    if run.outcome is Outcome.ROCKED:
+        assert run.contact[-1] == Contact.REST.code
+
+
+def test_without_watching_the_neighbours_a_body_enters_the_ground(monkeypatch):
+    """Negative control: with no gaps watched the same measure shows centimetres of penetration."""
+    start = {"tilt": 0.1, "azimuth": 0.6, "duration": 2.0}
+    assert free_rocking_spatial(SQUARE, **start).states.least_gap.min() >= -1e-12
+    monkeypatch.setattr(events, "watched", lambda body, stance: ())
+    assert free_rocking_spatial(SQUARE, **start).states.least_gap.min() < -1e-2
+
+
+def test_an_impact_without_complementarity_is_rejected():
+    """Negative control: staying on the old corner, or on the edge, contradicts gaps or impulses."""
+    omega = np.array([-0.6, 0.8, 0.0])
+    omega *= -np.sign(np.cross(omega, SQUARE.vertices[1] - SQUARE.vertices[0])[2])
+    state = State(SQUARE.vertices[0], omega, UP, -G * UP)
+    (choice,) = of_impact(SQUARE, state, (0, 1), law_of("housner-3d"))
+    assert choice.stance.points == (1,)
+    leaves = np.cross(choice.velocity, SQUARE.vertices[0] - SQUARE.vertices[1])[2]
+    assert leaves > 0.0 > np.cross(omega, SQUARE.vertices[1] - SQUARE.vertices[0])[2]
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.3, 0.25 * math.pi, 1.2])
+def test_rest_ends_where_the_pressure_leaves_the_base(direction):
+    """A steady push lifts a body just above, not just below, the static limit g b / h of its edge, or of its rim."""
+    for body, reach in (
+        (TOWER, min(0.5 / math.cos(direction), 0.65 / max(math.sin(direction), 1e-9))),
+        (CYLINDER, 0.25),
+    ):
+        limit = rk.conventions.g * reach / float(body.centre[2])
+        for share, lifted in ((0.999, False), (1.001, True)):
+            pulses = [
+                rk.pulses.rectangular(amplitude=share * limit * c, duration=0.5) if abs(c) > 1e-12 else None
+                for c in (math.cos(direction), math.sin(direction))
+            ]
+            run = simulate_spatial(body, *pulses, duration=0.4)
+            assert (run.outcome is not Outcome.NO_UPLIFT) is lifted
+
+
+def test_a_ground_that_falls_faster_than_the_body_is_said_so():
+    """Downwards with 2 g the contact is lost: a status, no number for the peak; with 0.9 g the body just stands."""
+    drop = rk.pulses.rectangular(amplitude=-2.0 * rk.conventions.g, duration=0.2)
+    run = simulate_spatial(SQUARE, vertical=drop)
+    assert (run.outcome, run.status) == (Outcome.FAILED, SpatialStatus.LOST_CONTACT)
+    assert math.isnan(run.peak_tilt)
+    assert simulate_spatial(SQUARE, vertical=drop.scaled(0.45)).outcome is Outcome.NO_UPLIFT
+
+
+@pytest.mark.parametrize("direction", [0.0, 1.0, 2.5, -2.0])
+def test_a_strong_pulse_overturns_a_round_body_against_its_direction(direction):
+    """A push of the ground towards phi throws a cylinder towards phi + 180 degrees, to 1e-6."""
+    pulses = [rk.pulses.half_sine(amplitude=9.0 * c, period=1.2) for c in (math.cos(direction), math.sin(direction))]
+    run = simulate_spatial(CYLINDER, *pulses)
+    assert run.outcome is Outcome.OVERTURNED
+    wrapped = (run.overturning_direction - direction) % (2.0 * math.pi) - math.pi
+    assert wrapped == pytest.approx(0.0, abs=1e-6)
+    assert run.overturned_over == "its rim"
+
+
+def test_an_edge_becomes_a_vertex_where_the_reaction_reaches_its_end():
+    """A push along the edge: the centre of pressure, by differences, is at the end just before."""
+    corners = 0.5 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    body = SpatialBody(1000.0, np.array([0.1, 0.1, 2.0]), np.diag([1400.0, 1400.0, 170.0]), corners)
+    along = rk.GroundMotion(np.concatenate([np.zeros(20), np.linspace(0.0, 4.5, 30), np.zeros(5)]), 0.01)
+    run = simulate_spatial(body, rk.pulses.half_sine(amplitude=3.5, period=1.2), along, gravity=G)
+    start, end, contact, ends = run.intervals[1]
+    assert (contact, ends, run.intervals[2][2:]) == (Contact.EDGE, (3, 0), (Contact.VERTEX, (0,)))
+    assert run.trajectory.held == 0.0
+
+    def pressure(time):
+        """Distance of the centre of pressure from the end that stays, over the length of the edge."""
+        h = 1e-4
+        states = run.at([time - h, time, time + h])
+        velocity, rotation = states.centre_velocity, states.rotation
+        spin = np.einsum("nab,bc,nc->na", rotation, body.inertia, states.body_velocity)
+        force = body.mass * ((velocity[2] - velocity[0]) / (2.0 * h) + run.ground.at(np.array([time]))[0] + G * UP)
+        arm = states.point(body.centre)[1] - states.point(body.vertices[0])[1]
+        moment = (spin[2] - spin[0]) / (2.0 * h) + np.cross(arm, force)
+        direction = states.point(body.vertices[3])[1] - states.point(body.vertices[0])[1]
+        return np.cross(UP, moment) @ direction / force[2]
+
+    assert pressure(end - 2e-4) == pytest.approx(0.0, abs=2e-3)  # 2e-4 s before the change
+    assert pressure(0.5 * (start + end)) > 0.1

@@ -1,0 +1,108 @@
+"""Bodies in space under plane motion against the plane engine and closed forms.
+
+REF numbers: the project's physics specification, by section.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.spatial import (
+    Contact,
+    SpatialBody,
+    free_rocking_spatial,
+    simulate_spatial,
+)
+from rocking.dynamics.spatial.impact import law_of
+from rocking.dynamics.spatial.selection import State, of_impact
+
+G = 9.81
+UP = np.array([0.0, 0.0, 1.0])
+ALPHA = math.atan(0.25)
+TOWER = SpatialBody.box(1.0, 1.3, 4.0)
+
+
+def _signed(response, axis):
+    """Rotation of a plane motion: lean towards x (0) or y (1) over the vertical."""
+    rotation = response.states.rotation
+    return np.arctan2(rotation[:, axis, 2], rotation[:, 2, 2])
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_free_rocking_in_a_plane_is_the_plane_solution(axis):
+    """From half the slenderness angle through eight impacts: rotation and impacts of the plane engine to 1e-10."""
+    half = (1.0, 1.3)[axis]
+    block = rk.Block(width=half, height=4.0)
+    angle = 0.5 * block.slenderness_angle
+    plane = rk.free_rocking(block, angle, "housner", engine="reference", duration=8.0)
+    space = free_rocking_spatial(TOWER, angle, 0.5 * math.pi * axis, duration=8.0)
+    time = np.linspace(0.0, 8.0, 201)
+    theta = plane.at(time)
+    rotation = space.at(time).rotation
+    np.testing.assert_allclose(np.arctan2(rotation[:, axis, 2], rotation[:, 2, 2]), theta, atol=1e-10)
+    np.testing.assert_allclose(space.impacts["time"][:8], plane.impacts["time"][:8], atol=1e-10)
+    # negative control: the other direction is another body
+    other = free_rocking_spatial(TOWER, angle, 0.5 * math.pi * (1 - axis), duration=8.0)
+    assert abs(other.impacts["time"][0] - plane.impacts["time"][0]) > 1e-2
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("amplitude", [3.4, 4.0, -4.2])
+def test_a_sine_pulse_in_a_plane_is_the_plane_solution(axis, amplitude):
+    """Uplift, impacts, peak and outcome under a sine pulse are those of the plane engine to 1e-10."""
+    block, pulse = rk.Block(width=(1.0, 1.3)[axis], height=4.0), rk.pulses.sine(amplitude=amplitude, period=1.0)
+    plane = rk.simulate(block, pulse, "housner", engine="reference", duration=5.0, rest_speed=1e-6)
+    space = simulate_spatial(TOWER, **{"xy"[axis]: pulse}, duration=5.0)
+    assert space.outcome is plane.outcome
+    time = plane.time[(plane.time < 5.0) & ~(plane.time > plane.overturning_time) & (plane.time < space.time[-1])]
+    rotation = space.at(time).rotation
+    np.testing.assert_allclose(np.arctan2(rotation[:, axis, 2], rotation[:, 2, 2]), plane.at(time), atol=1e-10)
+    if plane.outcome is Outcome.ROCKED:
+        assert space.peak_tilt == pytest.approx(plane.peak_rotation, abs=1e-10)
+    else:
+        assert space.overturning_time == pytest.approx(plane.overturning_time, abs=1e-8)
+        assert abs(space.overturning_direction) == pytest.approx(
+            (0.0 if plane.trajectory.side > 0 else math.pi) if axis == 0 else 0.5 * math.pi, abs=1e-9
+        )
+
+
+def test_a_record_with_a_vertical_part_is_the_plane_solution():
+    """Two components of a record, straight lines between samples, through twelve impacts: 1e-9."""
+    time = np.arange(300) * 0.02
+    along = 2.6 * np.sin(5.0 * time) * np.exp(-0.2 * time) + 0.9 * np.sin(23.0 * time)
+    up = 1.5 * np.sin(17.0 * time)
+    plane = rk.simulate(
+        rk.Block(width=1.0, height=4.0), rk.GroundMotion(along, 0.02, up), "housner", engine="reference"
+    )
+    space = simulate_spatial(TOWER, x=rk.GroundMotion(along, 0.02), vertical=rk.GroundMotion(up, 0.02))
+    count = 12
+    np.testing.assert_allclose(space.impacts["time"][:count], plane.impacts["time"][:count], atol=1e-9)
+    until = plane.impacts["time"][count]
+    time = plane.time[plane.time < until]
+    np.testing.assert_allclose(_signed(space, 0)[: time.size], plane.rotation[: time.size], atol=1e-9)
+    assert space.energy.closure < 1e-9
+
+
+# theta_0 / alpha: full period of the exact equations (3.2)
+@pytest.mark.parametrize(
+    ("share", "period"),
+    [(0.1, 0.9932837337787516), (0.5, 2.79337281563169), (0.9, 6.340566423733241), (0.999, 16.0963990677361)],
+)
+def test_the_period_about_an_edge_is_the_elliptic_integral(share, period):
+    """A quarter of the exact period to the first impact, REF 3.2, to 1e-10."""
+    found = free_rocking_spatial(TOWER, share * ALPHA, gravity=G, duration=0.3 * period)
+    assert 4.0 * found.impacts["time"][0] == pytest.approx(period, abs=1e-9 if share > 0.99 else 1e-10)
+    assert found.intervals[0][2] is Contact.EDGE
+
+
+def test_a_slender_body_goes_on_and_a_squat_one_stops():
+    """Complementarity finds the limit 1 / sqrt 2 of section 1.2: below it both edges push and the body stops."""
+    for ratio, contact in ((0.70, Contact.REST), (0.715, Contact.EDGE)):
+        body = SpatialBody.box(1.0, 1.0, ratio)
+        state = State(body.vertices[0], -body.edges[0], UP, -G * UP)
+        (choice,) = of_impact(body, state, (0, 1, 2, 3), law_of("housner-3d"))
+        assert choice.stance.contact is contact
+        assert choice.supports.min() > 0.0
