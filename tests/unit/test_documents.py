@@ -10,21 +10,21 @@ ROOT = Path(__file__).parents[2]
 PAGES = ["README.md", *(f"docs/{name}.md" for name in ("conventions", "theory", "gallery", "extending"))]
 
 
-def test_readme_example_runs():
-    """The README's lines run, and the numbers in their comments are what they give."""
-    (block,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), flags=re.S)
+def test_readme_examples_run():
+    """The README's lines run, and the numbers and words in their comments are what they give."""
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), flags=re.S)
     names = {}
     checked = 0
-    for line in block.splitlines():
+    for line in "".join(blocks).splitlines():
         code, _, comment = line.partition("#")
-        number = re.match(r"\s*(\d\.\d+):", comment)
-        if number:
-            value = eval(code, names)
-            assert f"{value:.{len(number[1]) - 2}f}" == number[1]
-            checked += 1
-        else:
+        told = re.match(r'\s*(?:(\d\.\d+):|"(.+)"$)', comment)
+        if told is None:
             exec(code, names)
-    assert checked == 3
+            continue
+        value, (number, words) = eval(code, names), told.groups()
+        assert words == value if words else f"{value:.{len(number) - 2}f}" == number
+        checked += 1
+    assert checked == 5
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -49,7 +49,7 @@ def solid_picture(solid: Solid, *, azimuth: float = -60.0, elevation: float = 18
 def energy_picture(
     result: SpatialRestitution, *, divisions: int = 16, azimuth: float = -60.0, elevation: float = 18.0
 ) -> "Figure":
-    """Draw where a body loses its energy in an impact: unit by unit, in an upright slice, and layer by layer.
+    """Draw where a body loses its energy in an impact: unit by unit, in an upright slice, and over the height.
 
     Parameters
     ----------
@@ -63,19 +63,18 @@ def energy_picture(
     Returns
     -------
     matplotlib.figure.Figure
-        Three panels: J a unit, J/m3 in the slice through the centre across the axis, J a layer.
+        Three panels: J/m3 of the units and in the slice through the centre across the axis, J/m over the height.
     """
     impact = result.impact
     figure, axes = new_figure(DOUBLE, 3.4, columns=3, width_ratios=[1.0, 1.0, 0.7])
     step = impact.solid.size / divisions
     energies = unit_energies(impact, voxels(impact.solid, divisions))
     frame = _frame(azimuth, elevation)
-    picture = _shaded(axes[0], *_cubes(energies, 0.94 * step), frame)
-    figure.colorbar(picture, ax=axes[0], label="energy lost [J a unit]", shrink=0.7)
-    axes[0].set_title(f"{len(energies.units)} units", loc="left")
     image = _slice(axes[1], impact, 8 * divisions)
-    figure.colorbar(image, ax=axes[1], label="energy lost [J/m$^3$]", shrink=0.7)
-    _layers(axes[2], energies, step, result)
+    _shaded(axes[0], *_cubes(impact.solid, energies, step), frame, top=image.norm.vmax)
+    axes[0].set_title(f"{len(energies.units)} units", loc="left")
+    figure.colorbar(image, ax=[axes[0], axes[1]], label="energy lost [J/m$^3$]", shrink=0.7)
+    _profile(axes[2], result, 4 * divisions)
     return figure
 
 
@@ -135,9 +134,10 @@ def _frame(azimuth: float, elevation: float) -> FloatArray:
     return np.stack([right, np.cross(toward, right), toward])
 
 
-def _shaded(axes: "Axes", triangles: FloatArray, values: FloatArray | None, frame: FloatArray) -> Any:
+def _shaded(
+    axes: "Axes", triangles: FloatArray, values: FloatArray | None, frame: FloatArray, top: float | None = None
+) -> None:
     from matplotlib import colormaps
-    from matplotlib.cm import ScalarMappable
     from matplotlib.collections import PolyCollection
     from matplotlib.colors import Normalize
 
@@ -147,7 +147,7 @@ def _shaded(axes: "Axes", triangles: FloatArray, values: FloatArray | None, fram
     front = np.flatnonzero(normals[:, 2] > 0.0)
     # the painter's order: far faces first
     front = front[np.argsort(seen[front, :, 2].mean(axis=1), kind="stable")]
-    scale = Normalize(0.0, float(values.max()) if values is not None else 1.0)
+    scale = Normalize(0.0, top)
     colours = np.full((len(front), 4), 0.8) if values is None else colormaps[_COLOURS](scale(values[front]))
     light = 0.6 + 0.4 * np.maximum(normals[front] @ (frame @ _LIGHT), 0.0)
     colours[:, :3] *= light[:, None] if values is None else (0.8 + 0.2 * light)[:, None]
@@ -158,7 +158,6 @@ def _shaded(axes: "Axes", triangles: FloatArray, values: FloatArray | None, fram
     axes.set_aspect("equal")
     axes.autoscale_view()
     axes.set_axis_off()
-    return ScalarMappable(scale, _COLOURS)
 
 
 def _base(axes: "Axes", solid: Solid, frame: FloatArray) -> None:
@@ -175,10 +174,12 @@ def _base(axes: "Axes", solid: Solid, frame: FloatArray) -> None:
     axes.plot([centre[0]], [centre[1]], marker="+", color=INK)
 
 
-def _cubes(energies: UnitEnergies, side: float) -> tuple[FloatArray, FloatArray]:
+def _cubes(solid: Solid, energies: UnitEnergies, side: float) -> tuple[FloatArray, FloatArray]:
     cube = box(side, side, side).corners - np.array([0.0, 0.0, 0.5 * side])
     triangles = (energies.units.centre[:, None, None] + cube).reshape(-1, 3, 3)
-    return triangles, np.repeat(energies.lost, len(cube))
+    # a unit at the surface is a part of a cube: what counts is the loss over its own volume
+    density = np.array([part.density for part in solid.local_parts])[energies.units.part]
+    return triangles, np.repeat(energies.density * density, len(cube))
 
 
 def _slice(axes: "Axes", impact: SpatialImpact, count: int) -> Any:
@@ -199,11 +200,17 @@ def _slice(axes: "Axes", impact: SpatialImpact, count: int) -> Any:
     return image
 
 
-def _layers(axes: "Axes", energies: UnitEnergies, step: float, result: SpatialRestitution) -> None:
-    count = int(np.ceil(float(energies.units.centre[:, 2].max()) / step))
-    ends, lost = energies.layers(count, count * step)
-    axes.barh(0.5 * (ends[1:] + ends[:-1]), lost, height=0.9 * np.diff(ends), color=GREY)
-    axes.set_xlabel("energy lost [J a layer]")
+def _profile(axes: "Axes", result: SpatialRestitution, count: int) -> None:
+    top = float((result.impact.solid.box - result.impact.solid.origin)[1, 2])
+    heights = top * (np.arange(count) + 0.5) / count
+    lost = []
+    for height in heights.tolist():
+        field, (left, right, near, far) = _level(result.impact, height, count)
+        lost.append(float(np.nansum(field)) * (right - left) * (far - near) / count**2)
+    axes.fill_betweenx(heights, 0.0, lost, color=GREY, linewidth=0.0)
+    axes.set_xlim(0.0, None)
+    axes.set_ylim(0.0, None)
+    axes.set_xlabel("energy lost [J/m]")
     axes.set_title(f"{result.model.name}: r = {result.coefficient:.4f}", loc="left")
 
 
