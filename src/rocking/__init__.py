@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rocking import bodies, conventions, dynamics, errors, evidence, motions, plots, report, restitution, studies
     from rocking.bodies import Block, Body, MassPoints, Region, Section, Side, shapes, solid
-    from rocking.bodies.formats import read_body
+    from rocking.bodies.formats import read_body, read_solid
     from rocking.bodies.solid import Part, Solid
     from rocking.dynamics import (
         Outcome,
@@ -69,6 +69,7 @@ __all__ = [
     "pulses",
     "read_body",
     "read_motion",
+    "read_solid",
     "report",
     "restitution",
     "rocking_spectrum",
@@ -113,6 +114,7 @@ _HOME = {
     "pulses": "rocking.motions",
     "read_body": "rocking.bodies.formats",
     "read_motion": "rocking.motions.formats",
+    "read_solid": "rocking.bodies.formats",
     "rocking_spectrum": "rocking.studies",
     "shapes": "rocking.bodies",
     "simulate": "rocking.dynamics",

@@ -11,7 +11,10 @@ _OUTPUT = "Output"
 
 
 def cor(
-    body: Annotated[Path | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit.")] = None,
+    body: Annotated[
+        Path | None,
+        typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --unit, or GLB."),
+    ] = None,
     width: shared.Width = None,
     height: shared.Height = None,
     depth: shared.Depth = None,
@@ -19,10 +22,13 @@ def cor(
     angle: shared.Angle = None,
     semi_diagonal: shared.SemiDiagonal = None,
     unit: shared.Unit = None,
+    up: shared.Up = None,
+    fill_holes: shared.FillHoles = False,
+    base_tolerance: shared.BaseTolerance = None,
     onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
     model: Annotated[
         list[str] | None,
-        typer.Option(help="Model, repeatable: ked, 0.98*ked, shifted-impulse:k=0.6, my_file.py:MyModel."),
+        typer.Option(help="Model, repeatable: ked, 0.98*ked, shifted-impulse:k=0.6, my_file.py:MyModel; or ked-3d."),
     ] = None,
     eta: Annotated[float, typer.Option(help="Interface factor in (0, 1] on every model.")] = 1.0,
     gravity: Annotated[float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].")] = None,
@@ -40,39 +46,17 @@ def cor(
     ] = None,
 ) -> None:
     """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
-    from rocking.cli import cor_output
-    from rocking.cli.body_options import body_from
-    from rocking.cli.model_options import models_from
-    from rocking.conventions import g
-    from rocking.report.facts.impact import ImpactAnswer
+    from rocking.cli import cor_of_plane_body, cor_of_solid
+    from rocking.cli.solid_options import is_solid
 
-    subject = body_from(
-        body,
-        width=width,
-        height=height,
-        depth=depth,
-        density=density,
-        angle=angle,
-        semi_diagonal=semi_diagonal,
-        unit=unit,
+    sizes = {"width": width, "height": height, "depth": depth, "angle": angle, "semi_diagonal": semi_diagonal}
+    mesh = {"up": up, "fill_holes": fill_holes, "base_tolerance": base_tolerance}
+    told = {"density": density, "unit": unit}
+    files = {"csv": csv, "picture": picture, "stages": stages}
+    asked = {"onto": onto, "eta": eta, "identities": identities}
+    if body is not None and is_solid(body):
+        cor_of_solid.answer(body, sizes, {**told, **mesh}, asked, files, models=model, gravity=gravity, as_json=as_json)
+        return
+    cor_of_plane_body.answer(
+        body, {**sizes, **told}, mesh, asked, files, models=model, gravity=gravity, as_json=as_json
     )
-    answer = ImpactAnswer.of(
-        subject,
-        models_from(model),
-        onto=onto,
-        eta=eta,
-        gravity=g if gravity is None else gravity,
-        identities=identities,
-    )
-    if csv is not None:
-        cor_output.write_csv(answer, csv)
-    if picture is not None:
-        cor_output.draw(answer, picture)
-    if stages is not None:
-        cor_output.draw_stages(answer, stages)
-    if as_json:
-        print(cor_output.as_json(answer))
-    else:
-        cor_output.show(answer)
-        for path in filter(None, (csv, picture, stages)):
-            print(f"wrote {path}")

@@ -6,6 +6,7 @@ import typer
 
 _BODY = "Size, in place of a body file"
 _FILE = "What a record file leaves open"
+_MESH = "What a mesh file leaves open"
 _HOW = "How it is computed"
 _OUTPUT = "Output"
 
@@ -22,6 +23,18 @@ SemiDiagonal = Annotated[
 Unit = Annotated[
     str | None, typer.Option(help="Unit of all lengths: m (default), cm, mm, ft, in.", rich_help_panel=_BODY)
 ]
+Up = Annotated[
+    str | None, typer.Option(help="Axis of a mesh that points up: z, or y as in GLB files.", rich_help_panel=_MESH)
+]
+FillHoles = Annotated[
+    bool, typer.Option("--fill-holes", help="Close holes of less than 1 % of the surface.", rich_help_panel=_MESH)
+]
+BaseTolerance = Annotated[
+    float | None,
+    typer.Option(
+        help=r"Points this close to the lowest one stand on the ground \[m, or --unit].", rich_help_panel=_MESH
+    ),
+]
 Format = Annotated[
     str | None, typer.Option(help="Format, if not found by content: see rocking formats.", rich_help_panel=_FILE)
 ]
@@ -33,7 +46,10 @@ VerticalFile = Annotated[
     str | None, typer.Option(help="File of the vertical component, where it has its own.", rich_help_panel=_FILE)
 ]
 BodyFile = Annotated[
-    str | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit; left out with --width.")
+    str | None,
+    typer.Argument(
+        help="Body file: TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --unit; left out with --width."
+    ),
 ]
 Record = Annotated[str | None, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")]
 Motion = Annotated[str | None, typer.Option(help="The same, as an option.")]

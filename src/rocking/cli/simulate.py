@@ -8,6 +8,8 @@ import typer
 from rocking.cli import shared_options as shared
 
 _OUTPUT = "Output"
+_SPACE = "Body in space"
+_CONTACT = "Sliding and hopping"
 
 
 def simulate(
@@ -21,6 +23,27 @@ def simulate(
     restitution: shared.Restitution = "ked",
     scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
     friction: Annotated[float, typer.Option(help="Coefficient of friction between body and ground.")] = 0.5,
+    contact: Annotated[
+        bool,
+        typer.Option("--contact", help="Let it slide, hop and fly with --friction.", rich_help_panel=_CONTACT),
+    ] = False,
+    bounce: Annotated[
+        float | None,
+        typer.Option(help="Newton's coefficient of normal velocities, from 0.", rich_help_panel=_CONTACT),
+    ] = None,
+    motion_y: Annotated[
+        str | None, typer.Option(help="Motion along y; the other one is along x.", rich_help_panel=_SPACE)
+    ] = None,
+    motion_z: Annotated[str | None, typer.Option(help="Motion along z, upwards.", rich_help_panel=_SPACE)] = None,
+    component_y: Annotated[
+        str | None, typer.Option(help="Component of the file of --motion-y.", rich_help_panel=_SPACE)
+    ] = None,
+    component_z: Annotated[
+        str | None, typer.Option(help="Component of the file of --motion-z.", rich_help_panel=_SPACE)
+    ] = None,
+    up: shared.Up = None,
+    fill_holes: shared.FillHoles = False,
+    base_tolerance: shared.BaseTolerance = None,
     width: shared.Width = None,
     height: shared.Height = None,
     depth: shared.Depth = None,
@@ -51,50 +74,15 @@ def simulate(
     as_json: shared.AsJson = False,
 ) -> None:
     """Print how a body rocks under a ground motion, whether it overturns, and whether the model of impact decides."""
-    from rocking.cli import simulate_document, simulate_json, simulate_output, simulate_page
-    from rocking.cli.body_options import body_from
-    from rocking.cli.simulate_question import body_and_motion, motion_asked, question_of
+    from rocking.cli import simulate_of_contact, simulate_of_pure_rocking, simulate_of_solid
+    from rocking.cli.simulate_asked import Asked
+    from rocking.cli.simulate_output import Files
 
-    files = simulate_output.Files(picture, animation, csv, mat, netcdf)
-    document = simulate_document.path_of(context)
-    if document is not None:
-        answer = simulate_document.answer_of(document)
+    asked = Asked.of(context)
+    files = Files(picture, animation, csv, mat, netcdf)
+    if asked.solid is not None:
+        simulate_of_solid.answer(asked, files, as_json=as_json)
+    elif contact:
+        simulate_of_contact.answer(asked, files, as_json=as_json)
     else:
-        sized = any(value is not None for value in (width, height, angle, semi_diagonal))
-        file, word = body_and_motion(body, record, motion, sized=sized, free=free is not None)
-        subject = body_from(
-            file,
-            width=width,
-            height=height,
-            depth=depth,
-            density=density,
-            angle=angle,
-            semi_diagonal=semi_diagonal,
-            unit=unit,
-        )
-        told = {
-            "format": format,
-            "units": units,
-            "time_step": time_step,
-            "component": component,
-            "vertical": vertical,
-            "vertical_file": vertical_file,
-        }
-        question = question_of(
-            subject,
-            motion_asked(word, told, scale),
-            free,
-            scale=scale,
-            gravity=gravity,
-            engine=engine,
-            linear=linear,
-            friction=friction,
-        )
-        answer = simulate_output.Answer.of(question, restitution)
-    written = files.write(answer)
-    if as_json:
-        print(simulate_json.as_json(answer))
-    else:
-        simulate_page.show(answer)
-        for path in written:
-            print(f"wrote {path}")
+        simulate_of_pure_rocking.answer(asked, files, as_json=as_json)

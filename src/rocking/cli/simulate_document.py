@@ -33,7 +33,7 @@ def path_of(context: typer.Context) -> Path | None:
     word = context.params.get("body")
     if word is None or not is_response(Path(word)):
         return None
-    given = [name for name in context.params if name not in _OUTPUTS and _typed(context, name)]
+    given = [name for name in context.params if name not in _OUTPUTS and typed(context, name)]
     if given:
         names = ", ".join("a second word" if name == "record" else f"--{name.replace('_', '-')}" for name in given)
         raise InvalidValueError(f"{word} has a table [response] and says everything itself, so it takes no {names}")
@@ -58,6 +58,20 @@ def answer_of(path: Path) -> Answer:
     return Answer.of_choices(ResponseJob.read(path).question)
 
 
-def _typed(context: typer.Context, name: str) -> bool:
+def typed(context: typer.Context, name: str) -> bool:
+    """Return whether an option was typed.
+
+    Parameters
+    ----------
+    context : typer.Context
+        The command as it was typed.
+    name : str
+        Parameter of the command.
+
+    Returns
+    -------
+    bool
+        False where its value is the default.
+    """
     source = context.get_parameter_source(name)
     return source is not None and source.name == "COMMANDLINE"

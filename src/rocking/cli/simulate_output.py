@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking.cli.simulate_question import Question, restitution_from
+from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
@@ -133,19 +134,41 @@ class Files:
         list of Path
             The files.
         """
-        response = answer.response
+        written = self.written(answer.response, lambda: _drawn(answer))
+        if self.animation is not None:
+            _animate(answer.response, self.animation)
+        return written
+
+    def written(self, response: Exportable, drawn: Callable[[], Any]) -> list[Path]:
+        """Write the picture and the samples of any kind of response.
+
+        Parameters
+        ----------
+        response : Exportable
+            The response.
+        drawn : callable
+            Returns its picture.
+
+        Returns
+        -------
+        list of Path
+            The files, the animation among them, which only the pure rocking response has.
+        """
         if self.picture is not None:
-            from rocking.plots.response import response_picture
             from rocking.plots.style import write
 
-            write(response_picture(response, answer.friction), self.picture)
-        if self.animation is not None:
-            _animate(response, self.animation)
+            write(drawn(), self.picture)
         exports = (self.csv, response.to_csv), (self.mat, response.to_mat), (self.netcdf, response.to_netcdf)
         for path, export in exports:
             if path is not None:
                 _export(export, path)
         return [path for path in (self.picture, self.animation, self.csv, self.mat, self.netcdf) if path is not None]
+
+
+def _drawn(answer: Answer) -> Any:
+    from rocking.plots.response import response_picture
+
+    return response_picture(answer.response, answer.friction)
 
 
 def _export(export: Callable[[Path], object], path: Path) -> None:

@@ -12,6 +12,8 @@ from rocking.report.facts.verdict import Verdict
 _FIRST = 10
 """Impacts that are printed."""
 
+_IN_PYTHON = "simulate_with_contact(body, motion, friction=...)"
+
 
 def show(answer: Answer) -> None:
     """Print body, motion, outcome, impacts, doubts, and what other models say.
@@ -38,7 +40,7 @@ def show(answer: Answer) -> None:
     for word, value in _measures(answer):
         console.print(f"{word + ':':<16} {value}", markup=False)
     for warning in response.contact.warnings(answer.friction):
-        console.print(f"! {warning}", style="yellow", markup=False)
+        console.print(f"! {warning.replace(_IN_PYTHON, '--contact')}", style="yellow", markup=False)
     console.print()
     console.print("With other restitution models", style="bold")
     console.print(_rivals(answer))

@@ -9,6 +9,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
+from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
@@ -19,12 +20,8 @@ from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pandas as pd
-    import xarray as xr
-
     from rocking.dynamics.contact import Contact
+    from rocking.dynamics.exported import Exported
     from rocking.dynamics.intervals import Intervals
     from rocking.dynamics.ledger import ResponseEnergy
 
@@ -39,7 +36,7 @@ IMPACT = np.dtype(
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class Response(Exportable):
     """What `simulate` returns; everything that takes time is computed when first asked for.
 
     Parameters
@@ -250,77 +247,14 @@ class Response:
         c = intervals.quintics()[k]
         return np.asarray((c * x[..., None] ** np.arange(6)).sum(axis=-1))
 
-    def to_xarray(self) -> "xr.Dataset":
-        """Return the response as a labelled dataset with units and provenance.
+    def exported(self) -> "Exported":
+        """Return what the files of this response hold.
 
         Returns
         -------
-        xarray.Dataset
-            Over `time` and `impact`.
+        Exported
+            Samples, impacts and provenance, with units.
         """
-        from rocking.dynamics.export import to_xarray
+        from rocking.dynamics.samples import exported
 
-        return to_xarray(self)
-
-    def to_dataframe(self) -> "pd.DataFrame":
-        """Return the samples as a table.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row a sample, units in the column names.
-        """
-        from rocking.dynamics.export import to_dataframe
-
-        return to_dataframe(self)
-
-    def to_csv(self, path: "str | Path") -> "Path":
-        """Write the samples as comma-separated values.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.dynamics.export import to_csv
-
-        return to_csv(self, path)
-
-    def to_mat(self, path: "str | Path") -> "Path":
-        """Write a file that MATLAB loads.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.dynamics.export import to_mat
-
-        return to_mat(self, path)
-
-    def to_netcdf(self, path: "str | Path") -> "Path":
-        """Write a netCDF file, which xarray and MATLAB open.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.dynamics.export import to_netcdf
-
-        return to_netcdf(self, path)
+        return exported(self)

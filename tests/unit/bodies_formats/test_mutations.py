@@ -150,7 +150,7 @@ def _body_from_parsed(given):
     if not isinstance(given, dict):
         raise RockingError("TOML is always a table")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(body_file, "_parsed", lambda _: given)
+        patch.setattr(body_file, "parsed_toml", lambda _: given)
         return body_from_toml("")
 
 

@@ -78,7 +78,7 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
     4.0
     """
     with blamed(name):
-        document = _validated(_parsed(text))
+        document = _validated(_plane(parsed_toml(text)))
         scale = length_unit(document.units)
         if document.block:
             return _block(document.block, scale)
@@ -89,7 +89,29 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
         return _shape(document, scale)
 
 
-def _parsed(text: Any) -> dict[str, Any]:
+def parsed_toml(text: Any) -> dict[str, Any]:
+    """Return the tables of a TOML text.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+
+    Returns
+    -------
+    dict
+        As it is written, nothing checked.
+
+    Raises
+    ------
+    BodyFileError
+        If it is no text, too long, or not TOML.
+
+    Examples
+    --------
+    >>> parsed_toml('units = "m"')
+    {'units': 'm'}
+    """
     if not isinstance(text, str):
         raise BodyFileError(f"a body file must be text, got {type(text).__name__}")
     if len(text) > LARGEST_TOML:
@@ -100,6 +122,12 @@ def _parsed(text: Any) -> dict[str, Any]:
         raise BodyFileError(f"is not TOML: {error}") from error
     except (ValueError, RecursionError) as error:  # an integer of thousands of digits, thousands of brackets
         raise BodyFileError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
+
+
+def _plane(given: dict[str, Any]) -> dict[str, Any]:
+    if "solid" in given:
+        raise BodyFileError("describes a body in space, [solid], which read_solid reads; a plane body is needed here")
+    return given
 
 
 def _validated(given: dict[str, Any]) -> "schema.Document":
@@ -175,19 +203,37 @@ def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> li
     if table.wkt is not None:
         return regions_from_wkt(table.wkt, density, units=own, name="wkt")
     if table.geojson is not None:
-        path = _beside(folder, table.geojson)
+        path = beside(folder, table.geojson)
         with blamed(path.name):
             text = read_text(path)
         return regions_from_geojson(text, density, units=own, name=path.name)
     if table.dxf is not None:
-        return regions_from_dxf(_beside(folder, table.dxf), density, units=own, layers=table.layers)
+        return regions_from_dxf(beside(folder, table.dxf), density, units=own, layers=table.layers)
     scale = length_unit(units)
     outline, *holes = (np.array(ring) * scale for ring in (table.outline or [], *(table.holes or ())))
     return [Region(outline, density, holes)]
 
 
-def _beside(folder: Path | None, name: str) -> Path:
-    """Return the path of a file that a body file names: below its own folder, wherever the text came from."""
+def beside(folder: Path | None, name: str) -> Path:
+    """Return the path of a file that a body file names: below its own folder, wherever the text came from.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        Folder of the body file; without it no file can be named.
+    name : str
+        Name of the file, relative to the folder.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    BodyFileError
+        If it lies elsewhere, or no file can have such a name.
+    """
     if folder is None:
         raise BodyFileError(f"names the file {name!r}, but text without a folder cannot name files")
     try:

@@ -25,7 +25,7 @@ _MUST_BE = {
     "model_type": "must be a table",
     "literal_error": "must be one of {expected}",
 }
-_UNITS = {"density": "kg/m3", "masses": "kg", "layers": "kg/m3", "sides": ""}
+_UNITS = {"density": "kg/m3", "masses": "kg", "layers": "kg/m3", "sides": "", "degrees": "degree", "axis": ""}
 _SHOWN = reprlib.Repr()
 _SHOWN.maxstring = _SHOWN.maxother = 60
 

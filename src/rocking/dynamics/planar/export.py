@@ -1,19 +1,14 @@
-"""A planar response as tables and files, with units and provenance."""
+"""What the files of a planar response hold: samples, impacts, regimes, what was computed from what."""
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.export import extra, target_of
+from rocking.dynamics.exported import Exported, Quantity, told
 from rocking.dynamics.planar.mode import Regime
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pandas as pd
-    import xarray as xr
-
     from rocking.dynamics.planar.response import PlanarResponse
 
 COLUMNS = (
@@ -41,6 +36,7 @@ _IMPACT_UNITS = {
     "time": "s", "velocity_before": "rad/s", "velocity_after": "rad/s", "normal_left": "N s", "normal_right": "N s",
     "tangential_left": "N s", "tangential_right": "N s", "lost": "J",
 }  # fmt: skip
+_INTERVAL_UNITS = {"start": "s", "end": "s", "distance": "m"}
 
 
 def columns(response: "PlanarResponse") -> dict[str, FloatArray]:
@@ -79,14 +75,14 @@ def provenance(response: "PlanarResponse") -> dict[str, Any]:
     dict
         Numbers and words.
     """
-    from importlib.metadata import version
+    from rocking.dynamics.export import software
 
     motion, law, footing = response.motion, response.law, response.footing
     imposed = (
         "none: complementarity" if law.restitution is None else "left {:.9g}, right {:.9g}".format(*law.restitution)
     )
     return {
-        "software": f"rocking {version('rocking')}",
+        "software": software(),
         "engine": "planar: Taylor series with events and complementarity",
         "outcome": response.outcome.name,
         "status": response.status.name,
@@ -101,13 +97,14 @@ def provenance(response: "PlanarResponse") -> dict[str, Any]:
         "bounce": law.bounce,
         "imposed_restitution": imposed,
         "motion": "none: ground at rest" if motion is None else motion.name,
+        "motion_provenance": told(motion),
         "scale": response.scale,
         **{f"setting_{k}": v for k, v in vars(response.settings).items()},
     }
 
 
-def to_xarray(response: "PlanarResponse") -> "xr.Dataset":
-    """Return a response as a labelled dataset.
+def exported(response: "PlanarResponse") -> Exported:
+    """Return what the files of a response hold.
 
     Parameters
     ----------
@@ -116,71 +113,16 @@ def to_xarray(response: "PlanarResponse") -> "xr.Dataset":
 
     Returns
     -------
-    xarray.Dataset
-        Over `time`, `impact` and `interval`, with units and long names.
+    Exported
+        Samples, impacts, intervals of one regime, and provenance.
     """
-    xarray = extra("xarray", "a labelled dataset")
-    about = {name: {"units": unit, "long_name": words} for name, unit, words in COLUMNS}
-    values = columns(response)
-    data: dict[str, Any] = {name: ("time", value, about[name]) for name, value in values.items() if name != "time"}
+    about = {name: (unit, words) for name, unit, words in COLUMNS}
+    samples = {name: Quantity(values, *about[name]) for name, values in columns(response).items()}
     impacts, regimes = response.impacts, response.regimes
-    for name, unit in _IMPACT_UNITS.items():
-        data[f"impact_{name}"] = ("impact", impacts[name], {"units": unit})
-    data["impact_feet"] = ("impact", impacts["feet"], {"long_name": "feet that touch the ground"})
-    for name, unit in (("start", "s"), ("end", "s"), ("distance", "m")):
-        data[f"interval_{name}"] = ("interval", regimes[name], {"units": unit})
-    data["interval_regime"] = ("interval", regimes["regime"], {"long_name": "regime"})
-    data["interval_feet"] = ("interval", regimes["feet"], {"long_name": "feet that carry"})
-    made: xr.Dataset = xarray.Dataset(
-        data, coords={"time": ("time", values["time"], about["time"])}, attrs=provenance(response)
-    )
-    return made
-
-
-def to_dataframe(response: "PlanarResponse") -> "pd.DataFrame":
-    """Return the samples of a response as a table.
-
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns such as ``rotation [rad]``.
-    """
-    pandas = extra("pandas", "a table")
-    made: pd.DataFrame = pandas.DataFrame(_named(response))
-    return made
-
-
-def to_csv(response: "PlanarResponse", path: "str | Path") -> "Path":
-    """Write the samples of a response as comma-separated values, all digits kept.
-
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
-    import csv
-
-    target = target_of(path)
-    named = _named(response)
-    with target.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(named)
-        writer.writerows(zip(*(map(repr, np.asarray(v).tolist()) for v in named.values()), strict=True))
-    return target
-
-
-def _named(response: "PlanarResponse") -> dict[str, FloatArray]:
-    units = {name: unit for name, unit, _ in COLUMNS}
-    return {f"{name} [{units[name]}]": value for name, value in columns(response).items()}
+    blows = {name: Quantity(impacts[name], unit) for name, unit in _IMPACT_UNITS.items()}
+    blows["feet"] = Quantity(impacts["feet"], words="feet that touch the ground")
+    blows["slips"] = Quantity(impacts["slips"].astype(np.int8), "1", "whether the feet slid in the impact: 1 yes, 0 no")
+    intervals = {name: Quantity(regimes[name], unit) for name, unit in _INTERVAL_UNITS.items()}
+    intervals["regime"] = Quantity(regimes["regime"], words="regime")
+    intervals["feet"] = Quantity(regimes["feet"], words="feet that carry")
+    return Exported(samples, {"impact": blows, "interval": intervals}, provenance(response))

@@ -9,6 +9,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.planar.books import PlanarEnergy, PlanarForces, energy_of, forces_of
 from rocking.dynamics.planar.events import impacts_of, places_of, regimes_of
 from rocking.dynamics.planar.footing import Footing
@@ -23,16 +24,13 @@ from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pandas as pd
-    import xarray as xr
+    from rocking.dynamics.exported import Exported
 
 _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class PlanarResponse:
+class PlanarResponse(Exportable):
     """What `simulate_with_contact` returns.
 
     Parameters
@@ -226,43 +224,14 @@ class PlanarResponse:
             raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
         return places_of(self.history, np.clip(given, 0.0, end))
 
-    def to_xarray(self) -> "xr.Dataset":
-        """Return the response as a labelled dataset with units and provenance.
+    def exported(self) -> "Exported":
+        """Return what the files of this response hold.
 
         Returns
         -------
-        xarray.Dataset
-            Over `time`, `impact` and `interval`.
+        Exported
+            Samples, impacts, intervals of one regime and provenance, with units.
         """
-        from rocking.dynamics.planar.export import to_xarray
+        from rocking.dynamics.planar.export import exported
 
-        return to_xarray(self)
-
-    def to_dataframe(self) -> "pd.DataFrame":
-        """Return the samples as a table.
-
-        Returns
-        -------
-        pandas.DataFrame
-            One row a sample, units in the column names.
-        """
-        from rocking.dynamics.planar.export import to_dataframe
-
-        return to_dataframe(self)
-
-    def to_csv(self, path: "str | Path") -> "Path":
-        """Write the samples as comma-separated values.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.dynamics.planar.export import to_csv
-
-        return to_csv(self, path)
+        return exported(self)

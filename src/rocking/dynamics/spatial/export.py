@@ -1,24 +1,22 @@
-"""A response in space as tables and files: xarray, CSV, netCDF, each with units and provenance."""
+"""What the files of a response in space hold: samples, impacts, contacts, what was computed from what."""
 
-from importlib.metadata import version
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.conventions import FloatArray
-from rocking.dynamics.export import extra, target_of
+from rocking.dynamics.exported import Exported, Quantity
+from rocking.dynamics.spatial.outcome import Contact
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    import xarray as xr
-
     from rocking.dynamics.spatial.response import SpatialResponse
 
 _AXES = ("x", "y", "z")
+_CONTACTS = ", ".join(f"{contact.code} {contact.name.lower()}" for contact in Contact)
+_IMPACT_UNITS = {"time": "s", "energy_before": "J", "energy_after": "J", "impulse": "N s", "pull": "N s"}
 
 
-def columns(response: "SpatialResponse") -> dict[str, tuple[str, str, FloatArray]]:
+def columns(response: "SpatialResponse") -> dict[str, Quantity]:
     """Return the samples of a response in space by name.
 
     Parameters
@@ -28,31 +26,25 @@ def columns(response: "SpatialResponse") -> dict[str, tuple[str, str, FloatArray
 
     Returns
     -------
-    dict of str to tuple
-        Unit, words, and values, all of one length.
+    dict of str to Quantity
+        All of one length.
     """
     energy, states = response.energy, response.states
-    made: dict[str, tuple[str, str, FloatArray]] = {"time": ("s", "time", response.time)}
-    for k, name in enumerate(("s", *_AXES)):
-        made[f"quaternion_{name}"] = (
-            "1",
-            f"attitude, component {name} of the unit quaternion",
-            states.quaternion[:, k],
-        )
-    for k, name in enumerate(_AXES):
-        made[f"angular_velocity_{name}"] = ("rad/s", f"angular velocity about {name}", states.angular_velocity[:, k])
-    made["tilt"] = ("rad", "angle between the axis of the body and the vertical", response.tilt)
-    made["azimuth"] = ("rad", "direction in which the body leans, from x towards y", response.azimuth)
-    made["contact"] = ("1", "0 rest, 1 edge, 2 vertex, 3 rolling", response.contact.astype(np.float64))
-    for k, name in enumerate(_AXES):
-        made[f"centre_{name}"] = ("m", f"centre of mass, {name}", response.centre[:, k])
     ground = response.ground.at(response.time)
-    for k, name in enumerate(_AXES):
-        made[f"ground_acceleration_{name}"] = ("m/s2", f"acceleration of the ground, {name}", ground[:, k])
-    made["kinetic_energy"] = ("J", "kinetic energy", energy.kinetic)
-    made["potential_energy"] = ("J", "potential energy above rest", energy.potential)
-    made["work_of_ground"] = ("J", "work done by the ground since the start", energy.work)
-    made["energy_lost"] = ("J", "energy lost at impacts since the start", energy.lost)
+    made = {"time": Quantity(response.time, "s", "time")}
+    for k, name in enumerate(("s", *_AXES)):
+        words = f"attitude, component {name} of the unit quaternion"
+        made[f"quaternion_{name}"] = Quantity(states.quaternion[:, k], "1", words)
+    made |= _vector("angular_velocity", "rad/s", "angular velocity about", states.angular_velocity)
+    made["tilt"] = Quantity(response.tilt, "rad", "angle between the axis of the body and the vertical")
+    made["azimuth"] = Quantity(response.azimuth, "rad", "direction in which the body leans, from x towards y")
+    made["contact"] = Quantity(response.contact.astype(np.float64), "1", _CONTACTS)
+    made |= _vector("centre", "m", "centre of mass,", response.centre)
+    made |= _vector("ground_acceleration", "m/s2", "acceleration of the ground,", ground)
+    made["kinetic_energy"] = Quantity(energy.kinetic, "J", "kinetic energy")
+    made["potential_energy"] = Quantity(energy.potential, "J", "potential energy above rest")
+    made["work_of_ground"] = Quantity(energy.work, "J", "work done by the ground since the start")
+    made["energy_lost"] = Quantity(energy.lost, "J", "energy lost at impacts since the start")
     return made
 
 
@@ -67,16 +59,18 @@ def provenance(response: "SpatialResponse") -> dict[str, Any]:
     Returns
     -------
     dict
-        Numbers, words and lists of numbers.
+        Numbers, words and lists of numbers; ``overturning_direction_rad`` only where it overturned.
     """
-    body = response.body
+    from rocking.dynamics.export import software
+
+    body, direction = response.body, response.overturning_direction
     return {
-        "software": f"rocking {version('rocking')}",
+        "software": software(),
         "engine": response.trajectory.engine,
         "outcome": response.outcome.name,
         "status": response.status.name,
         "summary": response.summary,
-        "overturning_direction_rad": response.overturning_direction,
+        **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
         "mass_kg": body.mass,
         "centre_m": body.centre.tolist(),
         "inertia_kg_m2": body.inertia.ravel().tolist(),
@@ -87,8 +81,8 @@ def provenance(response: "SpatialResponse") -> dict[str, Any]:
     }
 
 
-def to_xarray(response: "SpatialResponse") -> "xr.Dataset":
-    """Return a response in space as a labelled dataset.
+def exported(response: "SpatialResponse") -> Exported:
+    """Return what the files of a response in space hold.
 
     Parameters
     ----------
@@ -97,67 +91,24 @@ def to_xarray(response: "SpatialResponse") -> "xr.Dataset":
 
     Returns
     -------
-    xarray.Dataset
-        Over `time` and `impact`, with units and long names.
+    Exported
+        Samples, impacts, intervals of one contact, and provenance.
     """
-    xarray = extra("xarray", "a labelled dataset")
-    data: dict[str, Any] = {
-        name: ("time", values, {"units": unit, "long_name": words})
-        for name, (unit, words, values) in columns(response).items()
-        if name != "time"
+    impacts = {name: Quantity(response.impacts[name], unit) for name, unit in _IMPACT_UNITS.items()}
+    impacts["contact"] = Quantity(response.impacts["contact"], words="contact that stays")
+    impacts["vertices"] = Quantity(response.impacts["vertices"], words="vertices that stay on the ground")
+    rows = response.intervals
+    intervals = {
+        "start": Quantity(np.array([start for start, _, _, _ in rows], dtype=np.float64), "s"),
+        "end": Quantity(np.array([end for _, end, _, _ in rows], dtype=np.float64), "s"),
+        "contact": Quantity(np.array([contact.name.lower() for _, _, contact, _ in rows], dtype="U8"), words="contact"),
+        "vertices": Quantity(
+            np.array(["-".join(map(str, points)) for _, _, _, points in rows], dtype="U64"),
+            words="vertices on the ground",
+        ),
     }
-    units = {"time": "s", "energy_before": "J", "energy_after": "J", "impulse": "N s", "pull": "N s"}
-    for name, unit in units.items():
-        data[f"impact_{name}"] = ("impact", response.impacts[name], {"units": unit})
-    for name in ("contact", "vertices"):
-        data[f"impact_{name}"] = ("impact", response.impacts[name].astype(object))
-    time = ("time", response.time, {"units": "s", "long_name": "time"})
-    made: xr.Dataset = xarray.Dataset(data, coords={"time": time}, attrs=provenance(response))
-    return made
+    return Exported(columns(response), {"impact": impacts, "interval": intervals}, provenance(response))
 
 
-def to_csv(response: "SpatialResponse", path: "str | Path") -> "Path":
-    """Write the samples of a response in space as comma-separated values, all digits kept.
-
-    Parameters
-    ----------
-    response : SpatialResponse
-        The response.
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
-    import csv
-
-    target, values = target_of(path), columns(response)
-    with target.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow([f"{name} [{'-' if unit == '1' else unit}]" for name, (unit, _, _) in values.items()])
-        writer.writerows(zip(*(map(repr, row.tolist()) for _, _, row in values.values()), strict=True))
-    return target
-
-
-def to_netcdf(response: "SpatialResponse", path: "str | Path") -> "Path":
-    """Write a response in space as netCDF 4, which xarray and MATLAB open.
-
-    Parameters
-    ----------
-    response : SpatialResponse
-        The response.
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
-    extra("h5py", "netCDF")
-    extra("h5netcdf", "netCDF")
-    target = target_of(path)
-    to_xarray(response).to_netcdf(target, engine="h5netcdf")
-    return target
+def _vector(name: str, unit: str, words: str, values: np.ndarray) -> dict[str, Quantity]:
+    return {f"{name}_{axis}": Quantity(values[:, k], unit, f"{words} {axis}") for k, axis in enumerate(_AXES)}

@@ -9,6 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial.ground import SpatialGround
@@ -20,10 +21,7 @@ from rocking.dynamics.spatial.trajectory import SpatialTrajectory
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    import xarray as xr
-
+    from rocking.dynamics.exported import Exported
     from rocking.dynamics.ledger import ResponseEnergy
     from rocking.dynamics.spatial.states import States
 
@@ -43,7 +41,7 @@ for the points to stick [N s], what stays, and its vertices."""
 
 
 @dataclass(frozen=True, eq=False)
-class SpatialResponse:
+class SpatialResponse(Exportable):
     """What `simulate_spatial` returns; everything that takes time is computed when first asked for.
 
     Parameters
@@ -242,48 +240,14 @@ class SpatialResponse:
             raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
         return states_of(self.body, self.trajectory, np.clip(given, 0.0, end))
 
-    def to_xarray(self) -> "xr.Dataset":
-        """Return the response as a labelled dataset with units and provenance.
+    def exported(self) -> "Exported":
+        """Return what the files of this response hold.
 
         Returns
         -------
-        xarray.Dataset
-            Over `time` and `impact`.
+        Exported
+            Samples, impacts, intervals of one contact and provenance, with units.
         """
-        from rocking.dynamics.spatial.export import to_xarray
+        from rocking.dynamics.spatial.export import exported
 
-        return to_xarray(self)
-
-    def to_csv(self, path: "str | Path") -> "Path":
-        """Write the samples as comma-separated values.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.dynamics.spatial.export import to_csv
-
-        return to_csv(self, path)
-
-    def to_netcdf(self, path: "str | Path") -> "Path":
-        """Write a netCDF file, which xarray and MATLAB open.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.dynamics.spatial.export import to_netcdf
-
-        return to_netcdf(self, path)
+        return exported(self)

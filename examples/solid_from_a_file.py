@@ -1,0 +1,68 @@
+"""A vase from a scan on a marble plinth, both from one body file: mass, base, coefficients and a response in space."""
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import rocking as rk
+from rocking.bodies.formats import read_solid
+from rocking.bodies.solid import box, revolution
+from rocking.restitution.spatial import edge_coefficient, spatial_models
+
+# what a scanner would hand over: triangles in millimetres, some of them with their inside out
+profile = np.array([(0.07, 0.0), (0.06, 0.05), (0.16, 0.30), (0.12, 0.50), (0.14, 0.60)])
+vase = revolution(profile)
+triangles = np.concatenate([surface.triangles(12) for surface in vase.surfaces()]) * 1000.0
+triangles[::50] = triangles[::50, ::-1]
+
+
+def stl(corners):
+    """Text of an STL file."""
+    facets = ["vertex {:.9g} {:.9g} {:.9g}".format(*point) for point in corners.reshape(-1, 3).tolist()]
+    loops = ["\n".join(facets[i : i + 3]) for i in range(0, len(facets), 3)]
+    body = "\n".join(f"facet normal 0 0 0\nouter loop\n{loop}\nendloop\nendfacet" for loop in loops)
+    return f"solid vase\n{body}\nendsolid vase\n"
+
+
+TOML = """
+units = "cm"
+name = "vase on a plinth"
+
+[[solid.part]]                # kg/m3, whatever the units
+box = { width = 30, depth = 26, height = 90 }
+density = 2700
+
+[[solid.part]]
+mesh = { file = "vase.stl", units = "mm" }
+density = 1900
+turned = [{ axis = [0, 0, 1], degrees = 30 }]
+at = [1, 0, 90]
+"""
+
+with tempfile.TemporaryDirectory() as folder:
+    (Path(folder) / "vase.stl").write_text(stl(triangles), encoding="utf-8")
+    (Path(folder) / "vase.toml").write_text(TOML, encoding="utf-8")
+    found = read_solid(Path(folder) / "vase.toml")
+    alone = read_solid(Path(folder) / "vase.stl", units="mm", density=1900.0)
+
+print(f"{found.name}: {found.solid.mass:.2f} kg, centre {found.solid.centre.round(4)} m")
+for sentence in found.repairs:
+    print("repaired:", sentence)
+exact = 1900.0 * vase.moments().mass
+print(f"vase alone: {alone.solid.mass:.3f} kg from its triangles, {exact:.3f} kg from its profile")
+assert any("turned round" in sentence for sentence in found.repairs)
+assert abs(alone.solid.mass / exact - 1.0) < 0.01
+assert np.isclose(found.solid.mass, alone.solid.mass + 2700.0 * box(0.30, 0.26, 0.90).moments().mass, rtol=1e-12)
+
+for name in spatial_models():
+    over = [edge_coefficient(found.solid, name, start=i) for i in range(4)]
+    print(f"{name:24s} edges {', '.join(f'{r:.4f}' for r in over)}")
+    assert all(0.0 < r < 1.0 for r in over)
+
+x, y = rk.pulses.sine(amplitude=3.5, period=0.5), rk.pulses.ricker(amplitude=3.0, period=0.6)
+response = rk.simulate_spatial(found.solid, x, y)
+print(response.summary)
+assert response.outcome is not rk.Outcome.FAILED
+frame = response.to_dataframe()
+assert np.array_equal(frame["tilt [rad]"], response.tilt)

@@ -1,0 +1,191 @@
+"""A body in space from the text of a TOML file: parts of simple shapes and of meshes, each in its place.
+
+.. code-block:: toml
+
+    units = "cm"
+    [[solid.part]]
+    box = { width = 60, depth = 50, height = 100 }
+    density = 2400        # kg/m3, whatever the units
+    [[solid.part]]
+    mesh = { file = "bust.stl", units = "mm" }
+    density = 2700
+    turned = [{ axis = [0, 0, 1], degrees = 90 }]
+    at = [0, 0, 100]
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.bodies.body import DEFAULT_DENSITY
+from rocking.bodies.formats.body_file import beside, parsed_toml
+from rocking.bodies.formats.mesh import mesh_from_file
+from rocking.bodies.formats.source import blamed, check_count
+from rocking.bodies.formats.words import sentence
+from rocking.bodies.solid.lathe import cone, cylinder, ellipsoid, frustum, revolution
+from rocking.bodies.solid.part import Part
+from rocking.bodies.solid.prism import box, extrusion
+from rocking.bodies.solid.shape import Shape
+from rocking.bodies.solid.solid import Solid
+from rocking.checks import length_unit
+from rocking.errors import BodyFileError
+
+if TYPE_CHECKING:
+    from rocking.bodies.formats import solid_schema as schema
+
+_FARTHEST = 1e8
+
+
+@dataclass(frozen=True, eq=False)
+class SolidFile:
+    """A body in space from a file, with what was done to get it.
+
+    Parameters
+    ----------
+    solid : Solid
+        The body.
+    repairs : tuple of str
+        One sentence for each change of a mesh and each doubt about it; empty if there was none.
+    name : str
+        What the file calls the body; else the name of the file.
+    """
+
+    solid: Solid
+    repairs: tuple[str, ...] = ()
+    name: str = ""
+
+
+def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> SolidFile:
+    r"""Return the body in space that the text of a file describes.
+
+    A part has one shape (box, cylinder, cone, frustum, sphere, ellipsoid, extrusion, revolution, mesh), a density
+    [kg/m3], turns about axes through the origin in the order that is written, and then its place `at`. The body stands
+    on its lowest point if the file states no ground.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    name : str
+        Name that errors show.
+    folder : str or Path, optional
+        Folder of the meshes that the text names; without it, text cannot name files.
+
+    Returns
+    -------
+    SolidFile
+        The body, and what was done to its meshes.
+
+    Raises
+    ------
+    BodyFileError
+        If the text is not TOML, a key is unknown or missing, or a value is not of the kind or in the range
+        that its key needs.
+    GeometryError
+        If the parts do not make a body that stands, or a mesh does not enclose a volume.
+    InvalidValueError
+        If a size or a density is beyond what a body can have.
+    MissingExtraError
+        If the text names a mesh and trimesh is not installed.
+
+    Examples
+    --------
+    >>> text = 'units = "cm"\n[[solid.part]]\nbox = { width = 50, depth = 50, height = 200 }\ndensity = 2000'
+    >>> solid_from_toml(text).solid.mass
+    1000.0
+    """
+    with blamed(name):
+        document = _validated(parsed_toml(text))
+        root = None if folder is None else Path(folder)
+        said: list[str] = []
+        parts: list[Part] = []
+        for number, table in enumerate(document.solid.part):
+            with blamed(f"solid.part[{number}]"):
+                parts.append(_part(table, document.units, root, said))
+        with blamed("solid"):
+            return SolidFile(_standing(document, parts), tuple(said), document.name or name)
+
+
+def _validated(given: dict[str, Any]) -> "schema.SolidDocument":
+    from pydantic import ValidationError
+
+    from rocking.bodies.formats.solid_schema import SolidDocument
+
+    try:
+        return SolidDocument.model_validate(given)
+    except ValidationError as error:
+        raise BodyFileError(sentence(error, given.get("units"))) from error
+
+
+def _standing(document: "schema.SolidDocument", parts: list[Part]) -> Solid:
+    table, scale = document.solid, length_unit(document.units)
+    lowest = min(float(part.box()[0, 2]) for part in parts)
+    return Solid(
+        parts,
+        base=None if table.base is None else np.array(table.base) * scale,
+        ground=lowest if table.ground is None else table.ground * scale,
+        base_tolerance=None if table.base_tolerance is None else table.base_tolerance * scale,
+    )
+
+
+def _part(table: "schema.PartTable", units: str, folder: Path | None, said: list[str]) -> Part:
+    density = DEFAULT_DENSITY if table.density is None else table.density
+    scale = length_unit(units)
+    if table.mesh is not None:
+        part = _mesh(table.mesh, units, folder, density, said)
+    else:
+        part = Part(_shape(table, scale), density)
+    for turn in table.turned or ():
+        part = part.turned(turn.axis, math.radians(turn.degrees))
+    return part if table.at is None else _moved(part, [scale * x for x in table.at])
+
+
+def _moved(part: Part, place: list[float]) -> Part:
+    size = float(np.ptp(part.box(), axis=0).max())
+    if max(map(abs, place)) > _FARTHEST * size:
+        raise BodyFileError(
+            f"at must be within {_FARTHEST:g} times the size of its part, {size:.4g} m, got "
+            f"{max(place, key=abs):.4g} m: so far away the shape is lost in rounding"
+        )
+    return part.moved(*place)
+
+
+def _mesh(table: "schema.MeshTable", units: str, folder: Path | None, density: float, said: list[str]) -> Part:
+    path = beside(folder, table.file)
+    own = table.units or units
+    reach = None if table.weld_tolerance is None else table.weld_tolerance * length_unit(own)
+    mesh = mesh_from_file(path, units=own, up=table.up, weld_tolerance=reach, fill_holes=table.fill_holes)
+    said += [f"{path.name}: {words}" for words in mesh.repairs]
+    return mesh.part(density)
+
+
+def _shape(table: "schema.PartTable", scale: float) -> Shape:
+    if table.extrusion is not None:
+        rings = [np.array(ring) * scale for ring in (table.extrusion.outline, *(table.extrusion.holes or ()))]
+        check_count(sum(map(len, rings)))
+        return extrusion(rings[0], table.extrusion.height * scale, tuple(rings[1:]))
+    if table.revolution is not None:
+        check_count(len(table.revolution.profile))
+        return revolution(np.array(table.revolution.profile) * scale)
+    kind, make = next((kind, make) for kind, make in _SIMPLE.items() if getattr(table, kind) is not None)
+    sizes = getattr(table, kind).model_dump()
+    return make(**{key: value * scale for key, value in sizes.items()})
+
+
+def _sphere(diameter: float, cut_below: float, cut_above: float) -> Shape:
+    return ellipsoid(diameter, diameter, diameter, cut_below=cut_below, cut_above=cut_above)
+
+
+_SIMPLE: dict[str, Callable[..., Shape]] = {
+    "box": box,
+    "cylinder": cylinder,
+    "cone": cone,
+    "frustum": frustum,
+    "sphere": _sphere,
+    "ellipsoid": ellipsoid,
+}
+"""Shapes whose sizes are all lengths: the keys of their tables are the arguments."""

@@ -1,0 +1,198 @@
+"""What `rocking simulate --contact` computes and prints: rest, slide, rock, slide while rocking, flight."""
+
+import json
+import math
+from typing import Any
+
+from rocking.cli.simulate_question import Question, restitution_from
+from rocking.dynamics.planar import PlanarOutcome, PlanarResponse, Regime, Start, simulate_with_contact
+from rocking.errors import RockingError
+from rocking.report.facts.response import finite, moved_facts
+
+_FIRST = 12
+"""Modes and impacts that are printed."""
+
+_MODE_KEYS = ("start_s", "end_s", "mode", "feet", "slip", "distance_m")
+_IMPACT_KEYS = (
+    "time_s", "feet", "velocity_before_rad_s", "velocity_after_rad_s", "normal_left_N_s", "normal_right_N_s",
+    "tangential_left_N_s", "tangential_right_N_s", "lost_J", "slips",
+)  # fmt: skip
+
+COMPLEMENTARITY = "complementarity"
+"""Word for rocking impacts that follow from complementarity, as all others do."""
+
+
+def contact_response(question: Question, restitution: str, bounce: float) -> PlanarResponse:
+    """Return what a body does that may slide and hop.
+
+    Parameters
+    ----------
+    question : ResponseQuestion
+        Body, motion, friction, and how to compute.
+    restitution : str
+        Model or coefficient of rocking impacts, or ``"complementarity"``.
+    bounce : float
+        Newton's coefficient of normal velocities [-].
+
+    Returns
+    -------
+    PlanarResponse
+        With a result.
+
+    Raises
+    ------
+    RockingError
+        If it could not be computed.
+    """
+    response = simulate_with_contact(
+        question.body,
+        question.motion,
+        question.friction,
+        bounce=bounce,
+        restitution=None if restitution == COMPLEMENTARITY else restitution_from(restitution),
+        scale=question.scale,
+        gravity=question.settings.gravity,
+        start=Start(rotation=question.rotation),
+    )
+    if response.outcome is PlanarOutcome.FAILED:
+        raise RockingError(f"there is no response: {response.status.value}")
+    return response
+
+
+def contact_facts(response: PlanarResponse) -> dict[str, Any]:
+    """Return everything that is said of a response with contact, as plain values.
+
+    Parameters
+    ----------
+    response : PlanarResponse
+        The response.
+
+    Returns
+    -------
+    dict
+        SI units, named in the keys; None where something does not exist.
+    """
+    law, energy = response.law, response.energy
+    imposed = None if law.restitution is None else dict(zip(("left", "right"), law.restitution, strict=True))
+    return {
+        "body": {"kind": type(response.body).__name__, "mass_kg": response.body.mass},
+        "motion": moved_facts(response.motion, response.scale),
+        "initial_rotation_rad": float(response.rotation[0]),
+        "friction": law.friction,
+        "bounce": law.bounce,
+        "imposed_restitution": imposed,
+        "gravity_m_s2": response.settings.gravity,
+        "outcome": response.outcome.name.lower(),
+        "summary": response.summary,
+        "overturning_time_s": finite(response.overturning_time),
+        "peak_rotation_rad": response.peak_rotation,
+        "sliding_distance_m": response.sliding_distance,
+        "final_displacement_m": float(response.displacement[-1]),
+        "friction_usage": response.friction_usage,
+        "modes": _rows(response.regimes, _MODE_KEYS),
+        "impacts": _rows(response.impacts, _IMPACT_KEYS),
+        "lost_in_impacts_J": float(energy.lost_in_impacts[-1]),
+        "lost_in_friction_J": float(energy.lost_in_friction[-1]),
+        "energy_closure": energy.closure,
+    }
+
+
+def as_json(response: PlanarResponse) -> str:
+    """Return everything as JSON.
+
+    Parameters
+    ----------
+    response : PlanarResponse
+        The response.
+
+    Returns
+    -------
+    str
+        One object.
+    """
+    return json.dumps(contact_facts(response), indent=2, allow_nan=False)
+
+
+def show(response: PlanarResponse) -> None:
+    """Print contact, outcome, modes, impacts and measures.
+
+    Parameters
+    ----------
+    response : PlanarResponse
+        The response.
+    """
+    from rich.console import Console
+
+    console = Console(highlight=False, soft_wrap=True)
+    for word, value in _facts(response):
+        console.print(f"{word + ':':<13} {value}", markup=False)
+    console.print()
+    console.print(f"{response.summary[:1].upper()}{response.summary[1:]}.", style="bold", markup=False)
+    for rows, table in ((response.regimes, _modes), (response.impacts, _impacts)):
+        if rows.size:
+            console.print()
+            console.print(table(rows[:_FIRST]))
+            if rows.size > _FIRST:
+                console.print(f"... and {rows.size - _FIRST} more; --json has them all", style="dim")
+    console.print()
+    for word, value in _measures(response):
+        console.print(f"{word + ':':<16} {value}", markup=False)
+
+
+def _rows(table: Any, keys: tuple[str, ...]) -> list[dict[str, Any]]:
+    return [dict(zip(keys, row, strict=True)) for row in table.tolist()]
+
+
+def _facts(response: PlanarResponse) -> list[tuple[str, str]]:
+    motion, law = response.motion, response.law
+    times = "" if response.scale == 1.0 else f"{response.scale:g} times "
+    let_go = f"none; let go at {math.degrees(float(response.rotation[0])):.4g} deg"
+    imposed = COMPLEMENTARITY
+    if law.restitution is not None:
+        left, right = law.restitution
+        imposed = f"r = {right:.6f}" if left == right else f"left r = {left:.6f}, right r = {right:.6f}"
+    return [
+        ("body", f"{type(response.body).__name__}, {response.body.mass:.4g} kg"),
+        ("motion", let_go if motion is None else times + motion.name),
+        ("contact", f"friction {law.friction:g}, bounce {law.bounce:g}"),
+        ("restitution", imposed),
+    ]
+
+
+def _modes(rows: Any) -> Any:
+    table = _table(("from [s]", "to [s]", "mode", "feet", "slid [m]"), left=("mode", "feet"))
+    for start, end, regime, feet, _, distance in rows.tolist():
+        table.add_row(f"{start:.6f}", f"{end:.6f}", Regime[regime].value, feet, f"{distance:+.6f}" if distance else "")
+    return table
+
+
+def _impacts(rows: Any) -> Any:
+    head = ("impact [s]", "feet", "velocity before [rad/s]", "after [rad/s]", "lost [J]", "feet slide")
+    table = _table(head, left=("feet",))
+    for row in rows.tolist():
+        time, feet, before, after, *_, lost, slips = row
+        table.add_row(f"{time:.6f}", feet, f"{before:+.6f}", f"{after:+.6f}", f"{lost:.4g}", "yes" if slips else "")
+    return table
+
+
+def _measures(response: PlanarResponse) -> list[tuple[str, str]]:
+    fell, energy = response.outcome is PlanarOutcome.OVERTURNED, response.energy
+    return [
+        ("peak rotation", "it overturned" if fell else f"{math.degrees(response.peak_rotation):.6g} deg"),
+        ("slid", f"{response.sliding_distance:.6g} m in all, {float(response.displacement[-1]):+.6g} m at the end"),
+        ("friction used", f"{100.0 * response.friction_usage:.4g} % of what there is, at most"),
+        (
+            "energy lost",
+            f"{energy.lost_in_impacts[-1]:.5g} J in impacts, {energy.lost_in_friction[-1]:.5g} J in friction",
+        ),
+        ("energy closure", f"{energy.closure:.1e} of the largest energy"),
+    ]
+
+
+def _table(head: tuple[str, ...], left: tuple[str, ...]) -> Any:
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, collapse_padding=True, header_style="bold")
+    for word in head:
+        table.add_column(word.replace("[", r"\["), justify="left" if word in left else "right", overflow="fold")
+    return table

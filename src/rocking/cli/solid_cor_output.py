@@ -1,0 +1,194 @@
+"""What `rocking cor` prints, writes and draws of a body in space."""
+
+import csv
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from rocking.bodies.formats import SolidFile
+from rocking.bodies.solid import RoundBase
+from rocking.cli.solid_impact import EdgeImpact, SolidAnswer, edge_facts, solid_facts
+
+_MOST = 12
+"""Corners of a base that are printed."""
+
+
+def show(answer: SolidAnswer) -> None:
+    """Print body, repairs, base, and edges with the coefficients of every model.
+
+    Parameters
+    ----------
+    answer : SolidAnswer
+        What `SolidAnswer.of` computed.
+    """
+    from rich.console import Console
+
+    console = Console(highlight=False, soft_wrap=True)
+    show_body(answer.file)
+    console.print()
+    console.print("Edges it may rock about" if _numbered(answer) else "Directions it may be tipped in", style="bold")
+    console.print(_geometry(answer.edges))
+    console.print()
+    console.print("Coefficient of restitution, angular velocity after / before", style="bold")
+    console.print(_coefficients(answer.edges))
+    if answer.left_out:
+        console.print(f"{answer.left_out} edges that are less slender are left out", style="dim")
+    for sentence in _flags(answer):
+        console.print(f"! {sentence}", style="yellow", markup=False)
+
+
+def show_body(file: SolidFile) -> None:
+    """Print mass, centre, base and repairs of a body in space.
+
+    Parameters
+    ----------
+    file : SolidFile
+        The body.
+    """
+    from rich.console import Console
+
+    console = Console(highlight=False, soft_wrap=True)
+    solid = file.solid
+    x, y, z = (solid.centre - [0.0, 0.0, solid.ground]).tolist()
+    size = " x ".join(f"{side:.4g}" for side in (solid.box[1] - solid.box[0]).tolist())
+    parts = len(solid.local_parts)
+    console.print(
+        f"{file.name}: {size} m, {parts} part{'s' * (parts > 1)}, mass {solid.mass:.6g} kg, "
+        f"volume {solid.volume:.6g} m3",
+        markup=False,
+    )
+    console.print(f"centre of mass at x = {_rounded(x)} m, y = {_rounded(y)} m, {z:.5g} m above the ground")
+    console.print(_base(file), markup=False)
+    for sentence in file.repairs:
+        console.print(f"! {sentence}", style="yellow", markup=False)
+
+
+def as_json(answer: SolidAnswer) -> str:
+    """Return everything as JSON.
+
+    Parameters
+    ----------
+    answer : SolidAnswer
+        What `SolidAnswer.of` computed.
+
+    Returns
+    -------
+    str
+        One object; SI units, named in the keys where a quantity has one.
+    """
+    return json.dumps(solid_facts(answer), indent=2, allow_nan=False)
+
+
+def write_csv(answer: SolidAnswer, path: Path) -> None:
+    """Write edges and coefficients as one CSV file.
+
+    Parameters
+    ----------
+    answer : SolidAnswer
+        What `SolidAnswer.of` computed.
+    path : Path
+        File to write.
+    """
+    records = [_record(edge, name) for edge in answer.edges for name in edge.results]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fieldnames=list(records[0]))
+        writer.writeheader()
+        writer.writerows(records)
+
+
+def draw(file: SolidFile, path: Path) -> None:
+    """Draw the body on its base.
+
+    Parameters
+    ----------
+    file : SolidFile
+        The body.
+    path : Path
+        File to write; its suffix says the format.
+    """
+    from rocking.plots.solid import solid_picture
+    from rocking.plots.style import write
+
+    write(solid_picture(file.solid), path)
+
+
+def _record(edge: EdgeImpact, name: str) -> dict[str, Any]:
+    facts = edge_facts(edge)
+    found = facts.pop("coefficients")[name]
+    start, end = facts.pop("from_m"), facts.pop("to_m")
+    places = {"from_x_m": start[0], "from_y_m": start[1], "to_x_m": end[0], "to_y_m": end[1]}
+    return {
+        **facts,
+        **places,
+        "model": name,
+        "coefficient_of_restitution": found["coefficient"],
+        "energy_ratio": found["energy_ratio"],
+        "flags": " ".join(found["flags"]),
+    }
+
+
+def _numbered(answer: SolidAnswer) -> bool:
+    return not isinstance(answer.file.solid.base, RoundBase)
+
+
+def _base(file: SolidFile) -> str:
+    base = file.solid.base
+    if isinstance(base, RoundBase):
+        x, y = base.centre.tolist()
+        return f"base: a circle of radius {base.radius:.5g} m about ({_rounded(x)}, {_rounded(y)}) m"
+    vertices = getattr(base, "vertices", None)
+    points = [] if vertices is None else vertices.tolist()
+    listed = ", ".join(f"({_rounded(x)}, {_rounded(y)})" for x, y in points[:_MOST])
+    return f"base: {len(points)} corners, {listed}{' ...' if len(points) > _MOST else ''} m"
+
+
+def _rounded(place: float) -> str:
+    # a nanometre is rounding
+    return f"{round(place, 9) + 0.0:.5g}"
+
+
+def _geometry(edges: tuple[EdgeImpact, ...]) -> Any:
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for word in ("edge", "from (x, y) m", "to (x, y) m", "alpha rad", "deg", "h/b", "R m", "p rad/s"):
+        table.add_column(word, justify="left" if word == "edge" else "right")
+    for edge in edges:
+        ends = (f"{_rounded(x)}, {_rounded(y)}" for x, y in edge.ends)
+        table.add_row(
+            edge.name,
+            *ends,
+            f"{edge.slenderness_angle:.4f}",
+            f"{math.degrees(edge.slenderness_angle):.2f}",
+            f"{1.0 / math.tan(edge.slenderness_angle):.3f}",
+            f"{edge.semi_diagonal:.4f}",
+            f"{edge.frequency_parameter:.4f}",
+        )
+    return table
+
+
+def _coefficients(edges: tuple[EdgeImpact, ...]) -> Any:
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    table.add_column("from edge")
+    table.add_column("onto")
+    for name in edges[0].results:
+        table.add_column(name, justify="right")
+    for edge in edges:
+        found = (f"{one.coefficient:.6f}{' !' if one.flags else ''}" for one in edge.results.values())
+        table.add_row(edge.name, edge.onto, *found)
+    return table
+
+
+def _flags(answer: SolidAnswer) -> list[str]:
+    told: dict[tuple[str, str], list[str]] = {}
+    for edge in answer.edges:
+        for name, found in edge.results.items():
+            for flag in found.flags:
+                told.setdefault((name, flag.value), []).append(edge.name)
+    return [
+        f"{name}, from {', '.join(edges[:_MOST])}{' ...' if len(edges) > _MOST else ''}: {sentence}"
+        for (name, sentence), edges in told.items()
+    ]

@@ -1,0 +1,123 @@
+"""The body in space of a command: its file, and what a mesh leaves open."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from rocking.bodies.formats import SolidFile, describes_solid, read_solid
+from rocking.checks import length_unit
+from rocking.errors import RockingError
+
+_WORDS = (
+    (re.compile(r"\bunits="), "--unit"),
+    (re.compile(r"\bfill_holes\b(=True)?"), "--fill-holes"),
+    (re.compile(r"\bbase_tolerance\b=?"), "--base-tolerance"),
+    (re.compile(r"\bup must be"), "--up must be"),
+)
+
+
+def is_solid(word: str | Path | None) -> bool:
+    """Return whether the first word of a command names a body in space.
+
+    Parameters
+    ----------
+    word : str or Path, optional
+        The word.
+
+    Returns
+    -------
+    bool
+        Whether it is a mesh, or a TOML file with [solid].
+    """
+    return word is not None and describes_solid(word)
+
+
+def solid_from(
+    path: Path,
+    *,
+    unit: str | None,
+    density: float | None,
+    up: str | None,
+    fill_holes: bool,
+    base_tolerance: float | None,
+) -> SolidFile:
+    """Return the body in space that a command was given.
+
+    Parameters
+    ----------
+    path : Path
+        TOML file or mesh.
+    unit : str, optional
+        Unit of the mesh, and of `base_tolerance`.
+    density : float, optional
+        Density of the mesh [kg/m3].
+    up : str, optional
+        Axis of the mesh that points up.
+    fill_holes : bool
+        Whether small holes of the mesh may be closed.
+    base_tolerance : float, optional
+        Vertices this close to the lowest one stand on the ground, in `unit`.
+
+    Returns
+    -------
+    SolidFile
+        The body, and what was done to get it.
+
+    Raises
+    ------
+    RockingError
+        What the reader refuses, with its parameters called as the command line calls them.
+    """
+    try:
+        scale = length_unit(unit or "m")
+        reach = None if base_tolerance is None else base_tolerance * scale
+        return read_solid(path, units=unit, density=density, up=up, fill_holes=fill_holes, base_tolerance=reach)
+    except RockingError as error:
+        raise type(error)(_in_options(str(error))) from error
+
+
+def refuse(reason: str, options: dict[str, Any]) -> None:
+    """Refuse options that have no meaning for a kind of body.
+
+    Parameters
+    ----------
+    reason : str
+        Why, as the start of a sentence.
+    options : dict
+        Option to its value; None, False and nothing mean that it was not given.
+
+    Raises
+    ------
+    RockingError
+        If one was given.
+    """
+    given = [name for name, value in options.items() if value is not None and value is not False]
+    if given:
+        raise RockingError(f"{reason}, so it takes no {', '.join(given)}")
+
+
+def spelt(options: dict[str, Any]) -> dict[str, Any]:
+    """Return options under the names that a user types.
+
+    Parameters
+    ----------
+    options : dict
+        Name of the parameter to its value.
+
+    Returns
+    -------
+    dict
+        Option to value.
+
+    Examples
+    --------
+    >>> spelt({"semi_diagonal": None})
+    {'--semi-diagonal': None}
+    """
+    return {f"--{name.replace('_', '-')}": value for name, value in options.items()}
+
+
+def _in_options(words: str) -> str:
+    for pattern, option in _WORDS:
+        words = pattern.sub(option, words)
+    return words

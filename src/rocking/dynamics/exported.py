@@ -1,0 +1,80 @@
+"""What of a response goes into files: samples, tables beside them, and what was computed from what."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Quantity:
+    """Values of one kind with their unit and meaning.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Numbers, or words.
+    unit : str
+        Unit, "1" for numbers without one; empty for words.
+    words : str
+        What it is; empty where the name says it.
+
+    Examples
+    --------
+    >>> Quantity(np.zeros(2), "rad", "rotation").attributes
+    {'units': 'rad', 'long_name': 'rotation'}
+    """
+
+    values: np.ndarray
+    unit: str = ""
+    words: str = ""
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """Unit and meaning, as xarray and netCDF name them."""
+        return {key: value for key, value in (("units", self.unit), ("long_name", self.words)) if value}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Exported:
+    """Everything that the files of one response hold.
+
+    Parameters
+    ----------
+    samples : dict of str to Quantity
+        By name, all of one length, ``time`` among them.
+    tables : dict of str to dict
+        By what one row is (``impact``, ``interval``): name to `Quantity`.
+    provenance : dict
+        What was computed from what: numbers, words, and lists of numbers.
+    """
+
+    samples: dict[str, Quantity]
+    tables: dict[str, dict[str, Quantity]] = field(default_factory=dict)
+    provenance: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def headed(self) -> dict[str, np.ndarray]:
+        """Samples by headings such as ``rotation [rad]``; ``[-]`` for numbers without a unit."""
+        return {f"{name} [{'-' if q.unit == '1' else q.unit}]": q.values for name, q in self.samples.items()}
+
+
+def told(motion: Any) -> str:
+    """Return where a motion comes from.
+
+    Parameters
+    ----------
+    motion : GroundMotion, Pulse or None
+        The motion.
+
+    Returns
+    -------
+    str
+        Its provenance, or what it is.
+
+    Examples
+    --------
+    >>> told(None)
+    'ground at rest'
+    """
+    return "ground at rest" if motion is None else "; ".join(getattr(motion, "provenance", ())) or repr(motion)

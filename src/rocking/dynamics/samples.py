@@ -1,0 +1,110 @@
+"""What the files of a rocking response hold: its samples, its impacts, what was computed from what."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.exported import Exported, Quantity, told
+
+if TYPE_CHECKING:
+    from rocking.dynamics.response import Response
+
+_COLUMNS = (
+    ("time", "s", "time"),
+    ("rotation", "rad", "rotation theta, positive clockwise"),
+    ("angular_velocity", "rad/s", "angular velocity"),
+    ("ground_acceleration", "m/s2", "horizontal acceleration of the ground"),
+    ("vertical_ground_acceleration", "m/s2", "vertical acceleration of the ground, upwards"),
+    ("kinetic_energy", "J", "kinetic energy"),
+    ("potential_energy", "J", "potential energy above rest"),
+    ("work_of_ground", "J", "work done by the ground since the start"),
+    ("energy_lost", "J", "energy lost at impacts since the start"),
+    ("horizontal_force", "N", "force of the ground on the body, to the right"),
+    ("vertical_force", "N", "force of the ground on the body, upwards"),
+)
+_IMPACT_UNITS = {"time": "s", "velocity_before": "rad/s", "velocity_after": "rad/s", "coefficient": "1"}
+
+
+def columns(response: "Response") -> dict[str, FloatArray]:
+    """Return the samples of a response by name.
+
+    Parameters
+    ----------
+    response : Response
+        The response.
+
+    Returns
+    -------
+    dict of str to ndarray
+        All of one length; `vertical_ground_acceleration` only if the motion has a vertical part.
+    """
+    energy, contact = response.energy, response.contact
+    values = (
+        response.time, response.rotation, response.angular_velocity, response.ground_acceleration,
+        response.vertical_ground_acceleration, energy.kinetic, energy.potential, energy.work, energy.lost,
+        contact.horizontal, contact.vertical,
+    )  # fmt: skip
+    count = response.time.size  # energy and forces may have one row more, for a fall after the last sample
+    pairs = zip(_COLUMNS, values, strict=True)
+    return {name: value[:count] for (name, _, _), value in pairs if value is not None}
+
+
+def provenance(response: "Response") -> dict[str, Any]:
+    """Return what was computed from what, as plain values.
+
+    Parameters
+    ----------
+    response : Response
+        The response.
+
+    Returns
+    -------
+    dict
+        Numbers, words and lists of words.
+    """
+    from rocking.dynamics.export import software  # which imports this module
+
+    motion, rocker = response.motion, response.rocker
+    sides = {
+        f"{name}_{foot}": getattr(getattr(rocker, foot), name)
+        for foot in ("left", "right")
+        for name in ("slenderness_angle", "frequency_parameter", "semi_diagonal", "coefficient")
+    }
+    return {
+        "software": software(),
+        "engine": response.engine,
+        "outcome": response.outcome.name,
+        "status": response.status.name,
+        "summary": response.summary,
+        "body": type(response.body).__name__,
+        "mass_kg": response.body.mass,
+        "restitution": rocker.label,
+        **sides,
+        "motion": "none: free rocking" if motion is None else motion.name,
+        "motion_provenance": told(motion),
+        "scale": response.scale,
+        "random_key": response.key,
+        **{f"setting_{k}": v for k, v in vars(response.settings).items()},
+    }
+
+
+def exported(response: "Response") -> Exported:
+    """Return what the files of a response hold.
+
+    Parameters
+    ----------
+    response : Response
+        The response.
+
+    Returns
+    -------
+    Exported
+        Samples, impacts and provenance.
+    """
+    about = {name: (unit, words) for name, unit, words in _COLUMNS}
+    samples = {name: Quantity(values, *about[name]) for name, values in columns(response).items()}
+    impacts = {name: Quantity(response.impacts[name], unit) for name, unit in _IMPACT_UNITS.items()}
+    onto = np.where(response.impacts["onto"] == "right", 1, -1).astype(np.int8)
+    impacts["onto"] = Quantity(onto, "1", "foot landed on: 1 right, -1 left")
+    return Exported(samples, {"impact": impacts}, provenance(response))

@@ -1,0 +1,265 @@
+"""Bodies in space from files: every shape against its closed form, meshes with their repairs, and what is refused."""
+
+import math
+import random
+import re
+
+import numpy as np
+import pytest
+
+from rocking.bodies.formats import body_from_toml, describes_solid, read_body, read_solid, solid_from_toml
+from rocking.bodies.solid import Polyhedron, RoundBase, box
+from rocking.errors import BodyFileError, GeometryError, InvalidValueError, RockingError
+
+PLINTH = "[[solid.part]]\nbox = { width = 4.0, depth = 4.0, height = 1.0 }\ndensity = 1.0\n"
+SHAPES = {
+    "box": ("box = { width = 1.0, depth = 2.0, height = 3.0 }", 6.0, 1.5),
+    "cylinder": ("cylinder = { diameter = 2.0, height = 3.0 }", 3.0 * math.pi, 1.5),
+    "cone": ("cone = { diameter = 2.0, height = 3.0 }", math.pi, 0.75),
+    # V = pi h / 12 (D2 + D d + d2), centre h / 4 (D2 + 2 D d + 3 d2) / (D2 + D d + d2)
+    "frustum": ("frustum = { lower_diameter = 2.0, upper_diameter = 1.0, height = 3.0 }", 1.75 * math.pi, 33 / 28),
+    "sphere": ("sphere = { diameter = 2.0 }", 4.0 * math.pi / 3.0, 1.0),
+    "half a sphere": ("sphere = { diameter = 2.0, cut_below = 1.0 }", 2.0 * math.pi / 3.0, 0.375),
+    "ellipsoid": ("ellipsoid = { width = 1.0, depth = 2.0, height = 3.0 }", math.pi, 1.5),
+    "extrusion": (
+        "extrusion = { outline = [[0, 0], [2, 0], [2, 2], [0, 2]], height = 3.0, "
+        "holes = [[[0.5, 0.5], [1.5, 0.5], [1.5, 1.5], [0.5, 1.5]]] }",
+        9.0,
+        1.5,
+    ),
+    "revolution": ("revolution = { profile = [[1.0, 0.0], [1.0, 3.0]] }", 3.0 * math.pi, 1.5),
+}
+
+
+@pytest.fixture
+def mesh(tmp_path):
+    """Write a prism 1 x 1 x 4 m as a mesh: all of its faces or some, as they are or in mm."""
+    trimesh = pytest.importorskip("trimesh")
+
+    def write(name, scale=1.0, keep=slice(None), turn=None, prism=None):
+        shape = box(1.0, 1.0, 4.0) if prism is None else prism
+        faces = shape.faces[keep].copy()
+        if turn is not None:
+            faces[turn] = faces[turn, ::-1]
+        path = tmp_path / name
+        trimesh.Trimesh(shape.vertices * scale, faces, process=False).export(path)
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("unit", [("m", 1.0), ("cm", 0.01), ("ft", 0.3048)])
+@pytest.mark.parametrize(("shape", "volume", "height"), SHAPES.values(), ids=list(SHAPES))
+def test_every_shape_has_its_volume_and_centre(shape, volume, height, unit):
+    """On a plinth of 16 m3 each shape adds its volume times density, at its height: closed forms, in every unit."""
+    name, scale = unit
+    text = f'units = "{name}"\n{PLINTH}[[solid.part]]\n{shape}\ndensity = 2000.0\nat = [0.0, 0.0, 1.0]\n'
+    solid = solid_from_toml(text).solid
+    masses = 16.0 * scale**3, 2000.0 * volume * scale**3
+    assert solid.mass == pytest.approx(sum(masses), rel=1e-12)
+    centre = (masses[0] * 0.5 + masses[1] * (1.0 + height)) / sum(masses) * scale
+    assert solid.centre[2] == pytest.approx(centre, rel=1e-12)
+
+
+def test_turns_come_before_the_place():
+    """A bar along z turned about y lies along x; two turns are taken in their order; then the part is moved."""
+    bar = "[[solid.part]]\nbox = { width = 0.2, depth = 0.4, height = 2.0 }\ndensity = 1000.0\n"
+    lying = solid_from_toml(f'units = "m"\n{bar}turned = [{{ axis = [0, 1, 0], degrees = 90 }}]\nat = [5, 6, 7]').solid
+    np.testing.assert_allclose(lying.box, [[5.0, 5.8, 6.9], [7.0, 6.2, 7.1]], atol=1e-12)
+    np.testing.assert_allclose(lying.centre, [6.0, 6.0, 7.0], atol=1e-12)
+    assert lying.ground == pytest.approx(6.9)
+    two = "turned = [{ axis = [0, 1, 0], degrees = 90 }, { axis = [0, 0, 1], degrees = 90 }]"
+    other = "turned = [{ axis = [0, 0, 1], degrees = 90 }, { axis = [0, 1, 0], degrees = 90 }]"
+    sizes = [np.ptp(solid_from_toml(f'units = "m"\n{bar}{turns}').solid.box, axis=0) for turns in (two, other)]
+    np.testing.assert_allclose(sizes[0], [0.4, 2.0, 0.2], atol=1e-12)
+    # negative control: the other order is another body
+    np.testing.assert_allclose(sizes[1], [2.0, 0.2, 0.4], atol=1e-12)
+
+
+def test_base_ground_and_name():
+    """The base is found or given; the body stands on its lowest point, or on the ground that is stated."""
+    drum = 'units = "cm"\nname = "drum"\n[[solid.part]]\ncylinder = { diameter = 100, height = 50 }\nat = [0, 0, 20]\n'
+    found = solid_from_toml(drum)
+    assert isinstance(found.solid.base, RoundBase)
+    assert (found.name, found.repairs) == ("drum", ())
+    assert found.solid.base.radius == pytest.approx(0.5)
+    assert found.solid.ground == pytest.approx(0.2)
+    points = drum + "[solid]\nbase = [[-30, -30], [30, -30], [0, 40]]\nground = 20\n"
+    np.testing.assert_allclose(solid_from_toml(points).solid.base.vertices, [[-0.3, -0.3], [0.3, -0.3], [0.0, 0.4]])
+    with pytest.raises(GeometryError, match=r"solid: the body floats above the ground"):
+        solid_from_toml(drum + "[solid]\nground = 0\n")
+
+
+def test_a_mesh_beside_the_file(tmp_path, mesh):
+    """A part may be a mesh below the file's folder, in a unit of its own; its repairs are told by its name."""
+    mesh("prism.stl", scale=1000.0, turn=3)
+    text = (
+        f'units = "m"\n{PLINTH}[[solid.part]]\ndensity = 500.0\nat = [0, 0, 1]\n'
+        'mesh = { file = "prism.stl", units = "mm" }\n'
+    )
+    path = tmp_path / "both.toml"
+    path.write_text(text, encoding="utf-8")
+    found = read_solid(path)
+    assert found.solid.mass == pytest.approx(16.0 + 2000.0, rel=1e-6)  # STL rounds coordinates to single precision
+    assert any("prism.stl: turned round 1 of 12 faces" in sentence for sentence in found.repairs)
+    for name in ("../prism.stl", "/prism.stl", "none.stl"):
+        with pytest.raises(BodyFileError, match=r"solid\.part\[1\]"):
+            solid_from_toml(text.replace("prism.stl", name), folder=tmp_path)
+    with pytest.raises(BodyFileError, match="text without a folder cannot name files"):
+        solid_from_toml(text)
+
+
+@pytest.mark.parametrize("name", ["a.stl", "a.obj", "a.ply"])
+def test_meshes_ask_for_their_unit(mesh, name):
+    """Formats without a unit ask for one; with it mass and base of the prism are exact."""
+    path = mesh(name, scale=1000.0)
+    with pytest.raises(BodyFileError, match=f"{name}: {name[2:].upper()} files do not state their unit"):
+        read_solid(path)
+    solid = read_solid(path, units="mm", density=1000.0).solid
+    assert solid.mass == pytest.approx(4000.0, rel=1e-6)
+    assert len(solid.base.vertices) == 4
+
+
+def test_glb_is_read_as_its_specification_says(mesh):
+    """GLB is in metres with y up, and that is told; asked for z, the same file lies down."""
+    path = mesh("a.glb", prism=box(1.0, 4.0, 1.0))
+    found = read_solid(path)
+    assert found.solid.centre[2] - found.solid.ground == pytest.approx(2.0)
+    assert found.repairs == ("read in m and with y up, as the specification of GLB says",)
+    lying = read_solid(path, up="z", units="m")
+    assert lying.solid.centre[2] - lying.solid.ground == pytest.approx(0.5)
+    assert lying.repairs == ()
+
+
+def test_holes_are_refused_or_filled(mesh):
+    """A missing face is told with its place; a hole of less than 1 % is filled if asked for, and told."""
+    with pytest.raises(GeometryError, match=r"a\.obj: the surface is not closed, it has 1 hole"):
+        read_solid(mesh("a.obj", keep=slice(1, None)), units="m")
+    # a prism whose top has a corner cut off: one triangle of 0.02 m2 of 18 m2 is missing
+    x = 0.5
+    square = [(-x, -x), (x, -x), (x, x), (-x, x)]
+    cut = [(-x, -x + 0.2, 4.0), (-x + 0.2, -x, 4.0)]
+    points = np.array([*((*p, 0.0) for p in square), *((*p, 4.0) for p in square), *cut])
+    rings = [(0, 3, 2, 1), (0, 1, 5, 9, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 8, 7), (9, 5, 6, 7, 8), (4, 9, 8)]
+    faces = np.array([(ring[0], ring[i], ring[i + 1]) for ring in rings for i in range(1, len(ring) - 1)])
+    prism = Polyhedron(points, faces)
+    path = mesh("small.ply", keep=slice(0, -1), prism=prism)
+    with pytest.raises(GeometryError, match="fill_holes=True"):
+        read_solid(path, units="m")
+    found = read_solid(path, units="m", density=1000.0, fill_holes=True)
+    assert found.solid.mass == pytest.approx(4000.0, rel=1e-9)
+    assert any(sentence.startswith("filled 1 hole") for sentence in found.repairs)
+
+
+def test_which_reader_is_to_be_asked(tmp_path):
+    """Meshes and TOML with [solid] are bodies in space; each reader sends the other kind on."""
+    solid, plane, broken = (tmp_path / f"{name}.toml" for name in ("solid", "plane", "broken"))
+    solid.write_text(f'units = "m"\n{PLINTH}', encoding="utf-8")
+    plane.write_text('units = "m"\n[block]\nwidth = 1\nheight = 2\n', encoding="utf-8")
+    broken.write_text("units = [", encoding="utf-8")
+    assert [describes_solid(path) for path in (solid, plane, broken, tmp_path / "a.STL", "a.dxf", "none.toml")] == [
+        True, False, False, True, False, False,
+    ]  # fmt: skip
+    with pytest.raises(BodyFileError, match="read_solid reads"):
+        read_body(solid)
+    with pytest.raises(BodyFileError, match="unknown key 'block'"):
+        read_solid(plane)
+    with pytest.raises(BodyFileError, match="solid is missing"):
+        solid_from_toml('units = "m"')
+
+
+BOX = "box = { width = 1.0, depth = 1.0, height = 1.0 }"
+HEAD = 'units = "m"\n[[solid.part]]\n'
+REFUSED = {
+    "no unit": (f"[[solid.part]]\n{BOX}", "units is missing"),
+    "no part": ('units = "m"\n[solid]\n', "solid.part is missing"),
+    "no shape": (HEAD + "density = 1.0", "solid.part[0]: a part has exactly one of box, cylinder"),
+    "two shapes": (HEAD + BOX + "\ncone = { diameter = 1.0, height = 1.0 }", "got box and cone"),
+    "unknown shape": (HEAD + "cube = 1.0", "unknown key 'cube'"),
+    "unknown size": (
+        HEAD + "box = { width = 1.0, deph = 1.0, height = 1.0 }",
+        "unknown key 'deph'; did you mean depth?",
+    ),
+    "negative": (HEAD + BOX.replace("width = 1.0", "width = -1.0"), "solid.part[0].box.width must be a number > 0 [m]"),
+    "nan": (HEAD + BOX.replace("width = 1.0", "width = nan"), "must be a finite number [m], got nan"),
+    "infinite": (HEAD + BOX.replace("width = 1.0", "width = inf"), "must be a finite number [m], got inf"),
+    "text": (HEAD + BOX.replace("width = 1.0", 'width = "1"'), "must be a number [m], got '1'"),
+    "boolean": (HEAD + BOX.replace("width = 1.0", "width = true"), "must be a number [m], got True"),
+    "huge": (HEAD + BOX.replace("width = 1.0", "width = 1e300"), "solid.part[0]: width"),
+    "density": (HEAD + BOX + "\ndensity = 0", "density must be a number > 0 [kg/m3], got 0"),
+    "degrees": (HEAD + BOX + "\nturned = [{ axis = [0, 0, 1], degrees = nan }]", "must be a finite number [degree]"),
+    "no axis": (HEAD + BOX + "\nturned = [{ axis = [0, 0, 0], degrees = 9 }]", "axis must have a direction"),
+    "two coordinates": (HEAD + BOX + "\nat = [0, 0]", "at must have at least 3 entries, got 2"),
+    "beyond": (HEAD + BOX + "\nat = [0, 0, 1e300]", "at must be within 1e+08 times the size"),
+    "too deep a cut": (HEAD + "sphere = { diameter = 1.0, cut_below = 2.0 }", "cut_below must be in"),
+    "profile": (HEAD + "revolution = { profile = [[1, 1], [1, 0]] }", "the profile must end above its start"),
+    "crossing": (HEAD + "extrusion = { outline = [[0, 0], [1, 1], [1, 0], [0, 1]], height = 1.0 }", "solid.part[0]"),
+    "overlap": (HEAD + BOX + "\n[[solid.part]]\n" + BOX, "overlap"),
+    "a point": (HEAD + "sphere = { diameter = 1.0 }", "solid: "),
+    "tilted": (HEAD + BOX + "\nturned = [{ axis = [1, 2, 0], degrees = 10 }]", "it needs a base with an area"),
+    "two bodies": (HEAD + BOX + "\n[block]\nwidth = 1\nheight = 1", "unknown key 'block'"),
+    "no toml": ("units = [", "is not TOML"),
+    "mesh of no kind": (HEAD + 'mesh = { file = "a.exe" }', "a.exe"),
+}
+
+
+@pytest.mark.parametrize(("text", "words"), REFUSED.values(), ids=list(REFUSED))
+def test_bad_files_are_refused_in_one_sentence(text, words, tmp_path):
+    """Every refusal is one sentence of this package that names the file and the place; none is a body."""
+    (tmp_path / "a.exe").write_bytes(b"MZ")
+    path = tmp_path / "body.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(RockingError) as refused:
+        read_solid(path)
+    assert str(refused.value).startswith("body.toml: ")
+    assert words in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_toml_file_says_everything_itself(tmp_path):
+    """Options for meshes are refused beside a TOML file, a unit that contradicts it too."""
+    path = tmp_path / "a.toml"
+    path.write_text(f'units = "m"\n{PLINTH}', encoding="utf-8")
+    with pytest.raises(BodyFileError, match="states density, up, fill_holes itself"):
+        read_solid(path, density=1.0, up="z", fill_holes=True)
+    with pytest.raises(BodyFileError, match='states units = "m", but units = "cm" was asked for'):
+        read_solid(path, units="cm")
+    assert read_solid(path, units="m").solid.mass == pytest.approx(16.0)
+
+
+def test_what_is_no_file():
+    """No path, another ending, a density that is none, a plane reader for a body in space."""
+    with pytest.raises(BodyFileError, match="given by its path"):
+        read_solid(3)
+    with pytest.raises(BodyFileError, match=r"must end in \.toml, \.stl, \.obj, \.ply, \.glb"):
+        read_solid("a.dxf")
+    with pytest.raises(BodyFileError, match="no such file"):
+        read_solid("none.stl", units="m")
+    with pytest.raises(InvalidValueError, match="density must be"):
+        read_solid("none.stl", units="m", density=math.nan)
+    with pytest.raises(BodyFileError, match="describes a body in space"):
+        body_from_toml(f'units = "m"\n{PLINTH}')
+
+
+JUNK = ["nan", "inf", "-1.0", "0", "1e300", "1e-300", "true", '"x"', "[]", "[1]", "{}", "[[0, 0], [1, 0], [0, 1]]"]
+
+
+def test_mutated_files_never_leak():
+    """2,000 files with a value replaced: a body with finite mass and centre, or a refusal of this package."""
+    texts = [f'units = "m"\n{PLINTH}[[solid.part]]\n{shape}\nat = [0.0, 0.0, 1.0]\n' for shape, _, _ in SHAPES.values()]
+    rng, bodies, refused = random.Random(3), 0, []
+    for _ in range(2000):
+        text = rng.choice(texts)
+        places = list(re.finditer(r"\d+\.?\d*", text))
+        place = rng.choice(places)
+        try:
+            solid = solid_from_toml(text[: place.start()] + rng.choice(JUNK) + text[place.end() :]).solid
+            assert math.isfinite(solid.mass)
+            assert solid.mass > 0.0
+            assert np.isfinite([*solid.centre, *solid.inertia.ravel()]).all()
+            bodies += 1
+        except RockingError as error:
+            refused.append(str(error))
+    assert all(sentence.startswith("<text>: ") for sentence in refused)
+    assert len(refused) > 1000
+    assert bodies > 50

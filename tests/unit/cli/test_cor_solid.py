@@ -1,0 +1,220 @@
+"""`rocking cor` of bodies in space: closed forms edge by edge, meshes with their repairs, refusals in one sentence."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import rocking as rk
+from rocking.bodies.formats import read_solid
+from rocking.bodies.solid import box, extrusion
+from rocking.cli import main
+from rocking.dynamics.spatial import SpatialBody
+from rocking.restitution.spatial import edge_coefficient, impact_in_space
+
+G = 9.80665
+MODELS = ("housner-3d", "horizontal-momentum-3d", "ked-3d")
+PRISM = 'units = "m"\n[[solid.part]]\nbox = { width = 1.0, depth = 1.0, height = 4.0 }\ndensity = 2400.0\n'
+DRUM = 'units = "m"\n[[solid.part]]\ncylinder = { diameter = 1.0, height = 2.0 }\ndensity = 2400.0\n'
+WEDGE = (
+    'units = "m"\nname = "wedge"\n[[solid.part]]\ndensity = 2400.0\n'
+    "extrusion = { outline = [[0, 0], [1.2, 0], [0.3, 0.9]], height = 1.5 }\n"
+)
+
+
+def run(capsys, *words):
+    """Exit code, standard output and standard error of `rocking cor WORDS`."""
+    with pytest.raises(SystemExit) as stop:
+        main(["cor", *(str(word) for word in words)])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+def answered(capsys, *words):
+    """The JSON of `rocking cor WORDS`."""
+    code, out, err = run(capsys, *words, "--json")
+    assert (code, err) == (0, "")
+    return json.loads(out, parse_constant=pytest.fail)
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Write a body file."""
+
+    def write(text, name="body.toml"):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+@pytest.fixture
+def mesh(tmp_path):
+    """Write the faces of a shape as a mesh."""
+    trimesh = pytest.importorskip("trimesh")
+
+    def write(name, scale=1.0, keep=slice(None), turn=None, shape=None):
+        shape = box(1.0, 1.0, 4.0) if shape is None else shape
+        faces = shape.faces[keep].copy()
+        if turn is not None:
+            faces[turn] = faces[turn, ::-1]
+        trimesh.Trimesh(shape.vertices * scale, faces, process=False).export(tmp_path / name)
+        return tmp_path / name
+
+    return write
+
+
+def test_prism_edge_by_edge(capsys, file):
+    """Prism 1 x 1 x 4: Housner 31/34, horizontal momentum 16/17, KED 0.9473668350323697 (1.4), p^2 = 3 g / (4 R)."""
+    answer = answered(capsys, file(PRISM))
+    assert answer["body"]["mass_kg"] == pytest.approx(9600.0, rel=1e-14)
+    assert answer["body"]["centre_height_m"] == pytest.approx(2.0, rel=1e-14)
+    assert len(answer["edges"]) == 4
+    half = math.hypot(0.5, 2.0)
+    for number, edge in enumerate(answer["edges"]):
+        assert edge["slenderness_angle_rad"] == pytest.approx(math.atan(0.25), rel=1e-13)
+        assert edge["semi_diagonal_m"] == pytest.approx(half, rel=1e-13)
+        assert edge["frequency_parameter_rad_s"] == pytest.approx(math.sqrt(0.75 * G / half), rel=1e-13)
+        assert edge["lands_on"] == f"edge {(number + 2) % 4}"
+        r = [edge["coefficients"][name]["coefficient"] for name in MODELS]
+        assert r == pytest.approx([31 / 34, 16 / 17, 0.947366835032369679], rel=1e-9)
+        assert not any(found["flags"] for found in edge["coefficients"].values())
+        # negative control: the same check refuses the value of a slenderness of 3.75
+        assert r[2] != pytest.approx(0.940898907220637169, rel=1e-3)
+
+
+def test_round_base(capsys, file):
+    """A drum with H / D = 2 has the same values in all directions: 0.696202, 0.810127, 0.837211 (1.6)."""
+    answer = answered(capsys, file(DRUM))
+    assert answer["base"] == {"kind": "circle", "centre_m": [0.0, 0.0], "radius_m": 0.5}
+    assert [edge["edge"] for edge in answer["edges"]] == ["0 deg", "90 deg", "180 deg", "270 deg"]
+    for edge in answer["edges"]:
+        r = [edge["coefficients"][name]["coefficient"] for name in MODELS]
+        assert r == pytest.approx([0.6962025316455696, 0.810126582278481, 0.8372108803084781], rel=1e-8)
+        assert edge["frequency_parameter_rad_s"] == pytest.approx(
+            math.sqrt(G * math.hypot(0.5, 1.0) / (0.25 / 4.0 + 4.0 / 12.0 + 1.25)), rel=1e-12
+        )  # I / m = R2 / 4 + H2 / 12 + R2 + H2 / 4
+    page = run(capsys, file(DRUM), "--model", "housner")[1]
+    assert "Directions it may be tipped in" in page
+    assert "a circle of radius 0.5 m" in page
+
+
+def test_edge_without_a_parallel_one_lands_on_a_corner(capsys, file):
+    """On a triangle the body falls from an edge onto the corner that faces it, with the flags of the models."""
+    path = file(WEDGE)
+    answer, solid = answered(capsys, path), read_solid(path).solid
+    assert [edge["lands_on"] for edge in answer["edges"]] == ["corner 2", "corner 0", "corner 1"]
+    base = solid.base
+    for number, edge in enumerate(answer["edges"]):
+        corner = base.vertices[(number + 2) % 3]
+        for name in MODELS:
+            start = base.edge(number)
+            found = impact_in_space(solid, -start.direction, pivot=start, onto=corner, model=name)
+            assert edge["coefficients"][name]["coefficient"] == found.coefficient
+            assert set(edge["coefficients"][name]["flags"]) == {flag.name.lower() for flag in found.flags}
+    least = min(edge["frequency_parameter_rad_s"] for edge in answer["edges"])
+    assert least == pytest.approx(SpatialBody.of(solid).frequency(G), rel=1e-12)
+
+
+def test_options(capsys, file, tmp_path):
+    """One model, another gravity, CSV and picture: what is printed is what is written."""
+    path, table, picture = file(PRISM), tmp_path / "a.csv", tmp_path / "a.png"
+    code, out, err = run(capsys, path, "--model", "ked", "--gravity", "1.6", "--csv", table, "--picture", picture)
+    assert (code, err) == (0, "")
+    assert f"wrote {table}" in out
+    assert "0.947367" in out
+    assert "housner" not in out
+    with table.open(encoding="utf-8") as opened:
+        rows = list(csv.DictReader(opened))
+    assert [row["model"] for row in rows] == ["ked-3d"] * 4
+    assert float(rows[0]["frequency_parameter_rad_s"]) == pytest.approx(
+        math.sqrt(1.2 / math.hypot(0.5, 2.0)), rel=1e-13
+    )
+    assert float(rows[0]["coefficient_of_restitution"]) == edge_coefficient(read_solid(path).solid, "ked-3d")
+    assert np.asarray(Image.open(picture)).std() > 1.0
+
+
+def test_meshes_and_their_repairs(capsys, mesh):
+    """A scaled mesh with a flipped face has the prism's values, and says what was repaired."""
+    path = mesh("prism.stl", scale=1000.0, turn=3)
+    answer = answered(capsys, path, "--unit", "mm", "--density", "2700")
+    assert answer["body"]["mass_kg"] == pytest.approx(10800.0, rel=1e-6)
+    assert any("turned round 1 of 12 faces" in sentence for sentence in answer["repairs"])
+    r = answer["edges"][0]["coefficients"]["ked-3d"]["coefficient"]
+    assert r == pytest.approx(0.947366835032369679, rel=1e-6)
+    assert "! turned round 1 of 12 faces" in run(capsys, path, "--unit", "mm")[1]
+
+
+def test_edges_that_files_round_are_still_parallel(capsys, mesh):
+    """A prism turned by 0.3 rad in an STL file, whose coordinates are rounded, still lands on its far edges."""
+    turned = box(1.0, 1.0, 4.0)
+    c, s = math.cos(0.3), math.sin(0.3)
+    shape = extrusion(turned.vertices[[0, 1, 3, 2], :2] @ np.array([[c, s], [-s, c]]), 4.0)
+    answer = answered(capsys, mesh("turned.stl", shape=shape), "--unit", "m")
+    assert [edge["lands_on"] for edge in answer["edges"]] == ["edge 2", "edge 3", "edge 0", "edge 1"]
+    for edge in answer["edges"]:
+        assert edge["coefficients"]["housner-3d"]["coefficient"] == pytest.approx(31 / 34, rel=1e-5)
+
+
+def test_bases_of_many_corners_keep_the_most_slender_edges(capsys, file):
+    """Of 40 edges of an oval the 16 over which it falls most easily are kept, all about its short axis; it is told."""
+    angle = 2.0 * math.pi * np.arange(40) / 40.0
+    outline = np.column_stack([np.cos(angle), 0.5 * np.sin(angle)]).round(6).tolist()
+    path = file(f'units = "m"\n[[solid.part]]\nextrusion = {{ outline = {outline}, height = 3.0 }}\n')
+    answer = answered(capsys, path, "--model", "housner")
+    assert (len(answer["edges"]), answer["edges_left_out"]) == (16, 24)
+    assert all(abs(edge["from_m"][1]) > 0.35 for edge in answer["edges"])
+    assert "24 edges that are less slender are left out" in run(capsys, path, "--model", "housner")[1]
+
+
+REFUSED = {
+    "no unit": (["a.stl"], "a.stl: STL files do not state their unit; give --unit, one of m, cm, mm, ft, in"),
+    "unit": (["a.stl", "--unit", "km"], "length unit"),
+    "wrong unit": (["a.stl", "--unit", "m", "--density", "1"], "is that the file's unit?"),
+    "axis": (["a.stl", "--unit", "mm", "--up", "x"], '--up must be "z" or "y"'),
+    "hole": (["hole.obj", "--unit", "m"], "pass --fill-holes if together they are below 1 %"),
+    "large hole": (["hole.obj", "--unit", "m", "--fill-holes"], "only up to 1 % is filled"),
+    "empty": (["empty.ply", "--unit", "m"], "empty.ply: "),
+    "no file": (["none.stl", "--unit", "m"], "none.stl: there is no such file"),
+    "density nan": (["a.stl", "--unit", "mm", "--density", "nan"], "density must be finite"),
+    "tolerance": (["a.stl", "--unit", "mm", "--base-tolerance", "-1"], "--base-tolerance must be > 0 m"),
+    "size": (["a.stl", "--unit", "mm", "--width", "1"], "it takes no --width"),
+    "foot": (["a.stl", "--unit", "mm", "--onto", "left"], "it takes no --onto"),
+    "eta": (["a.stl", "--unit", "mm", "--eta", "0.9"], "it takes no --eta"),
+    "stages": (["a.stl", "--unit", "mm", "--identities", "--stages", "s.png"], "it takes no --identities, --stages"),
+    "model": (["a.stl", "--unit", "mm", "--model", "best"], "no restitution model in space is called 'best'"),
+    "gravity": (["a.stl", "--unit", "mm", "--gravity", "0"], "gravity must be > 0"),
+    "picture": (["a.stl", "--unit", "mm", "--picture", "a.bmp"], ".png, .svg or .pdf"),
+    "folder": (["a.stl", "--unit", "mm", "--csv", "none/a.csv"], "no folder"),
+    "plane": (["--width", "1", "--height", "2", "--up", "z"], "a plane body is no mesh, so it takes no --up"),
+    "options": (["body.toml", "--up", "z"], "states up itself"),
+    "bad toml": (["bad.toml"], "bad.toml: solid.part[0].box.width must be a number > 0 [m], got -1.0"),
+}
+
+
+@pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
+def test_bad_input_gives_one_sentence_and_exit_code_2(capsys, words, sentence, mesh, file, tmp_path, monkeypatch):
+    """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
+    mesh("a.stl", scale=1000.0)
+    mesh("hole.obj", keep=slice(1, None))
+    file("", "empty.ply")
+    file(PRISM)
+    file(PRISM.replace("width = 1.0", "width = -1.0"), "bad.toml")
+    monkeypatch.chdir(tmp_path)
+    code, out, err = run(capsys, *words)
+    assert (code, out) == (2, "")
+    assert sentence in err
+    assert err.startswith("rocking: ")
+    assert err.count("\n") == 1
+
+
+def test_plane_bodies_are_as_before(capsys):
+    """A block on the command line still has its table of plane models."""
+    answer = answered(capsys, "--width", "1", "--height", "4")
+    (rows,) = answer["coefficients"].values()
+    found = {row["model"]: row["coefficient_of_restitution"] for row in rows}
+    assert found["ked"] == rk.coefficient_of_restitution(rk.Block(width=1.0, height=4.0), "ked")

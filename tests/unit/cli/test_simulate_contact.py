@@ -1,0 +1,142 @@
+"""`rocking simulate --contact`: sliding in closed form, rocking as without it, modes on the page, refusals."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from PIL import Image
+from scipy.io import loadmat
+
+import rocking as rk
+from rocking.cli import main
+
+G = 9.80665
+SQUAT = ("--width", "1", "--height", "1")
+SLENDER = ("--width", "0.5", "--height", "2")
+PUSH = "rectangular:amplitude=4,period=1"
+SINE = "sine:amplitude=3.2,period=0.8"
+
+
+def run(capsys, *words):
+    """Exit code, standard output and standard error of `rocking simulate WORDS`."""
+    with pytest.raises(SystemExit) as stop:
+        main(["simulate", *(str(word) for word in words)])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+def answered(capsys, *words):
+    """The JSON of `rocking simulate WORDS --contact`."""
+    code, out, err = run(capsys, *words, "--contact", "--json")
+    assert (code, err) == (0, "")
+    return json.loads(out, parse_constant=pytest.fail)
+
+
+def test_json_is_python_to_the_last_digit(capsys):
+    """Body, friction, bounce, restitution, scale and gravity reach the engine: the same numbers as in Python."""
+    words = ("--friction", "0.3", "--bounce", "0.1", "--scale", "-2", "--gravity", "9.81", "--restitution", "housner")
+    answer = answered(capsys, *SQUAT, SINE, *words)
+    response = rk.simulate_with_contact(
+        rk.Block(width=1.0, height=1.0), rk.pulses.sine(3.2, 0.8), 0.3, bounce=0.1, restitution="housner", scale=-2.0,
+        gravity=9.81,
+    )  # fmt: skip
+    assert answer["outcome"] == response.outcome.name.lower()
+    assert answer["summary"] == response.summary
+    assert [tuple(row.values()) for row in answer["modes"]] == response.regimes.tolist()
+    assert [tuple(row.values()) for row in answer["impacts"]] == response.impacts.tolist()
+    assert answer["peak_rotation_rad"] == response.peak_rotation
+    assert answer["sliding_distance_m"] == response.sliding_distance
+    assert answer["energy_closure"] == response.energy.closure < 1e-10
+
+
+def test_sliding_is_a_closed_form(capsys):
+    """A cube with mu = 0.3 under two pushes of 4 m/s2 slides by the distances of uniform acceleration."""
+    answer = answered(capsys, *SQUAT, "rectangular:amplitude=4,duration=0.5", "--friction", "0.3")
+    excess, brake = 4.0 - 0.3 * G, 0.3 * G
+    distance = 0.5 * excess * 0.25 + (0.5 * excess) ** 2 / (2.0 * brake)
+    assert answer["outcome"] == "slid"
+    assert [row["mode"] for row in answer["modes"]] == ["SLIDE", "REST"]
+    assert answer["sliding_distance_m"] == pytest.approx(distance, rel=1e-9)
+    assert answer["modes"][0]["end_s"] == pytest.approx(0.5 + 0.5 * excess / brake, rel=1e-9)
+    # negative control: another friction is another distance
+    assert answered(capsys, *SQUAT, "rectangular:amplitude=4,duration=0.5", "--friction", "0.31")[
+        "sliding_distance_m"
+    ] != pytest.approx(distance, rel=1e-2)
+
+
+def test_with_much_friction_it_rocks_as_without(capsys):
+    """A slender block on rough ground: the same peak and impacts as the pure rocking engine, for a model and KED."""
+    for words, restitution in (((), "ked"), (("--restitution", "0.9"), 0.9)):
+        answer = answered(capsys, *SLENDER, SINE, "--friction", "10", *words)
+        pure = rk.simulate(rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.2, 0.8), restitution)
+        assert answer["peak_rotation_rad"] == pytest.approx(pure.peak_rotation, rel=1e-9)
+        times = [row["time_s"] for row in answer["impacts"][:5]]
+        assert times == pytest.approx(pure.impacts["time"][:5].tolist(), rel=1e-9)
+
+
+def test_complementarity_is_housner(capsys):
+    """Impacts by complementarity on rough ground keep 1 - 3/2 sin^2 alpha (1.2); let go at half of alpha."""
+    words = ("--free", "0.5", "--friction", "10", "--restitution", "complementarity")
+    answer = answered(capsys, *SLENDER, *words)
+    assert answer["imposed_restitution"] is None
+    assert answer["initial_rotation_rad"] == pytest.approx(0.5 * math.atan(0.25), rel=1e-12)
+    first = answer["impacts"][0]
+    ratio = first["velocity_after_rad_s"] / first["velocity_before_rad_s"]
+    assert ratio == pytest.approx(1.0 - 1.5 / 17.0, rel=1e-10)
+
+
+def test_page_and_files(capsys, tmp_path):
+    """Modes in words, impacts, what slid and what was lost are on the page; every file is written and opens."""
+    files = {name: tmp_path / f"a.{name}" for name in ("png", "csv", "mat", "nc")}
+    words = ("--picture", files["png"], "--csv", files["csv"], "--mat", files["mat"], "--netcdf", files["nc"])
+    slides = ("--width", "1.2", "--height", "2", "sine:amplitude=9,period=0.9", "--contact", "--friction", "0.62")
+    code, out, err = run(capsys, *slides, *words)
+    assert (code, err) == (0, "")
+    for said in ("friction 0.62, bounce 0", "rocking about one foot that slides", "in friction", "friction used:"):
+        assert said in out
+    for path in files.values():
+        assert f"wrote {path}" in out
+    assert np.asarray(Image.open(files["png"])).std() > 1.0
+    found = loadmat(files["mat"], simplify_cells=True)["rocking"]
+    assert "SLIDE_ROCK" in found["intervals"]["regime"]
+    assert files["csv"].read_text(encoding="utf-8").startswith("time [s],displacement [m],")
+    xarray = pytest.importorskip("xarray")
+    with xarray.open_dataset(files["nc"], engine="h5netcdf", decode_timedelta=False) as data:
+        assert data.attrs["friction"] == 0.62
+
+
+def test_the_warning_names_the_option(capsys):
+    """Where pure rocking takes more friction than there is, the page says what to type."""
+    page = run(capsys, *SLENDER, SINE, "--friction", "0.2")[1]
+    assert "--contact follows it" in page
+    assert "simulate_with_contact" not in page
+
+
+REFUSED = {
+    "linear": ([*SQUAT, PUSH, "--contact", "--linear"], "takes no --linear"),
+    "engine": ([*SQUAT, PUSH, "--contact", "--engine", "fast"], "takes no --engine"),
+    "animation": ([*SQUAT, SINE, "--contact", "--animation", "a.html"], "takes no --animation"),
+    "friction": ([*SQUAT, SINE, "--contact", "--friction", "-1"], "--friction must be > 0"),
+    "friction nan": ([*SQUAT, SINE, "--contact", "--friction", "nan"], "--friction must be finite"),
+    "bounce": ([*SQUAT, SINE, "--contact", "--bounce", "1"], "bounce must be in [0, 1)"),
+    "bounce alone": ([*SQUAT, SINE, "--bounce", "0.1"], "takes no --bounce"),
+    "restitution": ([*SQUAT, SINE, "--contact", "--restitution", "best"], "no restitution model named 'best'"),
+    "percent": ([*SQUAT, SINE, "--contact", "--restitution", "90"], "90"),
+    "free far": ([*SLENDER, "--contact", "--free", "9"], "rotation must be in"),
+    "no motion": ([*SQUAT, "--contact"], "what moves the ground?"),
+    "mesh": ([*SQUAT, SINE, "--contact", "--up", "z"], "takes no --up"),
+    "space": ([*SQUAT, SINE, "--motion-y", SINE], "takes no --motion-y"),
+    "picture": ([*SQUAT, SINE, "--contact", "--picture", "a.bmp"], ".png, .svg or .pdf"),
+    "folder": ([*SQUAT, SINE, "--contact", "--csv", "none/a.csv"], "no folder"),
+}
+
+
+@pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
+def test_bad_input_gives_one_sentence_and_exit_code_2(capsys, words, sentence):
+    """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
+    code, out, err = run(capsys, *words)
+    assert (code, out) == (2, "")
+    assert sentence in err
+    assert err.startswith("rocking: ")
+    assert err.count("\n") == 1

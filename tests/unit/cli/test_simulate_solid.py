@@ -1,0 +1,204 @@
+"""`rocking simulate` of bodies in space: Python's numbers, the plane solution, three components, refusals."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import rocking as rk
+from rocking.bodies.formats import read_solid
+from rocking.cli import main
+from rocking.dynamics.spatial import SpatialStatus
+from rocking.dynamics.spatial.response import SpatialResponse
+
+PRISM = 'units = "m"\nname = "prism"\n[[solid.part]]\nbox = { width = 0.5, depth = 0.5, height = 2.0 }\n'
+SINE = "sine:amplitude=3.2,period=0.8"
+MOTION = rk.pulses.sine(3.2, 0.8)
+
+
+def run(capsys, *words):
+    """Exit code, standard output and standard error of `rocking simulate WORDS`."""
+    with pytest.raises(SystemExit) as stop:
+        main(["simulate", *(str(word) for word in words)])
+    printed = capsys.readouterr()
+    return stop.value.code or 0, printed.out, printed.err
+
+
+def answered(capsys, *words):
+    """The JSON of `rocking simulate WORDS`."""
+    code, out, err = run(capsys, *words, "--json")
+    assert (code, err) == (0, "")
+    return json.loads(out, parse_constant=pytest.fail)
+
+
+def same(answer, response):
+    """Whether a JSON holds a response in space to the last digit."""
+    contacts = [(row["start_s"], row["end_s"], row["contact"], tuple(row["vertices"])) for row in answer["contacts"]]
+    return (
+        answer["peak_tilt_rad"] == response.peak_tilt
+        and answer["summary"] == response.summary
+        and answer["restitution"] == response.law.label
+        and [tuple(row.values()) for row in answer["impacts"]] == response.impacts.tolist()
+        and contacts == [(a, b, c.name.lower(), points) for a, b, c, points in response.intervals]
+        and tuple(answer["motion"].values()) == response.names
+    )
+
+
+@pytest.fixture
+def body(tmp_path):
+    """Body file of a prism."""
+    path = tmp_path / "prism.toml"
+    path.write_text(PRISM, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def record(tmp_path):
+    """Time and three components in four columns [m/s2]."""
+    k = np.arange(60)
+    rows = np.column_stack([k * 0.02, 3.0 * np.sin(k * 0.2), 3.5 * np.sin(k * 0.15), 2.0 * np.cos(k * 0.3)])
+    path = tmp_path / "record.txt"
+    path.write_text("\n".join(" ".join(f"{x:.6f}" for x in row) for row in rows) + "\n", encoding="utf-8")
+    return path
+
+
+def test_json_is_python_to_the_last_digit(capsys, body):
+    """x by word or option, y and z by options, restitution, scale and gravity: all are rk.simulate_spatial."""
+    solid, other = read_solid(body).solid, rk.pulses.sine(2.9, 0.6)
+    expected = rk.simulate_spatial(solid, MOTION, other)
+    assert len({c for _, _, c, _ in expected.intervals}) > 2
+    for words in ((SINE,), ("--motion", SINE)):
+        answer = answered(capsys, body, *words, "--motion-y", "sine:amplitude=2.9,period=0.6")
+        assert same(answer, expected)
+    assert answer["body"]["mass_kg"] == pytest.approx(1200.0)
+    ked = ("--restitution", "ked", "--scale", "-1.1", "--gravity", "9.81")
+    found = answered(capsys, body, "--motion-z", "sine:amplitude=1,period=0.3", "--motion-y", SINE, *ked)
+    wanted = rk.simulate_spatial(solid, None, MOTION, rk.pulses.sine(1.0, 0.3), "ked-3d", scale=-1.1, gravity=9.81)
+    assert same(found, wanted)
+    # negative control: the components are not taken for each other
+    assert not same(answered(capsys, body, "--motion", SINE, *ked), wanted)
+
+
+def test_along_one_axis_it_is_the_plane_solution(capsys, body):
+    """A prism shaken along x or y rocks as the plane block with Housner's coefficient does, to 1e-9."""
+    plane = rk.simulate(rk.Block(width=0.5, height=2.0), MOTION, "housner")
+    for option in ("--motion", "--motion-y"):
+        answer = answered(capsys, body, option, SINE)
+        assert answer["peak_tilt_rad"] == pytest.approx(plane.peak_rotation, rel=1e-9)
+        times = [row["time_s"] for row in answer["impacts"][:5]]
+        assert times == pytest.approx(plane.impacts["time"][:5].tolist(), rel=1e-9)
+
+
+def test_three_components_of_one_file(capsys, body, record):
+    """Each direction names its component of the file; the vertical part of x may be --vertical or --motion-z."""
+    file = ("--units", "m/s2")
+    names = [part.name for part in rk.motions.formats.read_record(record, units="m/s2").components]
+    x, y, z = names
+    along = ("--component", x, "--motion-y", record, "--component-y", y)
+    found = answered(capsys, body, record, *file, *along, "--motion-z", record, "--component-z", z)
+    motions = [rk.read_motion(record, units="m/s2", component=name) for name in names]
+    assert found["peak_tilt_rad"] == rk.simulate_spatial(read_solid(body).solid, *motions).peak_tilt
+    other = answered(capsys, body, record, *file, *along, "--vertical", z)
+    assert other["peak_tilt_rad"] == pytest.approx(found["peak_tilt_rad"], rel=1e-12)
+    # negative control: without the vertical motion it is another response
+    level = answered(capsys, body, record, *file, *along)
+    assert level["peak_tilt_rad"] != pytest.approx(found["peak_tilt_rad"], rel=1e-3)
+    mixed = answered(capsys, body, SINE, "--motion-y", record, *file, "--component-y", y)
+    assert mixed["peak_tilt_rad"] == rk.simulate_spatial(read_solid(body).solid, MOTION, motions[1]).peak_tilt
+
+
+def test_page_and_files(capsys, body, tmp_path):
+    """Body, motions, outcome, contacts and impacts are on the page; every file is written and opens."""
+    files = {name: tmp_path / f"a.{name}" for name in ("png", "csv", "mat", "nc")}
+    words = ("--picture", files["png"], "--csv", files["csv"], "--mat", files["mat"], "--netcdf", files["nc"])
+    code, out, err = run(capsys, body, SINE, "--motion-y", "sine:amplitude=2.9,period=0.6", *words)
+    assert (code, err) == (0, "")
+    for said in ("prism: 0.5 x 0.5 x 2 m, 1 part, mass 1200 kg", "housner-3d", "turning about a vertex", "peak tilt:"):
+        assert said in out
+    for path in files.values():
+        assert f"wrote {path}" in out
+    assert np.asarray(Image.open(files["png"])).std() > 1.0
+    xarray = pytest.importorskip("xarray")
+    with xarray.open_dataset(files["nc"], engine="h5netcdf", decode_timedelta=False) as data:
+        assert float(data["tilt"].max()) < 0.25
+        assert data.attrs["mass_kg"] == pytest.approx(1200.0)
+
+
+def test_meshes_rock_too(capsys, tmp_path):
+    """A prism from an STL file in mm, turned round on one face, rocks as that of the body file."""
+    trimesh = pytest.importorskip("trimesh")
+    faces = rk.solid.box(0.5, 0.5, 2.0)
+    path = tmp_path / "prism.stl"
+    trimesh.Trimesh(faces.vertices * 1000.0, faces.faces, process=False).export(path)
+    answer = answered(capsys, path, SINE, "--unit", "mm", "--density", "1000")
+    assert answer["body"]["mass_kg"] == pytest.approx(500.0)
+    plane = rk.simulate(rk.Block(width=0.5, height=2.0), MOTION, "housner")
+    assert answer["peak_tilt_rad"] == pytest.approx(plane.peak_rotation, rel=1e-9)
+
+
+def test_overturning_names_edge_and_direction(capsys, body):
+    """Shaken hard along y it lies along y, over one of the edges there; the direction is in radians."""
+    answer = answered(capsys, body, "--motion-y", SINE, "--scale", "2")
+    assert answer["outcome"] == "overturned"
+    assert abs(answer["overturning_direction_rad"]) == pytest.approx(0.5 * math.pi, abs=1e-9)
+    assert answer["overturned_over"] in {"edge 0-1", "edge 2-3"}
+    assert "it overturned" in run(capsys, body, "--motion-y", SINE, "--scale", "2")[1]
+
+
+def test_a_history_without_a_result_is_refused(capsys, body, monkeypatch):
+    """Where the engine stops, the sentence says why, and no number is printed."""
+    monkeypatch.setattr(SpatialResponse, "outcome", rk.Outcome.FAILED)
+    monkeypatch.setattr(SpatialResponse, "status", SpatialStatus.LOST_CONTACT)
+    code, out, err = run(capsys, body, SINE)
+    assert (code, out) == (2, "")
+    assert err.startswith("rocking: there is no response: stopped: the ground would have to pull")
+
+
+REFUSED = {
+    "no motion": ([], "what moves the ground?"),
+    "two motions": ([SINE, "--motion", SINE], "one motion along x, please"),
+    "free": (["--free", "0.5"], "takes no --free"),
+    "width": ([SINE, "--width", "1"], "takes no --width"),
+    "friction": ([SINE, "--friction", "0.4"], "takes no --friction"),
+    "contact": ([SINE, "--contact"], "takes no --contact"),
+    "linear": ([SINE, "--linear"], "takes no --linear"),
+    "engine": ([SINE, "--engine", "fast"], "takes no --engine"),
+    "animation": ([SINE, "--animation", "a.gif"], "takes no --animation"),
+    "model": ([SINE, "--restitution", "best"], "'best"),
+    "plane model": ([SINE, "--restitution", "plastic-winkler"], "plastic-winkler"),
+    "creates energy": ([SINE, "--restitution", "1.1"], "restitution must be in [0, 1], got 1.1"),
+    "nan": ([SINE, "--restitution", "nan"], "restitution must be"),
+    "gravity": ([SINE, "--gravity", "0"], "--gravity must be > 0"),
+    "scale": ([SINE, "--scale", "nan"], "scale must be finite"),
+    "no record": (["none.at2"], "none.at2: no such file"),
+    "units of a pulse": ([SINE, "--units", "g"], "a pulse takes no --units"),
+    "component of a pulse": ([SINE, "--motion-y", SINE, "--component-y", "N"], "a pulse takes no --component-y"),
+    "component alone": ([SINE, "--component-z", "UP"], "names a component of --motion-z, which is not given"),
+    "component unknown": (["record.txt", "--units", "m/s2", "--component", "up"], "'up'"),
+    "components": (["--motion-y", "record.txt", "--units", "m/s2"], "--component-y"),
+    "unit": ([SINE, "--unit", "cm"], 'states units = "m"'),
+    "picture": ([SINE, "--picture", "a.bmp"], ".png, .svg or .pdf"),
+    "folder": ([SINE, "--netcdf", "none/a.nc"], "no folder"),
+}
+
+
+@pytest.mark.parametrize(("words", "sentence"), REFUSED.values(), ids=list(REFUSED))
+def test_bad_input_gives_one_sentence_and_exit_code_2(capsys, words, sentence, body, record, monkeypatch):
+    """Bad input: one sentence on standard error, exit code 2, no number on standard output."""
+    monkeypatch.chdir(record.parent)
+    code, out, err = run(capsys, body, *words)
+    assert (code, out) == (2, "")
+    assert sentence in err
+    assert err.startswith("rocking: ")
+    assert err.count("\n") == 1
+
+
+def test_vertical_twice_is_refused(capsys, body, record):
+    """The vertical motion is given once: as a part of x or as z."""
+    names = [part.name for part in rk.motions.formats.read_record(record, units="m/s2").components]
+    words = ("--units", "m/s2", "--component", names[0], "--vertical", names[2], "--motion-z", SINE)
+    code, out, err = run(capsys, body, record, *words)
+    assert (code, out) == (2, "")
+    assert "the vertical motion is given twice" in err
