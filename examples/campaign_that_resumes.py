@@ -4,6 +4,10 @@ import hashlib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import xarray
+
+from rocking.plots import write
+from rocking.plots.overturning_map import overturning_map_picture
 from rocking.studies.campaign import CampaignInterrupted
 from rocking.studies.job import Job, JobFolder, export, forecast
 
@@ -20,7 +24,11 @@ def stop(progress):
 
 
 with TemporaryDirectory() as home:
-    small = Job.of_text(job.text.replace("[campaign]", "[campaign]\nchunk = 500"), "job.toml", job.folder)
+    small = Job.of_text(
+        job.text.replace("[campaign]", "[campaign]\nchunk = 4000").replace("count = 60", "count = 180"),
+        "job.toml",
+        job.folder,
+    )
     folder = JobFolder.create(Path(home, "stopped"), small)
     try:
         folder.campaign.run(progress=stop)
@@ -35,3 +43,10 @@ with TemporaryDirectory() as home:
     first, second = (hashlib.sha256(path.read_bytes()).hexdigest() for path in files)
     print(f"SHA-256 of the results {first[:16]}, undisturbed {second[:16]}")
     assert first == second
+
+    # what is exported is a map like any other
+    with xarray.open_dataset(export(folder, Path(home, "map.nc")), engine="h5netcdf") as found:
+        picture = overturning_map_picture(found.assign_attrs(restitution="ked"))
+output = Path("gallery-output")
+output.mkdir(exist_ok=True)
+write(picture, output / "campaign_that_resumes.png")

@@ -2,6 +2,9 @@
 
 from pathlib import Path
 
+from rocking.plots import write
+from rocking.plots.inventory import inventory_picture
+from rocking.report.inventory_folder import write_inventory
 from rocking.studies.inventory import Hazard, Level, assess, read_inventory
 from rocking.studies.inventory.words import advice, model_note, sentence
 
@@ -19,3 +22,10 @@ for row in assessment.not_assessed:
 severities = [verdict.light.severity for verdict in assessment.verdicts]
 assert severities == sorted(severities, reverse=True)
 assert [row.name for row in assessment.not_assessed] == ["framed mirror on a stand"]
+
+folder = Path("gallery-output")
+folder.mkdir(exist_ok=True)
+write(inventory_picture(assessment), folder / "inventory_of_objects.png")
+written, left_out = write_inventory(assessment, folder / "inventory")  # HTML, PDF, Excel, CSV, JSON
+print("wrote", ", ".join(path.name for path in written), *left_out)
+assert {path.suffix for path in written} >= {".html", ".csv"}

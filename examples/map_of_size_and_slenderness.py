@@ -7,11 +7,11 @@ import numpy as np
 import rocking as rk
 from rocking.plots import write
 from rocking.plots.overturning_map import overturning_map_picture
-from rocking.studies import map_sensitivity
+from rocking.studies import boundary, map_sensitivity
 
 block = rk.Block(width=0.5, height=2.0)
 pulse = rk.pulses.sine(amplitude=0.5 * rk.conventions.g, period=0.8)
-axes = ("semi_diagonal", np.geomspace(0.2, 10.0, 80)), ("slenderness_ratio", np.linspace(1.5, 9.0, 80))
+axes = ("semi_diagonal", np.geomspace(0.2, 10.0, 120)), ("slenderness_ratio", np.linspace(1.5, 9.0, 121))
 compared = map_sensitivity(block, pulse, *axes, ["ked", "housner"])
 found = compared.datasets["ked"]  # what overturning_map returns
 
@@ -28,4 +28,5 @@ assert compared.flips_between("ked", "housner").count > 0
 
 folder = Path("gallery-output")
 folder.mkdir(exist_ok=True)
-write(overturning_map_picture(found), folder / "map_of_size_and_slenderness.png")
+lines = boundary(block, pulse, *axes, restitution="ked", by="mode", tolerance=1e-5)
+write(overturning_map_picture(found, lines), folder / "map_of_size_and_slenderness.png")

@@ -104,12 +104,12 @@ def export(
         str | None,
         typer.Option(
             help="histories; of fragility campaigns fragility, fema-p58 (.csv); of refined maps refined, boundary; of "
-            "minimum accelerations crossings, minima; of inventories report; of several restitutions flips, "
-            "differences. What suits the kind if not given."
+            "minimum accelerations crossings, minima; of inventories report; of clouds measures; of several "
+            "restitutions flips, differences. What suits the kind if not given."
         ),
     ] = None,
     restitution: Annotated[
-        str | None, typer.Option(help="Which restitution's fragility, where the job has several.")
+        str | None, typer.Option(help="Which restitution's fragility or measures, where the job has several.")
     ] = None,
     crossing: Annotated[
         str | None,

@@ -135,7 +135,7 @@ def _overturning(axes: "Axes", found: "xr.Dataset") -> None:
     for place, share in enumerate((mode >= 0).sum(axis=0) / known):
         axes.plot(period, share, linewidth=1.0, **look(place))
     axes.set_ylim(-0.03, 1.03)
-    axes.set_ylabel("share\noverturned [-]")
+    axes.set_ylabel("share over-\nturned [-]")
 
 
 def _bar(axes: "Axes", period: FloatArray, over: Any, place: int) -> None:

@@ -237,4 +237,4 @@ def note(axes: "Axes", words: str, width: int = 62) -> None:
     width : int
         Characters in a line.
     """
-    axes.set_title(wrapped(words, width), loc="left", fontsize=7, color=INK)
+    axes.set_title(wrapped(words, width).replace("m/s2", "m/s$^2$"), loc="left", fontsize=7, color=INK)

@@ -6,6 +6,7 @@ from rocking.studies.job.findings import analyses, answer, assessment
 from rocking.studies.job.folder import JobFolder, JobStatus, status_of
 from rocking.studies.job.forecasting import Forecast, forecast
 from rocking.studies.job.job import Job
+from rocking.studies.job.measures import measure_comparison
 
 __all__ = [
     "Forecast",
@@ -19,5 +20,6 @@ __all__ = [
     "export",
     "exports_of",
     "forecast",
+    "measure_comparison",
     "status_of",
 ]

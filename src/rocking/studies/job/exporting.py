@@ -13,7 +13,8 @@ from rocking.studies.fragility.nesting import Crossing, check_crossing, nested
 from rocking.studies.job.comparison import COMPARED, comparable, comparison, comparison_sheet
 from rocking.studies.job.findings import answer, refuse_unfinished
 from rocking.studies.job.folder import JobFolder
-from rocking.studies.job.matlab import to_matlab
+from rocking.studies.job.matlab import sheet_to_matlab, to_matlab
+from rocking.studies.job.measures import MEASURES, measure_comparison, measures_sheet, told_of
 from rocking.studies.job.netcdf import to_netcdf
 from rocking.studies.job.results import Results
 from rocking.studies.job.round_status import finished_rounds
@@ -39,10 +40,13 @@ SPECIAL: dict[str, tuple[str, ...]] = {
     "crossings": (".nc", *SHEET_FORMATS),
     "minima": (".nc", *SHEET_FORMATS),
     **dict.fromkeys(COMPARED, tuple(SHEET_FORMATS)),
+    MEASURES: (".nc", ".mat", *SHEET_FORMATS),
 }
 """What can be exported of some kinds beside their histories, and how."""
 
 _ANALYSES = ("fragility", "fema-p58")
+_OF_ONE = (*_ANALYSES, MEASURES)
+"""What each restitution has of its own."""
 
 
 def exports_of(folder: JobFolder) -> list[str]:
@@ -61,7 +65,8 @@ def exports_of(folder: JobFolder) -> list[str]:
     study = folder.job.study
     compared = COMPARED if comparable(folder) else ()
     if study.finish is not None:
-        return ["histories", *_ANALYSES, *compared]
+        ranked = (MEASURES,) if folder.job.document.campaign.kind == "cloud" else ()
+        return ["histories", *_ANALYSES, *ranked, *compared]
     if study.search is None:
         return ["histories", *compared]
     if folder.job.document.map is not None:
@@ -87,10 +92,11 @@ def export(
         and ``fema-p58``, a table (.csv); of refined maps ``refined``, all points, and ``boundary``, the vertices of the
         polylines (.csv, .parquet, .xlsx); of minimum accelerations ``crossings`` and ``minima`` (the same, and both in
         one .nc), with ``histories`` for the first samples; of jobs with several restitutions ``flips``, what each of
-        them changes against the first, and ``differences``, cell by cell (.csv, .parquet, .xlsx). The first of
-        `exports_of` if not given.
+        them changes against the first, and ``differences``, cell by cell (.csv, .parquet, .xlsx); of clouds
+        ``measures``, the ranking of intensity measures (.nc, .csv, .mat, .parquet, .xlsx). The first of `exports_of` if
+        not given.
     restitution : str, optional
-        Label of the restitution whose fragility is meant, where there are several.
+        Label of the restitution whose fragility or measures are meant, where there are several.
     crossing : {"refuse", "common-dispersion"}, optional
         What to do with fragility curves that cross: NRML and FEMA P-58 refuse them, or all states get one dispersion in
         every file. What the job says if not given; "refuse" if it says nothing.
@@ -119,7 +125,9 @@ def export(
     unfinished = target.with_name(f".{target.stem}.{os.getpid()}.part{target.suffix}")
     with disk.guarded(target.parent, lambda: "the campaign itself is safe"):
         try:
-            if what in _ANALYSES:
+            if what == MEASURES:
+                results = _measures(results, unfinished, restitution, folder)
+            elif what in _ANALYSES:
                 _fragility(results, unfinished, what, restitution, crossing, folder)
             else:
                 _tables(results, unfinished, what, folder)
@@ -182,15 +190,23 @@ def _check_what(
             more = "; the .nc of the histories (--what histories) holds points and polylines too"
         raise InvalidValueError(f"{what} can be written as {', '.join(allowed)}, got {suffix or 'no ending'!r}{more}")
     labels = list(folder.job.parts.choices)
-    if what not in _ANALYSES and restitution is not None:
-        raise InvalidValueError("restitution goes with fragility and fema-p58; every history has its own")
+    if what not in _OF_ONE and restitution is not None:
+        raise InvalidValueError("restitution goes with fragility, fema-p58 and measures; every history has its own")
     if what not in _ANALYSES and crossing is not None:
         raise InvalidValueError("crossing goes with fragility and fema-p58: it is about curves")
     if what not in exports_of(folder):
-        raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no {what}')
+        why = f'a campaign of kind "{folder.job.document.campaign.kind}" has no {what}{_WHY.get(what, "")}'
+        raise InvalidValueError(f"nothing to export because {why}")
     if what in _ANALYSES:
         check_crossing("refuse" if crossing is None else crossing)
+    if what in _OF_ONE:
         _check_label(what, restitution, labels)
+
+
+_WHY = {
+    MEASURES: ", which are compared over the motions of a cloud as they are",
+    **dict.fromkeys(COMPARED, " without several restitutions to compare"),
+}
 
 
 def _check_label(what: str, restitution: str | None, labels: list[str]) -> None:
@@ -216,6 +232,20 @@ def _tables(results: Results, path: Path, what: str, folder: JobFolder) -> None:
         sheets_to_netcdf(found.sheets, path, attributes)
     else:
         SHEET_FORMATS[suffix](found.sheets[what], path, attributes)
+
+
+def _measures(results: Results, path: Path, restitution: str | None, folder: JobFolder) -> Results:
+    """Write the ranking of measures; return the results, which know what cannot be said in its rows."""
+    found = measure_comparison(folder, restitution, results.progress)
+    about = told_of(found) | ({} if restitution is None else {"restitution": restitution})
+    results = replace(results, provenance=results.provenance | about)
+    sheet, suffix = measures_sheet(found), path.suffix.lower()
+    if suffix == ".nc":
+        sheets_to_netcdf({MEASURES: sheet}, path, results.attributes)
+    else:
+        write = sheet_to_matlab if suffix == ".mat" else SHEET_FORMATS[suffix]
+        write(sheet, path, results.attributes)
+    return results
 
 
 def _fragility(

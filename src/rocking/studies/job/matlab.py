@@ -1,11 +1,13 @@
 """Results as a MATLAB file (version 5)."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from rocking.errors import InvalidValueError
+from rocking.studies.job.answer import Sheet
 from rocking.studies.job.results import Results
 from rocking.studies.job.study import VARIABLES, blocks
 
@@ -49,3 +51,28 @@ def to_matlab(results: Results, path: Path) -> None:
         "provenance": results.attributes["provenance"],
     }
     savemat(path, {"campaign": told}, oned_as="column", appendmat=False, long_field_names=True)
+
+
+def sheet_to_matlab(sheet: Sheet, path: Path, attributes: Mapping[str, Any]) -> None:
+    """Write a table as a structure ``table`` of columns, with their units and meanings.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The table; names that MATLAB does not take as they are need a ``variable``.
+    path : Path
+        The file.
+    attributes : mapping
+        Where it comes from; ``provenance`` is written.
+    """
+    from scipy.io import savemat
+
+    columns = {each.variable or name: each for name, each in sheet.columns.items()}
+    told = {
+        "columns": {n: each.values.astype(object) if each.is_words else each.values for n, each in columns.items()},
+        "names": dict(zip(columns, sheet.columns, strict=True)),
+        "units": {name: each.unit for name, each in columns.items()},
+        "words": {name: each.words for name, each in columns.items()},
+        "provenance": attributes["provenance"],
+    }
+    savemat(path, {"table": told}, oned_as="column", appendmat=False, long_field_names=True)

@@ -289,5 +289,11 @@ def _drawn(table: "RestitutionTable", seed: int) -> tuple[str, Any]:
     assert spread is not None  # asked before
     times = model(spread.times) if isinstance(spread.times, str) else spread.times
     law = SampledRestitution if spread.each == "history" else RandomRestitution
-    drawn = law.normal(spread.mean, spread.deviation, seed=seed if spread.seed is None else spread.seed, times=times)
-    return f"drawn per {spread.each}: {spread.mean:g} +- {spread.deviation:g}, seed {drawn.seed}", drawn
+    how: dict[str, Any] = {"seed": seed if spread.seed is None else spread.seed, "times": times}
+    if spread.values is not None:
+        drawn, words = law.of_sample(spread.values, **how), f"{len(spread.values)} values"
+        words += f" from {min(spread.values):g} to {max(spread.values):g}"
+    else:
+        mean, deviation = spread.mean or 0.0, spread.deviation or 0.0  # both are there: checked by the table
+        drawn, words = law.normal(mean, deviation, **how), f"{mean:g} +- {deviation:g}"
+    return f"drawn per {spread.each}: {words}, seed {drawn.seed}", drawn

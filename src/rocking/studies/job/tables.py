@@ -79,13 +79,22 @@ class MotionTable(JobTable):
 
 
 class RandomTable(JobTable):
-    """A coefficient that is drawn."""
+    """A coefficient that is drawn: from a normal distribution, or from values such as a posterior."""
 
-    mean: Annotated[float, Field(ge=0.0, le=1.0)]
-    deviation: Annotated[float, Field(gt=0.0, le=1.0)]
+    mean: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
+    deviation: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
+    values: Annotated[list[Annotated[float, Field(ge=0.0, le=1.0)]], Field(min_length=2)] | None = None
     each: Literal["impact", "history"] = "impact"
     times: str | float = 1.0
     seed: Seed | None = None
+
+    @model_validator(mode="after")
+    def _one_distribution(self) -> "RandomTable":
+        given = [name for name in ("mean", "deviation") if getattr(self, name) is not None]
+        if len(given) != (2 if self.values is None else 0):
+            beside = " and values" if self.values is not None else ""
+            raise refused(f"give mean and deviation, or values alone; got {' and '.join(given) or 'none'}{beside}")
+        return self
 
 
 class RestitutionTable(JobTable):
@@ -170,9 +179,11 @@ class InventoryTable(JobTable):
 
 
 class ExportTable(JobTable):
-    """How files are written."""
+    """How files are written, and which measures of intensity are compared in them."""
 
     crossing: Literal["refuse", "common-dispersion"] = "refuse"
+    measures: Annotated[list[Words], Field(min_length=1)] | None = None
+    columns: list[Words] | None = None
 
 
 class SpectrumTable(JobTable):
@@ -249,6 +260,9 @@ class Document(JobTable):
             raise refused(f'[[body]] can be given once only with kind = "{kind}", got {len(self.body or ())}')
         if self.export is not None and kind not in _ANALYSES:
             raise refused(f'[export] goes with {", ".join(_ANALYSES)}, this is "{kind}"')
+        odd = sorted({"measures", "columns"} & (set() if self.export is None else self.export.model_fields_set))
+        if odd and kind != "cloud":
+            raise refused(f'export.{odd[0]} goes with kind = "cloud" only, this is "{kind}"')
         if kind in _ANALYSES:
             self._analysis_fits(kind, self.fragility or FragilityTable())
         if kind == "inventory":

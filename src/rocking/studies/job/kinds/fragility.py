@@ -14,6 +14,7 @@ from rocking.studies.fragility.stripes import stripes_plan
 from rocking.studies.fragility.subject import Subject
 from rocking.studies.histories import Product
 from rocking.studies.job.kinds.words import along, of_motions, of_words
+from rocking.studies.job.measured import check_told
 from rocking.studies.job.parts import Parts
 from rocking.studies.job.reading import located
 from rocking.studies.job.study import Coordinate, Study
@@ -46,6 +47,9 @@ def fragility_study(parts: Parts) -> Study:
         plans = {label: _plan(table, parts, choice) for label, choice in parts.choices.items()}
         products = [product for product, _ in plans.values()]
         merged = _merged(products)
+    if parts.document.campaign.kind == "cloud":
+        with located("export"):
+            check_told(parts.document, parts.motions)
     levels = None if table.levels is None else table.levels.numbers()
     dims = {"motion": len(parts.motions)} | ({} if levels is None else {"level": levels.size})
     subject = Subject.of(parts.bodies[0], parts.motions, parts.only_choice, table.measure, dict(parts.options))

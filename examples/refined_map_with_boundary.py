@@ -1,0 +1,43 @@
+"""A map that is fine where it matters: refined along the boundaries between ways of falling, which are polylines."""
+
+from pathlib import Path
+
+import numpy as np
+
+import rocking as rk
+from rocking.plots import write
+from rocking.plots.refined_map import refined_map_picture
+from rocking.studies import boundary, overturning_map, refined_map
+
+block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)
+axes = ("frequency_ratio", np.linspace(0.5, 8.0, 61)), ("amplitude_ratio", np.linspace(1.0, 10.0, 61))
+levels = 3
+points = refined_map(block, pulse, *axes, restitution=0.9, levels=levels)
+lines = boundary(block, pulse, *axes, restitution=0.9, levels=levels, by="mode", tolerance=1e-6)
+
+base, total = int(points.base.sum()), points.modes.size
+whole = (60 * 2**levels + 1) ** 2
+print(f"{base} points of the map, {total - base} along its boundaries; as fine everywhere: {whole}")
+assert total < 0.2 * whole
+# a point of the refined map is what the map itself would say there
+place = int(np.flatnonzero(~points.base)[100])
+alone = overturning_map(
+    block, pulse, ("frequency_ratio", points.x[[place]]), ("amplitude_ratio", points.y[[place]]), 0.9
+)
+assert int(alone["mode"].item()) == int(points.modes[place])
+
+print(f"{len(lines)} polylines, {sum(len(line.points) for line in lines)} vertices")
+longest = max(lines, key=lambda line: len(line.points))
+x, y = longest.points[len(longest.points) // 2]
+sides = [
+    overturning_map(block, pulse, ("frequency_ratio", [x * a]), ("amplitude_ratio", [y * b]), 0.9)["mode"].item()
+    for a, b in ((1.0 - 1e-4, 1.0 + 1e-4), (1.0 + 1e-4, 1.0 - 1e-4))
+]
+assert sides[0] != sides[1]  # a vertex lies between two ways to end, closer than 1e-4
+
+folder = Path("gallery-output")
+folder.mkdir(exist_ok=True)
+picture = refined_map_picture(
+    points, lines, window=((1.6, 3.2), (1.8, 4.2)), words="sine pulse scaled; restitution 0.9"
+)
+write(picture, folder / "refined_map_with_boundary.png")
