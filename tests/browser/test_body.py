@@ -235,6 +235,28 @@ def test_a_dropped_file_becomes_the_body(page: Any, tmp_path: Path, name: str) -
     settled(page, "Semi-diagonal R m", math.hypot(0.2, 1.5))
 
 
+DROP = """([name, text]) => {
+  const transfer = new DataTransfer();
+  transfer.items.add(new File([text], name));
+  const zone = document.querySelector("[data-testid=body-drop]");
+  const told = ["dragover", "drop"].map((kind) => {
+    const event = new DragEvent(kind, { dataTransfer: transfer, bubbles: true, cancelable: true });
+    zone.dispatchEvent(event);
+    return [event.defaultPrevented, zone.classList.contains("over")];
+  });
+  return told;
+}"""
+
+
+def test_a_file_can_really_be_dropped(page: Any) -> None:
+    """The place lights up under the file, the browser does not open it instead, and the body is that of the file."""
+    outline = "POLYGON ((0 0, 40 0, 40 300, 0 300, 0 0))"
+    page.get_by_label("Unit of the file").select_option("cm")
+    assert page.evaluate(DROP, ["column.wkt", outline]) == [[True, True], [True, False]]
+    settled(page, "Slenderness h/b", 7.5)
+    assert "column.wkt" in page.get_by_test_id("held-file").inner_text()
+
+
 def _written(path: Path) -> Path:
     ring = [(0, 0), (400, 0), (400, 3000), (0, 3000), (0, 0)]
     if path.suffix == ".wkt":

@@ -162,7 +162,10 @@ def test_a_clash_of_components_is_undone_in_the_page(view: Any, tmp_path: Path) 
     view.evaluate("(given) => sessionStorage.setItem('rocking.inputs', JSON.stringify(given))", found)
     view.reload()
     expect(view.get_by_test_id("motion-refusal")).not_to_be_empty()
-    view.get_by_test_id("record-held").get_by_label("Horizontal component").select_option("column 3")
+    held = view.get_by_test_id("record-held")
+    expect(held.get_by_label("Horizontal component").locator("option")).to_have_text(["column 2", "column 3"])
+    expect(held.get_by_label("Vertical component").locator("option")).to_have_text(["none", "column 2", "column 3"])
+    held.get_by_label("Horizontal component").select_option("column 3")
     expect(view.get_by_test_id("motion-refusal")).to_be_empty()
 
 
@@ -204,6 +207,20 @@ def test_an_unreadable_file_takes_the_question_of_the_last_one_along(view: Any) 
     expect(view.get_by_test_id("record-needs")).to_be_empty()
     way(view, "Pulse")
     expect(pending).to_be_empty()
+
+
+def test_a_refused_answer_takes_its_question_along(view: Any) -> None:
+    """What the server cannot read as it was told is refused; nothing is asked any more, and a file can be chosen."""
+    words = {"error": {"kind": "record", "message": "site.csv: the file is damaged"}}
+    view.route(re.compile(r"/api/records\?.*units="), lambda route: route.fulfill(status=422, json=words))
+    way(view, "Record file")
+    view.evaluate(DROP, ["site.csv", "\n".join(f"{STEP * k:.3f},{math.sin(0.7 * k):.6f}" for k in range(201))])
+    needs = view.get_by_test_id("record-needs")
+    needs.get_by_label("Unit of the accelerations").select_option("g")
+    needs.get_by_role("button", name="Read it so").click()
+    expect(view.locator("[data-testid=record-answer] .note.error")).to_contain_text("damaged")
+    expect(needs).to_be_empty()
+    expect(view.get_by_role("button", name="Choose a file").and_(view.locator("#view-motion button"))).to_be_focused()
 
 
 def inputs_or_first(page: Any) -> Any:
@@ -272,7 +289,7 @@ def test_measures_are_copied_with_every_digit(view: Any) -> None:
 def test_the_picture_is_saved(view: Any, kind: str) -> None:
     """The picture of the motion comes as a file of the kind asked for."""
     with view.expect_download() as waiting:
-        view.get_by_test_id("motion-result").get_by_role("button", name=kind.upper()).click()
+        view.get_by_test_id("motion-result").get_by_role("button", name=f"Motion as {kind.upper()}").click()
     starts = Path(waiting.value.path()).read_bytes()[:200]
     assert starts.startswith(b"\x89PNG") if kind == "png" else b"<svg" in starts or b"<?xml" in starts
 

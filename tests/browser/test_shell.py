@@ -8,8 +8,11 @@ from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree as ET
 
+import numpy as np
 import pytest
+from matplotlib import image
 
 playwright = pytest.importorskip("playwright.sync_api")
 expect = playwright.expect
@@ -233,7 +236,33 @@ def test_only_the_newest_call_follows_the_one_in_flight(page: Any) -> None:
     assert [each["body"]["width"] for each in counted] == [1, 20]
 
 
-def test_a_chart_is_words_and_table_too(page: Any) -> None:
+def _check_vector(page: Any, folder: Path) -> None:
+    """The SVG of the chart has its curves where its axes say, with gaps, dashes and words; the PNG is twice as wide."""
+    saved_as = {}
+    for kind in ("SVG", "PNG"):
+        with page.expect_download() as saved:
+            page.get_by_role("button", name=f"{kind} of the chart Probe").click()
+        saved_as[kind] = folder / saved.value.suggested_filename
+        saved.value.save_as(saved_as[kind])
+    assert [path.name for path in saved_as.values()] == ["probe.svg", "probe.png"]
+    root = ET.parse(saved_as["SVG"]).getroot()
+    named = {element.tag.removeprefix("{http://www.w3.org/2000/svg}") for element in root.iter()}
+    assert named == {"svg", "title", "rect", "text", "g", "line", "clipPath", "path"}
+    words = [element.text for element in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert {"Probe", "first", "second", "time [s]", "angle [rad]"} <= set(words)
+    first, second = (path.attrib for path in root.iter("{http://www.w3.org/2000/svg}path"))
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = ((float(a) for a in one.split()) for one in first["d"][1:].split("L"))
+    assert x1 - x0 == pytest.approx(x3 - x2, abs=0.02)
+    assert y3 == y0
+    assert y0 - y1 == pytest.approx(2.0 * (y2 - y0), abs=0.05)  # the values are 0, 2, -1, 0
+    assert second["d"].count("M") == 2  # a value is missing in between
+    assert second["stroke-dasharray"] == "4 2"
+    drawn = image.imread(saved_as["PNG"])
+    assert drawn.shape[1] == 2 * int(root.attrib["width"])
+    assert len(np.unique(drawn.reshape(-1, drawn.shape[2]), axis=0)) > 20
+
+
+def test_a_chart_is_words_and_table_too(page: Any, tmp_path: Path) -> None:
     """A line chart says its range to a screen reader, shows a table on request, and saves itself as PNG."""
     page.evaluate(
         """async () => {
@@ -261,6 +290,7 @@ def test_a_chart_is_words_and_table_too(page: Any) -> None:
         page.evaluate("void window.probe.toPng()")
     assert saved.value.suggested_filename == "probe.png"
     assert saved.value.path().read_bytes().startswith(b"\x89PNG")
+    _check_vector(page, tmp_path)
     page.get_by_role("button", name="Switch between light and dark").click()
     page.evaluate("window.probe.destroy()")
     assert page.locator(".chart").count() == 0

@@ -16,7 +16,7 @@ from rocking.app.answers import JsonAnswer
 from rocking.app.api import body, impact, info, motion, records, response
 from rocking.app.handlers import install_handlers
 from rocking.app.records import RecordStore
-from rocking.app.schemas.error import ERRORS, describe_key
+from rocking.app.schemas.error import ERRORS, describe_api
 from rocking.app.security import session
 from rocking.app.security.failures import Failures
 from rocking.app.security.gate import Gate
@@ -60,6 +60,7 @@ def create_app(settings: Settings) -> FastAPI:
         redoc_url=None,
         openapi_url="/api/openapi.json",
         redirect_slashes=False,
+        separate_input_output_schemas=False,
         default_response_class=JsonAnswer,
         generate_unique_id_function=_operation,
         lifespan=_lifespan,
@@ -92,7 +93,7 @@ def _add_endpoints(app: FastAPI) -> None:
         studies.router,
     ):
         app.include_router(router, responses=ERRORS)
-    describe_key(app)
+    describe_api(app)
 
 
 def _state(settings: Settings) -> AppState:

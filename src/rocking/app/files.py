@@ -6,6 +6,7 @@ import unicodedata
 from starlette.responses import Response
 
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+_STRANGE = re.compile(r"(?:[^A-Za-z0-9._-]|(?<![A-Za-z0-9])\.|\.(?![A-Za-z0-9]))+")
 _LONGEST = 80
 
 
@@ -28,14 +29,16 @@ def safe_name(name: str, fallback: str = "rocking") -> str:
     --------
     >>> safe_name("../../Vase Nº 3 <b>.csv")
     'Vase-No-3-b.csv'
+    >>> safe_name("statue v1.2 report.pdf")
+    'statue-v1.2-report.pdf'
     """
     plain = unicodedata.normalize("NFKD", name[:1000]).encode("ascii", "ignore").decode()
     stem, dot, suffix = plain.rpartition(".")
     if not dot or not re.fullmatch(r"[A-Za-z0-9]{1,8}", suffix):
         stem, dot, suffix = plain, "", ""
-    stem = re.sub(r"[^A-Za-z0-9_-]+", "-", stem).strip("-_")
-    word = f"{stem[: _LONGEST - len(suffix) - 1] or fallback}{dot}{suffix}"
-    return f"{fallback}-{word}" if _RESERVED.fullmatch(word) else word
+    stem = _STRANGE.sub("-", stem).strip("-_") or fallback
+    stem = f"{fallback}-{stem}" if _RESERVED.fullmatch(stem) else stem
+    return stem[: _LONGEST - len(suffix) - 1].rstrip(".-_") + dot + suffix
 
 
 def attachment(data: bytes, name: str, media_type: str) -> Response:

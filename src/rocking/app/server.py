@@ -99,7 +99,7 @@ def _run(
 
     def tell() -> None:
         started(Started(settings.origin, sessions.first_link(), settings.port, key_file))
-        warm_up_later()
+        warm_up_later(app.openapi)  # the first who reads it would hold up everybody else
 
     sys.setswitchinterval(_TURN)
     server = _Server(_config(app), tell)

@@ -13,13 +13,13 @@ from rocking.report.document import Paragraph, Table, cell
 from rocking.report.facts.body import side_facts
 from rocking.report.facts.impact import ImpactAnswer
 from rocking.report.facts.verdict import Verdict
+from rocking.report.facts.words import restitution_words
 from rocking.report.response_blocks import Block, Image, Listing, Pages, Pair, Part
 from rocking.report.response_tables import (
     coefficients_table,
     impacts_table,
     measures_table,
     outcomes_table,
-    restitution_words,
 )
 
 _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
@@ -129,7 +129,7 @@ def _verdict(found: Found) -> list[Paragraph]:
     label, first = next(iter(found.responses.items()))
     words = first.summary[:1].upper() + first.summary[1:] + "."
     made = [Paragraph(words, f"With {restitution_words(label)}:", _MARKS.get(first.outcome, "plain"))]
-    verdict = Verdict.of(found.responses)
+    verdict = Verdict.of({restitution_words(label): one for label, one in found.responses.items()})
     if len(found.responses) > 1:
         made.append(Paragraph(verdict.sentence, "", "fair" if verdict.decides else "plain"))
     return made
@@ -168,7 +168,7 @@ def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:
 def _impact(found: Found) -> list[Block]:
     tables = [coefficients_table(found.impact, foot) for foot in found.impact.tables]
     rows = [row for table in found.impact.tables.values() for row in table]
-    said = dict.fromkeys(f"{row.name}: {warning}" for row in rows for warning in row.warnings)
+    said = dict.fromkeys(f"{restitution_words(row.name)}: {warning}" for row in rows for warning in row.warnings)
     picture = Image("coefficients", "Every model for this body, and where it lies among the published measurements")
     return [picture, *tables, *(Paragraph(words, "", "fair") for words in said)]
 

@@ -11,37 +11,13 @@ from rocking.motions.intensity import Measure
 from rocking.report.document import Cell, Table, cell
 from rocking.report.facts.impact import ImpactAnswer
 from rocking.report.facts.response import outcome_facts
+from rocking.report.facts.words import restitution_words
 
 MOST_IMPACTS = 24
 """Impacts that are printed."""
 
 _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: "good"}
 _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
-
-
-def restitution_words(label: str) -> str:
-    """Return what a restitution is called in a sentence.
-
-    Parameters
-    ----------
-    label : str
-        Its label: a model, or a coefficient.
-
-    Returns
-    -------
-    str
-        A coefficient with its symbol, a model as it is.
-
-    Examples
-    --------
-    >>> restitution_words("0.9"), restitution_words("ked")
-    ('r = 0.9', 'ked')
-    """
-    try:
-        float(label)
-    except ValueError:
-        return label
-    return f"r = {label}"
 
 
 def coefficients_table(answer: ImpactAnswer, foot: Foot) -> Table:
@@ -142,7 +118,7 @@ def impacts_table(label: str, response: Response) -> Table:
 def _coefficient(row: CoefficientRow) -> list[Cell]:
     fact = row.implication
     return [
-        cell(row.name),
+        cell(restitution_words(row.name)),
         cell(f"{row.coefficient:.5f}"),
         cell(f"{row.low:.3f} to {row.high:.3f}"),
         cell(f"{fact.impulse_ratio:.3f}"),

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import re
 import threading
 from concurrent.futures import wait
 
@@ -171,13 +172,34 @@ def test_word_nan_is_not_the_number() -> None:
         ("<svg onload=alert(1)>.svg", "svg-onload-alert-1.svg"),
         ("\x00", "rocking"),
         ("Σίσυφος", "rocking"),
+        ("statue v1.2 report.pdf", "statue-v1.2-report.pdf"),
+        ("statue v1.2", "statue-v1.2"),
+        ("..\\..\\v1.2\\a.csv", "v1.2-a.csv"),
+        ("a/./b/../.ssh/c.csv", "a-b-ssh-c.csv"),
+        ("v1...2..csv", "v1-2.csv"),
+        ("trailing. . .", "trailing"),
+        ("name .csv", "name.csv"),
+        ("nul.v1.2.csv", "rocking-nul.v1.2.csv"),
+        ("COM\u00b9.csv", "rocking-COM1.csv"),
+        ("a\x00.\x1fb\x7f.csv", "a-b.csv"),
+        ("1\uff0e2\u2024\u2024/\uff0ecsv", "1.2.csv"),
+        ("x" * 73 + ".y.z" * 9 + ".csv", "x" * 73 + ".y.csv"),
+        ("con" + "." * 300 + ".csv", "rocking-con.csv"),
     ],
 )
 def test_file_names_are_harmless(given: str, kept: str) -> None:
     """Whatever a file is called, its name on the way out is plain."""
     assert safe_name(given) == kept
     assert attachment(b"", given, "text/csv").headers["Content-Disposition"] == f'attachment; filename="{kept}"'
-    assert len(safe_name(given * 1000)) <= 80
+    for name in (kept, safe_name(given * 1000), safe_name(given, "study")):
+        assert re.fullmatch(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*", name)
+        assert len(name) <= 80
+
+
+def test_a_careless_name_is_noticed() -> None:
+    """The control: what a careless rule would let through is not a plain name, and is not what comes out."""
+    for given in ("../a", ".bashrc", "a..b", "a.", "a b", "con", "a/b", "a\r\nb"):
+        assert safe_name(given) != given
 
 
 def test_line_of_computations_is_bounded() -> None:

@@ -1,5 +1,6 @@
 """The page of the API in a real browser: all of it, from this server alone, and its calls work."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -7,6 +8,7 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 import uvicorn
@@ -37,6 +39,26 @@ def served(tmp_path: Path) -> Iterator[tuple[FastAPI, str]]:
         thread.join(20)
 
 
+def _check_answers(page: Any, app: FastAPI) -> None:
+    """Every card says what comes back: fields with their units, or types of files; errors are told once."""
+    for path, item in app.openapi()["paths"].items():
+        for method, operation in item.items():
+            card = page.locator(f"section[aria-label='{method} {path}']")
+            told = card.text_content()
+            assert "What comes back" in told, path
+            good = next(value for status, value in operation["responses"].items() if status.startswith("2"))
+            assert all(kind in told for kind in good["content"] if kind != "application/json"), path
+    words = page.locator("section[aria-label='post /api/response']").text_content()
+    assert "answers.series.velocity" in words
+    assert "angular velocity [rad/s]" in words
+    assert "body.outline.holes" in words
+    found = page.locator("section[aria-label='get /api/studies/{study}/result']").text_content()
+    assert all(part in found for part in ("an overturning map", "fragility curves", "analyses.fits.median_95"))
+    errors = page.get_by_test_id("api-errors").text_content()
+    assert all(f"{status}" in errors for status in (400, 401, 403, 404, 413, 422, 429, 500))
+    assert page.get_by_test_id("api-errors").count() == 1
+
+
 def test_page_shows_every_endpoint_and_its_calls_work(served: tuple[FastAPI, str], tmp_path: Path) -> None:
     """Every operation has a card, nothing is asked elsewhere, no policy is broken, and the Python call runs."""
     app, origin = served
@@ -53,6 +75,9 @@ def test_page_shows_every_endpoint_and_its_calls_work(served: tuple[FastAPI, str
         page.wait_for_selector("[data-testid=endpoint]")
         assert page.locator("[data-testid=endpoint]").count() == operations
         assert page.evaluate("document.documentElement.scrollWidth") <= 360
+        _check_answers(page, app)
+        if os.environ.get("ROCKING_SHOTS"):
+            page.screenshot(path=f"{os.environ['ROCKING_SHOTS']}/api-docs-phone.png", full_page=False)
         card = page.locator("section[aria-label='post /api/response']")
         card.locator("[data-testid=calls] summary").click()
         assert "curl -X POST" in card.locator("pre").inner_text()

@@ -31,11 +31,13 @@ def test_errors_are_what_the_schema_says(client: TestClient, status: int) -> Non
     assert answer.status_code == status
     told = ErrorAnswer.model_validate(answer.json())
     assert told.error.message
-    operations = client.get("/api/openapi.json").json()["paths"]
-    place = next(each for each in operations if path.startswith(each.partition("{")[0]) and each.count("/") >= 2)
-    for operation in operations[place].values():
-        declared = operation["responses"][str(status)]["content"]["application/json"]["schema"]
-        assert declared == {"$ref": "#/components/schemas/ErrorAnswer"}
+    schema = client.get("/api/openapi.json").json()
+    place = next(each for each in schema["paths"] if path.startswith(each.partition("{")[0]) and each.count("/") >= 2)
+    for operation in schema["paths"][place].values():
+        assert operation["responses"][str(status)] == {"$ref": f"#/components/responses/Error{status}"}
+    declared = schema["components"]["responses"][f"Error{status}"]
+    assert declared["content"]["application/json"]["schema"] == {"$ref": "#/components/schemas/ErrorAnswer"}
+    assert declared["description"]
 
 
 def test_another_form_is_noticed() -> None:
@@ -50,7 +52,8 @@ def test_every_call_declares_its_errors_and_its_key(app: FastAPI) -> None:
     schema = app.openapi()
     assert "HTTPValidationError" not in str(schema)
     assert schema["components"]["securitySchemes"]["key"]["scheme"] == "bearer"
+    assert "Retry-After" in schema["components"]["responses"]["Error429"]["headers"]
     for path, item in schema["paths"].items():
         for operation in item.values():
-            assert {"401", "403", "422", "429"} <= set(operation["responses"])
+            assert {"400", "401", "403", "404", "413", "422", "429"} <= set(operation["responses"])
             assert bool(operation["security"]) == (path != "/api/session")

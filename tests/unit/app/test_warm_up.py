@@ -24,5 +24,5 @@ def test_what_is_not_installed_is_left_out(monkeypatch):
     monkeypatch.setattr(warm_up, "_impact", missing)
     monkeypatch.setattr(warm_up, "_response", lambda: done.append("response"))
     monkeypatch.setattr(warm_up, "_picture", missing)
-    warm_up.warm_up()
-    assert done == ["response"]
+    warm_up.warm_up(lambda: done.append("more"))
+    assert done == ["response", "more"]

@@ -8,6 +8,8 @@ from rocking.app.answers import JsonAnswer
 from rocking.app.api.sized import sized
 from rocking.app.api.uploads import OCTETS
 from rocking.app.question import body_from
+from rocking.app.schemas.answers.answer import answered
+from rocking.app.schemas.answers.body import BodyInFile, DescribedBody
 from rocking.app.schemas.body import BodyInput
 from rocking.app.schemas.inputs import BodyAsked
 from rocking.app.work import heavy
@@ -25,7 +27,13 @@ The content of a DXF, WKT, GeoJSON or TOML file; `name` says by its ending which
 WKT and GeoJSON, and for a drawing that does not state its unit. `body` of the answer is what stands in the inputs."""
 
 
-@router.post("/body", summary="What a body is", description=_ABOUT, response_class=JsonAnswer)
+@router.post(
+    "/body",
+    summary="What a body is",
+    description=_ABOUT,
+    response_class=JsonAnswer,
+    responses=answered(DescribedBody, "The body."),
+)
 async def body(request: Request, asked: BodyAsked) -> JsonAnswer:
     """Answer with the facts of a body.
 
@@ -45,7 +53,12 @@ async def body(request: Request, asked: BodyAsked) -> JsonAnswer:
 
 
 @router.post(
-    "/body/file", summary="Read a body file", description=_FILE, response_class=JsonAnswer, openapi_extra=OCTETS
+    "/body/file",
+    summary="Read a body file",
+    description=_FILE,
+    response_class=JsonAnswer,
+    responses=answered(BodyInFile, "The body, and what stands in the inputs for it."),
+    openapi_extra=OCTETS,
 )
 async def body_file(
     request: Request,

@@ -8,6 +8,8 @@ from rocking.app.answers import JsonAnswer
 from rocking.app.api.remembered import Remembered
 from rocking.app.api.sized import sized
 from rocking.app.question import body_from
+from rocking.app.schemas.answers.answer import answered
+from rocking.app.schemas.answers.impact import ImpactAnswered
 from rocking.app.schemas.inputs import ImpactAsked
 from rocking.bodies import Block
 from rocking.conventions import g
@@ -25,7 +27,13 @@ of the body for the three stages of KED; `warnings` in plain words, each with th
 _HELD: Remembered[JsonAnswer] = Remembered(64)
 
 
-@router.post("/impact", summary="What an impact costs", description=_ABOUT, response_class=JsonAnswer)
+@router.post(
+    "/impact",
+    summary="What an impact costs",
+    description=_ABOUT,
+    response_class=JsonAnswer,
+    responses=answered(ImpactAnswered, "Every model, the measurements, and the three stages."),
+)
 async def impact(request: Request, asked: ImpactAsked) -> JsonAnswer:
     """Answer with coefficients, evidence and stages.
 

@@ -9,6 +9,8 @@ from typing import Any
 from fastapi import APIRouter, Request
 
 from rocking.app.answers import JsonAnswer
+from rocking.app.schemas.answers.answer import answered
+from rocking.app.schemas.answers.info import Info
 from rocking.app.schemas.caps import CAPS
 from rocking.app.state import state_of
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, g
@@ -29,7 +31,13 @@ PARAMETERS = {
 """Unit and words of the parameters of pulses."""
 
 
-@router.get("/info", summary="What there is to choose from", description=_ABOUT, response_class=JsonAnswer)
+@router.get(
+    "/info",
+    summary="What there is to choose from",
+    description=_ABOUT,
+    response_class=JsonAnswer,
+    responses=answered(Info, "What there is."),
+)
 def info(request: Request) -> JsonAnswer:
     """Answer with version, engine, models, pulses, families, formats, units, measures, axes, kinds and limits.
 
@@ -49,6 +57,7 @@ def info(request: Request) -> JsonAnswer:
 
 @cache
 def _constant() -> dict[str, Any]:
+    from rocking.app.studies.job_document import KINDS
     from rocking.studies.job.tables import NEEDS
 
     return {
@@ -62,7 +71,7 @@ def _constant() -> dict[str, Any]:
         "units": {"length": list(LENGTH_UNITS), "acceleration": list(ACCELERATION_UNITS)},
         "measures": _measures(),
         "axes": _axes(),
-        "study_kinds": [{"name": name, "table": table} for name, table in NEEDS.items()],
+        "study_kinds": [{"name": name, "table": NEEDS[name]} for name in KINDS],
     }
 
 

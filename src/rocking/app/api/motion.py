@@ -10,6 +10,8 @@ from rocking.app.api.remembered import Remembered
 from rocking.app.api.series import thinned
 from rocking.app.question import motion_from
 from rocking.app.records import RecordStore
+from rocking.app.schemas.answers.answer import answered
+from rocking.app.schemas.answers.motion import MotionAnswered
 from rocking.app.schemas.inputs import MotionAsked
 from rocking.app.state import state_of
 from rocking.app.work import heavy
@@ -32,7 +34,13 @@ DAMPING = 0.05
 _LONGEST, _SHORTEST, _COUNT = 10.0, 0.03, 100
 
 
-@router.post("/motion", summary="What a motion is", description=_ABOUT, response_class=JsonAnswer)
+@router.post(
+    "/motion",
+    summary="What a motion is",
+    description=_ABOUT,
+    response_class=JsonAnswer,
+    responses=answered(MotionAnswered, "The motion."),
+)
 async def motion(request: Request, asked: MotionAsked) -> JsonAnswer:
     """Answer with facts, curves, spectrum and measures.
 

@@ -10,6 +10,8 @@ from rocking.app.answers import JsonAnswer
 from rocking.app.api.record_file import Looked, Told
 from rocking.app.api.uploads import OCTETS
 from rocking.app.records import RecordStore
+from rocking.app.schemas.answers.answer import answered
+from rocking.app.schemas.answers.records import Deleted, RecordFacts, RecordKept
 from rocking.app.state import state_of
 from rocking.app.work import heavy
 from rocking.errors import RecordError
@@ -21,10 +23,25 @@ The content of a record file of any format. `record` of the answer is its SHA-25
 says what must still be told (`units`, `time_step`, `component`, `format`), `choices` what may be said. The same file
 can be sent again with what was missing; a file that no format can read is refused and not kept."""
 
+_STATIONS = b"<FDSNStationXML"
+_WAY = (
+    "this page takes no StationXML. Turn counts into m/s2 in Python and send the file that is written: "
+    'record = MiniSeed.with_response("station.xml").read(Source.of_path(Path("counts.mseed"))), then '
+    'write_record(record, "motion.mseed", "miniseed"); write_record is in rocking.motions.formats, MiniSeed and Source '
+    "in its modules miniseed and source"
+)
+
 Word = Annotated[str | None, Query(min_length=1, max_length=200)]
 
 
-@router.post("", summary="Send a record file", description=_ABOUT, response_class=JsonAnswer, openapi_extra=OCTETS)
+@router.post(
+    "",
+    summary="Send a record file",
+    description=_ABOUT,
+    response_class=JsonAnswer,
+    responses=answered(RecordFacts, "What the file holds."),
+    openapi_extra=OCTETS,
+)
 async def add_record(
     request: Request,
     name: Annotated[str, Query(max_length=500)] = "record",
@@ -54,7 +71,13 @@ async def add_record(
     return JsonAnswer(await heavy(request, _added, state_of(request).records, content, name, told))
 
 
-@router.get("", summary="All record files", description="What is kept, the latest first.", response_class=JsonAnswer)
+@router.get(
+    "",
+    summary="All record files",
+    description="What is kept, the latest first.",
+    response_class=JsonAnswer,
+    responses=answered(list[RecordKept], "The files."),
+)
 def list_records(request: Request) -> JsonAnswer:
     """Answer with what is kept, the latest first.
 
@@ -72,7 +95,11 @@ def list_records(request: Request) -> JsonAnswer:
 
 
 @router.get(
-    "/{record}", summary="What a record file holds", description="As when it was sent.", response_class=JsonAnswer
+    "/{record}",
+    summary="What a record file holds",
+    description="As when it was sent.",
+    response_class=JsonAnswer,
+    responses=answered(RecordFacts, "What the file holds."),
 )
 async def look_at_record(
     request: Request,
@@ -104,7 +131,11 @@ async def look_at_record(
 
 
 @router.delete(
-    "/{record}", summary="Remove a record file", description="Gone, from memory too.", response_class=JsonAnswer
+    "/{record}",
+    summary="Remove a record file",
+    description="Gone, from memory too.",
+    response_class=JsonAnswer,
+    responses=answered(Deleted, "What is no longer kept."),
 )
 def delete_record(
     request: Request, record: Annotated[str, InPath(min_length=1, max_length=200, description="SHA-256")]
@@ -139,13 +170,14 @@ def _looked(records: RecordStore, record: str, told: Told) -> dict[str, Any]:
 
 
 def _read(content: bytes, name: str, told: Told) -> Looked:
+    if _STATIONS in content[:4096]:
+        raise RecordError(
+            f"{name}: this is a StationXML file, which describes an instrument and holds no motion; {_WAY}"
+        )
     try:
         return Looked.at(content, name, told)
     except RecordError as error:
         if "with_response" not in str(error):
             raise
-        words = (
-            f"{name}: the samples are counts of the instrument, whose response lies in a StationXML file of its own; "
-            "this page takes no StationXML. Convert the file to m/s2 first, as `MiniSeed.with_response` does in Python"
-        )
-        raise RecordError(words) from error
+        words = f"{name}: the samples are counts of the instrument, whose response lies in a StationXML file of its own"
+        raise RecordError(f"{words}; {_WAY}") from error

@@ -8,6 +8,8 @@ from rocking.app.answers import JsonAnswer
 from rocking.app.api.answers import ResponseAnswers
 from rocking.app.question import question_of
 from rocking.app.records import RecordStore
+from rocking.app.schemas.answers.answer import answered
+from rocking.app.schemas.answers.response import ResponseAnswered
 from rocking.app.schemas.inputs import ResponseAsked
 from rocking.app.state import state_of
 from rocking.app.work import heavy
@@ -20,7 +22,13 @@ One answer for every restitution, in the order in which they were chosen: the ke
 whether the choice of the model decides. A restitution that has no response for this body has `label` and `error`."""
 
 
-@router.post("/response", summary="How the body rocks", description=_ABOUT, response_class=JsonAnswer)
+@router.post(
+    "/response",
+    summary="How the body rocks",
+    description=_ABOUT,
+    response_class=JsonAnswer,
+    responses=answered(ResponseAnswered, "One answer for every restitution, and what they say together."),
+)
 async def response(request: Request, inputs: ResponseAsked) -> JsonAnswer:
     """Answer with responses, verdict, outline and motion.
 

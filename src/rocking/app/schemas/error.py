@@ -58,10 +58,11 @@ _KEY = {
     "description": "The key in the file `api-key` of the data folder, new at every start.",
 }
 _PUBLIC = {"/api/session"}
+_AGAIN = {"schema": {"type": "integer"}, "description": "when another try makes sense [s]"}
 
 
-def describe_key(app: FastAPI) -> None:
-    """Let the schema of the API say which calls need the key.
+def describe_api(app: FastAPI) -> None:
+    """Let the schema of the API say which calls need the key, and say once what an error looks like.
 
     Parameters
     ----------
@@ -72,10 +73,24 @@ def describe_key(app: FastAPI) -> None:
 
     def openapi() -> dict[str, Any]:
         schema = plain()
-        schema.setdefault("components", {})["securitySchemes"] = {"key": _KEY}
+        components = schema.setdefault("components", {})
+        components["securitySchemes"] = {"key": _KEY}
+        components["responses"] = {_name(status): _response(status) for status in _WORDS}
         for path, item in schema["paths"].items():
             for operation in item.values():
                 operation["security"] = [] if path in _PUBLIC else [{"key": []}]
+                for status in _WORDS:
+                    operation["responses"][str(status)] = {"$ref": f"#/components/responses/{_name(status)}"}
         return schema
 
     app.openapi = openapi  # type: ignore[method-assign]  # the way that FastAPI provides
+
+
+def _name(status: int) -> str:
+    return f"Error{status}"
+
+
+def _response(status: int) -> dict[str, Any]:
+    content = {"application/json": {"schema": {"$ref": "#/components/schemas/ErrorAnswer"}}}
+    told = {"description": _WORDS[status], "content": content}
+    return {**told, "headers": {"Retry-After": _AGAIN}} if status == 429 else told

@@ -6,6 +6,7 @@ from starlette.requests import HTTPConnection
 
 from rocking.app.answers import JsonAnswer
 from rocking.app.problems import NotSignedIn
+from rocking.app.schemas.answers.answer import Answer
 from rocking.app.security.asked import Asked
 from rocking.app.state import state_of
 
@@ -21,13 +22,13 @@ class SignIn(BaseModel):
     token: str = Field(min_length=1, max_length=200, description="What follows #token= in the link.")
 
 
-class SignedIn(BaseModel):
+class SignedIn(Answer):
     """Whether somebody is signed in."""
 
     signed_in: bool
 
 
-class Link(BaseModel):
+class Link(Answer):
     """A link that signs one more browser in."""
 
     url: str

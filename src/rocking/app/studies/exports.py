@@ -12,6 +12,8 @@ from rocking.errors import RockingError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Crossing = Literal["refuse", "common-dispersion"]
+
 Kind = Literal["nc", "csv", "mat", "xlsx", "parquet", "toml", "png", "svg", "xml"]
 
 MEDIA_TYPES: dict[str, str] = {
@@ -28,7 +30,9 @@ MEDIA_TYPES: dict[str, str] = {
 """What a browser is told of a file."""
 
 
-def written(study: OpenStudy, kind: Kind, target: Path, what: str | None, restitution: int) -> None:
+def written(
+    study: OpenStudy, kind: Kind, target: Path, what: str | None, restitution: int, crossing: Crossing | None = None
+) -> None:
     """Write a finished study into a file.
 
     Parameters
@@ -43,6 +47,8 @@ def written(study: OpenStudy, kind: Kind, target: Path, what: str | None, restit
         What of it, as `rocking.studies.job.export` takes it; the histories, or the fragility for NRML.
     restitution : int
         Number of the restitution, of pictures and fragility curves.
+    crossing : {"refuse", "common-dispersion"}, optional
+        What to do with fragility curves that cross, as `rocking.studies.job.export` takes it.
 
     Raises
     ------
@@ -61,15 +67,15 @@ def written(study: OpenStudy, kind: Kind, target: Path, what: str | None, restit
 
         draw_to(_picture(study, restitution), target)
     else:
-        _exported(study, target, what or ("fragility" if kind == "xml" else None), labels[restitution])
+        _exported(study, target, what or ("fragility" if kind == "xml" else None), labels[restitution], crossing)
 
 
-def _exported(study: OpenStudy, target: Path, what: str | None, label: str) -> None:
+def _exported(study: OpenStudy, target: Path, what: str | None, label: str, crossing: Crossing | None) -> None:
     from rocking.studies.job import export
 
     of_curves = what in {"fragility", "fema-p58"}
     try:
-        export(study.job, target, what, restitution=label if of_curves else None)
+        export(study.job, target, what, restitution=label if of_curves else None, crossing=crossing)
     except RockingError as error:
         raise Refused(study.folder.without_paths(str(error)).replace(f"{target.parent}/", "")) from error
 

@@ -15,8 +15,12 @@ from starlette.responses import FileResponse, Response
 
 from rocking.app.answers import JsonAnswer
 from rocking.app.files import safe_name
+from rocking.app.schemas.answers.answer import answered, answered_with_file
+from rocking.app.schemas.answers.records import Deleted
+from rocking.app.schemas.answers.studies import Cell, Launched, Studies, StudyFacts
+from rocking.app.schemas.answers.study_results import StudyResult
 from rocking.app.state import state_of
-from rocking.app.studies.exports import MEDIA_TYPES, Kind
+from rocking.app.studies.exports import MEDIA_TYPES, Crossing, Kind
 from rocking.app.studies.live import serve
 from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.study_folder import StudyFolder
@@ -30,6 +34,8 @@ The tables of a job file (`examples/jobs/*.toml`) as JSON. Records are named by 
 uploaded, `{"records": ["64 hexadecimal digits"]}`; bodies are given as they are, not by the names of files."""
 
 Whole = Annotated[int, Field(ge=0, le=10_000_000)]
+
+_ONE = answered(StudyFacts, "State and progress.")
 
 
 class StudyAsked(BaseModel):
@@ -55,14 +61,28 @@ class PointAsked(BaseModel):
     points: Annotated[int, Field(ge=10, le=20_000, description="samples of the curves")] = 1000
 
 
-@router.post("", status_code=202, summary="Launch a study", description=_JOB, name="create_study")
+@router.post(
+    "",
+    status_code=202,
+    summary="Launch a study",
+    description=_JOB,
+    name="create_study",
+    response_class=JsonAnswer,
+    responses=answered(Launched, "It is in line.", 202),
+)
 async def _create_study(request: Request, asked: StudyAsked) -> JsonAnswer:
     """Put a study in line."""
     made = await heavy(request, _studies(request).create, asked.name, asked.job)
     return JsonAnswer({"id": made}, status_code=202)
 
 
-@router.get("", summary="All studies", name="list_studies")
+@router.get(
+    "",
+    summary="All studies",
+    name="list_studies",
+    response_class=JsonAnswer,
+    responses=answered(Studies, "The studies."),
+)
 async def _list_studies(request: Request) -> JsonAnswer:
     """Return all studies, the newest first."""
     return JsonAnswer({"studies": _studies(request).overview()})
@@ -74,34 +94,58 @@ async def _live_studies(socket: WebSocket) -> None:
     await serve(state_of(socket).studies, socket)
 
 
-@router.get("/{study}", summary="One study", name="get_study")
+@router.get("/{study}", summary="One study", name="get_study", response_class=JsonAnswer, responses=_ONE)
 async def _get_study(request: Request, study: str) -> JsonAnswer:
     """Return state and progress of a study."""
     return JsonAnswer(_studies(request).get(study))
 
 
-@router.post("/{study}/cancel", summary="Stop a study; it can be resumed", name="cancel_study")
+@router.post(
+    "/{study}/cancel",
+    summary="Stop a study; it can be resumed",
+    name="cancel_study",
+    response_class=JsonAnswer,
+    responses=_ONE,
+)
 async def _cancel_study(request: Request, study: str) -> JsonAnswer:
     """Stop a study within a second."""
     await run_in_threadpool(_studies(request).cancel, study)
     return JsonAnswer(_studies(request).get(study))
 
 
-@router.post("/{study}/resume", summary="Go on with a study", name="resume_study")
+@router.post(
+    "/{study}/resume",
+    summary="Go on with a study",
+    name="resume_study",
+    response_class=JsonAnswer,
+    responses=_ONE,
+)
 async def _resume_study(request: Request, study: str) -> JsonAnswer:
     """Put a study in line again."""
     await run_in_threadpool(_studies(request).resume, study)
     return JsonAnswer(_studies(request).get(study))
 
 
-@router.delete("/{study}", summary="Delete a study and its results", name="delete_study")
+@router.delete(
+    "/{study}",
+    summary="Delete a study and its results",
+    name="delete_study",
+    response_class=JsonAnswer,
+    responses=answered(Deleted, "What is no longer there."),
+)
 async def _delete_study(request: Request, study: str) -> JsonAnswer:
     """Forget a study."""
     await run_in_threadpool(_studies(request).delete, study)
     return JsonAnswer({"deleted": study})
 
 
-@router.get("/{study}/result", summary="What a study found, by its kind", name="study_result")
+@router.get(
+    "/{study}/result",
+    summary="What a study found, by its kind",
+    name="study_result",
+    response_class=JsonAnswer,
+    responses=answered(StudyResult, "What it found."),
+)
 async def _study_result(request: Request, study: str) -> Response:
     """Return what a finished study found."""
     manager = _studies(request)
@@ -111,7 +155,13 @@ async def _study_result(request: Request, study: str) -> Response:
     return Response(data, media_type="application/json")
 
 
-@router.get("/{study}/cell", summary="The history behind a point of its picture", name="study_cell")
+@router.get(
+    "/{study}/cell",
+    summary="The history behind a point of its picture",
+    name="study_cell",
+    response_class=JsonAnswer,
+    responses=answered(Cell, "The history."),
+)
 async def _study_cell(
     request: Request,
     study: str,
@@ -124,19 +174,24 @@ async def _study_cell(
 
 
 @router.get(
-    "/{study}/export.{kind}", summary="A finished study as a file", response_class=Response, name="export_study"
+    "/{study}/export.{kind}",
+    summary="A finished study as a file",
+    response_class=Response,
+    name="export_study",
+    responses=answered_with_file("The study.", *MEDIA_TYPES.values()),
 )
 async def _export_study(
     request: Request,
     study: str,
     kind: Kind,
     what: Annotated[str | None, Query(max_length=40, description="as `rocking campaign export --what`")] = None,
-    restitution: Annotated[Whole, Query()] = 0,
+    restitution: Annotated[Whole, Query(description="of pictures and curves, counted from 0")] = 0,
+    crossing: Annotated[Crossing | None, Query(description="what to do with fragility curves that cross")] = None,
 ) -> Response:
     """Return a finished study as a file."""
     manager = _studies(request)
     name = safe_name(f"{manager.get(study)['name']}.{kind}", "study")
-    path = await heavy(request, _file, manager, study, kind, what, restitution)
+    path = await heavy(request, _file, manager, study, kind, what, restitution, crossing)
     return FileResponse(
         path,
         media_type=MEDIA_TYPES[kind],
@@ -180,13 +235,15 @@ def _cell(manager: StudyManager, study: str, point: PointAsked) -> bytes:
         return manager.opened.answer(key, lambda: _json(cell_of(opened, found, point.points)))
 
 
-def _file(manager: StudyManager, study: str, kind: Kind, what: str | None, restitution: int) -> Path:
+def _file(
+    manager: StudyManager, study: str, kind: Kind, what: str | None, restitution: int, crossing: Crossing | None
+) -> Path:
     from rocking.app.studies.exports import written
 
     path = Path(tempfile.mkdtemp(prefix="rocking-export-")) / f"study.{kind}"
     try:
         with _there(manager, study) as folder:
-            written(manager.opened.get(folder), kind, path, what, restitution)
+            written(manager.opened.get(folder), kind, path, what, restitution, crossing)
     except BaseException:
         shutil.rmtree(path.parent, ignore_errors=True)
         raise

@@ -11,13 +11,14 @@ from rocking.dynamics.response import Response
 from rocking.plots.response_curves import ground_curve, motion_curves, over_slenderness, shown_until
 from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, PALE, in_journal_style, new_figure
 from rocking.report.facts.verdict import Verdict
+from rocking.report.facts.words import restitution_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SPARE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
-_DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
+_SPARE = ("#4D9221", "#A6761D", "#7A5195", "#1A1A1A")
+_DASHES = ((0, (3, 2, 8, 2)), (0, (12, 3)), (0, (5, 3, 1, 3)), (0, (2, 2)), "-")
 _BEYOND = 2.2
 """How far a falling body is followed, in slenderness angles."""
 
@@ -43,7 +44,8 @@ def comparison_picture(responses: Mapping[str, Response]) -> "Figure":
     """
     first = next(iter(responses.values()))
     figure, axes = new_figure(DOUBLE, 5.6, rows=4, sharex=True, height_ratios=[0.7, 1.8, 1.0, 1.0])
-    figure.suptitle(drawn_text(Verdict.of(responses).sentence, 110), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    verdict = Verdict.of({restitution_words(label): one for label, one in responses.items()})
+    figure.suptitle(drawn_text(verdict.sentence, 110), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
     time, values = ground_curve(first)
     axes[0].plot(time, values, color=INK, linewidth=0.7)
     axes[0].set_title(_ground(first), loc="left", fontsize=7.5)
@@ -79,7 +81,7 @@ def drawn_text(text: str, longest: int) -> str:
 
 def _response(axes: "list[Axes]", label: str, response: Response, look: dict[str, object]) -> None:
     curves, energy = motion_curves(response), response.energy
-    words = drawn_text(f"{label}: {_SHORT[response.outcome]}", 60)
+    words = drawn_text(f"{restitution_words(label)}: {_SHORT[response.outcome]}", 60)
     rotation = over_slenderness(response, curves.rotation)
     style = {**look, "linewidth": 1.0}
     axes[1].plot(curves.time, rotation, label=words, **style)  # type: ignore[arg-type]
@@ -132,12 +134,15 @@ def _ground(response: Response) -> str:
 
 
 def _looks(labels: list[str]) -> dict[str, dict[str, object]]:
-    """Return colour and dash of each: those of a model everywhere, others in turn."""
+    """Return colour and dash of each: that of a model everywhere, of its family once, and others of their own."""
     found: dict[str, dict[str, object]] = {}
-    for k, label in enumerate(labels):
-        known = MODEL_STYLE.get(label.partition(":")[0])
-        if known is None:
-            found[label] = {"color": _SPARE[k % len(_SPARE)], "linestyle": _DASHES[(k + 1) % len(_DASHES)]}
+    taken: set[str] = set()
+    for label in labels:
+        family = label.rpartition("*")[2].partition(":")[0]
+        if family in MODEL_STYLE and family not in taken:
+            taken.add(family)
+            found[label] = {"color": MODEL_STYLE[family]["color"], "linestyle": MODEL_STYLE[family]["linestyle"]}
         else:
-            found[label] = {"color": known["color"], "linestyle": known["linestyle"]}
+            k = len(found) - len(taken)
+            found[label] = {"color": _SPARE[k % len(_SPARE)], "linestyle": _DASHES[k % len(_DASHES)]}
     return found

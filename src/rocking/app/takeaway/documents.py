@@ -11,6 +11,7 @@ from rocking.app.api.uploads import OCTETS
 from rocking.app.files import attachment
 from rocking.app.problems import NotFound, Refused
 from rocking.app.records import RecordStore
+from rocking.app.schemas.answers.answer import answered, answered_with_file
 from rocking.app.schemas.inputs import Inputs, ResponseInputs
 from rocking.app.state import state_of
 from rocking.app.takeaway.asked import Asked
@@ -27,7 +28,12 @@ Place = Annotated[int | None, Query(ge=0, description="which response, counted f
 _DATE = "day that is printed on the report, as 2026-11-21; none if left out"
 
 
-@router.post("/report.pdf", response_class=Answer, summary="The report as PDF")
+@router.post(
+    "/report.pdf",
+    response_class=Answer,
+    summary="The report as PDF",
+    responses=answered_with_file("The report.", "application/pdf"),
+)
 async def report(
     request: Request, inputs: ResponseInputs, date: Annotated[datetime.date | None, Query(description=_DATE)] = None
 ) -> Answer:
@@ -52,7 +58,12 @@ async def report(
     return attachment(await heavy(request, report_of, asked, day), _name(asked, "report.pdf"), "application/pdf")
 
 
-@router.post("/animation.{kind}", response_class=Answer, summary="The body in motion")
+@router.post(
+    "/animation.{kind}",
+    response_class=Answer,
+    summary="The body in motion",
+    responses=answered_with_file("The animation.", *MEDIA_TYPES.values()),
+)
 async def animation(
     request: Request, kind: Literal["html", "gif"], inputs: ResponseInputs, restitution: Place = None
 ) -> Answer:
@@ -80,7 +91,12 @@ async def animation(
     return attachment(data, f"{asked.words('animation', restitution)}.{kind}", MEDIA_TYPES[kind])
 
 
-@router.post("/inputs.toml", response_class=Answer, summary="The inputs as a file of the command line")
+@router.post(
+    "/inputs.toml",
+    response_class=Answer,
+    summary="The inputs as a file of the command line",
+    responses=answered_with_file("What `rocking simulate` takes.", "application/toml"),
+)
 async def inputs_file(request: Request, inputs: Inputs) -> Answer:
     """Return the file that `rocking simulate` takes for the same result.
 
@@ -100,7 +116,12 @@ async def inputs_file(request: Request, inputs: Inputs) -> Answer:
     return attachment(data.encode("utf-8"), "response.toml", "application/toml")
 
 
-@router.post("/inputs.zip", response_class=Answer, summary="The inputs with their record")
+@router.post(
+    "/inputs.zip",
+    response_class=Answer,
+    summary="The inputs with their record",
+    responses=answered_with_file("The file of inputs, the record, and what to type.", "application/zip"),
+)
 async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
     """Return an archive of the file of inputs, the record, and what to type.
 
@@ -120,7 +141,13 @@ async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
     return attachment(await heavy(request, bundle_of, asked), _name(asked, "response.zip"), "application/zip")
 
 
-@router.post("/inputs/read", openapi_extra=OCTETS, summary="A file of inputs, read again", response_class=JsonAnswer)
+@router.post(
+    "/inputs/read",
+    openapi_extra=OCTETS,
+    summary="A file of inputs, read again",
+    response_class=JsonAnswer,
+    responses=answered(Inputs, "The inputs."),
+)
 async def inputs_read(request: Request) -> JsonAnswer:
     """Return the inputs that a file of inputs holds.
 

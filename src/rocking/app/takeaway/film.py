@@ -11,6 +11,7 @@ import numpy as np
 from rocking.app.problems import Busy, Refused
 from rocking.dynamics.response import Response
 from rocking.errors import RockingError
+from rocking.report.facts.words import restitution_words
 
 MEDIA_TYPES = {"html": "text/html; charset=utf-8", "gif": "image/gif"}
 """What a browser is told about an animation; it is saved, never shown as a page of this server."""
@@ -35,7 +36,9 @@ def page_of(response: Response) -> bytes:
     """
     from rocking.plots.animation import page
 
-    return page(response).encode("utf-8")
+    label = response.rocker.label
+    told = page(response).replace(f"restitution {label};", f"restitution {restitution_words(label)};", 1)
+    return told.encode("utf-8")
 
 
 def gif_of(response: Response) -> bytes:

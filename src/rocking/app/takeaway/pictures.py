@@ -6,10 +6,12 @@ from fastapi import APIRouter, Query, Request
 from starlette.responses import Response as Answer
 
 from rocking.app.files import attachment
+from rocking.app.schemas.answers.answer import answered_with_file
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.state import state_of
 from rocking.app.takeaway.asked import Asked
 from rocking.app.takeaway.drawing import MEDIA_TYPES, PictureKind, drawn
+from rocking.app.takeaway.picture_words import in_words
 from rocking.app.work import heavy
 
 if TYPE_CHECKING:
@@ -21,7 +23,12 @@ Onto = Literal["left", "right", "both"]
 router = APIRouter(prefix="/api", tags=["take away"])
 
 
-@router.post("/picture/{what}.{kind}", response_class=Answer, summary="A picture")
+@router.post(
+    "/picture/{what}.{kind}",
+    response_class=Answer,
+    summary="A picture",
+    responses=answered_with_file("The picture.", *MEDIA_TYPES.values()),
+)
 async def picture(
     request: Request,
     what: What,
@@ -85,7 +92,8 @@ def figure_of(what: str, asked: Asked, restitution: int | None = None) -> "Figur
     if what == "response":
         return _responses(asked, restitution)
     if what == "coefficients":
-        return coefficient_picture(asked.body, asked.impact.tables[asked.foot], onto=asked.foot)
+        rows = asked.impact.tables[asked.foot]
+        return in_words(coefficient_picture(asked.body, rows, onto=asked.foot), [row.name for row in rows])
     if what == "stages":
         return figure_2(asked.body, onto=asked.foot)
     return body_picture(asked.body)
@@ -97,7 +105,8 @@ def _responses(asked: Asked, restitution: int | None) -> "Figure":
 
     if restitution is None and len(asked.responses) > 1:
         return comparison_picture(asked.responses)
-    return response_picture(asked.chosen(restitution), asked.question.friction)
+    chosen = asked.chosen(restitution)
+    return in_words(response_picture(chosen, asked.question.friction), [chosen.rocker.label])
 
 
 def named(figure: "Figure", what: str, name: str) -> "Figure":

@@ -8,6 +8,7 @@ from fastapi import APIRouter, Query, Request
 from starlette.responses import Response as Answer
 
 from rocking.app.files import attachment
+from rocking.app.schemas.answers.answer import answered_with_file
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.state import state_of
 from rocking.app.takeaway.asked import Asked
@@ -25,7 +26,12 @@ Kind = Literal["csv", "xlsx", "mat", "nc"]
 router = APIRouter(prefix="/api", tags=["take away"])
 
 
-@router.post("/table/{what}.{kind}", response_class=Answer, summary="A table")
+@router.post(
+    "/table/{what}.{kind}",
+    response_class=Answer,
+    summary="A table",
+    responses=answered_with_file("The table.", *MEDIA_TYPES.values()),
+)
 async def table(
     request: Request,
     what: What,

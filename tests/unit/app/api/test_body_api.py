@@ -170,3 +170,6 @@ def test_info_names_everything_that_can_be_chosen(client):
     assert info["limits"]["upload_bytes"] > 0
     for key in ("families", "formats", "measures", "axes", "study_kinds"):
         assert info[key], key
+    for kind in info["study_kinds"]:  # each can be launched here: what is refused is the missing rest of the job
+        answer = client.post("/api/studies", json={"job": {"campaign": {"name": "x", "kind": kind["name"]}}})
+        assert "kind must be one of" not in answer.json()["error"]["message"]

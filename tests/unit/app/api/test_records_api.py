@@ -1,6 +1,7 @@
 """Uploaded records: what must be told, what is kept, and motions as the library measures them."""
 
 import hashlib
+import io
 
 import numpy as np
 import pytest
@@ -15,6 +16,21 @@ OCTETS = {"Content-Type": "application/octet-stream"}
 WAVE = 0.3 * np.sin(2.0 * np.pi * np.arange(800) * 0.01) * np.exp(-0.3 * np.arange(800) * 0.01)
 COLUMNS = "\n".join(f"{k * 0.01:.2f} {value:.6f}" for k, value in enumerate(WAVE)).encode()
 BARE = "\n".join(f"{value:.6f}" for value in WAVE).encode()
+
+STATIONS = """<?xml version='1.0' encoding='UTF-8'?>
+<FDSNStationXML xmlns="http://www.fdsn.org/xml/station/1" schemaVersion="1.1">
+ <Source>typed</Source><Created>1999-12-31T00:00:00</Created>
+ <Network code="XX"><Station code="ABC">
+  <Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Site><Name>Cellar</Name></Site>
+  <Channel code="HNE" locationCode="" startDate="1960-01-01T00:00:00">
+   <Latitude>1.0</Latitude><Longitude>2.0</Longitude><Elevation>3.0</Elevation><Depth>0.0</Depth>
+   <SampleRate>100.0</SampleRate>
+   <Response><InstrumentSensitivity><Value>2000.0</Value><Frequency>1.0</Frequency>
+    <InputUnits><Name>M/S**2</Name></InputUnits><OutputUnits><Name>COUNTS</Name></OutputUnits>
+   </InstrumentSensitivity></Response>
+  </Channel></Station></Network>
+</FDSNStationXML>
+"""
 
 
 def sent(client, content, name="a.txt", **query):
@@ -105,6 +121,108 @@ def test_synthetic_motions_depend_on_seed_and_member_alone(client):
 
     assert peak(seed=3, member=2) == peak(seed=3, member=2) != peak(seed=3, member=1)
     assert np.isclose(peak(seed=3, member=2, pga=4.0), 4.0)
+
+
+def test_a_kept_record_is_looked_at_again(client):
+    """What a kept file holds is told as when it was sent, by what is said of it now; an unknown hash is not there."""
+    made = sent(client, BARE, "plain.txt").json()
+    path = f"/api/records/{made['record']}"
+    assert client.get(path).json() == made
+    told = client.get(path, params={"units": "gal", "time_step": 0.02}).json()
+    assert told["needs"] == []
+    (part,) = told["components"]
+    assert part["samples"] == 800
+    assert np.isclose(part["duration_s"], 799 * 0.02)
+    assert np.isclose(part["peak_m_s2"], np.abs(np.round(WAVE, 6)).max() * 0.01)
+    assert client.get(path).json() == made  # what was said for once is not kept
+    assert client.get(f"/api/records/{'0' * 64}").status_code == 404
+    assert client.get("/api/records/..%2f..%2fetc").status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("query", "words"),
+    [
+        ({"units": "furlong"}, "units"),
+        ({"format": "no-such"}, "no-such"),
+        ({"time_step": -1}, "time_step"),
+        ({"time_step": "nan"}, "time_step"),
+        ({"format": "peer"}, "plain.txt"),
+    ],
+)
+def test_what_is_wrongly_said_of_a_kept_record_is_refused(client, query, words):
+    """A unit, a format or a step that cannot be is refused in a sentence that names it, and the file stays."""
+    made = sent(client, BARE, "plain.txt").json()
+    answer = client.get(f"/api/records/{made['record']}", params=query)
+    assert answer.status_code == 422
+    assert words in answer.json()["error"]["message"]
+    assert len(client.get("/api/records").json()) == 1
+
+
+def packed(values, **how):
+    """Return a miniSEED file of one channel."""
+    obspy = pytest.importorskip("obspy")
+    trace = obspy.Trace(np.asarray(values))
+    trace.stats.update({"network": "XX", "station": "ABC", "channel": "HNE", "delta": 0.01})
+    content = io.BytesIO()
+    obspy.Stream([trace]).write(content, format="MSEED", **how)
+    return content.getvalue()
+
+
+def test_miniseed_of_real_numbers_needs_its_unit(client):
+    """Real numbers may be accelerations: the unit is asked for, and said, they are read."""
+    content = packed(WAVE)
+    asked = sent(client, content, "a.mseed").json()
+    assert asked["format"] == "miniseed"
+    assert asked["needs"] == ["units"]
+    (part,) = sent(client, content, "a.mseed", units="g").json()["components"]
+    assert part["time_step_s"] == 0.01
+    assert np.isclose(part["peak_m_s2"], np.abs(WAVE).max() * 9.80665)
+
+
+def test_counts_and_stations_are_refused_with_a_way_out(client, tmp_path):
+    """Counts, and the StationXML beside them, are refused in words whose recipe gives a file that is taken."""
+    content = packed((WAVE * 1e5).astype(np.int32))
+    stations = STATIONS.encode()
+    for data, name, said in ((content, "a.mseed", "counts"), (stations, "a.xml", "describes an instrument")):
+        answer = sent(client, data, name)
+        assert answer.status_code == 422
+        told = answer.json()["error"]["message"]
+        assert said in told
+        recipe = (
+            'record = MiniSeed.with_response("station.xml").read(Source.of_path(Path("counts.mseed")))',
+            'write_record(record, "motion.mseed", "miniseed")',
+        )
+        assert all(line in told for line in recipe)
+    assert client.get("/api/records").json() == []
+    (tmp_path / "station.xml").write_bytes(stations)
+    (tmp_path / "counts.mseed").write_bytes(content)
+    imports = (
+        "from pathlib import Path",
+        "from rocking.motions.formats import write_record",
+        "from rocking.motions.formats.miniseed import MiniSeed",
+        "from rocking.motions.formats.source import Source",
+    )
+    code = "; ".join((*imports, *recipe)).replace('"station.xml"', repr(str(tmp_path / "station.xml")))
+    for name in ("counts.mseed", "motion.mseed"):
+        code = code.replace(f'"{name}"', repr(str(tmp_path / name)))
+    exec(code, {})  # the words of the page, typed
+    taken = sent(client, (tmp_path / "motion.mseed").read_bytes(), "motion.mseed", units="m/s2").json()
+    counts = (WAVE * 1e5).astype(np.int32)
+    assert np.isclose(taken["components"][0]["peak_m_s2"], np.abs(counts - counts.mean()).max() / 2000.0)
+
+
+@pytest.mark.parametrize("order", [">", "<"])
+def test_dense_miniseed_is_refused_before_it_is_unpacked(client, monkeypatch, order):
+    """A small file of millions of packed samples is refused by its headers: nothing decodes it."""
+    content = packed(np.zeros(2_100_000, dtype=np.int32), encoding="STEIM2", byteorder=order, reclen=4096)
+    assert len(content) < 2_000_000  # as a text it would be far from the cap
+    with monkeypatch.context() as patch:
+        patch.setattr("rocking.motions.formats.miniseed.read_traces", lambda *_: pytest.fail("it was decoded"))
+        answer = sent(client, content, "dense.mseed")
+    assert answer.status_code == 413
+    assert "got 2100000" in answer.json()["error"]["message"]
+    few = packed(np.zeros(1000), byteorder=order)  # the control: a usual one gets as far as the decoder
+    assert sent(client, few, "usual.mseed").json()["components"][0]["samples"] == 1000
 
 
 @pytest.fixture

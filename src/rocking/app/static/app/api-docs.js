@@ -1,13 +1,14 @@
 /** The page of the API: reads the server's own schema and shows it, with calls to copy. */
 
 import { call } from "/app/api.js";
-import { fieldsOf, groupsOf, operationsOf } from "/app/api-schema.js";
+import { errorForm, errorsOf, fieldsOf, formsOf, groupsOf, operationsOf } from "/app/api-schema.js";
 import { snippetsOf } from "/app/api-snippets.js";
 import { button, note, segmented } from "/app/controls.js";
 import { el, fill } from "/app/dom.js";
 import { say } from "/app/say.js";
 
 const HEADS = ["Name", "Type", "Needed", "Meaning"];
+const TOLD = ["Name", "Type", "Always", "Meaning"];
 
 const start = async () => {
   const schema = await call("openapi.json");
@@ -17,7 +18,7 @@ const start = async () => {
     el("h2", {}, name),
     el("ul", {}, list.map((each) => el("li", {}, el("a", { href: `#${each.id}` }, sign(each), each.path)))),
   ]));
-  fill(document.getElementById("main"), introduction(schema, operations.length),
+  fill(document.getElementById("main"), introduction(schema, operations.length), errors(schema),
     groups.map(([name, list]) => [el("h2", {}, name), list.map((each) => cardOf(schema, each))]));
   if (location.hash) document.getElementById(location.hash.slice(1))?.scrollIntoView();
 };
@@ -28,6 +29,16 @@ const introduction = (schema, count) =>
     paragraphs(schema.info.description, "lead"),
     el("p", { class: "lead" }, "The schema itself: ",
       el("a", { href: "/api/openapi.json" }, "/api/openapi.json")));
+
+const comesBack = (words) =>
+  words ? `What comes back: ${words[0].toLowerCase()}${words.slice(1)}` : "What comes back";
+
+const errors = (schema) =>
+  el("section", { class: "card", id: "errors", "data-testid": "api-errors", "aria-label": "Errors" },
+    el("h2", {}, "Errors, the same everywhere"),
+    el("dl", { class: "api-errors" }, errorsOf(schema).map(([status, words]) => [
+      el("dt", {}, status), el("dd", {}, words)])),
+    tableOf("What comes back", errorForm(schema), TOLD));
 
 const paragraphs = (text, kind) =>
   text.split(/\n\s*\n/).map((part) => el("p", { class: kind }, coded(part.replace(/\s*\n\s*/g, " "))));
@@ -45,7 +56,8 @@ const cardOf = (schema, operation) =>
     parametersOf(operation),
     tableOf("What is sent", fieldsOf(schema, operation.body)),
     operation.kind === "file" ? el("p", {}, "A file is sent as application/octet-stream.") : null,
-    tableOf("What comes back", fieldsOf(schema, operation.answer)),
+    formsOf(schema, operation.answer).map(({ words, rows }) => tableOf(comesBack(words), rows, TOLD)),
+    operation.files.length ? el("p", {}, `What comes back: a file, ${operation.files.join(" or ")}.`) : null,
     callsOf(operation));
 
 const sign = ({ method }) => el("span", { class: "api-method", dataset: { method } }, method.toUpperCase());
@@ -58,10 +70,10 @@ const parametersOf = ({ parameters }) =>
     about: each.description ?? each.schema?.description ?? "",
   })));
 
-const tableOf = (title, rows) => {
+const tableOf = (title, rows, heads = HEADS) => {
   if (!rows.length) return null;
   const table = el("table", { class: "api-fields" },
-    el("thead", {}, el("tr", {}, HEADS.map((word) => el("th", { scope: "col" }, word)))),
+    el("thead", {}, el("tr", {}, heads.map((word) => el("th", { scope: "col" }, word)))),
     el("tbody", {}, rows.map((row) => el("tr", {},
       el("th", { scope: "row" }, el("code", {}, row.name)),
       el("td", {}, row.type), el("td", {}, row.required ? "yes" : ""), el("td", {}, row.about)))));

@@ -29,7 +29,7 @@ export const groupsOf = (operations) => {
 /** The fields of an object, one row each: {name, type, required, about}. */
 export const fieldsOf = (schema, shape, depth = 0, prefix = "", seen = []) => {
   const plain = resolved(schema, shape);
-  if (!plain?.properties || depth > 3) return [];
+  if (!plain?.properties || depth > 4) return [];
   return Object.entries(plain.properties).flatMap(([name, each]) => {
     const row = {
       name: prefix + name,
@@ -42,6 +42,25 @@ export const fieldsOf = (schema, shape, depth = 0, prefix = "", seen = []) => {
     return [row, ...fieldsOf(schema, inner, depth + 1, `${prefix}${name}.`, [...seen, inner])];
   });
 };
+
+/** What an answer may look like: [{words, rows}], one entry for each form that it has. */
+export const formsOf = (schema, shape) => {
+  const forms = (shape?.oneOf ?? []).map((each) => resolved(schema, each));
+  if (forms.length) {
+    return forms.map((each) => ({ words: plainText(each.description), rows: fieldsOf(schema, each) }));
+  }
+  const list = shape?.type === "array";
+  const rows = fieldsOf(schema, list ? innerOf(schema, shape) : shape);
+  return [{ words: list ? "a list; each entry has" : "", rows }];
+};
+
+/** Statuses of errors and what they mean: [[status, words]]. */
+export const errorsOf = (schema) =>
+  Object.entries(schema.components?.responses ?? {})
+    .map(([name, { description }]) => [name.replace(/\D/g, ""), description]);
+
+/** The form of every error. */
+export const errorForm = (schema) => fieldsOf(schema, { $ref: "#/components/schemas/ErrorAnswer" });
 
 const operationOf = (schema, path, method, operation) => {
   const contents = operation.requestBody?.content ?? {};
@@ -57,7 +76,8 @@ const operationOf = (schema, path, method, operation) => {
     query: (operation.parameters ?? [])
       .filter((each) => each.in === "query" && each.required).map((each) => each.name),
     body: json?.schema ?? null,
-    answer: answerOf(operation),
+    answer: answerOf(operation)["application/json"]?.schema ?? null,
+    files: Object.keys(answerOf(operation)).filter((type) => type !== "application/json"),
     download: downloadOf(path),
     example: json ? exampleOf(schema, path, json) : null,
   };
@@ -65,7 +85,7 @@ const operationOf = (schema, path, method, operation) => {
 
 const answerOf = (operation) => {
   const good = Object.entries(operation.responses ?? {}).find(([status]) => status.startsWith("2"));
-  return good?.[1].content?.["application/json"]?.schema ?? null;
+  return good?.[1].content ?? {};
 };
 
 const exampleOf = (schema, path, json) => {
@@ -98,13 +118,17 @@ const typeOf = (schema, shape) => {
   if (choices) return [...new Set(choices.map((each) => typeOf(schema, each)))].join(" or ");
   if (shape.enum) return shape.enum.map((each) => JSON.stringify(each)).join(", ");
   if (shape.const !== undefined) return JSON.stringify(shape.const);
-  if (shape.type === "array") return `list of ${typeOf(schema, shape.items ?? {})}`;
+  if (shape.type === "array") return `list of ${typeOf(schema, shape.items ?? shape.prefixItems?.[0] ?? {})}`;
   return { string: "text", object: "table", integer: "whole number" }[shape.type] ?? shape.type ?? "anything";
 };
 
 const innerOf = (schema, shape) => {
-  const choices = [shape, ...(shape.anyOf ?? []), ...(shape.items ? [shape.items] : [])];
-  return choices.map((each) => resolved(schema, each)).find((each) => each?.properties) ?? null;
+  const choices = [shape, ...(shape.anyOf ?? [])].map((each) => resolved(schema, each));
+  const direct = choices.find((each) => each?.properties);
+  if (direct) return direct;
+  const held = choices.flatMap((each) => [each?.items, each?.additionalProperties]);
+  return held.filter((each) => typeof each === "object").map((each) => innerOf(schema, each))
+    .find(Boolean) ?? null;
 };
 
 const LIMITS = {

@@ -14,9 +14,9 @@ const STYLES = {
 };
 
 const SPARE = [
-  { colour: "#7A5195", dash: [5, 3, 1, 3] },
-  { colour: "#A6761D", dash: [12, 3] },
   { colour: "#4D9221", dash: [3, 2, 8, 2] },
+  { colour: "#A6761D", dash: [12, 3] },
+  { colour: "#7A5195", dash: [5, 3, 1, 3] },
 ];
 
 const WORDS = {
@@ -40,7 +40,7 @@ export const modelStyle = (label) => STYLES[family(label)] ?? spare(String(label
 export const modelWords = (label) => {
   const text = String(label);
   const name = family(text);
-  const parameter = text.includes(":") ? `, ${text.split(":")[1].replace("=", "\u00a0=\u00a0")}` : "";
+  const parameter = text.includes(":") ? `, ${text.split(":")[1].replaceAll("=", "\u00a0=\u00a0").replaceAll(",", ", ")}` : "";
   const factor = text.includes("*") ? `${text.split("*")[0]}\u00a0\u00d7\u00a0` : "";
   return WORDS[name] ? `${factor}${WORDS[name]}${parameter}` : text;
 };

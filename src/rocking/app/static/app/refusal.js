@@ -9,7 +9,7 @@ const FIELDS = { "settings.gravity": "Gravity", "body.name": "Name", "body.units
 /** A refusal in plain words; lengths in metres are told in the body's unit. */
 export const plainWords = (message, body) => {
   const units = METRES[body?.units] ? body.units : "m";
-  return [withoutPlaces, withFields, withRegions, withLimits, withMore, withChoices, capital]
+  return [withoutPlaces, withFields, withRegions, withLimits, withCurves, withMore, withChoices, capital]
     .reduce((words, change) => change(words), inUnits(message, units));
 };
 
@@ -37,6 +37,9 @@ const withLimits = (words) =>
     .replace(/ \[([^\]\d][^\]]*)\](?=,|$)/, "")
     .replace(/(?<=must be .*), got '?(.*?)'?(?= \(and|$)/, (_, given) =>
       (/^[-\d.e]+$/.test(given) ? `; it is ${number(Number(given))}` : ""));
+
+// What follows is an argument of scripts; the page has a button for it.
+const withCurves = (words) => words.replace(/(; their dispersions differ): crossing=.*$/, "$1");
 
 const withMore = (words) => words.replace(/ \(and \d+ more\)$/, "; more is wrong beside it");
 

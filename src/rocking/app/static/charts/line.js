@@ -2,8 +2,9 @@
 
 import uPlot from "/vendor/uplot/uPlot.esm.js";
 import { chartTable } from "/charts/chart-table.js";
-import { saveable } from "/charts/save.js";
+import { chartFiles, savePng } from "/charts/save.js";
 import { axes, colour, onTheme } from "/charts/style.js";
+import { vectorOf } from "/charts/vector.js";
 import { el, fill, freshId } from "/app/dom.js";
 import { number, pretty } from "/app/format.js";
 import { dashKey } from "/app/palette.js";
@@ -21,7 +22,8 @@ export const lineChart = (container, options) => {
   let hook = null;
   let aim = null;
   const table = chartTable(options, () => data);
-  figure.append(table.element);
+  const vector = () => vectorOf(plot, options, data, marks);
+  figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, vector)));
 
   const shown = el("p", { class: "chart-readout", "aria-hidden": "true" });
   stage.after(shown);
@@ -83,7 +85,7 @@ export const lineChart = (container, options) => {
       plot.destroy();
       figure.remove();
     },
-    toPng: () => saveable(plot.ctx.canvas, title),
+    toPng: () => savePng(vector(), title),
   };
 };
 

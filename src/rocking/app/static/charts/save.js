@@ -1,22 +1,41 @@
-/** A canvas as a PNG on the page's background. */
+/** A chart as a file: SVG, and PNG drawn from it at twice the size. */
 
-import { colour } from "/charts/style.js";
 import { saveBlob } from "/app/api.js";
+import { el } from "/app/dom.js";
 
-/** Save a canvas as PNG; resolves to the blob. */
-export const saveable = (canvas, title) =>
-  new Promise((resolve) => {
-    const sheet = Object.assign(
-      document.createElement("canvas"), { width: canvas.width, height: canvas.height },
-    );
-    const paper = sheet.getContext("2d");
-    paper.fillStyle = colour("--surface");
-    paper.fillRect(0, 0, sheet.width, sheet.height);
-    paper.drawImage(canvas, 0, 0);
-    sheet.toBlob((blob) => {
-      saveBlob(blob, `${slug(title)}.png`);
-      resolve(blob);
-    });
-  });
+const LARGER = 2;
+
+/** Save a picture as SVG. */
+export const saveSvg = (picture, title) => saveBlob(blobOf(picture), `${slug(title)}.svg`);
+
+/** Save a picture as PNG. */
+export const savePng = async (picture, title) => {
+  const address = URL.createObjectURL(blobOf(picture));
+  try {
+    const image = new Image();
+    image.src = address;
+    await image.decode();
+    const size = { width: LARGER * image.width, height: LARGER * image.height };
+    const sheet = Object.assign(document.createElement("canvas"), size);
+    sheet.getContext("2d").drawImage(image, 0, 0, sheet.width, sheet.height);
+    saveBlob(await new Promise((resolve) => sheet.toBlob(resolve)), `${slug(title)}.png`);
+  } finally {
+    URL.revokeObjectURL(address);
+  }
+};
+
+/** Buttons that save a chart; `vector` draws it. */
+export const chartFiles = (title, vector) => {
+  const kinds = [["PNG", savePng], ["SVG", saveSvg]];
+  return el("div", { class: "chart-files" }, kinds.map(([kind, save]) => el("button", {
+    type: "button", class: "button quiet", "aria-label": `${kind} of the chart ${title}`,
+    onclick: () => save(vector(), title),
+  }, kind)));
+};
+
+const blobOf = (picture) => {
+  const text = new XMLSerializer().serializeToString(picture);
+  return new Blob(['<?xml version="1.0" encoding="utf-8"?>\n', text], { type: "image/svg+xml" });
+};
 
 const slug = (title) => title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "chart";

@@ -7,10 +7,11 @@ import { pretty } from "/app/format.js";
 import { greek, plainWords } from "/views/studies-words.js";
 
 /** Show fragility curves inside a place; returns how to clear up. */
-export const showFragility = (place, app, study, found) => {
+export const showFragility = (place, app, study, found, chosen) => {
     const box = el("div", { class: "study-result" });
     let charts = [];
     const draw = (k) => {
+        chosen.restitution = k;
         charts.forEach((chart) => chart.destroy());
         fill(box);
         charts = drawAnalysis(box, found, found.analyses[k]);

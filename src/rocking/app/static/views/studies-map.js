@@ -15,7 +15,7 @@ const START = "Click a cell, or walk with the arrow keys.";
 const same = (one, other) => Boolean(other) && one.ix === other.ix && one.iy === other.iy;
 
 /** Show a map inside a place; returns how to clear up. */
-export const showMap = (place, app, study, found) => {
+export const showMap = (place, app, study, found, chosen) => {
     const canvas = el("canvas", {
         class: "map-canvas",
         tabindex: "0",
@@ -59,7 +59,11 @@ export const showMap = (place, app, study, found) => {
                       label: "Restitution",
                       value: state.k,
                       options: found.restitutions.map((label, value) => ({ value, text: modelWords(label) })),
-                      onChange: (value) => ((state.k = value), choose(), state.kept && keep(state.kept)),
+                      onChange: (value) => {
+                          state.k = chosen.restitution = value;
+                          choose();
+                          if (state.kept) keep(state.kept);
+                      },
                   })
                 : null,
             segmented({

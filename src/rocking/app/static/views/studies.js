@@ -44,8 +44,9 @@ export function mount(section, app) {
             const found = await app.call(`/api/studies/${study.id}/result`, { method: "GET" });
             if (open !== study.id) return;
             result.replaceChildren();
-            undo = (SHOW[study.kind] || showCounts)(result, app, study, found) || undo;
-            result.append(exportsOf(app, study, found));
+            const chosen = { restitution: 0 };
+            undo = (SHOW[study.kind] || showCounts)(result, app, study, found, chosen) || undo;
+            result.append(exportsOf(app, study, found, chosen));
             heading.focus();
         } catch (error) {
             result.replaceChildren(el("p", { class: "error-text" }, error.message));

@@ -1,0 +1,114 @@
+/** A line chart as an SVG of its own: what is on the screen, in lines and letters. */
+
+import { freshId, svg } from "/app/dom.js";
+import { colour } from "/charts/style.js";
+
+const [TITLE, ROW, MARGIN, LETTER] = [28, 18, 12, 6.4];
+const FONT = { "font-family": "system-ui, sans-serif", "font-size": 12 };
+
+/** The chart as an element, in the colours of the page as it is now. */
+export const vectorOf = (plot, { title, series, bands = [] }, data, marks) => {
+  const legend = series.length > 1 ? legendOf(series, plot.width) : { rows: 0, node: null };
+  const head = TITLE + legend.rows * ROW;
+  const height = head + plot.height + MARGIN;
+  const frame = frameOf(plot);
+  const clip = freshId("clip");
+  const inside = svg("g", { "clip-path": `url(#${clip})`, fill: "none" },
+    bands.map((band) => bandOf(frame, band, data)),
+    (marks.vertical ?? []).map((value) => markOf(frame, frame.x(value), null)),
+    (marks.horizontal ?? []).map((value) => markOf(frame, null, frame.y(value))),
+    series.map((each, index) => curveOf(frame, each, data[0], data[index + 1] ?? [])));
+  const { left, top, width, height: tall } = frame.box;
+  const size = { width: plot.width, height, viewBox: `0 0 ${plot.width} ${height}` };
+  return svg("svg", { ...size, ...FONT },
+    svg("title", {}, title),
+    svg("rect", { width: plot.width, height, fill: colour("--surface") }),
+    text(MARGIN, 18, title, { "font-weight": 600, "font-size": 13, fill: colour("--ink") }),
+    legend.node,
+    svg("clipPath", { id: clip }, svg("rect", { x: left, y: top, width, height: tall })),
+    svg("g", { transform: `translate(0 ${head})` }, axesOf(plot, frame), inside));
+};
+
+const frameOf = (plot) => {
+  const ratio = plot.ctx.canvas.width / plot.width;
+  const box = Object.fromEntries(Object.entries(plot.bbox).map(([side, value]) => [side, value / ratio]));
+  const along = (scale) => (value) => plot.valToPos(value, scale, true) / ratio;
+  return { box, x: along("x"), y: along("y") };
+};
+
+const text = (x, y, words, more) => svg("text", { x, y, fill: colour("--ink-soft"), ...more }, words);
+
+const axesOf = (plot, { box, x, y }) => {
+  const [across, up] = plot.axes;
+  const [right, bottom] = [box.left + box.width, box.top + box.height];
+  const ticks = (axis) => (axis._splits ?? []).map((at, k) => [at, axis._values?.[k] ?? ""]);
+  const line = (ends) => svg("line", { ...ends, stroke: colour("--grid") });
+  const middle = box.top + box.height / 2;
+  return [
+    ticks(across).map(([at, words]) => [
+      line({ x1: x(at), x2: x(at), y1: box.top, y2: bottom + 4 }),
+      text(x(at), bottom + 18, words, { "text-anchor": "middle" })]),
+    ticks(up).map(([at, words]) => [
+      line({ x1: box.left - 4, x2: right, y1: y(at), y2: y(at) }),
+      text(box.left - 8, y(at) + 4, words, { "text-anchor": "end" })]),
+    text(box.left + box.width / 2, bottom + 38, across.label, { "text-anchor": "middle" }),
+    text(0, 0, up.label, { "text-anchor": "middle", transform: `translate(12 ${middle}) rotate(-90)` }),
+  ];
+};
+
+const markOf = ({ box }, x, y) => svg("line", {
+  x1: x ?? box.left, x2: x ?? box.left + box.width, y1: y ?? box.top, y2: y ?? box.top + box.height,
+  stroke: colour(x === null ? "--mark-strong" : "--mark"), "stroke-dasharray": x === null ? "6 4" : "2 3",
+});
+
+const known = (value) => value !== null && value !== undefined;
+
+/** Runs of neighbouring samples that all have values. */
+const runsOf = (xs, ...columns) => {
+  const runs = [[]];
+  xs.forEach((_, k) => {
+    if (columns.every((column) => known(column[k]))) runs.at(-1).push(k);
+    else if (runs.at(-1).length) runs.push([]);
+  });
+  return runs.filter((run) => run.length);
+};
+
+const placed = ({ x, y }, xs, ys, run) => run.map((k) => `${x(xs[k]).toFixed(2)} ${y(ys[k]).toFixed(2)}`);
+
+const curveOf = (frame, { colour: paint, dash, width = 1.6, points = false }, xs, ys) => {
+  const stroke = colour(paint);
+  const runs = runsOf(xs, ys);
+  const dots = points ? runs.flat().map((k) =>
+    svg("circle", { cx: frame.x(xs[k]), cy: frame.y(ys[k]), r: 2.5, fill: stroke })) : [];
+  if (width === 0 || !runs.length) return dots;
+  const d = runs.map((run) => `M${placed(frame, xs, ys, run).join("L")}`).join("");
+  const look = { stroke, "stroke-width": width, "stroke-linejoin": "round" };
+  return [svg("path", { d, ...look, "stroke-dasharray": dash?.length ? dash.join(" ") : null }), ...dots];
+};
+
+const bandOf = (frame, { series: [high, low], fill }, data) => {
+  const xs = data[0];
+  const d = runsOf(xs, data[high] ?? [], data[low] ?? []).map((run) =>
+    `M${[...placed(frame, xs, data[high], run),
+      ...placed(frame, xs, data[low], run).reverse()].join("L")}Z`).join("");
+  return d ? svg("path", { d, fill }) : null;
+};
+
+const legendOf = (series, width) => {
+  let [x, row] = [MARGIN, 1];
+  const entries = series.map(({ label, colour: paint, dash, points, width: thick }) => {
+    const wide = 46 + LETTER * label.length;
+    if (x > MARGIN && x + wide > width) [x, row] = [MARGIN, row + 1];
+    const [at, y] = [x, TITLE + row * ROW - 10];
+    x += wide + 10;
+    const stroke = colour(paint);
+    const key = points && thick === 0
+      ? svg("circle", { cx: at + 15, cy: y, r: 2.5, fill: stroke })
+      : svg("line", {
+        x1: at, x2: at + 30, y1: y, y2: y, stroke, "stroke-width": 2,
+        "stroke-dasharray": dash?.length ? dash.join(" ") : null,
+      });
+    return [key, text(at + 36, y + 4, label)];
+  });
+  return { rows: row, node: svg("g", {}, entries) };
+};

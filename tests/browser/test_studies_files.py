@@ -1,0 +1,95 @@
+"""Files of finished studies: of the model that is shown, and NRML only where there is something to write."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import pytest
+from playwright.sync_api import expect
+
+BODY = {"units": "m", "width": 0.5, "height": 2.0}
+NRML = "{http://openquake.org/xmlns/nrml/0.5}"
+
+
+def finished(served: Any, name: str, **tables: Any) -> str:
+    """Compute a study, as a script asks for it, and return its name in addresses."""
+    job = {"campaign": {"name": name, "kind": "stripes"}, "body": BODY, **tables}
+    made = served.api("studies", json={"job": job})["id"]
+    until = time.perf_counter() + 60.0
+    while time.perf_counter() < until:
+        found = served.api(f"studies/{made}", method="GET")
+        if found["state"] == "done":
+            return str(made)
+        assert found["state"] in {"waiting", "running"}, found
+        time.sleep(0.1)
+    pytest.fail(f"{name} did not finish")
+
+
+def opened(page: Any, study: str) -> None:
+    """Show the result of a study."""
+    page.get_by_test_id(f"study-{study}").get_by_role("button", name="Show result").click()
+    page.get_by_test_id("export-csv").wait_for()
+
+
+def saved(page: Any, testid: str, folder: Path) -> Path:
+    """Press a button and keep its file."""
+    with page.expect_download(timeout=60_000) as download:
+        page.get_by_test_id(testid).click()
+    target = folder / f"{time.perf_counter_ns()} {download.value.suggested_filename}"
+    download.value.save_as(target)
+    return target
+
+
+def test_nrml_needs_a_curve(open_page: Callable[..., Any], served: Any, shot: Any) -> None:
+    """Where nothing overturns there is no curve: the button cannot be pressed, and a sentence says why."""
+    few = {"motions": {"pulse": ["sine:amplitude=1,period=0.4", "sine:amplitude=1,period=0.7"]}}
+    made = finished(served, "nothing falls", fragility={"levels": [0.1, 0.2], "states": []}, **few)
+    page = open_page(view="studies")
+    opened(page, made)
+    expect(page.get_by_test_id("export-xml")).to_be_disabled()
+    expect(page.get_by_test_id("no-nrml")).to_have_text(
+        "There is no fitted curve, so there is nothing to write as NRML."
+    )
+    expect(page.get_by_test_id("export-csv")).to_be_enabled()
+    shot(page, "studies-no-nrml")
+
+
+def test_curves_that_cross_are_saved_with_one_dispersion(
+    open_page: Callable[..., Any], served: Any, tmp_path: Path, shot: Any
+) -> None:
+    """Curves that cross are refused in words, with a button beside them that saves curves that do not."""
+    made = finished(
+        served, "curves that cross", fragility={"levels": [2.0, 4.0, 6.0, 8.0, 10.0], "states": [0.5]},
+        motions={"synthetic": "pulse-like", "count": 12, "seed": 7}, restitution={"model": "ked"},
+    )  # fmt: skip
+    page = open_page(view="studies")
+    opened(page, made)
+    page.get_by_test_id("export-xml").click()
+    nested = page.get_by_test_id("export-nested")
+    expect(nested).to_be_visible()
+    words = page.locator("#status").inner_text()
+    assert "must not cross" in words
+    assert "crossing=" not in words
+    shot(page, "studies-curves-cross")
+    root = ET.fromstring(saved(page, "export-nested", tmp_path).read_bytes())
+    assert root.tag == f"{NRML}nrml"
+    expect(nested).to_be_hidden()
+
+
+def test_files_are_of_the_model_that_is_shown(open_page: Callable[..., Any], served: Any, tmp_path: Path) -> None:
+    """Picture and NRML are of the restitution that was chosen, and differ from those of the first one."""
+    pulses = [f"sine:amplitude=1,period={period}" for period in (0.4, 0.5, 0.7, 0.9, 1.2)]
+    made = finished(
+        served, "two coefficients", fragility={"levels": [2.0, 4.0, 6.0, 8.0], "states": []},
+        motions={"pulse": pulses}, restitution={"values": [0.98, 0.4]},
+    )  # fmt: skip
+    page = open_page(view="studies")
+    opened(page, made)
+    first = {kind: saved(page, f"export-{kind}", tmp_path).read_bytes() for kind in ("svg", "xml", "csv")}
+    page.get_by_test_id("study-result").get_by_label("Restitution").select_option(label="0.4")
+    second = {kind: saved(page, f"export-{kind}", tmp_path).read_bytes() for kind in ("svg", "xml", "csv")}
+    assert first["svg"] != second["svg"]
+    assert first["xml"] != second["xml"]
+    assert first["csv"] == second["csv"]  # a table holds all of them
