@@ -6,6 +6,13 @@
 
 #include "radau.hpp"
 
+// A loop over points is compiled twice where the compiler can choose at run time.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__)
+#define ROCKING_BED_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define ROCKING_BED_CLONES
+#endif
+
 namespace rocking::bed {
 
 enum Law : int { kKelvinVoigt = 0, kHuntCrossley = 1, kPlastic = 2 };
@@ -36,8 +43,20 @@ struct Place {  // gap = y - s sigma + zeta kappa, and its rate
     double rate(double s, double zeta) const { return dy - s * dsigma + zeta * dkappa; }
 };
 
+inline void sine_and_cosine(double angle, double& s, double& c) {
+    const double q = angle * angle;
+    if (q < 0.01) {  // most of an impact; the terms left out are below 1e-19
+        s = angle * (1.0 + q * (-1.0 / 6.0 + q * (1.0 / 120.0 + q * (-1.0 / 5040.0 + q * (1.0 / 362880.0 - q / 39916800.0)))));
+        c = 1.0 + q * (-0.5 + q * (1.0 / 24.0 + q * (-1.0 / 720.0 + q * (1.0 / 40320.0 - q / 3628800.0))));
+        return;
+    }
+    s = std::sin(angle);
+    c = std::cos(angle);
+}
+
 inline Place place(const State& x, bool exact) {
-    const double s = std::sin(x[kTheta]), c = std::cos(x[kTheta]);
+    double s, c;
+    sine_and_cosine(x[kTheta], s, c);
     if (!exact) return {x[kY], x[kTheta], 1.0, x[kW], x[kOmega], 0.0, s, c};
     return {x[kY], s, c, x[kW] * c - x[kU] * s, c * x[kOmega], -s * x[kOmega], s, c};
 }
@@ -58,13 +77,57 @@ struct Sums {
     }
 };
 
-struct Load {  // resultant, its moments with s and zeta, power lost in the bed
-    double force = 0, moment = 0, tilt = 0, loss = 0;
+struct Load {  // resultant, its moments with s and zeta, power lost in the bed; of power laws also the energy stored
+    double force = 0, moment = 0, tilt = 0, loss = 0, stored = 0;
 };
+
+// Points of a power law that touch, in columns; pressing: 1, or 0 where the bed lags behind.
+struct Touching {
+    static constexpr std::size_t kLanes = 8;
+    std::vector<double> at, height, stiffness, pressing;
+    std::size_t size() const { return at.size(); }
+    void clear() {
+        for (auto* column : {&at, &height, &stiffness, &pressing}) column->clear();
+    }
+    void add(double s, double z, double k, double on) {
+        at.push_back(s), height.push_back(z), stiffness.push_back(k), pressing.push_back(on);
+    }
+};
+
+// Several points at a time, each lane with its own sums: the same bits with every instruction set.
+ROCKING_BED_CLONES inline Load sum_of_powers(const Touching& t, const Place& x, double viscosity) {
+    constexpr std::size_t n = Touching::kLanes;
+    double force[n] = {}, moment[n] = {}, tilt[n] = {}, loss[n] = {}, stored[n] = {};
+    const double *at = t.at.data(), *height = t.height.data(), *stiffness = t.stiffness.data(), *pressing = t.pressing.data();
+    for (std::size_t i = 0; i < t.size(); i += n)
+        for (std::size_t j = 0; j < n; ++j) {
+            const double s = at[i + j], z = height[i + j];
+            const double gap = x.y - s * x.sigma + z * x.kappa, v = s * x.dsigma - x.dy - z * x.dkappa;
+            const double d = gap < 0.0 ? -gap : 0.0, spring = stiffness[i + j] * d * std::sqrt(d);
+            const double f = pressing[i + j] * spring * (1.0 + viscosity * v);
+            force[j] += f;
+            moment[j] += f * s;
+            tilt[j] += f * z;
+            loss[j] += (f - spring) * v;
+            stored[j] += 0.4 * spring * d;
+        }
+    Load l;
+    for (std::size_t j = 0; j < n; ++j) {
+        l.force += force[j];
+        l.moment += moment[j];
+        l.tilt += tilt[j];
+        l.loss += loss[j];
+        l.stored += stored[j];
+    }
+    return l;
+}
 
 class Bed {
 public:
-    explicit Bed(const Problem& p) : p_(p), mode(p.points.count, Mode::away), deepest(p.points.count, 0.0) {}
+    explicit Bed(const Problem& p) : p_(p), mode(p.points.count, Mode::away), deepest(p.points.count, 0.0) {
+        for (std::int64_t i = 0; i < p.points.count; ++i) flat = flat && p.points.height[i] == 0.0;
+        affine = flat && p.law != kPlastic;
+    }
 
     bool linear() const { return p_.law != kHuntCrossley; }
     double gap(std::int64_t i, const Place& x) const { return x.gap(p_.points.at[i], p_.points.height[i]); }
@@ -81,7 +144,7 @@ public:
             const double k = p_.stiffness * share;
             if (mode[i] == Mode::pressing || mode[i] == Mode::spring) ++pressing;
             if (!linear()) {
-                if (mode[i] != Mode::away) touching_.push_back({s, z, k, mode[i] == Mode::pressing ? 1.0 : 0.0});
+                if (mode[i] != Mode::away) touching_.add(s, z, k, mode[i] == Mode::pressing ? 1.0 : 0.0);
                 continue;
             }
             if (mode[i] == Mode::lagging) lost_.add(-k, s, z);
@@ -98,7 +161,7 @@ public:
                 offset_z_ += back * z;
             }
         }
-        while (touching_.size() % kLanes != 0) touching_.push_back({});
+        while (touching_.size() % Touching::kLanes != 0) touching_.add(0.0, 0.0, 0.0, 0.0);
     }
 
     Load load(const Place& x) const {
@@ -210,34 +273,30 @@ private:
     double push(double d, double v) const {
         return p_.law == kKelvinVoigt ? p_.stiffness * d + p_.damping * v : 1.0 + p_.viscosity * v;
     }
-    // Four points at a time, each with its own sums.
     Load sum_over_points(const Place& x) const {
-        double force[kLanes] = {}, moment[kLanes] = {}, tilt[kLanes] = {}, loss[kLanes] = {};
-        for (std::size_t i = 0; i < touching_.size(); i += kLanes)
-            for (std::size_t j = 0; j < kLanes; ++j) {
-                const Touching& t = touching_[i + j];
-                const double gap = x.gap(t.at, t.height), d = gap < 0.0 ? -gap : 0.0, v = -x.rate(t.at, t.height);
-                const double spring = t.stiffness * (p_.exponent == 1.5 ? d * std::sqrt(d) : power(d)), drag = p_.viscosity * v;
-                const double f = t.pressing * spring * (1.0 + drag);
-                force[j] += f;
-                moment[j] += f * t.at;
-                tilt[j] += f * t.height;
-                loss[j] += spring * v * (t.pressing * (1.0 + drag) - 1.0);
-            }
-        const auto sum = [](const double (&a)[kLanes]) { return (a[0] + a[1]) + (a[2] + a[3]); };
-        return {sum(force), sum(moment), sum(tilt), sum(loss)};
+        if (p_.exponent == 1.5) return sum_of_powers(touching_, x, p_.viscosity);
+        Load l;
+        for (std::size_t i = 0; i < touching_.size(); ++i) {
+            const double at = touching_.at[i], height = touching_.height[i], pressing = touching_.pressing[i];
+            const double d = -x.gap(at, height), v = -x.rate(at, height);
+            if (d <= 0.0) continue;
+            const double spring = touching_.stiffness[i] * power(d), f = pressing * spring * (1.0 + p_.viscosity * v);
+            l.force += f;
+            l.moment += f * at;
+            l.tilt += f * height;
+            l.loss += (f - spring) * v;
+            l.stored += spring * d / (p_.exponent + 1.0);
+        }
+        return l;
     }
 
-    static constexpr std::size_t kLanes = 4;
-    struct Touching {
-        double at, height, stiffness, pressing;  // pressing: 1, or 0 where the bed lags behind
-    };
-    std::vector<Touching> touching_;
+    Touching touching_;
 
 public:
     std::vector<Mode> mode;
     std::vector<double> deepest;
     std::int64_t pressing = 0;
+    bool flat = true, affine = true;  // margins of points of one mode are straight lines over the base
 };
 
 }  // namespace rocking::bed

@@ -6,7 +6,7 @@ namespace rocking::bed {
 
 struct Rates {
     State slope;
-    double normal, shear, moment, tilt, bed_loss, friction_loss, travel;
+    double normal, shear, moment, tilt, bed_loss, friction_loss, travel, stored;
 };
 
 class Motion {
@@ -33,6 +33,7 @@ public:
         r.moment = l.moment;
         r.tilt = l.tilt;
         r.bed_loss = l.loss;
+        r.stored = l.stored;
         const bool held = p_.kind == kSticking || (p_.kind == kCoulomb && slip == 0);
         if (held) {
             const double turn = turning / (p_.inertia + m * h * h);
@@ -51,14 +52,21 @@ public:
 
     State operator()(const State& x) const { return rates(x).slope; }
 
-    double energy(const State& x, double travel) const { return energy(x, place(x, p_.exact), travel); }
+    double energy(const State& x, double travel) const {
+        const Place at = place(x, p_.exact);
+        return energy(x, at, travel, stored(at));
+    }
+    // The same for a state whose rates are known.
+    double energy(const State& x, const Place& at, double travel, const Rates& known) const {
+        return energy(x, at, travel, bed_.linear() ? stored(at) : known.stored);
+    }
 
     // Kinetic, potential and elastic.
-    double energy(const State& x, const Place& at, double travel) const {
+    double energy(const State& x, const Place& at, double travel, double elastic) const {
         const double u = x[kU] + p_.height * x[kOmega], w = x[kW], omega = x[kOmega];
         const double fall = at.sine * at.sine / (1.0 + at.cosine);
         return 0.5 * p_.mass * (u * u + w * w) + 0.5 * p_.inertia * omega * omega + p_.mass * p_.gravity * (x[kY] - p_.height * fall) +
-               p_.mass * p_.push * (travel + p_.height * at.sine) + stored(at);
+               p_.mass * p_.push * (travel + p_.height * at.sine) + elastic;
     }
     double stored(const Place& at) const {
         double sum = 0.0;

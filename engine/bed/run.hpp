@@ -2,48 +2,18 @@
 #pragma once
 #include <limits>
 
-#include "motion.hpp"
+#include "switches.hpp"
 
 namespace rocking::bed {
 
-enum End : int { kAtPeak = 0, kAtParting = 1, kAtTime = 2 };
-enum Status : int { kPeak = 0, kParted = 1, kTimeOut = 2, kTooManySteps = 3, kFailed = 4, kPastTopple = 5 };
+constexpr double kLeak = 0.09;   // energy that one step may lose or find, over tolerance and energy of the impact
+constexpr double kBudget = 7.0;  // the same for the whole impact: as it is used up, steps are allowed less
+constexpr double kAgain = 1.2;   // first step after a switch over the last such step, where forces begin as d^n
 
-struct Start {
-    State state;
-    double tolerance, depth, speed, half_base, longest, farthest;
-    int end;
-    std::int64_t new_foot, old_foot, most_steps;
-};
-
-struct Result {
-    State state{};
-    double time = 0, travel = 0, bed_loss = 0, friction_loss = 0, energy_start = 0, energy_end = 0, stored = 0, residual = 0;
-    double peak_force = 0, deepest = 0, touch = -1, parting = -1, impulse = 0, impulse_moment = 0, shear_impulse = 0, slid = 0;
-    std::int64_t steps = 0, rejected = 0, switches = 0, contacts = 0, forced = 0;
-    int status = kTimeOut;
-};
-
-struct Sample {
-    double time, travel, normal, shear, moment, bed_loss, friction_loss;
-    State state;
-};
-struct Interval {
-    std::int64_t point;
-    double on, off;
-};
-struct Trace {
-    std::vector<Sample> samples;
-    std::vector<double> forces;
-    std::vector<Interval> intervals;
-};
-
-constexpr double kLeak = 0.03;  // energy that one step may lose or find, over tolerance and energy of the impact
-
-class Run {
+class Run : Switches {
 public:
     Run(const Problem& p, const Start& start, Trace* trace)
-        : p_(p), start_(start), bed_(p), motion_(p, bed_), trace_(trace), on_(trace ? p.points.count : 0, -1.0) {
+        : Switches(p, start), trace_(trace), on_(trace ? p.points.count : 0, -1.0) {
         const double d = start.depth, v = start.speed, b = start.half_base;
         unit_ = {d, d / b, v, v, v / b};
         nudge_ = unit_;
@@ -54,7 +24,7 @@ public:
         leak_ = std::max(kLeak * start.tolerance, 2e-14) * 0.5 * (p.inertia + p.mass * (p.height * p.height + b * b)) * turn * turn;
         // the estimate has order 5, the step order 9: the power of the two, as in Hairer & Wanner's codes of this family
         estimate_ = std::max(0.1 * std::pow(start.tolerance, 0.6) / start.tolerance, 1.0);
-        instant_ = std::max(0.1 * start.tolerance, 1e-12) * d / v;
+        instant_ = std::max(start.tolerance, 1e-12) * d / v;
     }
 
     Result run() {
@@ -88,31 +58,19 @@ private:
     struct Tally {
         double travel = 0, bed_loss = 0, friction_loss = 0, impulse = 0, moment = 0, shear = 0, slid = 0;
     };
-    struct Cause {
-        std::int64_t point;  // -1 friction, -2 peak
-        int which;
-        double at;
-    };
-
-    const Problem& p_;
-    const Start& start_;
-    Bed bed_;
-    Motion motion_;
     Trace* trace_;
     std::vector<double> on_;
-    State x_{}, unit_{}, nudge_{};
+    State nudge_{};
     Result out_;
-    Step<5> step_;
-    std::vector<Cause> causes_;
     double touch_impulse_ = 0, touch_moment_ = 0, touch_shear_ = 0;
     double impulse_ = 0, moment_ = 0, shear_ = 0;
-    double first_ = 1.0, energy_ = 0.0, leak_ = 0.0, estimate_ = 1.0, instant_ = 0.0, contraction_ = 1.0;
-    int stuck_ = 0;
+    double energy_ = 0.0, leak_ = 0.0, instant_ = 0.0, contraction_ = 1.0;
+    double after_ = 0.0;
+    bool after_switch_ = false;
+    int stuck_ = 0, early_ = 0;
     enum class Known { nothing, ahead, within } known_ = Known::nothing;  // what step_ says about the time after x_
     bool local_known_ = false;
     Tangent<5> local_;
-    Place places_[kStages + 1];
-    Rates rates_[kStages + 1];
 
     bool holds(std::int64_t i) const { return bed_.mode[i] == Mode::pressing || bed_.mode[i] == Mode::spring; }
 
@@ -140,7 +98,7 @@ private:
                 ++out_.rejected;
                 continue;
             }
-            const double next = wanted * std::min(6.0, std::max(0.2, factor));
+            const double next = wanted * std::min(bed_.linear() ? 6.0 : 3.0, std::max(0.2, factor));
             const double tau = stuck_ > 100 ? 1.0 : first_cause();
             if (stuck_ > 100) {
                 causes_.clear();
@@ -160,16 +118,20 @@ private:
                 continue;
             }
             const Tally sum = tally();
-            const double after = motion_.energy(step_.end(), places_[kStages], out_.travel + sum.travel);
-            const double leak = std::abs(after - energy_ + sum.bed_loss + sum.friction_loss);
-            if (leak > leak_ && step_.h > 1e5 * shortest && stuck_ == 0) {
-                h = step_.h * std::max(0.1, 0.8 * std::pow(leak_ / leak, 1.0 / 6.0));
+            const double after = motion_.energy(step_.end(), places_[kStages], out_.travel + sum.travel, rates_[kStages]);
+            const double leak = after - energy_ + sum.bed_loss + sum.friction_loss;
+            const double allowed = leak_ * std::max(1.0 - std::abs(out_.residual) / (kBudget / kLeak * leak_), 0.01);
+            if (std::abs(leak) > allowed && step_.h > 1e5 * shortest && (stuck_ == 0 || stuck_ > 100)) {
+                h = step_.h * std::max(0.1, 0.8 * std::pow(allowed / std::abs(leak), 1.0 / 3.5));
                 ++out_.rejected;
                 continue;
             }
-            h = next;
+            if (after_switch_) after_ = step_.h;
+            after_switch_ = !causes_.empty();
+            h = after_switch_ && !bed_.linear() && after_ > 0.0 ? std::min(next, kAgain * after_) : next;
             stuck_ = causes_.empty() || step_.h > 1e-12 * start_.depth / start_.speed ? 0 : stuck_ + 1;
             accept(sum);
+            out_.residual += leak;
             energy_ = after;
             if (!causes_.empty() && react()) return;
             if (ended()) return;
@@ -197,90 +159,10 @@ private:
         return true;
     }
 
-    void look_at_nodes() {
-        for (int k = 0; k <= kStages; ++k) {
-            const State& x = k == 0 ? step_.start : step_.stage[k - 1];
-            places_[k] = place(x, p_.exact);
-            rates_[k] = motion_.rates(x, places_[k]);
-        }
-    }
-
     void forget() {  // the equations change
         local_known_ = false;
         known_ = Known::nothing;
         contraction_ = 1.0;
-    }
-
-    double peak_margin(const State& x) const { return start_.end == kAtPeak ? x[kOmega] : 1.0; }
-
-    double margin(const Cause& c, const State& x) const {
-        if (c.point == -1) return motion_.friction_margin(x);
-        if (c.point == -2) return peak_margin(x);
-        return bed_.margin(c.point, c.which, place(x, p_.exact));
-    }
-
-    // The first switch inside the step, as a share of it; causes_ holds what switches there.
-    double first_cause() {
-        causes_.clear();
-        first_ = 1.0;
-        double g[2][kStages + 1];
-        for (std::int64_t i = 0; i < p_.points.count; ++i) {
-            const int kinds = bed_.margins(i, places_, g);
-            for (int which = 0; which < kinds; ++which) look({i, which, 0.0}, g[which]);
-        }
-        if (p_.kind == kCoulomb) {
-            for (int k = 0; k <= kStages; ++k) g[0][k] = motion_.friction_margin(k == 0 ? step_.start : step_.stage[k - 1], rates_[k]);
-            look({-1, 0, 0.0}, g[0]);
-        }
-        if (start_.end == kAtPeak && out_.steps > 0) {
-            for (int k = 0; k <= kStages; ++k) g[0][k] = (k == 0 ? step_.start : step_.stage[k - 1])[kOmega];
-            look({-2, 0, 0.0}, g[0]);
-        }
-        const double near = first_ + 1e-12;
-        causes_.erase(std::remove_if(causes_.begin(), causes_.end(), [near](const Cause& c) { return c.at > near; }), causes_.end());
-        return causes_.empty() ? 1.0 : first_;
-    }
-
-    // Adds a margin that runs out before those found so far; g: its values at the start and at the nodes.
-    void look(Cause c, const double* g) {
-        double low = g[1], high = g[1];
-        for (int k = 2; k <= kStages; ++k) low = low < g[k] ? low : g[k], high = high > g[k] ? high : g[k];
-        if (low <= 0.6 * (std::max(high, g[0]) - std::min(low, g[0]))) search(c, g, high - low);  // else too far off to dip below zero
-    }
-
-    void search(Cause c, const double* g, double range) {
-        double from = 0.0, to = 2.0;
-        for (int k = kStages; k >= 1; --k)
-            if (g[k] < 0.0) from = instant(k - 1), to = instant(k);
-        for (int k = 1; k < kStages && instant(k - 1) < to; ++k) {  // a dip between nodes, from the parabola through three
-            const double x0 = instant(k - 1), x1 = instant(k), x2 = instant(k + 1);
-            const double first = (g[k] - g[k - 1]) / (x1 - x0), bend = ((g[k + 1] - g[k]) / (x2 - x1) - first) / (x2 - x0);
-            if (!(bend > 0.0)) continue;
-            const double dip = 0.5 * (x0 + x1 - first / bend);
-            if (dip <= x0 || dip >= std::min(x2, to) || margin(c, step_.at(dip)) >= -1e-10 * range) continue;
-            from = g[k] > 0.0 && dip > x1 ? x1 : x0;
-            to = dip;
-        }
-        if (to > 1.0 || from > first_ + 1e-12) return;
-        c.at = root(c, from, to);
-        first_ = std::min(first_, c.at);
-        causes_.push_back(c);
-    }
-
-    static double instant(int k) { return k == 0 ? 0.0 : radau::node[k - 1]; }
-
-    double root(const Cause& c, double low, double high) const {
-        double f_low = margin(c, step_.at(low)), f_high = margin(c, step_.at(high));
-        if (f_low <= 0.0) return low;
-        for (int round = 0; round < 60 && high - low > 1e-14; ++round) {
-            double mid = low + (high - low) * f_low / (f_low - f_high);
-            const double least = 1e-3 * (high - low);
-            mid = round % 3 == 2 ? 0.5 * (low + high) : std::min(std::max(mid, low + least), high - least);
-            const double f = margin(c, step_.at(mid));
-            if (f > 0.0) low = mid, f_low = f;
-            else high = mid, f_high = f;
-        }
-        return high;
     }
 
     // Ends the step at the first switch: found on its polynomial, then on that of the shorter step itself.
@@ -289,6 +171,7 @@ private:
         const Step<5> covering = step_;
         const Cause cause = *std::min_element(causes_.begin(), causes_.end(), [](const Cause& a, const Cause& b) { return a.at < b.at; });
         double h = tau * covering.h;
+        bool early = false;
         for (int round = 0; round < 4; ++round) {
             Guess<5> guess;
             guess.any = true;
@@ -296,9 +179,14 @@ private:
             if (!take_step(motion_, x_, h, unit_, local_, guess, contraction_, step_)) return false;
             const double here = margin(cause, step_.end()), fall = (margin(cause, step_.at(0.999)) - here) / (1e-3 * h);
             const double late = fall > 0.0 ? -here / fall : 0.0;
-            if ((late >= 0.0 && late <= instant_) || std::abs(late) > 0.02 * h || !(fall > 0.0)) break;
-            h += 0.3 * instant_ - late;
+            const double more = 0.3 * instant_ - late;
+            early = here > 0.0 && !(late >= -instant_ && fall > 0.0);
+            if ((late >= 0.0 && late <= instant_) || !(fall > 0.0) || more > std::max(0.02 * h, instant_) || more < -0.5 * h) break;
+            h += more;
         }
+        // on its own polynomial the step ends before the switch, or grazes it; but not for ever
+        early_ = early ? early_ + 1 : 0;
+        if (early && early_ <= 3) causes_.clear();
         look_at_nodes();
         return true;
     }
@@ -319,9 +207,34 @@ private:
         return sum;
     }
 
+    double depth(const Place& at) const {
+        const std::int64_t last = p_.points.count - 1;
+        double d = std::max(-bed_.gap(0, at), -bed_.gap(last, at));
+        for (std::int64_t i = 1; !bed_.flat && i < last; ++i) d = std::max(d, -bed_.gap(i, at));
+        return d;
+    }
+
+    // Greatest force and depth at the nodes, and between them where the parabola through three has its top.
+    void crests() {
+        for (int which = 0; which < 2; ++which) {
+            double g[kStages + 1];
+            for (int k = 0; k <= kStages; ++k) g[k] = which == 0 ? rates_[k].normal : depth(places_[k]);
+            double& most = which == 0 ? out_.peak_force : out_.deepest;
+            for (int k = 1; k <= kStages; ++k) most = std::max(most, g[k]);
+            for (int k = 1; k < kStages; ++k) {
+                if (g[k] < g[k - 1] || g[k] < g[k + 1] || g[k] < 0.9 * most) continue;
+                const double top = vertex(k, g);
+                if (!(top > 0.0 && top < 1.0)) continue;
+                const State x = step_.at(top);
+                const Place at = place(x, p_.exact);
+                most = std::max(most, which == 0 ? motion_.rates(x, at).normal : depth(at));
+            }
+        }
+    }
+
     void accept(const Tally& sum) {
         const Rates* r = rates_ + 1;
-        for (int k = 0; k < kStages; ++k) out_.peak_force = std::max(out_.peak_force, r[k].normal);
+        crests();
         if (trace_)
             for (int k = 0; k < kStages; ++k) {
                 Tally part;
@@ -333,8 +246,6 @@ private:
                 }
                 record(step_.stage[k], radau::node[k] * step_.h, part);
             }
-        const Place& at = places_[kStages];
-        for (std::int64_t i = 0; i < p_.points.count; ++i) out_.deepest = std::max(out_.deepest, -bed_.gap(i, at));
         out_.time += step_.h;
         out_.travel += sum.travel;
         out_.bed_loss += sum.bed_loss;
@@ -345,6 +256,7 @@ private:
         shear_ += sum.shear;
         ++out_.steps;
         x_ = step_.end();
+        moved_ = true;
         known_ = Known::ahead;
         local_known_ = false;
         if (p_.kind == kCoulomb && motion_.slip == 0) x_[kU] = 0.0;
@@ -368,7 +280,7 @@ private:
             if (c.point == -2) {
                 peak = true;
             } else if (c.point == -1) {
-                if (motion_.slip != 0 && std::abs(x_[kU]) > 1e-9 * start_.speed) {  // it slides the other way
+                if (motion_.slip != 0 && std::abs(x_[kU]) > std::max(1e-9 * start_.speed, 10.0 * unit_[kU])) {  // it slides the other way
                     motion_.slip = x_[kU] > 0.0 ? 1 : -1;
                     continue;
                 }
@@ -377,7 +289,11 @@ private:
                 rest = true;
             } else {
                 const bool before = holds(c.point);
+                const double kept = bed_.stored(c.point, at);
+                const Mode was = bed_.mode[c.point];
                 bed_.change(c.point, c.which, at);
+                // new ground pressed on the way to the switch
+                if (was == Mode::spring && bed_.mode[c.point] == Mode::pressing) out_.bed_loss += kept - bed_.stored(c.point, at);
                 note(c.point, before, holds(c.point));
             }
         }
@@ -398,10 +314,13 @@ private:
         const Place at = place(x_, p_.exact);
         for (const Cause& c : causes_) {
             if (c.point < 0 || !holds(c.point)) continue;
+            const double kept = bed_.stored(c.point, at);
             bed_.deepest[c.point] = std::max(bed_.deepest[c.point], -bed_.gap(c.point, at));
             bed_.mode[c.point] = Mode::spring;
+            out_.bed_loss += kept - bed_.stored(c.point, at);
         }
         bed_.gather();
+        energy_ = motion_.energy(x_, out_.travel);
     }
 
     void note(std::int64_t i, bool before, bool after) {

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rocking.dynamics.bed.law import LawNumbers, depth_under, force, stored
+from rocking.dynamics.bed.law import LawNumbers, depth_under, stored
 from rocking.dynamics.bed.rigid import RigidRocking
 
 
@@ -32,12 +32,16 @@ def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: floa
     turned = 1.0 if bed.kinematics == "small" else math.cos(rotation)
     above = rigid.lift(rotation) - (bed.positions * tilt - bed.heights * turned)
     deepest = depth_under(law, load / float(bed.shares[pivot]))
-    still, low, high = np.zeros_like(above), 0.0, deepest
+    depth = deepest
     shallow = np.delete(above, pivot).min() >= deepest
-    for _ in range(0 if shallow else 80):
-        middle = 0.5 * (low + high)
-        depths = middle - above
-        carried = float(bed.shares @ force(law, depths, still, np.maximum(depths, 0.0)))
-        low, high = (middle, high) if carried < load else (low, middle)
-    depths = np.maximum(high - above, 0.0)
-    return high, float(bed.shares @ stored(law, depths, depths))
+    # the load carried grows with the depth and curves upwards: Newton's method comes down from one foot alone
+    for _ in range(0 if shallow else 60):
+        pressed = np.maximum(depth - above, 0.0)
+        slope = law.exponent * law.stiffness * pressed ** (law.exponent - 1.0)
+        excess = float(bed.shares @ (law.stiffness * pressed**law.exponent)) - load
+        down = excess / float(bed.shares @ np.where(pressed > 0.0, slope, 0.0))
+        depth -= down
+        if down <= 1e-15 * depth:
+            break
+    depths = np.maximum(depth - above, 0.0)
+    return depth, float(bed.shares @ stored(law, depths, depths))

@@ -11,6 +11,7 @@ from rocking.dynamics.bed import Coulomb
 from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
 from rocking.studies.impact_laboratory.beds import Laboratory, hardness_of, measured
+from rocking.studies.impact_laboratory.result import LaboratoryStudy, about, provenance
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 Change = Callable[[Laboratory, float], Laboratory]
 
 
-def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dataset":
+def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against slenderness.
 
     Parameters
@@ -30,7 +31,7 @@ def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> "xr.
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`.
 
     Examples
@@ -41,7 +42,7 @@ def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> "xr.
     return study("slenderness", "1", values, lambda lab, x: lab.but(slenderness=x), laboratory)
 
 
-def points_study(values: Sequence[int], laboratory: Laboratory | None = None) -> "xr.Dataset":
+def points_study(values: Sequence[int], laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the number of contact points.
 
     Parameters
@@ -53,13 +54,13 @@ def points_study(values: Sequence[int], laboratory: Laboratory | None = None) ->
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`.
     """
     return study("points", "1", values, lambda lab, x: lab.but(points=int(x)), laboratory)
 
 
-def damping_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dataset":
+def damping_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the damping ratio of the bed.
 
     Parameters
@@ -71,13 +72,13 @@ def damping_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Data
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`.
     """
     return study("damping", "1", values, lambda lab, x: lab.but(damping=x), laboratory)
 
 
-def modulus_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dataset":
+def modulus_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the modulus of the layer over its thickness.
 
     Parameters
@@ -89,13 +90,13 @@ def modulus_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Data
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`.
     """
     return study("modulus_over_thickness", "Pa/m", values, lambda lab, x: lab.but(modulus_over_thickness=x), laboratory)
 
 
-def friction_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dataset":
+def friction_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the coefficient of friction of the base.
 
     Parameters
@@ -107,13 +108,13 @@ def friction_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dat
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`.
     """
     return study("friction", "1", values, lambda lab, x: lab.but(friction=Coulomb(x)), laboratory)
 
 
-def mass_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dataset":
+def mass_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the density of the block on a layer of given stiffness: mass alone, the size stays.
 
     Parameters
@@ -125,13 +126,13 @@ def mass_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dataset
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`.
     """
     return study("density", "kg/m3", values, lambda lab, x: lab.but(density=x), _layered(laboratory))
 
 
-def size_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dataset":
+def size_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the width of blocks of one shape and density on one layer.
 
     Parameters
@@ -143,13 +144,13 @@ def size_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dataset
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`.
     """
     return study("width", "m", values, lambda lab, x: lab.but(width=x), _layered(laboratory))
 
 
-def velocity_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dataset":
+def velocity_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the rotation of release, and so against the landing velocity.
 
     Parameters
@@ -161,7 +162,7 @@ def velocity_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dat
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`, `landing_velocity` among the results.
     """
     return study("release", "1", values, lambda lab, x: lab.but(release=x), laboratory)
@@ -169,7 +170,7 @@ def velocity_study(values: Any, laboratory: Laboratory | None = None) -> "xr.Dat
 
 def study(
     name: str, unit: str, values: Any, change: Change, laboratory: Laboratory | None = None, *, threads: int = 1
-) -> "xr.Dataset":
+) -> LaboratoryStudy:
     """Return what emerges as one thing about the bed or the block changes.
 
     Parameters
@@ -187,7 +188,7 @@ def study(
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         Over `name`: coefficient, coefficient_by_energy, hardness [-], landing_velocity [rad/s], peak_force [N],
         bed_loss and friction_loss [J], contacts, audit [-]; NaN where an impact failed.
 
@@ -214,11 +215,11 @@ def study(
         "audit": ("1", impacts.audit),
     }
     made: xr.Dataset = xarray.Dataset(
-        {key: (name, value, {"units": of}) for key, (of, value) in results.items()},
-        coords={name: (name, row, {"units": unit})},
-        attrs={"laboratory": repr(start)},
+        {key: (name, value, about(key, of)) for key, (of, value) in results.items()},
+        coords={name: (name, row, about(name, unit))},
+        attrs=provenance(name, start),
     )
-    return made
+    return LaboratoryStudy(made)
 
 
 def _layered(laboratory: Laboratory | None) -> Laboratory:

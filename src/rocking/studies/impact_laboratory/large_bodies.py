@@ -1,17 +1,15 @@
 """The claim that kinetic energy distribution suits large bodies, against the contact bed."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rocking.restitution import Ked
 from rocking.studies.impact_laboratory.beds import Laboratory
 from rocking.studies.impact_laboratory.dependence import size_study
 from rocking.studies.impact_laboratory.profiles import profile
-
-if TYPE_CHECKING:
-    import xarray as xr
+from rocking.studies.impact_laboratory.result import LaboratoryStudy
 
 
-def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> "xr.Dataset":
+def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return what the bed says about blocks of one shape that grow, on a flat and on a hollow base, beside KED.
 
     On a flat base of one layer r does not depend on the size at all (`size_study`): neither does KED. What can change
@@ -28,7 +26,7 @@ def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laborat
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         Over `width`: flat, hollow, ked and hollow_minus_ked [-].
 
     Examples
@@ -42,8 +40,8 @@ def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laborat
     uneven = size_study(widths, start.but(profile=profile("concave", hollow, start.points)))
     ked = flat.coefficient * 0.0 + Ked().coefficient(start.block)
     data = {"flat": flat.coefficient, "hollow": uneven.coefficient, "ked": ked}
-    made = flat.drop_vars(list(flat.data_vars)).assign(data)
+    made = flat.dataset.drop_vars(list(flat.data_vars)).assign(data)
     made = made.assign(hollow_minus_ked=made.hollow - made.ked)
     for name in made.data_vars:
         made[name].attrs["units"] = "1"
-    return made
+    return LaboratoryStudy(made)

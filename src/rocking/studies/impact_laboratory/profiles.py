@@ -1,6 +1,6 @@
 """Bases that are not flat: convex, concave, uneven, rough."""
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -8,9 +8,7 @@ from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.studies.impact_laboratory.beds import Laboratory
 from rocking.studies.impact_laboratory.dependence import study
-
-if TYPE_CHECKING:
-    import xarray as xr
+from rocking.studies.impact_laboratory.result import LaboratoryStudy
 
 Shape = Literal["convex", "concave", "tilted", "random"]
 SHAPES: tuple[Shape, ...] = ("convex", "concave", "tilted", "random")
@@ -63,7 +61,7 @@ def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tu
 
 def profile_study(
     shape: Shape, amplitudes: Any, laboratory: Laboratory | None = None, *, seed: int = 0
-) -> "xr.Dataset":
+) -> LaboratoryStudy:
     """Return r against the unevenness of the base.
 
     Parameters
@@ -79,7 +77,7 @@ def profile_study(
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`, over `amplitude`.
     """
 
@@ -90,7 +88,7 @@ def profile_study(
     return study("amplitude", "m", amplitudes, uneven, laboratory)
 
 
-def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None = None) -> "xr.Dataset":
+def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r of bases with random unevenness.
 
     Parameters
@@ -104,7 +102,7 @@ def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None 
 
     Returns
     -------
-    xarray.Dataset
+    LaboratoryStudy
         As `study`, over `seed`.
     """
 

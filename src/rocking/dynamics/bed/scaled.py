@@ -1,0 +1,140 @@
+"""Impacts in their own units: half base 1 m, mass 1 kg, a landing speed that the hardness of the bed stands for."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import MassPoints
+from rocking.conventions import FloatArray
+from rocking.dynamics.bed.contact_bed import ContactBed
+from rocking.dynamics.bed.emergent import BedStatus
+from rocking.dynamics.bed.friction import BaseFriction, Coulomb, Sticking
+from rocking.dynamics.bed.impact import setup_of
+from rocking.dynamics.bed.kelvin_voigt import KelvinVoigt
+from rocking.dynamics.bed.many import bed_impacts
+from rocking.dynamics.bed.tables import Setup
+from rocking.errors import InvalidValueError
+
+RELEASE = 0.05
+"""Rotation from which the body falls, over the least slenderness angle: rocking of small amplitude [-]."""
+
+_TOLERANCES = (1e-8, 3e-8, 1e-7, 1e-6)
+
+
+@dataclass(frozen=True, slots=True)
+class ScaledImpact:
+    """A body on a Kelvin-Voigt bed, in numbers without units.
+
+    Parameters
+    ----------
+    flatness : float
+        1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-].
+    offset : float
+        Way from the plumb line back to the middle of the base, over w [-].
+    points : int
+        Contact points from foot to foot.
+    damping : float
+        Damping ratio of the whole bed [-].
+    hardness : float
+        Landing speed of the new foot times sqrt(k / m) over gravity [-].
+    friction : float
+        Coefficient of friction; infinite where the base cannot slide [-].
+    height_share : float
+        m h^2 / (I_C + m h^2): the height of the centre, which matters where the base slides [-].
+
+    Examples
+    --------
+    >>> impact = ScaledImpact(flatness=0.15, offset=0.0, points=2, damping=1.0, hardness=300.0)
+    >>> round(float(resolved_coefficients([impact])[0]), 2)
+    0.7
+    """
+
+    flatness: float
+    offset: float
+    points: int
+    damping: float
+    hardness: float
+    friction: float = math.inf
+    height_share: float = 0.7
+
+    def __post_init__(self) -> None:
+        checks.within("flatness", self.flatness, 1e-6, 1.0, open_high=True)
+        checks.within("offset", self.offset, -1.0, 1.0, open_low=True, open_high=True)
+        checks.within("height share", self.height_share, 0.0, 1.0, open_low=True)
+
+    @property
+    def setup(self) -> Setup:
+        """The impact, ready to be computed."""
+        body, feet, release, speed = _body(self.flatness, self.offset, self.height_share)
+        stiffness = (self.hardness * conventions.g / speed) ** 2
+        friction = Sticking() if math.isinf(self.friction) else Coulomb(self.friction)
+        bed = _bed(feet, self.points, stiffness, self.damping, friction)
+        return setup_of(body, bed, rotation=release, tolerance=_TOLERANCES[0])
+
+
+def resolved_coefficients(impacts: Sequence[ScaledImpact], *, threads: int = 1) -> FloatArray:
+    """Return coefficients of restitution resolved in time.
+
+    Parameters
+    ----------
+    impacts : sequence of ScaledImpact
+        Bodies on beds.
+    threads : int
+        Threads of the fast engine.
+
+    Returns
+    -------
+    ndarray
+        theta_dot_after / theta_dot_before, by the next peak [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If an impact did not end.
+    """
+    setups = [impact.setup for impact in impacts]
+    r = np.full(len(setups), np.nan)
+    # a chattering point can use up its steps: another step tolerance takes another way through
+    for tolerance in _TOLERANCES:
+        failed = np.flatnonzero(np.isnan(r))
+        if failed.size == 0:
+            return r
+        found = bed_impacts([replace(setups[i], tolerance=tolerance) for i in failed.tolist()], threads=threads)
+        ended = [status in {BedStatus.PEAK, BedStatus.TOPPLED} for status in found.status]
+        r[failed] = np.where(ended, found.coefficient, np.nan)
+    if np.isnan(r).any():
+        raise InvalidValueError(
+            f"{int(np.isnan(r).sum())} impacts did not end, the first is {impacts[int(np.argmax(np.isnan(r)))]}"
+        )
+    return r
+
+
+@lru_cache(maxsize=256)
+def _body(flatness: float, offset: float, share: float) -> tuple[MassPoints, tuple[float, float], float, float]:
+    """Body, feet, rotation of release and landing speed of the new foot."""
+    gyration = 1.0 / flatness - 1.0
+    height, arm = math.sqrt(share * gyration), math.sqrt((1.0 - share) * gyration)
+    feet = (-1.0 - offset, 1.0 - offset)
+    masses = ([(-arm, height), (arm, height)], [0.5, 0.5]) if arm > 0.0 else ([(0.0, height)], [1.0])
+    body = MassPoints(*masses, feet=feet)
+    release = RELEASE * math.atan(min(-feet[0], feet[1]) / height)
+    speed = 2.0 * setup_of(body, _bed(feet, 2, 1.0, 1.0, Sticking()), rotation=release).start.landing_velocity
+    return body, feet, release, speed
+
+
+def _bed(
+    feet: tuple[float, float], points: int, stiffness: float, damping: float, friction: BaseFriction
+) -> ContactBed:
+    shares = np.ones(points)
+    shares[[0, -1]] = 0.5
+    law = KelvinVoigt(stiffness, damping_ratio=damping)
+    # a base that slides needs the points of a rigid body; where it sticks, small rotations are the table's setting
+    slides = not isinstance(friction, Sticking)
+    return ContactBed(
+        np.linspace(*feet, points), law, shares / shares.sum(), friction=friction,
+        kinematics="exact" if slides else "small",
+    )  # fmt: skip

@@ -1,0 +1,158 @@
+"""What a study of the laboratory found, with the files it goes into."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.dynamics import export
+from rocking.dynamics.bed import fast
+from rocking.dynamics.exported import Exported, Quantity
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pandas as pd
+    import xarray as xr
+
+# long names of what studies find; a name that is not here says it all
+_WORDS = {
+    "coefficient": "theta_dot after over theta_dot before, by the next peak",
+    "coefficient_by_energy": "the same by the energy at the end, hops counted",
+    "hardness": "landing speed of the new foot times sqrt(k / m) over gravity",
+    "landing_velocity": "theta_dot of rigid rocking as it reaches the base",
+    "peak_force": "greatest force of the bed",
+    "bed_loss": "energy lost in compression",
+    "friction_loss": "energy lost in friction",
+    "contacts": "how often the body came into contact: hops are one less",
+    "audit": "energy at the end plus losses minus energy at the start, over the energy before the impact",
+}
+
+
+_ABOUT = ("units", "long_name")
+
+
+class LaboratoryStudy:
+    """A study of the impact laboratory: an `xarray.Dataset` over what was varied, that also goes into files.
+
+    Every attribute and index of the dataset is one of the study.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Results over one dimension, with units; its attributes say what was computed from what.
+
+    Examples
+    --------
+    >>> from rocking.studies.impact_laboratory.dependence import slenderness_study
+    >>> found = slenderness_study([2.0, 4.0])
+    >>> found.to_dataframe()["coefficient [-]"].round(2).tolist()
+    [0.84, 0.96]
+    """
+
+    def __init__(self, dataset: "xr.Dataset") -> None:
+        self.dataset = dataset
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an attribute of the dataset."""
+        if name.startswith("__") or name == "dataset":
+            raise AttributeError(name)
+        return getattr(self.dataset, name)
+
+    def __getitem__(self, key: Any) -> Any:
+        """Return a variable of the dataset."""
+        return self.dataset[key]
+
+    def __repr__(self) -> str:
+        """Return the dataset in words."""
+        return repr(self.dataset)
+
+    @property
+    def exported(self) -> Exported:
+        """What files hold: the varied quantity first, then every result, with units; and the provenance."""
+        names = [*self.dataset.coords, *self.dataset.data_vars]
+        samples = {
+            str(name): Quantity(self.dataset[name].values, *(self.dataset[name].attrs.get(a, "") for a in _ABOUT))
+            for name in names
+        }
+        return Exported(samples, provenance=dict(self.dataset.attrs))
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Return the study as a table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row a value; columns such as ``peak_force [N]``; the provenance in its `attrs`.
+        """
+        frame = export.to_dataframe(self.exported)
+        frame.attrs.update(self.dataset.attrs)
+        return frame
+
+    def to_csv(self, path: "str | Path") -> "Path":
+        """Write the study as comma-separated values, all digits kept; headings as in `to_dataframe`.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        return export.to_csv(self.exported, path)
+
+    def to_netcdf(self, path: "str | Path") -> "Path":
+        """Write the study as netCDF 4, with units and provenance, which xarray and MATLAB open.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        export.extra("h5py", "netCDF")
+        export.extra("h5netcdf", "netCDF")
+        target = export.target_of(path)
+        self.dataset.to_netcdf(target, engine="h5netcdf")
+        return target
+
+
+def about(name: str, unit: str) -> dict[str, str]:
+    """Return unit and meaning of a result.
+
+    Parameters
+    ----------
+    name, unit : str
+        Its name and unit.
+
+    Returns
+    -------
+    dict
+        As xarray and netCDF name them.
+    """
+    return Quantity(np.zeros(0), unit, _WORDS.get(name, "")).attributes
+
+
+def provenance(study: str, laboratory: object) -> dict[str, str]:
+    """Return what a study was computed from, and with what.
+
+    Parameters
+    ----------
+    study : str
+        What was varied.
+    laboratory : Laboratory
+        What stayed as it was.
+
+    Returns
+    -------
+    dict of str
+        Attributes of its dataset.
+    """
+    engine = "contact bed, fast" if fast.available() else "contact bed, reference"
+    return {"software": export.software(), "engine": engine, "study": study, "laboratory": repr(laboratory)}
