@@ -1,6 +1,7 @@
 """Run the benchmarks, print their tables and keep them in benchmarks/.
 
-`python -m benchmarks` runs all; `python -m benchmarks restitution`, `engine [--full]` or `studies` one part.
+`python -m benchmarks` runs all; `python -m benchmarks restitution`, `engine [--full]`, `studies`, `bed` or `spatial`
+one part.
 """
 
 import argparse
@@ -9,8 +10,10 @@ import sys
 
 import numpy as np
 
-from benchmarks import engine, ked, section, start, studies, table
+from benchmarks import bed, engine, ked, section, spatial, start, studies, table
 from benchmarks.table import Row
+
+PARTS = ("restitution", "engine", "studies", "bed", "spatial")
 
 
 def rows() -> list[Row]:
@@ -61,7 +64,7 @@ def restitution() -> bool:
 def main() -> None:
     """Run what was asked for; leave with 1 if a goal is missed."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description="Speed, as ratios in one run.")
-    parser.add_argument("part", nargs="?", choices=("all", "restitution", "engine", "studies"), default="all")
+    parser.add_argument("part", nargs="?", choices=("all", *PARTS), default="all")
     parser.add_argument("--full", action="store_true", help="engine: more repeats, more histories of slow peers")
     parser.add_argument("--histories", type=int, default=10_000, help="engine: fewer for a trial, not kept")
     asked = parser.parse_args()
@@ -72,6 +75,9 @@ def main() -> None:
         good = engine.main(full=asked.full, count=asked.histories) and good
     if asked.part in {"all", "studies"}:
         good = studies.main() and good
+    for part, made in (("bed", bed), ("spatial", spatial)):
+        if asked.part in {"all", part}:
+            good = made.main() and good
     sys.exit(0 if good else 1)
 
 

@@ -24,6 +24,8 @@ struct Pivot {
     int watched[2] = {-1, -1};            // vertices whose gaps may close first
     Four gaps[3] = {}, ends[3] = {};      // what gives both gaps, height of the centre and cosine; and the ends of an edge
     double along = 0.0;                   // of the arm, along the edge
+    Vec level, lever;                     // of an edge: part of the arm across it, and axis x arm
+    double skew = 0.0, beside = 0.0;      // about its middle: what gyroscopic moments shift between its ends, and the arm along
     const double* kept = nullptr;         // moments for what KED keeps
 };
 
@@ -72,6 +74,9 @@ inline void equations(const Body& body, Pivot& p) {
         p.ends[1] = Four{a.y, b.y, 0.0, 0.0};
         p.ends[2] = Four{a.z, b.z, 0.0, 0.0};
         p.along = dot(p.axis, p.arm);
+        p.level = p.arm - p.along * p.axis, p.lever = cross(p.axis, p.arm);
+        p.skew = norm(cross(p.axis, 1.0 / body.mass * (body.about(p.at + 0.5 * p.length * p.axis) * p.axis)));
+        p.beside = std::fabs(p.along - 0.5 * p.length);
     }
 }
 

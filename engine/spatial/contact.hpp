@@ -31,7 +31,7 @@ inline double least_support(const Body& body, const Pivot& stance, Vec force, Ve
     const Vec arms = cross(up, moment);
     if (stance.contact == kEdge) {
         const double second = dot(arms, stance.axis) / stance.length;
-        return std::fmin(normal - second, second);
+        return lesser(normal - second, second);
     }
     if (stance.contact != kRest) return normal;
     const Vec pressure = arms + normal * stance.at;
@@ -39,7 +39,7 @@ inline double least_support(const Body& body, const Pivot& stance, Vec force, Ve
     double least = normal;
     for (int i = 0; i < body.count; ++i) {
         const Vec arm = pressure - normal * body.vertices[i];
-        least = std::fmin(least, (arm.x * body.inward[i].x + arm.y * body.inward[i].y) / body.size);
+        least = lesser(least, (arm.x * body.inward[i].x + arm.y * body.inward[i].y) / body.size);
     }
     return least;
 }
@@ -54,7 +54,7 @@ inline double opening_speed(const Body& body, const Pivot& stance, Vec velocity,
     double least = kFar;
     for (int i = 0; i < body.count; ++i)
         if ((touching & bit(i)) && !(stance.points & bit(i)))
-            least = std::fmin(least, dot(cross(velocity, body.vertices[i] - stance.at), up));
+            least = lesser(least, dot(cross(velocity, body.vertices[i] - stance.at), up));
     return least;
 }
 
@@ -140,11 +140,11 @@ inline const Pivot* started(const Body& body, Vec velocity, Vec up, std::uint64_
     for (int i = 0; i < body.count; ++i) {
         height[i] = dot(body.vertices[i], up);
         rate[i] = dot(cross(velocity, body.vertices[i]), up);
-        low = std::fmin(low, height[i]);
+        low = lesser(low, height[i]);
     }
     touching = 0;
     for (int i = 0; i < body.count; ++i)
-        if (height[i] - low <= kClosed * body.size) touching |= bit(i), slowest = std::fmin(slowest, rate[i]);
+        if (height[i] - low <= kClosed * body.size) touching |= bit(i), slowest = lesser(slowest, rate[i]);
     const double size = largest(velocity);
     if (size == 0.0 && touching == body.every()) return &body.face;
     std::uint64_t lowest = 0;

@@ -1,7 +1,10 @@
-// Taylor series of a step about a fixed point or edge. With the axes of the ground in axes of the body, X, Y, Z, and
+// Taylor series of a step about a fixed point or edge. About a point, with the axes of the ground in axes of the body, X, Y, Z, and
 // G(t) = (Gx, Gy, Gz) gravity less the acceleration of the ground,
 //     X' = X x w, Y' = Y x w, Z' = Z x w,      I_A w' = rho x m (Gx X + Gy Y + Gz Z) - w x I_A w,
 // which is quadratic: coefficients follow from one another by sums of products, three components in a register.
+// About an edge e it is the equation of the plane for the angle phi turned since the start of the step,
+//     I_e phi'' = m (P(t) cos phi - Q(t) sin phi),      P = (e x rho) . G, Q = (rho - e (e . rho)) . G,
+// with G in axes of the body at the start.
 #pragma once
 #include "body.hpp"
 
@@ -16,19 +19,23 @@ struct Series {
     Four x[kMostOrder + 1], y[kMostOrder + 1], z[kMostOrder + 1], w[kMostOrder + 1];
 };
 
+// Coefficient k of a x w, the components one place ahead. The newest coefficients come last, so that nothing waits for them.
 template <int N>
 inline Four turned(const Four* a, const Four* ar, const Four* w, const Four* wr, int k, double inverse) {
-    Four plus = a[0] * wr[k], minus = ar[0] * w[k];
+    if (k == 0) return a[0] * wr[0] - ar[0] * w[0];
+    Four plus = four(0.0), minus = four(0.0);
     ROCKING_EACH_TERM
-    for (int j = 1; j <= k; ++j) {
+    for (int j = 1; j < k; ++j) {
         plus = plus + a[j] * wr[k - j];
         minus = minus + ar[j] * w[k - j];
     }
+    plus = plus + a[0] * wr[k] + a[k] * wr[0];
+    minus = minus + ar[0] * w[k] + ar[k] * w[0];
     return (plus - minus) * four(inverse);
 }
 
 // `field` has the coefficients of G by power, axis by axis, over the step; `state` is X, Y, Z and the velocity times the step.
-template <int N, int D, bool edge>
+template <int N, int D>
 inline void series(const Pivot& pivot, const Four* state, double length, const double (*field)[3], Series& s) {
     Four x[N + 1], y[N + 1], z[N + 1], w[N + 1], xr[N + 1], yr[N + 1], zr[N + 1], wr[N + 1];
     x[0] = state[0], y[0] = state[1], z[0] = state[2], w[0] = state[3];
@@ -38,23 +45,27 @@ inline void series(const Pivot& pivot, const Four* state, double length, const d
     ROCKING_EACH_TERM
     for (int k = 0; k < N; ++k) {
         const double inverse = 1.0 / (k + 1);
-        Four g = four(field[0][0]) * x[k] + four(field[0][1]) * y[k] + four(field[0][2]) * z[k];
+        Four g = four(0.0), h = four(0.0);
         ROCKING_EACH_TERM
-        for (int j = 1; j <= (k < D ? k : D); ++j)
-            g = g + four(field[j][0]) * x[k - j] + four(field[j][1]) * y[k - j] + four(field[j][2]) * z[k - j];
-        Four rate = t0 * all_of<0>(g) + t1 * all_of<1>(g) + t2 * all_of<2>(g);
-        if (!edge) {
-            Four same = w[0] * w[k], other = w[0] * wr[k];
-            ROCKING_EACH_TERM
-            for (int j = 1; j <= k; ++j) {
-                same = same + w[j] * w[k - j];
-                other = other + w[j] * wr[k - j];
-            }
-            rate = rate + pivot.gyro[0] * all_of<0>(same) + pivot.gyro[1] * all_of<1>(same);
-            Four rest = pivot.gyro[2] * all_of<2>(same) + pivot.gyro[3] * all_of<0>(other);
-            rest = rest + pivot.gyro[4] * all_of<1>(other) + pivot.gyro[5] * all_of<2>(other);
-            rate = rate + rest;
+        for (int j = k < D ? k : D; j >= 0; --j) {
+            g = g + four(field[j][0]) * x[k - j] + four(field[j][1]) * y[k - j];
+            h = h + four(field[j][2]) * z[k - j];
         }
+        g = g + h;
+        Four rate = t0 * all_of<0>(g) + t1 * all_of<1>(g) + t2 * all_of<2>(g);
+        Four same = four(0.0), other = four(0.0);
+        ROCKING_EACH_TERM
+        for (int j = 1; j < k; ++j) {
+            same = same + w[j] * w[k - j];
+            other = other + w[j] * wr[k - j];
+        }
+        same = same + four(k == 0 ? 1.0 : 2.0) * w[0] * w[k];
+        other = other + w[0] * wr[k];
+        if (k > 0) other = other + w[k] * wr[0];
+        rate = rate + pivot.gyro[0] * all_of<0>(same) + pivot.gyro[1] * all_of<1>(same);
+        Four rest = pivot.gyro[2] * all_of<2>(same) + pivot.gyro[3] * all_of<0>(other);
+        rest = rest + pivot.gyro[4] * all_of<1>(other) + pivot.gyro[5] * all_of<2>(other);
+        rate = rate + rest;
         const Four a = turned<N>(x, xr, w, wr, k, inverse), b = turned<N>(y, yr, w, wr, k, inverse);
         const Four c = turned<N>(z, zr, w, wr, k, inverse);
         x[k + 1] = next_of(a), xr[k + 1] = mixed<2, 0, 1, 3>(a);
@@ -65,6 +76,33 @@ inline void series(const Pivot& pivot, const Four* state, double length, const d
     s.order = N;
     ROCKING_EACH_TERM
     for (int k = 0; k <= N; ++k) s.x[k] = x[k], s.y[k] = y[k], s.z[k] = z[k], s.w[k] = w[k];
+}
+
+// Coefficients of cos phi, sin phi and phi' (radians a step).
+struct Turn {
+    double cosine[kMostOrder + 1], sine[kMostOrder + 1], rate[kMostOrder + 1];
+};
+
+// `push` and `weight` are P and Q by power, times mass and the square of the step over I_e.
+template <int N, int D>
+inline void turn(double rate, const double* push, const double* weight, Turn& t) {
+    t.cosine[0] = 1.0, t.sine[0] = 0.0, t.rate[0] = rate;
+    ROCKING_EACH_TERM
+    for (int k = 0; k < N; ++k) {
+        const double inverse = 1.0 / (k + 1);
+        double bend = 0.0, c = 0.0, s = 0.0;
+        ROCKING_EACH_TERM
+        for (int j = k < D ? k : D; j >= 0; --j) bend += push[j] * t.cosine[k - j] - weight[j] * t.sine[k - j];
+        ROCKING_EACH_TERM
+        for (int j = 1; j < k; ++j) {
+            c += t.rate[k - j] * t.sine[j];
+            s += t.rate[k - j] * t.cosine[j];
+        }
+        c += t.rate[0] * t.sine[k];
+        s += t.rate[0] * t.cosine[k];
+        if (k > 0) s += t.rate[k];  // times the cosine 1 at the start; its sine is zero
+        t.rate[k + 1] = bend * inverse, t.cosine[k + 1] = -c * inverse, t.sine[k + 1] = s * inverse;
+    }
 }
 
 inline Four value_at(const Four* c, int order, double at) {

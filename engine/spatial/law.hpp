@@ -57,7 +57,7 @@ inline double twice_kept(const State& s, const Pivot& onto) {
 
 inline Vec scaled_to(const Pivot& onto, Vec direction, double twice) {
     const double left = dot(direction, onto.inertia * direction);
-    return left > 0.0 ? std::sqrt(std::fmax(twice, 0.0) / left) * direction : direction;
+    return left > 0.0 ? std::sqrt(greater(twice, 0.0) / left) * direction : direction;
 }
 
 inline Vec velocity_after(const Body& body, const State& s, const Pivot& onto, int law, double coefficient) {

@@ -13,6 +13,9 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
+inline double lesser(double a, double b) { return a < b ? a : b; }
+inline double greater(double a, double b) { return a > b ? a : b; }
+
 struct Vec {
     double x = 0.0, y = 0.0, z = 0.0;
 };
@@ -22,7 +25,7 @@ inline Vec operator*(double s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
 inline double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec cross(Vec a, Vec b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 inline double norm(Vec a) { return std::sqrt(dot(a, a)); }
-inline double largest(Vec a) { return std::fmax(std::fabs(a.x), std::fmax(std::fabs(a.y), std::fabs(a.z))); }
+inline double largest(Vec a) { return greater(std::fabs(a.x), greater(std::fabs(a.y), std::fabs(a.z))); }
 inline bool finite(Vec a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
 struct Mat {  // rows

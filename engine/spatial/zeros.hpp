@@ -23,7 +23,7 @@ inline double slope_of(const double* c, int order, double at) {
 // Of a polynomial that starts above zero: its first fall in (0, 1], or kNone.
 inline double first_fall(const double* c, int order) {
     double rest = c[0], padded[kMostOrder + 1] = {};
-    for (int k = 1; k <= order; ++k) rest += std::fmin(c[k], 0.0);
+    for (int k = 1; k <= order; ++k) rest += lesser(c[k], 0.0);
     if (rest > 0.0) return kNone;
     for (int k = 0; k <= order; ++k) padded[k] = c[k];
     if (order <= 4) return rocking::ROCKING_ISA::first_zero<4>(padded);
@@ -34,13 +34,13 @@ inline double first_fall(const double* c, int order) {
 // `started`: a gap that has just opened, whose zero at its start does not count, with coefficients up to `floor` taken as none.
 inline double first_zero(const double* c, int order, bool started, double floor) {
     double most = 0.0;
-    for (int k = 0; k <= order; ++k) most = std::fmax(most, std::fabs(c[k]));
+    for (int k = 0; k <= order; ++k) most = greater(most, std::fabs(c[k]));
     if (!std::isfinite(most)) return kNone;
     int first = 0;
     if (started) {
         const double small = kNothing * most;
         first = 1;
-        while (first <= order && !(std::fabs(c[first]) > (first < 3 ? std::fmax(floor, small) : small))) ++first;
+        while (first <= order && !(std::fabs(c[first]) > (first < 3 ? greater(floor, small) : small))) ++first;
         if (first > order) return kNone;
     } else if (c[0] == 0.0 && order > 0) {
         first = 1;

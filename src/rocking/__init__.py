@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rocking.dynamics.bed import ContactBed, bed_impact
     from rocking.dynamics.planar import PlanarResponse, simulate_with_contact
     from rocking.dynamics.spatial import SpatialBody, SpatialResponse, free_rocking_spatial, simulate_spatial
+    from rocking.dynamics.spatial_batch import SpatialBatch, simulate_spatial_batch
     from rocking.motions import GroundMotion, pulses, synthetic
     from rocking.motions.formats import read_motion
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
@@ -48,6 +49,7 @@ __all__ = [
     "Section",
     "Side",
     "Solid",
+    "SpatialBatch",
     "SpatialBody",
     "SpatialResponse",
     "SpeedRestitution",
@@ -77,6 +79,7 @@ __all__ = [
     "simulate",
     "simulate_many",
     "simulate_spatial",
+    "simulate_spatial_batch",
     "simulate_with_contact",
     "solid",
     "studies",
@@ -100,6 +103,7 @@ _HOME = {
     "Section": "rocking.bodies",
     "Side": "rocking.bodies",
     "Solid": "rocking.bodies.solid",
+    "SpatialBatch": "rocking.dynamics.spatial_batch",
     "SpatialBody": "rocking.dynamics.spatial",
     "SpatialResponse": "rocking.dynamics.spatial",
     "SpeedRestitution": "rocking.dynamics",
@@ -120,6 +124,7 @@ _HOME = {
     "simulate": "rocking.dynamics",
     "simulate_many": "rocking.dynamics",
     "simulate_spatial": "rocking.dynamics.spatial",
+    "simulate_spatial_batch": "rocking.dynamics.spatial_batch",
     "simulate_with_contact": "rocking.dynamics.planar",
     "solid": "rocking.bodies",
     "synthetic": "rocking.motions",

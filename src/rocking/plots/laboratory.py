@@ -29,7 +29,7 @@ def bed_dependence_figure() -> "Figure":
     """
     figure, (left, middle, right) = new_figure(DOUBLE, 2.8, columns=3)
     ratios, two = np.linspace(1.0, 10.0, 91), np.array([2.0])
-    hardness, damping = np.geomspace(*HARDNESS, 61), np.geomspace(*DAMPING, 41)
+    hardness, damping = np.geomspace(*HARDNESS, 61), np.geomspace(0.5, DAMPING[1], 41)
     for line, points in zip(_LINES, POINTS, strict=True):
         style: dict[str, Any] = {"color": INK, "linestyle": line, "label": f"{points} points"}
         left.plot(ratios, bed_coefficients(ratios, points, 1.0, 100.0), **style)
@@ -96,7 +96,7 @@ def residuals_figure(found: Explanation) -> "Figure":
         axes.set_title(each.name, loc="left")
         axes.set_xlabel("slenderness ratio h/b [-]")
     left.set_ylabel("bed minus experiment, r [-]")
-    left.legend(loc="upper right")
+    left.legend(loc="lower right")
     return figure
 
 

@@ -98,7 +98,7 @@ def test_shares_of_many(many):
     """Below the curves stands the share of the motions that overturned each block."""
     figure = rocking_spectrum_picture(many)
     lower = figure.axes[1]
-    assert lower.get_ylabel() == "share\noverturned [-]"
+    assert lower.get_ylabel() == "share over-\nturned [-]"
     for place, line in enumerate(lower.lines):
         np.testing.assert_allclose(line.get_ydata(), (many["mode"].values[:, place] >= 0).sum(axis=0) / 5.0, atol=1e-15)
     assert "5 motions" in figure.get_suptitle()

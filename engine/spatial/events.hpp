@@ -1,0 +1,136 @@
+// What happens between steps: start, rest, uplift, impacts, and ends of edges that let go.
+#pragma once
+#include "run.hpp"
+
+namespace rocking::spatial {
+namespace ROCKING_ISA {
+
+template <int D>
+void Run<D>::start() {
+    const double* q = row_.attitude;
+    const double size = 1.0 / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const double s = size * q[0], x = size * q[1], y = size * q[2], z = size * q[3];
+    x_ = {1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - s * z), 2.0 * (x * z + s * y)};
+    y_ = {2.0 * (x * y + s * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - s * x)};
+    z_ = {2.0 * (x * z - s * y), 2.0 * (y * z + s * x), 1.0 - 2.0 * (x * x + y * y)};
+    velocity_ = row_.velocity;
+    made_.held = made_.lost = 0.0;
+    peak_ = z_.x * z_.x + z_.y * z_.y;
+    fastest_ = dot(velocity_, velocity_);
+    if (body_.round) {
+        start_round();
+        if (stance_->contact != kRest) note(kUplift, 0.0, kinetic());
+        return;
+    }
+    std::uint64_t touching = 0;
+    stance_ = started(body_, velocity_, z_, touching);
+    if (stance_->contact == kRest || touching == body_.every()) flatten();
+    touching_ = touching & ~stance_->points;
+    if (touching_ && largest(velocity_) == 0.0) {
+        const Choice found = held(body_, state(), touching, stance_);
+        if (found.stance) {
+            stand(*found.stance);
+            touching_ = touching & ~stance_->points;
+        }
+    }
+    if (stance_->contact != kRest) note(kUplift, 0.0, kinetic());
+}
+
+template <int D>
+void Run<D>::rest() {
+    velocity_ = {};
+    double tau = 0.0;
+    while (stretch_ < motion_.count && motion_.times[stretch_ + 1] <= time_) ++stretch_;
+    if (stretch_ < motion_.count) {
+        const double begin = motion_.times[stretch_];
+        tau = (time_ - begin) / (motion_.times[stretch_ + 1] - begin);
+    }
+    const Uplift found = Rest<D>(body_, motion_, row_.scale, set_.gravity, x_, y_).next(stretch_, tau);
+    if (found.stretch < 0) {
+        time_ = greater(horizon_, time_);
+        return stop(made_.events ? kRocked : kNoUplift, kGood);
+    }
+    stretch_ = found.stretch;
+    const double begin = motion_.times[stretch_];
+    time_ = greater(begin + found.tau * (motion_.times[stretch_ + 1] - begin), time_);
+    const State now = state();
+    const Pivot* stance = nullptr;
+    if (!body_.round) stance = lifted(body_, now, found);
+    if (body_.round && now.field.z < 0.0) {
+        const Vec pressure = body_.centre.z * now.field - now.field.z * body_.centre;
+        stance = &rim(pressure.x, pressure.y, kVertex);
+    }
+    if (!stance) return stop(kFailed, kLostContact);
+    stand(*stance);
+    touching_ = body_.every() & ~stance->points;
+    note(kUplift, 0.0, 0.0);
+    guard();
+}
+
+template <int D>
+void Run<D>::impact(int vertex) {
+    std::uint64_t closed = bit(vertex) | stance_->points;
+    int count = 0;
+    for (int i = 0; i < body_.count; ++i) {
+        if (dot(body_.vertices[i] - stance_->at, z_) <= kClosed * body_.size) closed |= bit(i);
+        count += (closed & bit(i)) != 0;
+    }
+    if (stance_->contact == kEdge || count > 2) closed = body_.every();
+    if (closed == body_.every()) flatten();
+    land(landed(body_, state(), closed, static_cast<int>(row_.law), row_.coefficient), closed);
+}
+
+template <int D>
+void Run<D>::land(const Choice& landing, std::uint64_t touching) {
+    const double before = kinetic();
+    if (!landing.stance) return stop(kFailed, kNotFinite);
+    stand(*landing.stance);
+    velocity_ = landing.velocity;
+    const bool weak = kinetic() + potential() < weak_;
+    const Choice stays = settled(body_, state(), landing, touching, slow_, weak);
+    stand(*stays.stance);
+    velocity_ = stays.velocity;
+    touching_ = touching & ~stays.stance->points;
+    made_.lost += before - kinetic();
+    note(kImpact, before, kinetic());
+    if (stays.stance->contact == kRest) note(kComesToRest, 0.0, 0.0);
+    guard();
+}
+
+template <int D>
+void Run<D>::released(int which) {
+    if (which < 0) return stop(leaning_over(body_, z_, stance_->at) > 0.0 ? kOverturned : kFailed, kLostContact);
+    const int first = stance_->number, second = (first + 1) % body_.count;
+    stand(body_.vertex[which == 0 ? second : first]);
+    touching_ = bit(which == 0 ? first : second);
+    note(kChange, kinetic(), kinetic());
+    guard();
+}
+
+template <int D>
+void Run<D>::note(int kind, double before, double after) {
+    ++made_.events;
+    made_.impacts += kind == kImpact;
+    made_.uplifts += kind == kUplift;
+    if (std::isnan(made_.first_uplift)) made_.first_uplift = time_;
+    if (trace_) trace_->push_back({time_, kind, stance_->contact, stance_->number, before, after, x_, y_, z_, velocity_});
+}
+
+template <int D>
+Result Run<D>::result() const {
+    Result r = made_;
+    r.end_time = time_;
+    if (r.outcome == kFailed) return r;
+    const bool over = r.outcome == kOverturned;
+    r.peak_tilt = over ? 0.5 * M_PI : std::asin(lesser(1.0, std::sqrt(peak_)));
+    r.peak_time = over ? over_time_ : peak_time_;
+    r.peak_spin = std::sqrt(fastest_);
+    if (!over) return r;
+    r.overturning_time = over_time_;
+    r.direction = azimuth_of(x_, y_);
+    r.over_contact = over_contact_, r.over_number = over_number_;
+    return r;
+}
+
+}  // namespace ROCKING_ISA
+}  // namespace rocking::spatial

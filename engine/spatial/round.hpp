@@ -1,0 +1,69 @@
+// A history of a body with a round base: on a point of its rim while it is nearly flat, rolling otherwise.
+#pragma once
+#include "run.hpp"
+
+namespace rocking::spatial {
+namespace ROCKING_ISA {
+
+template <int D>
+const Pivot& Run<D>::rim(double x, double y, int contact) {
+    used_ = 1 - used_;
+    rims_[used_] = rim_point(body_, x, y);
+    rims_[used_].contact = contact;
+    return rims_[used_];
+}
+
+template <int D>
+void Run<D>::start_round() {
+    const double sine = std::sqrt(z_.x * z_.x + z_.y * z_.y);
+    const double x = sine > kStopRolling ? z_.x : -velocity_.y, y = sine > kStopRolling ? z_.y : velocity_.x;
+    stance_ = x == 0.0 && y == 0.0 ? &body_.face : &rim(-x, -y, sine > kStartRolling ? kRolling : kVertex);
+    if (stance_->contact == kRest) flatten();
+}
+
+// One step on the rim; `order` of its series.
+template <int D>
+void Run<D>::step_on_rim(int order, double angle) {
+    if (stance_->contact == kRolling) {
+        const Vec axes[3] = {x_, y_, z_};
+        Rolling(body_, axes, velocity_, order, step_);
+        spelled_ = true;
+        const Series& s = step_.s;
+        if (!within_trust(greater(largest(vec(s.w[order])), greater(largest(vec(s.z[order])), largest(vec(s.x[order])))), angle, order)) return;
+        read_rolling(body_, step_);
+    } else {
+        order <= 8 ? advance<8>(angle) : advance<kMostOrder>(angle);
+    }
+    if (done_) return;
+    double normal[kMostOrder + 1];
+    normal_force(step_, normal);
+    const double letting = first_zero(normal, step_.s.order - 2, false, 0.0), turn = rim_event(body_, *stance_, step_);
+    const double at = lesser(1.0, lesser(letting, turn));
+    arrive(at, whole_ && at == 1.0);
+    if (turn == at) return change_on_rim();
+    if (letting == at) return released(-1);
+    finish_step();
+}
+
+template <int D>
+void Run<D>::change_on_rim() {
+    const bool rolls = stance_->contact == kRolling;
+    if (!rolls && std::sqrt(z_.x * z_.x + z_.y * z_.y) > 0.5 * kStartRolling) {
+        stance_ = &rim(stance_->at.x, stance_->at.y, kRolling);
+        return guard();
+    }
+    if (rolls) {
+        stance_ = &rim(stance_->at.x, stance_->at.y, kVertex);  // so flat that the point of contact is fixed
+        return guard();
+    }
+    flatten();
+    const State now = state();
+    const Pivot& far = rim(-now.pivot.x, -now.pivot.y, kVertex);
+    const double push = impulse_support(body_, now, far, projected(body_, now, far));
+    const Vec after = velocity_after(body_, now, far, static_cast<int>(row_.law), row_.coefficient);
+    const bool opens = dot(cross(after, now.pivot - far.at), now.up) > 0.0;
+    land(opens && push >= 0.0 ? Choice{&far, after, push} : Choice{&body_.face, {}, push}, 0);
+}
+
+}  // namespace ROCKING_ISA
+}  // namespace rocking::spatial

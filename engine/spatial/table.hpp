@@ -1,0 +1,55 @@
+// Tables of numbers between the door to Python and the kernels, the same for every instruction set.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace rocking::spatial {
+
+// of a body: mass, p, size, lift, radius, centre (3), inertia (9); of a row: coefficient, scale, horizon, attitude (4), velocity (3)
+constexpr int kBodyNumbers = 17, kRowNumbers = 10, kRowChoices = 3;
+// peak tilt, its time, peak spin, overturning time, direction, first uplift, end, held, lost energy
+constexpr int kResults = 9;
+// outcome, status, contact and number over which it fell, impacts, uplifts, events, steps
+constexpr int kCounts = 8;
+// time, kind, contact, number, energies before and after, three axes, velocity
+constexpr int kSample = 18;
+
+struct Numbers {
+    const double* bodies;             // by body
+    const std::int64_t* corners;      // first vertex and number of vertices, by body
+    const double* vertices;           // x and y
+    const double* kept;               // moments by vertex and edge of all bodies, or null
+    std::int64_t body_count, vertex_count;
+    int degree;
+    const std::int64_t* places;       // first number of times, first of accelerations, and stretches, by motion
+    const double *times, *accelerations;
+    std::int64_t motion_count, time_count, acceleration_count;
+};
+
+struct Limits {
+    double gravity, rest_speed, tolerance, longest;
+    std::int64_t most_events;
+};
+
+struct Rows {
+    const double* numbers;
+    const std::int64_t* choices;      // body, motion, law
+    double* results;
+    std::int64_t* counts;
+};
+
+class Engine {
+public:
+    virtual ~Engine() = default;
+    virtual void run(const Rows& rows, std::int64_t row, const Limits& limits, std::vector<double>* trace) const = 0;
+};
+
+#define ROCKING_DECLARE(isa) \
+    namespace isa { std::unique_ptr<Engine> engine_of(const Numbers& numbers); }
+ROCKING_DECLARE(plain)
+ROCKING_DECLARE(avx2)
+ROCKING_DECLARE(avx512)
+#undef ROCKING_DECLARE
+
+}  // namespace rocking::spatial

@@ -1,0 +1,103 @@
+"""The compiled engine as Python sees it: whether it is there, and which instructions it uses."""
+
+import os
+import warnings
+from functools import cache
+from types import ModuleType
+
+from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
+
+_NOT_BUILT = (
+    "the batch engine in space was not built: it takes a C++17 compiler when rocking is installed (in a checkout, "
+    "`make engine`)"
+)
+_ENGINES = ("auto", "fast", "reference")
+
+
+@cache
+def _module() -> ModuleType | None:
+    try:
+        from rocking.dynamics import _spatial
+    except ImportError:
+        return None
+    return _spatial
+
+
+def available() -> bool:
+    """Return whether the compiled engine is there.
+
+    Returns
+    -------
+    bool
+        If not, the reference engine serves row by row.
+    """
+    return _module() is not None
+
+
+def module() -> ModuleType:
+    """Return the compiled module.
+
+    Returns
+    -------
+    module
+        The engine.
+
+    Raises
+    ------
+    MissingExtraError
+        If it was not built.
+    """
+    found = _module()
+    if found is None:
+        raise MissingExtraError(f'{_NOT_BUILT}; engine="reference" gives the same results, slowly')
+    return found
+
+
+def chosen(asked: str) -> str:
+    """Return which engine will run, and say so if it is not the one that users expect.
+
+    Parameters
+    ----------
+    asked : {"auto", "fast", "reference"}
+        What was asked for.
+
+    Returns
+    -------
+    str
+        "fast" or "reference".
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such engine.
+    MissingExtraError
+        If the fast one was asked for and not built.
+    """
+    given: object = asked
+    if not isinstance(given, str) or given not in _ENGINES:
+        raise InvalidValueError(f"engine must be one of {', '.join(_ENGINES)}, got {asked!r:.60}")
+    if asked == "fast":
+        module()
+    if asked == "auto" and not available():
+        warnings.warn(f"{_NOT_BUILT}; the reference engine runs instead, row by row", SlowEngineWarning, stacklevel=3)
+        return "reference"
+    return "fast" if asked == "auto" else asked
+
+
+def instruction_set() -> str:
+    """Return what the compiled engine will use: the environment variable ROCKING_ISA, or the fastest there is.
+
+    Returns
+    -------
+    str
+        One of ``avx512``, ``avx2`` and ``plain``.
+
+    Raises
+    ------
+    InvalidValueError
+        If the environment asks for one that this processor lacks.
+    """
+    wanted, known = os.environ.get("ROCKING_ISA", ""), list(module().instruction_sets())
+    if wanted and wanted not in known:
+        raise InvalidValueError(f"ROCKING_ISA must be one of {', '.join(known)}, got {wanted!r}")
+    return wanted or known[0]

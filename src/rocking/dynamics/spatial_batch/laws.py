@@ -1,0 +1,73 @@
+"""Impact laws as the compiled engine knows them: by number, with what each of them needs."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from rocking.dynamics.spatial.impact import FixedSpatial, SpatialImpactLaw, law_of
+from rocking.errors import InvalidValueError
+
+CODES = {"housner-3d": 0, "horizontal-momentum-3d": 1, "ked-3d": 3}
+"""Laws without a number of their own."""
+
+_FIXED = 2
+
+
+@dataclass(frozen=True)
+class BatchLaw:
+    """An impact law of a batch.
+
+    Parameters
+    ----------
+    law : SpatialImpactLaw, optional
+        What the reference engine takes; None where the body decides it (ked-3d).
+    label : str
+        Its name, or its coefficient.
+    code : int
+        Its number in the compiled engine.
+    coefficient : float
+        r of a fixed coefficient, otherwise 0 [-].
+    """
+
+    law: SpatialImpactLaw | None
+    label: str
+    code: int
+    coefficient: float = 0.0
+
+    @property
+    def needs_moments(self) -> bool:
+        """Whether it needs moments of the mass distribution."""
+        return self.code == CODES["ked-3d"]
+
+
+def batch_law(restitution: Any) -> BatchLaw:
+    """Return an impact law of a batch.
+
+    Parameters
+    ----------
+    restitution : str, float or SpatialImpactLaw
+        "housner-3d", "horizontal-momentum-3d", "ked-3d", a coefficient from 0 to 1, or an object that stands for
+        one of these.
+
+    Returns
+    -------
+    BatchLaw
+        The law.
+
+    Raises
+    ------
+    InvalidValueError
+        If the compiled engine does not know the law; `simulate_spatial` takes any.
+    UnknownModelError
+        If there is no law of that name.
+    """
+    if restitution == "ked-3d":
+        return BatchLaw(None, "ked-3d", CODES["ked-3d"])
+    law = law_of(restitution)
+    if isinstance(law, FixedSpatial):
+        return BatchLaw(law, law.label, _FIXED, law.coefficient)
+    if law.label in CODES and type(law).__module__.startswith("rocking."):
+        return BatchLaw(law, law.label, CODES[law.label])
+    raise InvalidValueError(
+        f"restitution in a batch must be one of {', '.join(CODES)}, or a coefficient in [0, 1], got {law.label!r:.60}; "
+        "simulate_spatial takes any law"
+    )

@@ -1,0 +1,127 @@
+"""What a batch in space hands back: arrays over body, motion, scale, restitution and start."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.spatial.outcome import Contact
+from rocking.dynamics.spatial_batch.outcome import SpatialBatchStatus
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
+"""Axes of the arrays of a batch, in order."""
+
+UNITS: dict[str, tuple[str, str]] = {
+    "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
+    "status": ("1", ", ".join(f"{s.code} {s.name.lower()}" for s in SpatialBatchStatus)),
+    "over_contact": ("1", ", ".join(f"{c.code} {c.name.lower()}" for c in Contact) + " over which it fell, -1 none"),
+    "over_number": ("1", "number of that edge or vertex; -1 where there is none"),
+    "peak_tilt": ("rad", "largest angle from the vertical; a quarter turn if it overturned"),
+    "peak_time": ("s", "time of the peak"),
+    "peak_spin": ("rad/s", "largest angular velocity at ends of steps and at impacts"),
+    "overturning_time": ("s", "when the centre of mass passed over the contact for good"),
+    "direction": ("rad", "direction in which it lies, from x towards y"),
+    "first_uplift": ("s", "first uplift"),
+    "end_time": ("s", "end of the history"),
+    "held": ("s", "for how long an end of an edge that should slip was held down"),
+    "lost": ("J", "kinetic energy lost at impacts"),
+    "impacts": ("1", "number of impacts"),
+    "uplifts": ("1", "number of uplifts from rest"),
+    "events": ("1", "number of impacts, uplifts and changes of contact"),
+    "steps": ("1", "number of steps of the engine"),
+}
+"""Unit and meaning of every array of a batch."""
+
+FLOATS = (
+    "peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "end_time", "held", "lost",
+)  # fmt: skip
+WHOLES = ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events", "steps")
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialBatch:
+    """The results of a batch; every array has the shape (body, motion, scale, restitution, start).
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Numbers of bodies, motions, scales, restitutions and starts.
+    values : dict of str to ndarray
+        The results by name, one after another; see `UNITS` for their meaning.
+    engine : str
+        Which engine ran, and how.
+    labels : dict of str to list
+        Names of motions and restitutions, and the scales.
+    refused : dict of int to str
+        Why a body was refused, by its number.
+
+    Examples
+    --------
+    >>> batch = SpatialBatch((1, 1, 1, 1, 1), {"outcome": np.array([2]), "status": np.array([0])}, "none")
+    >>> batch.overturned.item()
+    True
+    """
+
+    shape: tuple[int, int, int, int, int]
+    values: dict[str, np.ndarray] = field(repr=False)
+    engine: str
+    labels: dict[str, list[object]] = field(default_factory=dict, repr=False)
+    refused: dict[int, str] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return an array by name."""
+        return self.values[name].reshape(self.shape)
+
+    def __len__(self) -> int:
+        """Return the number of histories."""
+        return int(np.prod(self.shape))
+
+    @property
+    def outcome(self) -> IntArray:
+        """Codes of `Outcome`."""
+        return self["outcome"]
+
+    @property
+    def status(self) -> IntArray:
+        """Codes of `SpatialBatchStatus`."""
+        return self["status"]
+
+    @property
+    def overturned(self) -> np.ndarray:
+        """Whether it overturned."""
+        return np.asarray(self.outcome == Outcome.OVERTURNED.code)
+
+    @property
+    def peak_tilt(self) -> FloatArray:
+        """Largest tilt; a quarter turn if it overturned, NaN without result [rad]."""
+        return self["peak_tilt"]
+
+    @property
+    def direction(self) -> FloatArray:
+        """Direction in which it lies, from x towards y; NaN if it does not [rad]."""
+        return self["direction"]
+
+    def to_xarray(self) -> "xr.Dataset":
+        """Return the results as a labelled dataset with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over body, motion, scale, restitution and start.
+        """
+        from rocking.dynamics.export import extra
+
+        xarray = extra("xarray", "a labelled dataset")
+        data = {
+            name: (DIMENSIONS, values.reshape(self.shape), {"units": UNITS[name][0], "long_name": UNITS[name][1]})
+            for name, values in self.values.items()
+        }
+        made: xr.Dataset = xarray.Dataset(
+            data, coords={name: (name, row) for name, row in self.labels.items()}, attrs={"engine": self.engine}
+        )
+        return made

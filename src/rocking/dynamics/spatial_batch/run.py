@@ -1,0 +1,185 @@
+"""The rows of a batch by the compiled engine, piece by piece, or by the reference engine, one by one."""
+
+import math
+import os
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.spatial.ground import SpatialGround
+from rocking.dynamics.spatial.impact import law_of
+from rocking.dynamics.spatial.reference import SpatialReference
+from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.dynamics.spatial.settings import SpatialSettings
+from rocking.dynamics.spatial_batch import engine, tables
+from rocking.dynamics.spatial_batch.one import results_of
+from rocking.dynamics.spatial_batch.outcome import SpatialBatchStatus
+from rocking.dynamics.spatial_batch.result import FLOATS, WHOLES
+from rocking.dynamics.spatial_batch.rows import RowTable
+from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
+from rocking.errors import InvalidValueError, RockingError
+
+PIECE = 1 << 15
+"""Histories handed to the engine at a time: memory beside the results does not grow with their number."""
+
+Bodies = Sequence[SpatialBody | None]
+Results = dict[str, np.ndarray]
+Progress = Callable[[int], None] | None
+
+
+def stock_of(bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, gravity: float) -> Any:
+    """Return bodies and motions as the compiled engine keeps them.
+
+    Parameters
+    ----------
+    bodies : sequence of SpatialBody or None
+        The bodies.
+    grounds : sequence of SpatialGround
+        The motions.
+    table : RowTable
+        The rows: its laws say what is needed of the bodies.
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    object
+        `rocking.dynamics._spatial.Stock`.
+    """
+    numbers, corners, vertices = tables.body_table(bodies, gravity)
+    needed = any(law.needs_moments for law in table.laws)
+    kept = tables.kept_table(bodies) if needed else np.zeros(0)
+    degree, places, times, accelerations = tables.motion_table(grounds)
+    return engine.module().Stock(
+        numbers, corners, vertices, kept, degree, places, times, accelerations, engine.instruction_set()
+    )
+
+
+def run_compiled(
+    bodies: Bodies,
+    grounds: Sequence[SpatialGround],
+    table: RowTable,
+    settings: SpatialBatchSettings,
+    threads: int | None,
+    progress: Progress,
+) -> tuple[Results, str]:
+    """Return the results of all rows by the compiled engine.
+
+    Parameters
+    ----------
+    bodies : sequence of SpatialBody or None
+        The bodies.
+    grounds : sequence of SpatialGround
+        The motions.
+    table : RowTable
+        The rows.
+    settings : SpatialBatchSettings
+        How to integrate.
+    threads : int, optional
+        Threads; as many as the processor has, if not given.
+    progress : callable, optional
+        Called with the number of rows done.
+
+    Returns
+    -------
+    values : dict of str to ndarray
+        Results by name.
+    engine : str
+        Which engine, and how.
+
+    Raises
+    ------
+    InvalidValueError
+        If threads is no whole number above zero.
+    """
+    given: object = threads
+    if given is not None and (isinstance(given, bool) or not isinstance(given, int) or given < 1):
+        raise InvalidValueError(f"threads must be a whole number >= 1, got {threads!r}")
+    stock = stock_of(bodies, grounds, table, settings.gravity)
+    results, counts = np.empty((len(table), tables.RESULTS)), np.empty((len(table), tables.COUNTS), np.int64)
+    crew = threads or _processors()
+    for first in range(0, len(table), PIECE):
+        last = min(first + PIECE, len(table))
+        numbers, choices = table.piece(first, last)
+        stock.run(numbers, choices, results[first:last], counts[first:last], threads=crew, **settings.limits)
+        if progress is not None:
+            progress(last - first)
+    used = f"fast ({engine.instruction_set()}; Taylor, order up to 16, tolerance {settings.tolerance:g})"
+    return named(results, counts), used
+
+
+def run_reference(
+    bodies: Bodies,
+    grounds: Sequence[SpatialGround],
+    table: RowTable,
+    settings: SpatialBatchSettings,
+    progress: Progress,
+) -> tuple[Results, str]:
+    """Return the results of all rows by the reference engine.
+
+    Parameters
+    ----------
+    bodies, grounds, table, settings, progress
+        As for `run_compiled`; tolerance and longest step are those of the reference engine.
+
+    Returns
+    -------
+    values : dict of str to ndarray
+        Results by name.
+    engine : str
+        Which engine.
+    """
+    results, counts = np.full((len(table), tables.RESULTS), np.nan), np.empty((len(table), tables.COUNTS), np.int64)
+    fields = SpatialSettings(settings.gravity, settings.rest_speed, settings.most_events)
+    for k in range(len(table)):
+        numbers, choices = table.piece(k, k + 1)
+        law = int(np.unravel_index(k, table.shape)[3])
+        body, ground = bodies[choices[0, 0]], grounds[choices[0, 1]]
+        results[k], counts[k] = _one(body, ground, table.laws[law].law or "ked-3d", numbers[0], fields)
+        if progress is not None:
+            progress(1)
+    return named(results, counts), "reference, row by row"
+
+
+def named(results: FloatArray, counts: IntArray) -> Results:
+    """Return the columns of the tables of results by name.
+
+    Parameters
+    ----------
+    results : ndarray, shape (n, 9)
+        Numbers.
+    counts : ndarray of int, shape (n, 8)
+        Codes and counts.
+
+    Returns
+    -------
+    dict of str to ndarray
+        One array a column.
+    """
+    made: Results = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(WHOLES)}
+    return made | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(FLOATS)}
+
+
+def _one(
+    body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: SpatialSettings
+) -> tuple[FloatArray, list[int]]:
+    codes = [Outcome.FAILED.code, SpatialBatchStatus.INVALID.code, -1, -1]
+    refused = np.full(tables.RESULTS, math.nan), [*codes, 0, 0, 0, 0]
+    if body is None or not (np.abs(row) <= 1e9).all():
+        return refused
+    scaled = SpatialGround(ground.times, row[1] * ground.coefficients)
+    try:
+        found = SpatialReference(body, scaled, law_of(law, body), settings).run(row[3:7], row[7:10], float(row[2]))
+    except RockingError:
+        return refused
+    return results_of(found)
+
+
+def _processors() -> int:
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:
+        return os.cpu_count() or 1

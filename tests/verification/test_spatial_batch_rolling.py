@@ -1,0 +1,93 @@
+"""Round bases in the batch engine: steady wobbles, invariants, and the reference engine.
+
+REF numbers: section 3.5 of the project's physics specification (b = 0.25, h = 1, g = 9.81).
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.dynamics.spatial import SpatialBody, attitude, free_rocking_spatial
+from rocking.dynamics.spatial.ground import ground_of
+from rocking.dynamics.spatial_batch import SpatialBatchSettings, SpatialStart, engine, simulate_spatial_batch
+from rocking.dynamics.spatial_batch.course import course_of
+from rocking.errors import InvalidValueError
+
+pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+
+G = 9.81
+RADIUS, HEIGHT = 0.25, 1.0
+CYLINDER = SpatialBody.cylinder(2.0 * RADIUS, 2.0 * HEIGHT)
+
+
+def _tilts(theta, rate, spin, duration=2.0):
+    """Tilts of a wobble with precession `rate` [rad/s] and `spin` about its own axis, over some seconds."""
+    axis = np.array([math.sin(theta), 0.0, math.cos(theta)])
+    velocity = rate * np.array([0.0, 0.0, 1.0]) + (spin - rate * math.cos(theta)) * axis
+    start = SpatialStart(theta, angular_velocity=tuple(velocity.tolist()))
+    course = course_of(CYLINDER, ground_of(), duration, start=start, settings=SpatialBatchSettings(gravity=G))
+    return np.arccos(course["rotation"][:, 2, 2][course["time"] < duration])
+
+
+@pytest.mark.parametrize(
+    ("theta", "still", "circling"),
+    [
+        (0.05, 10.70164812017945, 5.356640038471763),
+        (0.1, 6.611781509202098, 3.256231580927705),
+        (0.02, 18.04554843342824, 9.11987805688183),
+    ],
+)
+def test_steady_wobbles_keep_their_tilt(theta, still, circling):
+    """Both exact steady wobbles of 3.5, with the centre at rest and round a circle, keep their tilt to 1e-8 rad."""
+    for rate, spin in (
+        (still, HEIGHT / RADIUS * still * math.sin(theta)),
+        (circling, circling * (math.cos(theta) - 1.0)),
+    ):
+        assert np.abs(_tilts(theta, rate, spin) - theta).max() < 1e-8
+        # negative control: 1 % off, and it nods
+        assert np.abs(_tilts(theta, 1.01 * rate, 1.01 * spin) - theta).max() > 1e-3 * theta
+
+
+def test_energy_stays_while_it_rolls():
+    """Two seconds of rolling without slip on ground at rest: energy to 1e-11."""
+    start = SpatialStart(0.1, 0.3, angular_velocity=(0.2, 0.1, 0.6))
+    course = course_of(CYLINDER, ground_of(), 2.0, start=start)
+    course = course[course["kind"] == -1]
+    assert set(course["contact"]) == {3.0}
+    up, w = course["rotation"][:, 2], course["velocity"]
+    low = -RADIUS * up[:, :2] / np.linalg.norm(up[:, :2], axis=1)[:, None]
+    arm = CYLINDER.centre - np.column_stack([low, np.zeros(len(low))])
+    speed = np.cross(w, arm)
+    energy = 0.5 * np.einsum("na,ab,nb->n", w, CYLINDER.inertia, w) + 0.5 * CYLINDER.mass * np.square(speed).sum(axis=1)
+    energy += CYLINDER.mass * rk.conventions.g * (up * arm).sum(axis=1)
+    assert np.ptp(energy) < 1e-11 * energy.max()
+
+
+@pytest.mark.parametrize("spin", [(0.0, 0.0, 0.4), (0.3, -0.2, 0.5)])
+def test_free_rolling_is_that_of_the_reference_engine(spin):
+    """Attitudes over four seconds of rolling, by two engines, to 1e-7."""
+    start = {"tilt": 0.1, "azimuth": 0.3, "angular_velocity": spin}
+    slow = free_rocking_spatial(CYLINDER, **start, duration=4.0)
+    course = course_of(CYLINDER, ground_of(), 4.0, start=SpatialStart(**start))
+    course = course[(course["kind"] == -1) & (course["time"] < 4.0)]
+    assert np.abs(slow.at(course["time"]).rotation - course["rotation"]).max() < 1e-7
+    assert attitude.tilt(slow.quaternion).max() > 0.05
+
+
+def test_a_pulse_throws_a_cylinder_over_as_the_reference_engine_says():
+    """A strong pulse along x and y: outcome by both engines; direction towards which it falls to 1e-3 rad."""
+    pulse = rk.pulses.sine(amplitude=9.0, period=0.8)
+    batch = {
+        name: simulate_spatial_batch(CYLINDER, (pulse, pulse.scaled(0.5)), engine=name)
+        for name in ("fast", "reference")
+    }
+    assert batch["fast"].outcome.item() == batch["reference"].outcome.item()
+    assert batch["fast"]["first_uplift"].item() == pytest.approx(batch["reference"]["first_uplift"].item(), abs=1e-12)
+
+
+def test_ked_on_a_rim_is_refused_in_words():
+    """KED needs moments of the landing point, and a rim has any number of them."""
+    with pytest.raises(InvalidValueError, match="any point of its rim"):
+        simulate_spatial_batch(CYLINDER, restitution="ked-3d", start=SpatialStart(0.1))
