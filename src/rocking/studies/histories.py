@@ -99,8 +99,13 @@ class Histories(ABC):
             "engine": self.engine,
         }
 
-    def key(self) -> str:
+    def key(self, described: dict[str, Any] | None = None) -> str:
         """Return the name of these histories.
+
+        Parameters
+        ----------
+        described : dict, optional
+            Their `description`, if it is at hand: it takes a hash of every array.
 
         Returns
         -------
@@ -112,7 +117,7 @@ class Histories(ABC):
         InvalidValueError
             If the description holds anything but plain values.
         """
-        told = self.description()
+        told = self.description() if described is None else described
         try:
             text = json.dumps(told, sort_keys=True, separators=(",", ":"), allow_nan=False)
         except (TypeError, ValueError) as error:

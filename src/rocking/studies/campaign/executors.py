@@ -39,6 +39,21 @@ class Pace:
     def __init__(self, engine: str) -> None:
         self.step = _FIRST[kind_of(engine)]
 
+    def piece(self, left: int) -> int:
+        """Return how many of the histories that are left to take: equal pieces, since short ones leave lanes idle.
+
+        Parameters
+        ----------
+        left : int
+            At least 1.
+
+        Returns
+        -------
+        int
+            At most `step`.
+        """
+        return -(-left // -(-left // self.step))
+
     def took(self, count: int, seconds: float) -> None:
         """Learn from a piece.
 
@@ -49,10 +64,9 @@ class Pace:
         seconds : float
             What they took [s].
         """
-        if count < self.step and seconds < _ASK:
-            return  # the short end of a chunk says nothing about longer pieces
         wanted = int(count * _ASK / max(seconds, 1e-6))
-        self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
+        if wanted < self.step or 2 * count >= self.step:  # the end of a chunk says nothing about longer pieces
+            self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +141,7 @@ class Job:
         while first < chunk.last:
             if first > chunk.first and stop():
                 return None
-            start, last = time.perf_counter(), min(first + self.pace.step, chunk.last)
+            start, last = time.perf_counter(), first + self.pace.piece(chunk.last - first)
             for name, values in self.histories.run(first, last, threads=threads).items():
                 results[name][first - chunk.first : last - chunk.first] = values
             self.pace.took(last - first, time.perf_counter() - start)

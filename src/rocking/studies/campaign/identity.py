@@ -52,7 +52,8 @@ class Identity:
         """
         chosen = engine_of(histories)
         pieces = default_chunk(chosen) if size is None else size
-        return cls(Plan(histories.key(), histories.count, pieces, chosen, software()), _plain(histories))
+        told = histories.description()
+        return cls(Plan(histories.key(told), histories.count, pieces, chosen, software()), _plain(told))
 
     @classmethod
     def read(cls, folder: Path) -> "Identity":
@@ -156,8 +157,8 @@ def _decoded(text: bytes) -> Any:
     return content
 
 
-def _plain(histories: Histories) -> dict[str, Any]:
-    return dict(json.loads(json.dumps(histories.description(), allow_nan=False)))
+def _plain(described: dict[str, Any]) -> dict[str, Any]:
+    return dict(json.loads(json.dumps(described, allow_nan=False)))
 
 
 def _sum(content: Any) -> str:
