@@ -1,6 +1,7 @@
 """The same bits whatever the workers, the size of the chunks, the order, the way processes start, and interruptions."""
 
 import dataclasses
+import itertools
 import os
 import signal
 import sys
@@ -104,6 +105,76 @@ def test_interruptions_do_not_matter(tmp_path: Path, work: Table, bare: Arrays) 
             stops += 1
     assert stops >= 4
     assert same(campaign, bare)
+
+
+WORKERS, CHUNKS, METHODS = (1, 2, 4, 8), (1, 7, 64, 1000), ("fork", "spawn")
+Case = tuple[str, int, int, bool, bool]
+PRODUCT: list[Case] = list(itertools.product(METHODS, WORKERS, CHUNKS, (False, True), (False, True)))
+SELECTION: list[Case] = [
+    (method, workers, CHUNKS[(k + shift) % 4], bool((k + shift) % 2), bool(k // 2 ^ shift))
+    for shift, method in enumerate(METHODS)
+    for k, workers in enumerate(WORKERS)
+]
+
+
+def of_case(folder: Path, case: Case, work: Table) -> Campaign:
+    """Run a campaign in one of the ways: start method, workers, chunk, shuffled or not, resumed or not."""
+    method, workers, chunk, shuffled, resumed = case
+    campaign = Campaign.create(folder, work, chunk)
+    how: dict[str, Any] = {"executor": "processes", "start_method": method, "workers": workers}
+    half = max(1, campaign.plan.chunks // 2)
+
+    def stop(progress: Progress) -> None:
+        if progress.chunks_done == half:
+            signal.raise_signal(signal.SIGINT)
+
+    if resumed:
+        with pytest.raises(CampaignInterrupted):
+            campaign.run(**how, order_seed=11 if shuffled else None, progress=stop)
+    campaign.run(**how, order_seed=5 if shuffled else None)
+    return campaign
+
+
+@pytest.fixture(scope="module")
+def by_chunk() -> dict[int, tuple[Table, Arrays]]:
+    """Histories for each size of chunks, two chunks or more of each, and what the engine gives of them."""
+    made = {count: histories(count) for count in (60, 1200)}
+    found = {count: (work, work.run(0, count, threads=1)) for count, work in made.items()}
+    return {chunk: found[60 if chunk < 60 else 1200] for chunk in CHUNKS}
+
+
+def check(folder: Path, cases: list[Case], by_chunk: dict[int, tuple[Table, Arrays]]) -> None:
+    for k, case in enumerate(cases):
+        work, bare = by_chunk[case[2]]
+        assert same(of_case(folder / f"{k}", case, work), bare), case
+
+
+def test_the_selection_holds_every_value_and_every_pair() -> None:
+    """What is run below: all workers with both ways of starting, every chunk, order and interruption."""
+    assert {case[:2] for case in SELECTION} == set(itertools.product(METHODS, WORKERS))
+    assert {case[2] for case in SELECTION} == set(CHUNKS)
+    for method in METHODS:
+        assert {case[3] for case in SELECTION if case[0] == method} == {False, True}
+        assert {case[4] for case in SELECTION if case[0] == method} == {False, True}
+    assert len(set(PRODUCT)) == 2 * 4 * 4 * 2 * 2
+
+
+@unforked
+@pytest.mark.parametrize("method", METHODS)
+def test_selection_of_the_matrix(tmp_path: Path, by_chunk: dict[int, tuple[Table, Arrays]], method: str) -> None:
+    """Workers, chunks, start, order and resume, each value at least once: the bits of a bare run."""
+    check(tmp_path, [case for case in SELECTION if case[0] == method], by_chunk)
+
+
+@unforked
+@pytest.mark.skipif("ROCKING_CAMPAIGN" not in os.environ, reason="takes minutes: set ROCKING_CAMPAIGN=1")
+@pytest.mark.parametrize("workers", WORKERS)
+@pytest.mark.parametrize("method", METHODS)
+def test_the_whole_matrix(
+    tmp_path: Path, by_chunk: dict[int, tuple[Table, Arrays]], method: str, workers: int
+) -> None:  # fmt: skip
+    """Every combination of workers, chunks, start, order and resume: the bits of a bare run."""
+    check(tmp_path, [case for case in PRODUCT if case[:2] == (method, workers)], by_chunk)
 
 
 def test_negative_control(tmp_path: Path, work: Table, bare: Arrays) -> None:

@@ -1,13 +1,13 @@
 """Results of a campaign, read piece by piece: no number leaves a shard whose seal is broken."""
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from rocking.dynamics.engine import RESULTS, Arrays, empty_results
+from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import shard
 from rocking.studies.campaign.chunks import Chunk, Plan
@@ -55,8 +55,8 @@ def pieces(folder: Path, plan: Plan) -> Iterator[Piece]:
         yield Piece(chunk.first, chunk.last, _read(folder, chunk, seals[number]))
 
 
-def results(folder: Path, plan: Plan) -> Arrays:
-    """Return all results at once.
+def results(folder: Path, plan: Plan, names: Collection[str] = ()) -> Arrays:
+    """Return results of all histories at once.
 
     Parameters
     ----------
@@ -64,16 +64,25 @@ def results(folder: Path, plan: Plan) -> Arrays:
         The campaign.
     plan : Plan
         How it is cut.
+    names : collection of str
+        Keys of `rocking.dynamics.engine.RESULTS` that are wanted; all of them if there is none.
 
     Returns
     -------
     dict of str to ndarray
-        The keys of `rocking.dynamics.engine.RESULTS`, one entry a history: 75 bytes each.
+        One entry a history: 75 bytes each of all keys.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such result.
     """
-    whole = empty_results(plan.count)
+    for name in names:
+        _check_name(name)
+    whole = {name: np.empty(plan.count, RESULTS[name]) for name in names or RESULTS}
     for piece in pieces(folder, plan):
-        for name, values in piece.results.items():
-            whole[name][piece.first : piece.last] = values
+        for name, values in whole.items():
+            values[piece.first : piece.last] = piece.results[name]
     return whole
 
 
@@ -99,10 +108,14 @@ def column(folder: Path, plan: Plan, name: str) -> Iterator[np.ndarray]:
     InvalidValueError
         If there is no such result.
     """
-    if name not in RESULTS:
-        raise InvalidValueError(f"column must be one of {', '.join(RESULTS)}, got {name!r:.60}")
+    _check_name(name)
     for piece in pieces(folder, plan):
         yield piece.results[name]
+
+
+def _check_name(name: str) -> None:
+    if name not in RESULTS:
+        raise InvalidValueError(f"column must be one of {', '.join(RESULTS)}, got {name!r:.60}")
 
 
 def digest(found: Iterator[Piece]) -> str:

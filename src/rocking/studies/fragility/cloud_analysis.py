@@ -12,7 +12,7 @@ from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.barely_lifted import LEAST, ClearShare, barely_lifted, clearly_lifted
-from rocking.studies.fragility.curves import fits_of
+from rocking.studies.fragility.fits import fits_of
 from rocking.studies.fragility.regression import Regression, regression
 from rocking.studies.fragility.states import LimitState, Responses
 from rocking.studies.fragility.subject import Subject

@@ -13,7 +13,8 @@ from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.barely_lifted import LEAST, checked_least, clearly_lifted
 from rocking.studies.fragility.cloud import CloudAnalysis
-from rocking.studies.fragility.curves import curve_of, fits_of
+from rocking.studies.fragility.curves import curve_of
+from rocking.studies.fragility.fits import fits_of
 from rocking.studies.fragility.measures import measure
 from rocking.studies.fragility.regression import Regression, regression
 from rocking.studies.fragility.subject import Progress, check_progress

@@ -30,6 +30,8 @@ class Counts:
         Trials that failed, and all trials, at each level [-].
     cluster_failures, cluster_trials : ndarray, optional
         The same by cluster: one row a cluster, one column a level [-].
+    cluster_weights : ndarray, optional
+        How many clusters have each of these rows; one each, if not given [-].
     """
 
     levels: FloatArray
@@ -37,6 +39,7 @@ class Counts:
     trials: FloatArray
     cluster_failures: FloatArray | None = None
     cluster_trials: FloatArray | None = None
+    cluster_weights: FloatArray | None = None
 
     @property
     def survivals(self) -> FloatArray:
@@ -51,6 +54,8 @@ class Counts:
     @property
     def clusters(self) -> int:
         """Number of clusters that were named; 0 if none were."""
+        if self.cluster_weights is not None:
+            return int(self.cluster_weights.sum())
         return 0 if self.cluster_trials is None else self.cluster_trials.shape[0]
 
     @property
@@ -64,8 +69,8 @@ class Counts:
         if self.cluster_failures is None or self.cluster_trials is None:
             return np.empty((0, 2 * self.levels.size)), np.empty(0)
         both = np.hstack([self.cluster_failures, self.cluster_trials])
-        rows, number = np.unique(both, axis=0, return_counts=True)
-        return rows, number.astype(np.float64)
+        rows, which = np.unique(both, axis=0, return_inverse=True)
+        return rows, np.bincount(which.ravel(), self.cluster_weights).astype(np.float64)
 
     @property
     def scarcity(self) -> str:
@@ -141,7 +146,7 @@ def count_outcomes(
     failed = _whole("failures", failures, level.size, 0.0)
     _none_above("failures", failed, number)
     distinct, where = np.unique(level, return_inverse=True)
-    _check_spread(distinct)
+    check_spread(distinct)
     pooled = [_pool(values, where, distinct.size) for values in (failed, number)]
     if clusters is None:
         return Counts(distinct, pooled[0], pooled[1])
@@ -229,7 +234,19 @@ def _none_above(name: str, part: FloatArray, whole: FloatArray, of: str = "trial
         )
 
 
-def _check_spread(levels: FloatArray) -> None:
+def check_spread(levels: FloatArray) -> None:
+    """Refuse levels that differ by rounding only.
+
+    Parameters
+    ----------
+    levels : ndarray
+        Distinct levels, ascending [any unit].
+
+    Raises
+    ------
+    InvalidValueError
+        If the last is within 1e-9 of the first.
+    """
     if levels.size > 1 and levels[-1] <= levels[0] * (1.0 + NARROWEST):
         raise InvalidValueError(
             f"levels must differ by more than {NARROWEST:g} of themselves in all, got {levels[0]:.17g} to"

@@ -1,8 +1,8 @@
 """Fragility curves apart from how they were found: what is exported, and what an analysis turns into."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,17 +11,15 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.states import LimitState, Responses
+from rocking.studies.fragility.agreement import Agreement, Ends, Repeated, agreement_of, repeated_of
 from rocking.studies.fragility.subject import Subject, checked_levels
+from rocking.studies.fragility.variables import variables_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.studies.fragility.lognormal import LognormalFit
     from rocking.studies.fragility.ordered import OrderedMethod
-
-Ends = tuple[float | None, float | None]
-"""Both ends of an interval; None where it is open."""
 
 CLAIMS = ("method", "verdict", "interval_method")
 """What is said of each curve wherever it goes."""
@@ -47,6 +45,10 @@ class FragilityCurve:
         Ends of their 95 % intervals, None where one is open; None if there is no interval [as median, dispersion].
     interval_method : str
         How the intervals were found.
+    agreement : Agreement, optional
+        How well it agrees with the outcomes; None where nobody asked.
+    repeated : Repeated, optional
+        Intervals from the bootstrap; None where nobody asked.
 
     Raises
     ------
@@ -62,6 +64,8 @@ class FragilityCurve:
     median_95: Ends | None = None
     dispersion_95: Ends | None = None
     interval_method: str = ""
+    agreement: Agreement | None = None
+    repeated: Repeated | None = None
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -118,6 +122,8 @@ class FragilityModel:
         Level below which nothing rocks, if there is one [unit of the measure].
     about : dict
         Provenance, plain values.
+    without : dict of str to str
+        States that have no curve, and why.
 
     Raises
     ------
@@ -135,6 +141,7 @@ class FragilityModel:
     source: str = ""
     uplift_threshold: float | None = None
     about: Mapping[str, Any] = field(default_factory=dict)
+    without: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that the parts fit one another."""
@@ -164,19 +171,25 @@ class FragilityModel:
             "probability": (("state", "level"), np.array([c.probability(self.levels) for c in self.curves])),
             "exceeded": (("counted_state", "level"), np.array([self.reached[name] for name in counted])),
             "trials": ("level", np.asarray(self.trials), {"units": "1"}),
+            **variables_of(self.curves, self.levels.size, unit),
         }
         coords = {
             "state": [c.state for c in self.curves],
             "counted_state": counted,
+            "end": ["low", "high"],
             "level": ("level", self.levels, {"units": unit, "long_name": self.measure}),
         }
         words = {word: "; ".join(f"{c.state}: {getattr(c, word)}" for c in self.curves) for word in CLAIMS}
+        words |= {f"without_curve {state}": why for state, why in self.without.items()}
         about = {"component": self.name, "measure": self.measure, "source": self.source, **words, **self.about}
         made: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=about)
         return made
 
 
-def model_of(analysis: Any, name: str, source: str = "", *, method: "OrderedMethod" = "separate") -> FragilityModel:
+def model_of(
+    analysis: Any, name: str, source: str = "", *, method: "OrderedMethod" = "separate", bootstrap: int = 0,
+    seed: int = 0,
+) -> FragilityModel:  # fmt: skip
     """Return the curves of an analysis, ready for export.
 
     Parameters
@@ -189,11 +202,15 @@ def model_of(analysis: Any, name: str, source: str = "", *, method: "OrderedMeth
         Where the data come from; the definition of the analysis, if not given.
     method : {"separate", "common-dispersion"}
         Each state's own curve; or one dispersion for all states, so that no curves cross.
+    bootstrap : int
+        Repetitions of the study for intervals and bands beside the usual ones; none, if 0.
+    seed : int
+        Seed of all random numbers.
 
     Returns
     -------
     FragilityModel
-        States whose curve has no finite median and dispersion are left out; ``about["without_curve"]`` names them.
+        States whose curve has no finite median and dispersion are left out; ``without`` says why.
 
     Raises
     ------
@@ -207,6 +224,10 @@ def model_of(analysis: Any, name: str, source: str = "", *, method: "OrderedMeth
         raise InvalidValueError(f"method must be one of {', '.join(ORDERED_METHODS)}, got {method!r:.60}")
     subject: Subject = analysis.subject
     found = {state: curve_of(state, fit) for state, fit in analysis.fits.items()}
+    found = {
+        state: curve and with_evidence(curve, analysis.fits[state], analysis.levels, bootstrap, seed)
+        for state, curve in found.items()
+    }
     without = [state for state, curve in found.items() if curve is None]
     curves = tuple(curve for curve in found.values() if curve is not None)
     if not curves:
@@ -218,6 +239,7 @@ def model_of(analysis: Any, name: str, source: str = "", *, method: "OrderedMeth
     model = FragilityModel(
         name, subject.measure.name, subject.measure.unit, curves, analysis.levels, analysis.trials, analysis.counts,
         source or analysis.definition, subject.uplift_threshold, about,
+        {state: analysis.fits[state].verdict for state in without},
     )  # fmt: skip
     return model if method == "separate" else with_common_dispersion(model)
 
@@ -247,35 +269,28 @@ def curve_of(state: str, fit: "LognormalFit") -> FragilityCurve | None:
     )  # fmt: skip
 
 
-def fits_of(
-    subject: Subject, states: Sequence[LimitState], levels: FloatArray, responses: Responses
-) -> "dict[str, LognormalFit]":
-    """Return the lognormal curve of each state.
+def with_evidence(
+    curve: FragilityCurve, fit: "LognormalFit", levels: FloatArray, bootstrap: int = 0, seed: int = 0
+) -> FragilityCurve:
+    """Return a curve with its goodness of fit, and with intervals from the bootstrap where they are asked for.
 
     Parameters
     ----------
-    subject : Subject
-        The body, the motions and the measure.
-    states : sequence of LimitState
-        The states; rocking is left out where a level decides it.
+    curve : FragilityCurve
+        The curve.
+    fit : LognormalFit
+        Where it comes from.
     levels : ndarray
-        Level of the measure of each history [its unit].
-    responses : Responses
-        Their outcomes, of the same shape; motions come first, and the histories of one motion are a cluster, together
-        with those of other motions that are the same sample by sample.
+        Levels of the band [unit of the measure].
+    bootstrap : int
+        Repetitions of the study; none, if 0.
+    seed : int
+        Seed of all random numbers.
 
     Returns
     -------
-    dict of str to LognormalFit
-        By name of the state.
+    FragilityCurve
+        The same curve.
     """
-    from rocking.studies.fragility.lognormal import fit_lognormal
-
-    good = responses.good
-    motion = np.broadcast_to(subject.clusters.reshape(-1, *[1] * (good.ndim - 1)), good.shape)[good]
-    # one history each: independent, and a table of single histories by level would be large
-    clusters = None if np.unique(motion).size == motion.size else motion.tolist()
-    wanted = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
-    return {
-        state.name: fit_lognormal(levels[good], responses.exceed(state)[good], clusters=clusters) for state in wanted
-    }
+    repeated = repeated_of(fit, levels, bootstrap, seed) if bootstrap else None
+    return replace(curve, agreement=agreement_of(fit, seed), repeated=repeated)

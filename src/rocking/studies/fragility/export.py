@@ -13,6 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.curves import CLAIMS, FragilityModel
 from rocking.studies.fragility.nesting import Crossing, check_crossing
 from rocking.studies.fragility.tables import TABLES, Cell, CellTable, safe_cell, table
+from rocking.studies.fragility.variables import variables_of
 
 Destination = str | os.PathLike[str]
 
@@ -108,7 +109,8 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
     Returns
     -------
     Path
-        The file, with states, median, dispersion, levels, trials, exceeded, probability, words and provenance.
+        The file, with states, median, dispersion, their intervals (NaN where open), goodness of fit (NaN where there
+        is none), bootstrap where it was asked for, levels, trials, exceeded, probability, words and provenance.
     """
     from scipy.io import savemat
 
@@ -122,6 +124,7 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
         **{word: np.array([getattr(c, word) for c in model.curves], dtype=object) for word in CLAIMS},
         "median": np.array([c.median for c in model.curves]),
         "dispersion": np.array([c.dispersion for c in model.curves]),
+        **_evidence(model),
         "levels": model.levels,
         "trials": np.asarray(model.trials, dtype=np.float64),
         "counted_states": np.array(list(model.reached), dtype=object),
@@ -131,6 +134,17 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
     }
     savemat(target, {"fragility": structure}, oned_as="column", appendmat=False)
     return target
+
+
+def _evidence(model: FragilityModel) -> dict[str, Any]:
+    """Return intervals, goodness of fit and bootstrap, one row a state, and why states have no curve."""
+    found = {
+        name: np.asarray(values)
+        for name, (_, values, *_) in variables_of(model.curves, model.levels.size, model.unit).items()
+    }
+    words = {name: values.astype(object) for name, values in found.items() if values.dtype.kind == "U"}
+    without = {"state": list(model.without), "why": list(model.without.values())}
+    return found | words | {"without_curve": {name: np.array(v, dtype=object) for name, v in without.items()}}
 
 
 def to_netcdf(model: FragilityModel, path: Destination) -> Path:

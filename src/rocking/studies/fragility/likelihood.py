@@ -1,5 +1,6 @@
 """Probit likelihood of many data sets at once, safe however far in the tails a curve is tried."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -9,6 +10,9 @@ from rocking.conventions import FloatArray
 
 FAR = 300.0
 """Beyond this many standard deviations the curvature comes from its series: the closed form cancels [-]."""
+
+WIDEST = 1 << 16
+"""Levels that are looked at together: what is in between takes a hundred bytes of each."""
 
 
 class Tails(NamedTuple):
@@ -151,11 +155,20 @@ class Probit:
         Derivatives
             One row a data set.
         """
+        if self.position.shape[1] > WIDEST:
+            parts = [part.derivatives(theta) for part in self._columns()]
+            return Derivatives(*(np.asarray(np.sum(each, axis=0)) for each in zip(*parts, strict=True)))
         at = tails(self.eta(theta))
         value = np.sum(_times(self.failures, at.log_failure) + _times(self.survivals, at.log_survival), axis=1)
         slope = self.failures * at.failure_rate - self.survivals * at.survival_rate
         bend = self.failures * at.failure_bend + self.survivals * at.survival_bend
         return Derivatives(value, self._moments(slope, 2), _matrix(self._moments(bend, 3)))
+
+    def _columns(self) -> Iterator[Self]:
+        """Return the same likelihood in parts of the levels."""
+        for first in range(0, self.position.shape[1], WIDEST):
+            part = slice(first, first + WIDEST)
+            yield type(self)(self.position[:, part], self.failures[:, part], self.survivals[:, part])
 
     def information(self, theta: FloatArray) -> FloatArray:
         """Return the expected (Fisher) information.

@@ -8,12 +8,12 @@ from collections.abc import Hashable, Iterable
 from typing import Any, Literal
 
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.counts import count_outcomes
+from rocking.studies.fragility.counts import Counts, count_outcomes
 from rocking.studies.fragility.estimate import Scale, find_curves, log_fractile
 from rocking.studies.fragility.fit import LognormalFit
 from rocking.studies.fragility.separation import Separation, separation_of
 
-__all__ = ["LognormalFit", "fit_lognormal"]
+__all__ = ["LognormalFit", "fit_counts", "fit_lognormal"]
 
 Method = Literal["auto", "maximum-likelihood", "penalised"]
 METHODS: tuple[Method, ...] = ("auto", "maximum-likelihood", "penalised")
@@ -63,9 +63,36 @@ def fit_lognormal(
     >>> fit_lognormal([0.2, 0.4, 0.6, 0.8], [0, 0, 1, 1]).median_interval
     (0.4, 0.6)
     """
+    _check_method(method)
+    return fit_counts(count_outcomes(levels, failures, trials, clusters), method)
+
+
+def _check_method(method: str) -> None:
     if method not in METHODS:
         raise InvalidValueError(f"method must be one of {', '.join(METHODS)}, got {method!r}")
-    counts = count_outcomes(levels, failures, trials, clusters)
+
+
+def fit_counts(counts: Counts, method: Method = "auto") -> LognormalFit:
+    """Fit a lognormal fragility curve to outcomes that are counted already, or say why there is none.
+
+    Parameters
+    ----------
+    counts : Counts
+        The outcomes.
+    method : {"auto", "maximum-likelihood", "penalised"}
+        As for `fit_lognormal`.
+
+    Returns
+    -------
+    LognormalFit
+        The fit.
+
+    Raises
+    ------
+    InvalidValueError
+        As of `fit_lognormal`.
+    """
+    _check_method(method)
     separation = separation_of(counts)
     if method == "maximum-likelihood" and separation is not Separation.OVERLAP:
         raise InvalidValueError(

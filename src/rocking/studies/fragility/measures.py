@@ -80,7 +80,8 @@ class IntensityMeasure:
         InvalidValueError
             If the measure of a motion is not a finite number above zero; the motion is named.
         """
-        found = np.array([self.of_motion(sampled(motions[k]), body) for k in range(len(motions))])
+        each = (self.of_motion(sampled(motions[k]), body) for k in range(len(motions)))
+        found = np.fromiter(each, np.float64, len(motions))
         bad = np.flatnonzero(~((found > 0.0) & np.isfinite(found)))
         if bad.size:
             raise InvalidValueError(

@@ -149,7 +149,13 @@ def _common(curve: FragilityCurve, median: float, dispersion: float) -> Fragilit
         f"One dispersion was fitted to all states, so that no curves cross; alone this state has median"
         f" {curve.median:.4g}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
     )
-    none: dict[str, Any] = {"median_95": None, "dispersion_95": None, "interval_method": ""}
+    none: dict[str, Any] = {
+        "median_95": None,
+        "dispersion_95": None,
+        "interval_method": "",
+        "agreement": None,
+        "repeated": None,
+    }
     return replace(
         curve, median=median, dispersion=dispersion, method="common-dispersion", verdict=told.strip(), **none
     )

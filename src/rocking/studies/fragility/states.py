@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.conventions import BoolArray, FloatArray
 from rocking.dynamics.engine import Arrays
 from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
@@ -80,13 +80,13 @@ class Responses:
         Codes of `Outcome`.
     rotation : ndarray
         Largest rotation over the alpha of its side; infinite if overturned, NaN if the history failed [-].
-    sides : ndarray of int
+    sides : ndarray of int8
         Side overturned to: 1 right, -1 left, 0 if it did not.
     """
 
     outcome: np.ndarray
     rotation: FloatArray
-    sides: IntArray
+    sides: np.ndarray
 
     @classmethod
     def of(cls, arrays: Arrays, rocker: Any, shape: tuple[int, ...]) -> "Responses":
@@ -120,10 +120,12 @@ class Responses:
             )
         outcome = np.asarray(arrays["outcome"], dtype=np.int8).reshape(shape)
         peak = np.asarray(arrays["peak_rotation"], dtype=np.float64).reshape(shape)
-        alpha = np.where(peak > 0.0, rocker.right.slenderness_angle, rocker.left.slenderness_angle)
-        rotation = np.where(outcome == Outcome.OVERTURNED.code, math.inf, np.abs(peak) / alpha)
-        sides = np.where(outcome == Outcome.OVERTURNED.code, np.where(peak > 0.0, 1, -1), 0)
-        return cls(outcome, np.where(outcome == Outcome.FAILED.code, math.nan, rotation), sides)
+        right, left = rocker.right.slenderness_angle, rocker.left.slenderness_angle
+        over, to_right = outcome == Outcome.OVERTURNED.code, peak > 0.0
+        rotation = np.abs(peak)  # there may be ten million of them: no more copies than needed
+        rotation /= right if right == left else np.where(to_right, right, left)
+        rotation[over], rotation[outcome == Outcome.FAILED.code] = math.inf, math.nan
+        return cls(outcome, rotation, over * np.where(to_right, np.int8(1), np.int8(-1)))
 
     @property
     def good(self) -> BoolArray:

@@ -101,18 +101,23 @@ class Subject:
         levels = {"pga": self.scale.threshold, "pga/(g tan alpha)": 1.0}
         equal = math.isclose(self.rocker.right.slenderness_angle, self.rocker.left.slenderness_angle, rel_tol=1e-12)
         level = levels.get(self.measure.name)
-        return level if level is not None and equal and self._seen[1] else None
-
-    @property
-    def names(self) -> list[str]:
-        """Names of the motions."""
-        return self._seen[0]
+        return level if level is not None and equal and self._are_horizontal else None
 
     @cached_property
-    def _seen(self) -> tuple[list[str], bool]:
-        """Names, and whether all motions are horizontal; each motion is made once for both."""
-        seen = [(one.name, getattr(one, "vertical", None) is None) for one in map(self.motions.__getitem__, self._all)]
-        return [name for name, _ in seen], all(horizontal for _, horizontal in seen)
+    def names(self) -> list[str]:
+        """Names of the motions."""
+        found, horizontal = [], True
+        for k in self._all:
+            motion = self.motions[k]
+            found.append(motion.name)
+            horizontal &= getattr(motion, "vertical", None) is None
+        self.__dict__.setdefault("_are_horizontal", horizontal)  # no motion is made twice for both
+        return found
+
+    @cached_property
+    def _are_horizontal(self) -> bool:
+        # without the names: those of ten million motions take more room than all results
+        return all(getattr(self.motions[k], "vertical", None) is None for k in self._all)
 
     @property
     def _all(self) -> range:

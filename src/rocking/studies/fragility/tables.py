@@ -7,7 +7,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.curves import Ends, FragilityModel
+from rocking.studies.fragility.agreement import STATISTICS, Ends, Repeated
+from rocking.studies.fragility.curves import FragilityCurve, FragilityModel
 from rocking.studies.fragility.nesting import Crossing, nested
 
 TABLES = ("parameters", "points", "fema-p58")
@@ -118,18 +119,43 @@ def _parameters(model: FragilityModel) -> CellTable:
         "component", "state", "measure", f"median {_bracket(model)}", "dispersion [-]", "method",
         f"lowest level {_bracket(model)}", f"highest level {_bracket(model)}", "histories", "source",
         f"median 95 % from {_bracket(model)}", f"median 95 % to {_bracket(model)}", "dispersion 95 % from [-]",
-        "dispersion 95 % to [-]", "intervals by", "verdict",
+        "dispersion 95 % to [-]", "intervals by", "verdict", *_AGREEMENT,
     )  # fmt: skip
+    repeated = any(c.repeated for c in model.curves)
+    if repeated:
+        words = (f"median bootstrap 95 % {{}} {_bracket(model)}", "dispersion bootstrap 95 % {} [-]")
+        header += (*(word.format(end) for word in words for end in ("from", "to")), "bootstrap")
     ends = float(model.levels[0]), float(model.levels[-1])
     count = int(np.sum(model.trials))
     rows = tuple(
         (
             model.name, c.state, model.measure, c.median, c.dispersion, c.method, *ends, count, model.source,
             *_cells(c.median_95), *_cells(c.dispersion_95), c.interval_method, c.verdict,
+            *_agreement(c), *(_repeated(c.repeated) if repeated else ()),
         )
         for c in model.curves
     )  # fmt: skip
+    known: dict[str, Cell] = {"component": model.name, "measure": model.measure, "method": "none"}
+    known |= {"source": model.source, "histories": count, header[6]: ends[0], header[7]: ends[1]}
+    for state, why in model.without.items():
+        cells = {**known, "state": state, "verdict": why}
+        rows += (tuple(cells.get(name, "") for name in header),)
     return CellTable("parameters", header, rows)
+
+
+_AGREEMENT = (*(f"{name}{what} [-]" for name in STATISTICS for what in ("", " p-value")), "agreement")
+
+
+def _agreement(curve: FragilityCurve) -> tuple[Cell, ...]:
+    if curve.agreement is None:
+        return ("",) * len(_AGREEMENT)
+    numbers = [number for name in STATISTICS for number in curve.agreement.numbers[name]]
+    return (*("" if math.isnan(number) else number for number in numbers), curve.agreement.words)
+
+
+def _repeated(found: Repeated | None) -> tuple[Cell, ...]:
+    told = found or Repeated()
+    return (*_cells(told.median_95), *_cells(told.dispersion_95), told.words)
 
 
 def _cells(interval: Ends | None) -> tuple[Cell, Cell]:
@@ -146,6 +172,10 @@ def _points(model: FragilityModel) -> CellTable:
         **observed,
         **{f"fitted {name} [-]": values for name, values in fitted.items()},
     }
+    for curve in model.curves:
+        if curve.repeated is not None and curve.repeated.band is not None:
+            for end, values in zip(("from", "to"), curve.repeated.band, strict=True):
+                columns[f"bootstrap 95 % {end} {curve.state} [-]"] = values
     rows = tuple(zip(*(values.tolist() for values in columns.values()), strict=True))
     return CellTable("points", tuple(columns), rows)
 

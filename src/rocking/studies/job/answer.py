@@ -1,5 +1,6 @@
 """What an adaptive study has found: tables of any length, beside or in place of its histories."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -98,3 +99,31 @@ def words_of(values: list[str]) -> np.ndarray:
     made = np.empty(len(values), dtype=object)
     made[:] = values
     return made
+
+
+def variable_of(name: str, taken: Mapping[str, Column]) -> str:
+    """Return a name that MATLAB and netCDF take, and no other column has.
+
+    Parameters
+    ----------
+    name : str
+        Name of the column.
+    taken : mapping of str to Column
+        Other columns, with the names that they have there.
+
+    Returns
+    -------
+    str
+        Letters, digits and underscores.
+
+    Examples
+    --------
+    >>> variable_of("overturned: median ratio", {})
+    'overturned_median_ratio'
+    """
+    made = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")
+    others = {each.variable for each in taken.values()}
+    count = 2
+    while (unique := made if count == 2 and made not in others else f"{made}_{count}") in others:
+        count += 1
+    return unique

@@ -7,7 +7,7 @@ import numpy as np
 from rocking.dynamics.export import extra
 from rocking.dynamics.impact_law import ImpactLaw, RandomRestitution
 from rocking.errors import InvalidValueError
-from rocking.studies.job.answer import Column, Sheet
+from rocking.studies.job.answer import Column, Sheet, variable_of, words_of
 from rocking.studies.job.findings import analyses, refuse_unfinished
 from rocking.studies.job.folder import JobFolder
 from rocking.studies.job.results import Results
@@ -94,12 +94,12 @@ _RANDOM = RandomRestitution.kind
 def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":
     xarray: Any = extra("xarray", "comparing restitutions")
     study, labels = folder.job.study, list(folder.job.parts.choices)
-    pieces: dict[str, list[np.ndarray]] = {name: [] for name in _KEPT}
-    for _, _, found in Results(study, folder.campaign, {}).pieces():
+    flat = {name: np.empty(study.histories.count, VARIABLES[name][0]) for name in _KEPT}
+    for first, last, found in Results(study, folder.campaign, {}).pieces():
         for name in _KEPT:
-            pieces[name].append(found[name])
+            flat[name][first:last] = found[name]
     axis = list(study.dims).index("restitution")
-    whole = {name: np.moveaxis(np.concatenate(parts).reshape(study.shape), axis, 0) for name, parts in pieces.items()}
+    whole = {name: np.moveaxis(values.reshape(study.shape), axis, 0) for name, values in flat.items()}
     dims = [name for name in study.dims if name != "restitution"]
     along = {name: study.coordinates[name] for name in dims if name in study.coordinates}
     coords = {name: each.values for name, each in along.items() if each.dims == (name,)}
@@ -113,22 +113,32 @@ def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":
 def _flips(found: Sensitivity) -> Sheet:
     rows = found.summary()
     names = dict.fromkeys(name for row in rows for name in row)
-    return Sheet("choice", {name: Column(_values([row.get(name) for row in rows])) for name in names})
+    columns: dict[str, Column] = {}
+    for name in names:
+        columns[name] = Column(_values([row.get(name) for row in rows]), variable=variable_of(name, columns))
+    return Sheet("choice", columns)
 
 
 def _values(given: list[Any]) -> np.ndarray:
     if any(isinstance(value, str) for value in given):
-        return np.array(["" if value is None else str(value) for value in given], dtype=np.str_)
+        return words_of(["" if value is None else str(value) for value in given])
     return np.array([np.nan if value is None else value for value in given])
 
 
 def _differences(found: Sensitivity) -> Sheet:
-    verdict, peak = found.differences("verdict"), found.differences("peak_ratio")
-    places = np.indices(verdict.shape).reshape(verdict.ndim, -1)
+    # analyses call the largest rotation over alpha by its own name
+    known = found.datasets[found.baseline]
+    verdict, peak = (
+        found.differences("verdict"),
+        found.differences("peak_ratio" if "peak_ratio" in known else "rotation"),
+    )
     columns = {}
-    for place, name in zip(places, verdict.dims, strict=True):
-        values = np.asarray(verdict[name].values)[place]
-        columns[str(name)] = Column(values.astype(np.str_) if values.dtype.kind not in "iufb" else values)
+    for k, name in enumerate(verdict.dims):
+        values = np.asarray(verdict[name].values)
+        # words are kept once: written out they would take many times the room of the numbers
+        whole = values if values.dtype.kind in "iufb" else words_of([str(value) for value in values])
+        shape = [-1 if k == axis else 1 for axis in range(verdict.ndim)]
+        columns[str(name)] = Column(np.broadcast_to(whole.reshape(shape), verdict.shape).ravel())
     columns["verdict"] = Column(verdict.values.ravel(), words=str(verdict.attrs["long_name"]))
     columns["peak_ratio"] = Column(peak.values.ravel(), words=str(peak.attrs["long_name"]))
     return Sheet("difference", columns)

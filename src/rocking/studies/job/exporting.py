@@ -7,19 +7,26 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import disk
-from rocking.studies.fragility.nesting import Crossing, check_crossing, nested
+from rocking.studies.fragility.agreement import FEWEST
+from rocking.studies.fragility.nesting import Crossing, check_crossing
+from rocking.studies.job.answer import Sheet
 from rocking.studies.job.comparison import COMPARED, comparable, comparison, comparison_sheet
 from rocking.studies.job.findings import answer, refuse_unfinished
 from rocking.studies.job.folder import JobFolder
-from rocking.studies.job.matlab import sheet_to_matlab, to_matlab
+from rocking.studies.job.fragility_export import ANALYSES, fragility_model, write_fragility
+from rocking.studies.job.matlab import to_matlab
 from rocking.studies.job.measures import MEASURES, measure_comparison, measures_sheet, told_of
 from rocking.studies.job.netcdf import to_netcdf
 from rocking.studies.job.results import Results
 from rocking.studies.job.round_status import finished_rounds
 from rocking.studies.job.rows import to_csv, to_excel, to_parquet
-from rocking.studies.job.sheets import SHEET_FORMATS, sheets_to_netcdf
+from rocking.studies.job.sheets import SHEET_FORMATS, Attributes, sheets_to_netcdf
+
+MOST_REPETITIONS = 100_000
+"""Most repetitions of a bootstrap."""
 
 Progress = Callable[[int], None] | None
 
@@ -33,19 +40,17 @@ FORMATS: dict[str, Callable[[Results, Path], None]] = {
 """What writes every history, by the end of the file's name."""
 
 SPECIAL: dict[str, tuple[str, ...]] = {
-    "fragility": (".nc", ".csv", ".mat", ".xlsx", ".xml"),
-    "fema-p58": (".csv",),
+    **ANALYSES,
     "refined": tuple(SHEET_FORMATS),
     "boundary": tuple(SHEET_FORMATS),
     "crossings": (".nc", *SHEET_FORMATS),
     "minima": (".nc", *SHEET_FORMATS),
-    **dict.fromkeys(COMPARED, tuple(SHEET_FORMATS)),
-    MEASURES: (".nc", ".mat", *SHEET_FORMATS),
+    **dict.fromkeys(COMPARED, (".nc", *SHEET_FORMATS)),
+    MEASURES: (".nc", *SHEET_FORMATS),
 }
 """What can be exported of some kinds beside their histories, and how."""
 
-_ANALYSES = ("fragility", "fema-p58")
-_OF_ONE = (*_ANALYSES, MEASURES)
+_OF_ONE = (*ANALYSES, MEASURES)
 """What each restitution has of its own."""
 
 
@@ -66,7 +71,7 @@ def exports_of(folder: JobFolder) -> list[str]:
     compared = COMPARED if comparable(folder) else ()
     if study.finish is not None:
         ranked = (MEASURES,) if folder.job.document.campaign.kind == "cloud" else ()
-        return ["histories", *_ANALYSES, *ranked, *compared]
+        return ["histories", *ANALYSES, *ranked, *compared]
     if study.search is None:
         return ["histories", *compared]
     if folder.job.document.map is not None:
@@ -76,7 +81,7 @@ def exports_of(folder: JobFolder) -> list[str]:
 
 def export(
     folder: JobFolder, path: str | os.PathLike[str], what: str | None = None, *, restitution: str | None = None,
-    crossing: Crossing | None = None, progress: Progress = None,
+    crossing: Crossing | None = None, bootstrap: int | None = None, progress: Progress = None,
 ) -> Path:  # fmt: skip
     """Write a finished campaign into a file, which is there as a whole or not at all.
 
@@ -88,18 +93,21 @@ def export(
         The file; the end of its name says the format.
     what : str, optional
         ``histories``, every one (.nc, .parquet, .csv, .mat, .xlsx); the .nc of a refined map holds its points and
-        polylines too. Of fragility campaigns ``fragility``, the curves (.nc, .csv, .mat, .xlsx, and .xml for NRML),
-        and ``fema-p58``, a table (.csv); of refined maps ``refined``, all points, and ``boundary``, the vertices of the
-        polylines (.csv, .parquet, .xlsx); of minimum accelerations ``crossings`` and ``minima`` (the same, and both in
-        one .nc), with ``histories`` for the first samples; of jobs with several restitutions ``flips``, what each of
-        them changes against the first, and ``differences``, cell by cell (.csv, .parquet, .xlsx); of clouds
-        ``measures``, the ranking of intensity measures (.nc, .csv, .mat, .parquet, .xlsx). The first of `exports_of` if
-        not given.
+        polylines too. Of fragility campaigns ``fragility``, the curves with their goodness of fit (.nc, .csv, .mat,
+        .xlsx, and .xml for NRML), ``fragility-points``, observed and fitted level by level (.csv), and ``fema-p58``, a
+        table (.csv); of refined maps ``refined``, all points, and ``boundary``, the vertices of the polylines (.csv,
+        .parquet, .mat, .xlsx); of minimum accelerations ``crossings`` and ``minima`` (the same, and both in one .nc),
+        with ``histories`` for the first samples; of jobs with several restitutions ``flips``, what each of them changes
+        against the first, and ``differences``, cell by cell (the same, and .nc); of clouds ``measures``, the ranking of
+        intensity measures (the same, and .nc). The first of `exports_of` if not given.
     restitution : str, optional
         Label of the restitution whose fragility or measures are meant, where there are several.
     crossing : {"refuse", "common-dispersion"}, optional
         What to do with fragility curves that cross: NRML and FEMA P-58 refuse them, or all states get one dispersion in
         every file. What the job says if not given; "refuse" if it says nothing.
+    bootstrap : int, optional
+        Repetitions of the study for intervals and bands of fragility curves beside the usual ones, none if 0. What the
+        job says if not given; none if it says nothing.
     progress : callable, optional
         Called with the number of histories done since the last call.
 
@@ -120,6 +128,7 @@ def export(
     target = checked_path(path)
     what = exports_of(folder)[0] if what is None else what
     _check_what(what, target.suffix.lower(), restitution, crossing, folder)
+    _check_bootstrap(what, bootstrap)
     refuse_unfinished(folder)
     results = Results(folder.job.study, folder.campaign, provenance_of(folder), progress)
     unfinished = target.with_name(f".{target.stem}.{os.getpid()}.part{target.suffix}")
@@ -127,8 +136,9 @@ def export(
         try:
             if what == MEASURES:
                 results = _measures(results, unfinished, restitution, folder)
-            elif what in _ANALYSES:
-                _fragility(results, unfinished, what, restitution, crossing, folder)
+            elif what in ANALYSES:
+                model = fragility_model(folder, restitution, crossing, bootstrap)
+                write_fragility(model, unfinished, what, results.provenance)
             else:
                 _tables(results, unfinished, what, folder)
             if target.suffix.lower() in {".csv", ".xml"}:  # neither has room for it
@@ -192,15 +202,25 @@ def _check_what(
     labels = list(folder.job.parts.choices)
     if what not in _OF_ONE and restitution is not None:
         raise InvalidValueError("restitution goes with fragility, fema-p58 and measures; every history has its own")
-    if what not in _ANALYSES and crossing is not None:
+    if what not in ANALYSES and crossing is not None:
         raise InvalidValueError("crossing goes with fragility and fema-p58: it is about curves")
     if what not in exports_of(folder):
         why = f'a campaign of kind "{folder.job.document.campaign.kind}" has no {what}{_WHY.get(what, "")}'
         raise InvalidValueError(f"nothing to export because {why}")
-    if what in _ANALYSES:
+    if what in ANALYSES:
         check_crossing("refuse" if crossing is None else crossing)
     if what in _OF_ONE:
         _check_label(what, restitution, labels)
+
+
+def _check_bootstrap(what: str, bootstrap: int | None) -> None:
+    if bootstrap is None:
+        return
+    if what not in ANALYSES:
+        raise InvalidValueError("bootstrap goes with fragility, fragility-points and fema-p58: it is about curves")
+    whole = checks.within("bootstrap", bootstrap, 0, MOST_REPETITIONS, hint="how many times the study is repeated")
+    if 0 < whole < FEWEST or whole != int(whole):
+        raise InvalidValueError(f"bootstrap must be 0 or a whole number >= {FEWEST}, got {bootstrap!r}")
 
 
 _WHY = {
@@ -220,7 +240,7 @@ def _tables(results: Results, path: Path, what: str, folder: JobFolder) -> None:
     """Write histories, or the tables of an adaptive study."""
     suffix, several = path.suffix.lower(), folder.job.study.search is not None
     if what in COMPARED:
-        SHEET_FORMATS[suffix](comparison_sheet(comparison(folder), what), path, results.attributes)
+        _sheet(comparison_sheet(comparison(folder), what), suffix, path, results.attributes)
         return
     if what == "histories":
         FORMATS[suffix](results, path)
@@ -240,37 +260,12 @@ def _measures(results: Results, path: Path, restitution: str | None, folder: Job
     about = told_of(found) | ({} if restitution is None else {"restitution": restitution})
     results = replace(results, provenance=results.provenance | about)
     sheet, suffix = measures_sheet(found), path.suffix.lower()
-    if suffix == ".nc":
-        sheets_to_netcdf({MEASURES: sheet}, path, results.attributes)
-    else:
-        write = sheet_to_matlab if suffix == ".mat" else SHEET_FORMATS[suffix]
-        write(sheet, path, results.attributes)
+    _sheet(sheet, suffix, path, results.attributes)
     return results
 
 
-def _fragility(
-    results: Results, path: Path, what: str, restitution: str | None, crossing: Crossing | None, folder: JobFolder
-) -> None:  # fmt: skip
-    from rocking.studies.fragility import export as files
-    from rocking.studies.fragility.curves import model_of
-    from rocking.studies.fragility.nrml import to_nrml
-
-    assert results.study.finish is not None  # checked before
-    found = results.study.finish(results.campaign.results())
-    document = folder.job.document
-    model = model_of(found[restitution] if restitution else next(iter(found.values())), document.campaign.name)
-    told = document.export.crossing if document.export is not None else "refuse"
-    if (told if crossing is None else crossing) == "common-dispersion":
-        model = nested(model, "common-dispersion")
-    if what == "fema-p58":
-        files.to_csv(model, path, "fema-p58")
-        return
-    if path.suffix.lower() == ".xml":
-        to_nrml(model, path)
-        return
-    provenance = json.dumps(results.provenance, sort_keys=True)
-    model = replace(model, about={**model.about, "provenance": provenance})
-    writers: dict[str, Callable[[Any, Path], Path]] = {
-        ".nc": files.to_netcdf, ".csv": files.to_csv, ".mat": files.to_mat, ".xlsx": files.to_excel,
-    }  # fmt: skip
-    writers[path.suffix.lower()](model, path)
+def _sheet(sheet: Sheet, suffix: str, path: Path, attributes: Attributes) -> None:
+    if suffix == ".nc":
+        sheets_to_netcdf({sheet.dim: sheet}, path, attributes)
+    else:
+        SHEET_FORMATS[suffix](sheet, path, attributes)

@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import CampaignIncompleteError
 from rocking.studies.job.answer import Answer
@@ -13,6 +11,9 @@ from rocking.studies.job.rounds import replayed
 
 if TYPE_CHECKING:
     from rocking.studies.inventory.verdict import Assessment
+
+READ = ("outcome", "peak_rotation")
+"""All that analyses and assessments read of a history: 9 bytes."""
 
 
 def refuse_unfinished(folder: JobFolder) -> None:
@@ -66,7 +67,7 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     study = folder.job.study
     if study.finish is None:
         raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no fragility')
-    return study.finish(folder.campaign.results())
+    return study.finish(folder.campaign.results(*READ))
 
 
 def answer(folder: JobFolder) -> Answer:
@@ -117,6 +118,5 @@ def assessment(folder: JobFolder) -> "Assessment":
     if assess is None:
         raise InvalidValueError(f'a campaign of kind "{folder.job.document.campaign.kind}" has no assessment')
     refuse_unfinished(folder)
-    results = {name: np.concatenate(list(folder.campaign.column(name))) for name in ("outcome", "peak_rotation")}
-    found: Assessment = assess(results)
+    found: Assessment = assess(folder.campaign.results(*READ))
     return found

@@ -14,6 +14,8 @@ from rocking.studies.job.study import VARIABLES, blocks
 MOST_BYTES = 2**31 - 1
 """Largest variable of a MATLAB file of version 5 [bytes]."""
 
+_WORD = 80
+
 
 def to_matlab(results: Results, path: Path) -> None:
     """Write results as a structure ``campaign``; the last dimension of the study is the last one there.
@@ -64,9 +66,20 @@ def sheet_to_matlab(sheet: Sheet, path: Path, attributes: Mapping[str, Any]) -> 
         The file.
     attributes : mapping
         Where it comes from; ``provenance`` is written.
+
+    Raises
+    ------
+    InvalidValueError
+        If MATLAB's format does not take tables of that size.
     """
     from scipy.io import savemat
 
+    # a word is a matrix of its own there
+    room = sum(_WORD * each.values.size if each.is_words else each.values.nbytes for each in sheet.columns.values())
+    if room > MOST_BYTES:
+        raise InvalidValueError(
+            f"MATLAB files take tables up to 2 GiB, this one has {sheet.rows} rows; take .nc, which MATLAB reads"
+        )
     columns = {each.variable or name: each for name, each in sheet.columns.items()}
     told = {
         "columns": {n: each.values.astype(object) if each.is_words else each.values for n, each in columns.items()},

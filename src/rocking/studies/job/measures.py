@@ -1,6 +1,5 @@
 """Which measure of intensity says most about the body of a finished cloud campaign: the ranking, and its table."""
 
-import re
 from collections.abc import Callable
 from typing import Any
 
@@ -10,7 +9,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.barely_lifted import clearly_lifted
 from rocking.studies.fragility.cloud_analysis import CloudAnalysis
 from rocking.studies.fragility.comparison import MeasureComparison, compare_measures
-from rocking.studies.job.answer import Column, Sheet, words_of
+from rocking.studies.job.answer import Column, Sheet, variable_of, words_of
 from rocking.studies.job.findings import analyses, refuse_unfinished
 from rocking.studies.job.folder import JobFolder
 from rocking.studies.job.measured import columns_of, measures_of
@@ -121,18 +120,8 @@ def measures_sheet(found: MeasureComparison) -> Sheet:
         values = [row[name] for row in rows]
         array = words_of(values) if isinstance(values[0], str) else np.array(values)
         words = _WORDS.get(name, f"p-value of the residuals over {name[2:-1]}" if name.startswith("p(") else name)
-        columns[name] = Column(array, words=words, variable=_variable(name, columns))
+        columns[name] = Column(array, words=words, variable=variable_of(name, columns))
     return Sheet("rank", columns)
-
-
-def _variable(name: str, taken: dict[str, Column]) -> str:
-    """Return a name that MATLAB and netCDF take, and no other column has."""
-    made = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")
-    others = {each.variable for each in taken.values()}
-    count = 2
-    while (unique := made if count == 2 and made not in others else f"{made}_{count}") in others:
-        count += 1
-    return unique
 
 
 def told_of(found: MeasureComparison) -> dict[str, Any]:

@@ -9,21 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 from rocking.bodies import Body
 from rocking.bodies.formats.body_file import body_from_toml
-from rocking.dynamics.impact_law import RandomRestitution
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions.formats.reader import read_motion
 from rocking.motions.pulses import pulse
-from rocking.restitution import model
 from rocking.studies.job.inputs import Inputs
 from rocking.studies.job.reading import located
+from rocking.studies.job.restitutions import choices_of
 from rocking.studies.motion_set import MotionList, MotionSet
 from rocking.studies.record_set import SyntheticSet
-from rocking.studies.sensitivity.sampled import SampledRestitution
 
 if TYPE_CHECKING:
-    from rocking.studies.job.tables import Document, MotionTable, RestitutionTable
+    from rocking.studies.job.tables import Document, MotionTable
 
 MOST_IN_MEMORY = 100_000
 """Synthetic motions that may be put into a list with others; a set of one family alone is made piece by piece."""
@@ -79,11 +77,12 @@ class Parts:
         with located("settings"):
             told = document.settings.model_dump(exclude={"engine"}, exclude_none=True)
             settings = Settings(**told)
+        bodies = _bodies(document.body or [], inputs)
         return cls(
             document,
-            _bodies(document.body or [], inputs),
+            bodies,
             motions_of(document.motions, inputs),
-            choices_of(document.restitution, document.campaign.seed),
+            choices_of(document.restitution, document.campaign.seed, bodies),
             settings,
             inputs,
         )
@@ -246,54 +245,3 @@ def _records(table: "MotionTable", inputs: Inputs) -> list[Motion]:
         with located(f"records: {name}"):
             found.append(read_motion(path, table.format, table.units, table.time_step, table.component, table.vertical))
     return found
-
-
-def choices_of(table: "RestitutionTable", seed: int) -> dict[str, Any]:
-    """Return the restitutions that a table describes.
-
-    Parameters
-    ----------
-    table : RestitutionTable
-        The table.
-    seed : int
-        Seed of draws, where the table gives none.
-
-    Returns
-    -------
-    dict of str to Any
-        Models, coefficients, pairs by side or laws, as `simulate` takes them, by label.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such model, or two choices are the same.
-    """
-    with located("restitution"):
-        words = [*([table.model] if table.model else []), *(table.models or [])]
-        pairs: list[tuple[str, Any]] = [(model(word).label, model(word)) for word in words]
-        numbers = [*([] if table.value is None else [table.value]), *(table.values or [])]
-        pairs += [(f"{value!r}", value) for value in numbers]
-        if table.left is not None:
-            pairs.append((f"left {table.left!r}, right {table.right!r}", {"left": table.left, "right": table.right}))
-        if table.distribution is not None:
-            pairs.append(_drawn(table, seed))
-        labels = [label for label, _ in pairs]
-        twice = [label for label in labels if labels.count(label) > 1]
-        if twice:
-            raise InvalidValueError(f"{twice[0]} is given twice")
-        return dict(pairs)
-
-
-def _drawn(table: "RestitutionTable", seed: int) -> tuple[str, Any]:
-    spread = table.distribution
-    assert spread is not None  # asked before
-    times = model(spread.times) if isinstance(spread.times, str) else spread.times
-    law = SampledRestitution if spread.each == "history" else RandomRestitution
-    how: dict[str, Any] = {"seed": seed if spread.seed is None else spread.seed, "times": times}
-    if spread.values is not None:
-        drawn, words = law.of_sample(spread.values, **how), f"{len(spread.values)} values"
-        words += f" from {min(spread.values):g} to {max(spread.values):g}"
-    else:
-        mean, deviation = spread.mean or 0.0, spread.deviation or 0.0  # both are there: checked by the table
-        drawn, words = law.normal(mean, deviation, **how), f"{mean:g} +- {deviation:g}"
-    return f"drawn per {spread.each}: {words}, seed {drawn.seed}", drawn

@@ -12,9 +12,10 @@ from rocking.errors import InvalidValueError
 from rocking.motions.formats.reader import read_motion
 from rocking.motions.pulses import pulse
 from rocking.studies.job.inputs import Inputs
-from rocking.studies.job.parts import body_of, choices_of
+from rocking.studies.job.parts import body_of
 from rocking.studies.job.reading import located, read_text, validated
 from rocking.studies.job.response_question import ResponseQuestion
+from rocking.studies.job.restitutions import choices_of
 from rocking.studies.record_set import SyntheticSet
 
 if TYPE_CHECKING:
@@ -134,7 +135,7 @@ def question_from(
     return ResponseQuestion(
         body,
         motion,
-        choices_of(tables.restitution, 0),
+        choices_of(tables.restitution, 0, [body]),
         settings,
         engine=tables.settings.engine,
         friction=tables.response.friction,

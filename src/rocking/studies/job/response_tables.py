@@ -5,8 +5,9 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from rocking.studies.job.restitution_tables import RestitutionTable
 from rocking.studies.job.table import JobTable, Positive, Seed, Words, refused
-from rocking.studies.job.tables import RestitutionTable, SettingsTable
+from rocking.studies.job.tables import SettingsTable
 
 SOURCES = ("pulse", "record", "synthetic")
 """Keys of a motion, of which one is needed."""

@@ -1,4 +1,4 @@
-"""Tables of adaptive studies as files: CSV, Parquet, Excel, and variables of a netCDF file."""
+"""Tables of adaptive studies as files: CSV, Parquet, Excel, MATLAB, and variables of a netCDF file."""
 
 import csv
 import json
@@ -12,6 +12,7 @@ from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.tables import safe_cell
 from rocking.studies.job.answer import Column, Sheet
+from rocking.studies.job.matlab import sheet_to_matlab
 from rocking.studies.job.netcdf import netcdf_file, room_of
 from rocking.studies.job.results import PIECE
 from rocking.studies.job.rows import MOST_ROWS_OF_EXCEL
@@ -100,6 +101,7 @@ def sheet_to_excel(sheet: Sheet, path: Path, attributes: Attributes) -> None:
 SHEET_FORMATS: dict[str, Callable[[Sheet, Path, Attributes], None]] = {
     ".csv": sheet_to_csv,
     ".parquet": sheet_to_parquet,
+    ".mat": sheet_to_matlab,
     ".xlsx": sheet_to_excel,
 }
 """What writes a table, by the end of the file's name."""

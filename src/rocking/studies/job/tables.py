@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from rocking.studies.campaign.chunks import LARGEST_CHUNK
+from rocking.studies.job.restitution_tables import RestitutionTable
 from rocking.studies.job.table import JobTable, Names, Numbers, Positive, Seed, Values, Words, in_list, refused
 
 Kind = Literal[
@@ -78,48 +79,6 @@ class MotionTable(JobTable):
         return self
 
 
-class RandomTable(JobTable):
-    """A coefficient that is drawn: from a normal distribution, or from values such as a posterior."""
-
-    mean: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
-    deviation: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
-    values: Annotated[list[Annotated[float, Field(ge=0.0, le=1.0)]], Field(min_length=2)] | None = None
-    each: Literal["impact", "history"] = "impact"
-    times: str | float = 1.0
-    seed: Seed | None = None
-
-    @model_validator(mode="after")
-    def _one_distribution(self) -> "RandomTable":
-        given = [name for name in ("mean", "deviation") if getattr(self, name) is not None]
-        if len(given) != (2 if self.values is None else 0):
-            beside = " and values" if self.values is not None else ""
-            raise refused(f"give mean and deviation, or values alone; got {' and '.join(given) or 'none'}{beside}")
-        return self
-
-
-class RestitutionTable(JobTable):
-    """What an impact costs."""
-
-    model: Words | None = None
-    models: Annotated[list[Words], Field(min_length=1)] | None = None
-    value: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
-    values: Annotated[list[Annotated[float, Field(ge=0.0, le=10.0)]], Field(min_length=1)] | None = None
-    left: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
-    right: Annotated[float, Field(ge=0.0, le=10.0)] | None = None
-    distribution: RandomTable | None = None
-
-    @model_validator(mode="after")
-    def _one_choice(self) -> "RestitutionTable":
-        if (self.left is None) != (self.right is None):
-            raise refused("left and right go together: one coefficient for each foot")
-        choices = {"model": "model", "value": "value", "distribution": "distribution", "left": "left"}
-        if self.models is None and self.values is None:
-            self.chosen(*choices)
-        elif any(getattr(self, name) is not None for name in choices):
-            raise refused("models and values stand alone, without model, value, distribution, left and right")
-        return self
-
-
 class AxisTable(Values):
     """An axis of a map."""
 
@@ -179,9 +138,10 @@ class InventoryTable(JobTable):
 
 
 class ExportTable(JobTable):
-    """How files are written, and which measures of intensity are compared in them."""
+    """How files are written, how often a study is repeated for intervals, and which measures are compared."""
 
     crossing: Literal["refuse", "common-dispersion"] = "refuse"
+    bootstrap: Annotated[int, Field(ge=99, le=100_000)] | Literal[0] = 0
     measures: Annotated[list[Words], Field(min_length=1)] | None = None
     columns: list[Words] | None = None
 

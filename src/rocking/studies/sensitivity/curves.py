@@ -12,6 +12,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.estimate import Scale, find_curves, log_dispersion, log_fractile
 
 _FEWEST = 0.975
+_WEIGHTS = 4_000_000
 
 
 @dataclass(frozen=True)
@@ -242,12 +243,17 @@ def fits(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> FloatA
 
 def _drawn(levels: FloatArray, hits: list[FloatArray], repetitions: int, seed: int) -> FloatArray:
     """Return curves of motions drawn with replacement, the same for both: (two, median and dispersion, repetitions)."""
-    motions = len(hits[0])
-    draws = np.random.default_rng(seed).multinomial(motions, np.full(motions, 1.0 / motions), size=repetitions)
-    weights = draws.astype(np.float64)
+    motions, random = len(hits[0]), np.random.default_rng(seed)
     known = np.isfinite(hits[0]) & np.isfinite(hits[1])
-    trials = weights @ known.astype(np.float64)
-    return np.array([fits(levels, np.asarray(weights @ np.where(known, values, 0.0)), trials) for values in hits])
+    tables = [known.astype(np.float64), *(np.where(known, values, 0.0) for values in hits)]
+    counts = np.empty((len(tables), repetitions, levels.size))
+    share, size = np.full(motions, 1.0 / motions), max(1, _WEIGHTS // motions)
+    for first in range(0, repetitions, size):  # drawn one after another: the pieces do not matter
+        last = min(first + size, repetitions)
+        weights = random.multinomial(motions, share, size=last - first).astype(np.float64)
+        for whole, table in zip(counts, tables, strict=True):
+            whole[first:last] = weights @ table
+    return np.array([fits(levels, reached, counts[0]) for reached in counts[1:]])
 
 
 def _ends(sample: FloatArray) -> tuple[float, float]:

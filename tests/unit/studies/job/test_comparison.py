@@ -111,5 +111,5 @@ def test_refusals(campaign, tmp_path):
         comparison(alone)
     with pytest.raises(InvalidValueError, match="has no flips"):
         export(alone, tmp_path / "x.csv", "flips")
-    with pytest.raises(InvalidValueError, match=r"\.csv"):
-        export(campaign, tmp_path / "x.nc", "flips")
+    with pytest.raises(InvalidValueError, match=r"flips can be written as \.nc, \.csv, .*got '\.pdf'"):
+        export(campaign, tmp_path / "x.pdf", "flips")

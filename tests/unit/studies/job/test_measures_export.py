@@ -165,7 +165,9 @@ def test_what_the_job_does_not_say(tmp_path):
 def test_several_restitutions(tmp_path):
     """Each has a ranking of its own, which is that of a campaign with it alone; which one is meant must be said."""
     both = finished(tmp_path / "both", job_of('["housner", "ked"]'))
-    assert exports_of(both) == ["histories", "fragility", "fema-p58", "measures", "flips", "differences"]
+    assert exports_of(both) == [
+        "histories", "fragility", "fragility-points", "fema-p58", "measures", "flips", "differences",
+    ]  # fmt: skip
     with pytest.raises(InvalidValueError, match="restitution must be one of housner, ked"):
         export(both, tmp_path / "m.csv", "measures")
     alone = finished(tmp_path / "alone", job_of('["housner"]'))

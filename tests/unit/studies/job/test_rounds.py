@@ -405,7 +405,7 @@ def test_what_can_be_exported(whole, tmp_path):
     for folder, what, name, wanted in (
         ("map", "crossings", "r.csv", "has no crossings"), ("minimum", "boundary", "r.csv", "has no boundary"),
         ("map", "boundary", "r.nc", "boundary can be written as"),
-        ("map", "refined", "r.mat", "refined can be written as"),
+        ("map", "refined", "r.xml", "refined can be written as"),
     ):  # fmt: skip
         with pytest.raises(InvalidValueError, match=wanted):
             export(whole[folder], tmp_path / name, what)

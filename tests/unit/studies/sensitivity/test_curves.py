@@ -158,3 +158,15 @@ def test_bad_input_is_refused(changes, message):
     given = {"curves": ((1.0, 0.4), (1.1, 0.4)), "levels": LEVELS, "first": hits, "second": hits} | changes
     with pytest.raises(InvalidValueError, match=message):
         curve_change(**given)
+
+
+def test_sets_are_drawn_in_pieces_of_any_size(monkeypatch):
+    """Memory is bounded by drawing sets of motions in pieces, whose size does not change a bit; another seed does."""
+    rng = np.random.default_rng(5)
+    capacity = np.exp(rng.normal(0.2, 0.5, (60, 1)))
+    pair = [(capacity * factor < LEVELS).astype(float) for factor in (1.0, 0.9)]
+    curves = (np.exp(0.2), 0.5), (0.9 * np.exp(0.2), 0.5)
+    whole = curve_change(curves, LEVELS, *pair, repetitions=200, seed=1)
+    monkeypatch.setattr("rocking.studies.sensitivity.curves._WEIGHTS", 700)
+    assert curve_change(curves, LEVELS, *pair, repetitions=200, seed=1) == whole
+    assert curve_change(curves, LEVELS, *pair, repetitions=200, seed=2) != whole

@@ -1,0 +1,37 @@
+"""Lognormal curves of all states of an analysis."""
+
+from collections.abc import Sequence
+
+from rocking.conventions import FloatArray
+from rocking.studies.fragility.lognormal import LognormalFit, fit_counts
+from rocking.studies.fragility.pooling import pooled
+from rocking.studies.fragility.states import LimitState, Responses
+from rocking.studies.fragility.subject import Subject
+
+
+def fits_of(
+    subject: Subject, states: Sequence[LimitState], levels: FloatArray, responses: Responses
+) -> dict[str, LognormalFit]:
+    """Return the lognormal curve of each state.
+
+    Parameters
+    ----------
+    subject : Subject
+        The body, the motions and the measure.
+    states : sequence of LimitState
+        The states; rocking is left out where a level decides it.
+    levels : ndarray
+        Level of the measure of each history [its unit].
+    responses : Responses
+        Their outcomes, of the same shape; motions come first, and the histories of one motion are a cluster, together
+        with those of other motions that are the same sample by sample.
+
+    Returns
+    -------
+    dict of str to LognormalFit
+        By name of the state.
+    """
+    wanted = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
+    reached = [responses.exceed(state) for state in wanted]
+    counts = pooled(levels, responses.good, reached, subject.clusters)
+    return {state.name: fit_counts(each) for state, each in zip(wanted, counts, strict=True)}

@@ -1,0 +1,84 @@
+"""Restitutions that a job describes: models, coefficients, and laws that draw them."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from rocking.bodies import Body
+from rocking.dynamics.impact_law import RandomRestitution
+from rocking.errors import InvalidValueError
+from rocking.restitution import model
+from rocking.studies.job.reading import located
+from rocking.studies.sensitivity.posterior import posterior
+from rocking.studies.sensitivity.sampled import SampledRestitution
+
+if TYPE_CHECKING:
+    from rocking.studies.job.restitution_tables import RandomTable, RestitutionTable
+
+
+def choices_of(table: "RestitutionTable", seed: int, bodies: Sequence[Body] = ()) -> dict[str, Any]:
+    """Return the restitutions that a table describes.
+
+    Parameters
+    ----------
+    table : RestitutionTable
+        The table.
+    seed : int
+        Seed of draws, where the table gives none.
+    bodies : sequence of Body
+        The bodies of the job; a posterior is of one.
+
+    Returns
+    -------
+    dict of str to Any
+        Models, coefficients, pairs by side or laws, as `simulate` takes them, by label.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such model, or two choices are the same.
+    """
+    with located("restitution"):
+        words = [*([table.model] if table.model else []), *(table.models or [])]
+        pairs: list[tuple[str, Any]] = [(model(word).label, model(word)) for word in words]
+        numbers = [*([] if table.value is None else [table.value]), *(table.values or [])]
+        pairs += [(f"{value!r}", value) for value in numbers]
+        if table.left is not None:
+            pairs.append((f"left {table.left!r}, right {table.right!r}", {"left": table.left, "right": table.right}))
+        if table.distribution is not None:
+            pairs.append(_drawn(table.distribution, seed, bodies))
+        labels = [label for label, _ in pairs]
+        twice = [label for label in labels if labels.count(label) > 1]
+        if twice:
+            raise InvalidValueError(f"{twice[0]} is given twice")
+        return dict(pairs)
+
+
+def _drawn(table: "RandomTable", seed: int, bodies: Sequence[Body]) -> tuple[str, Any]:
+    times = model(table.times) if isinstance(table.times, str) else table.times
+    law = SampledRestitution if table.each == "history" else RandomRestitution
+    seed = seed if table.seed is None else table.seed
+    how: dict[str, Any] = {"seed": seed, "times": times}
+    if table.posterior:
+        drawn, words = _posterior(table, seed, bodies)
+    elif table.values is not None:
+        drawn, words = law.of_sample(table.values, **how), f"{len(table.values)} values"
+        words += f" from {min(table.values):g} to {max(table.values):g}"
+    else:
+        mean, deviation = table.mean or 0.0, table.deviation or 0.0  # both are there: checked by the table
+        drawn, words = law.normal(mean, deviation, **how), f"{mean:g} +- {deviation:g}"
+    return f"drawn per {table.each}: {words}, seed {seed}", drawn
+
+
+def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Body]) -> tuple[Any, str]:
+    """Return the law that the measurements make of the body: all quantiles, or a sample of so many values."""
+    if len(bodies) != 1:
+        told = f"{len(bodies)} bodies: make a job of each" if bodies else "no [body]; give values instead"
+        raise InvalidValueError(f"distribution.posterior is of one body, and the job has {told}")
+    found = posterior(bodies[0])
+    words = "posterior of the measurements"
+    if found.extrapolated:
+        words += " (extrapolated in slenderness)"
+    law = found.per_history(seed) if table.each == "history" else found.per_impact(seed)
+    if table.count is None:
+        return law, words
+    return type(law).of_sample(found.sample(table.count, seed), seed=seed), f"{table.count} values of the {words}"
