@@ -104,8 +104,8 @@ def export(
         str | None,
         typer.Option(
             help="histories; of fragility campaigns fragility, fragility-points, fema-p58 (.csv); of refined maps "
-            "refined, boundary; of minimum accelerations crossings, minima; of inventories report; of clouds measures; of several "
-            "restitutions flips, differences. What suits the kind if not given."
+            "refined, boundary; of minimum accelerations crossings, minima; of inventories report; of clouds measures; "
+            "of several restitutions flips, differences. What suits the kind if not given."
         ),
     ] = None,
     restitution: Annotated[
