@@ -132,7 +132,7 @@ def _league(result: Reproduction) -> object:
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False, header_style="bold")
-    table.add_column("  model", no_wrap=True, min_width=28)
+    table.add_column("  model", overflow="fold")
     for name in ("RMSE", "bias", "<=3", "3-6", ">6", "loss", "BIC"):
         table.add_column(name, justify="right", no_wrap=True)
     for row in result.league:

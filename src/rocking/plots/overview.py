@@ -68,16 +68,15 @@ def league_figure(rows: Sequence[LeagueRow]) -> "Figure":
         left.plot([row.rmse_low, row.rmse_high], [y, y], color=color, linewidth=1.0)
         left.plot([row.rmse], [y], marker="o", color=color, markerfacecolor="white" if row.parameters else color)
     left.set_yticks(place, [f"{row.name}  {row.fitted}".strip() for row in rows])
-    left.set_xlabel("RMSE of r, 39 measurements [-]")
+    left.set_xlabel("RMSE of r, 39 measurements [-]\n95 % bootstrap interval; open: fitted")
     left.set_xlim(left=0.0)
-    left.set_title("with 95 % bootstrap interval; open: fitted", loc="left")
     markers = ("v", "o", "^")
     for marker, band_name in zip(markers, rows[0].by_band, strict=True):
         values = [row.by_band[band_name] for row in rows]
         right.plot(values, place, linestyle="none", marker=marker, color=INK, markerfacecolor="white", label=band_name)
     right.set_xscale("log")
     right.set_xlabel("RMSE of r by slenderness [-]")
-    right.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, columnspacing=1.0, handletextpad=0.1)
+    right.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, columnspacing=0.6, handletextpad=0.1)
     for axes in (left, right):
         axes.grid(axis="y", color=PALE, linewidth=0.5)
         axes.tick_params(axis="y", length=0)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from rocking.cli import main
+from rocking.evidence.league import league
 
 ROOT = Path(__file__).parents[3]
 
@@ -181,3 +182,13 @@ def test_help_is_quick():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "LOADED []" in done.stdout
+
+
+def test_league_is_whole_in_a_narrow_terminal(capsys, monkeypatch):
+    """At 80 columns no number of the league is cut off, however long a model's name is."""
+    monkeypatch.setenv("COLUMNS", "80")
+    code, out, _ = run(capsys, "paper")
+    table = out[out.index("League") : out.index("Verdict")]
+    assert code == 0
+    assert "…" not in table
+    assert all(f"{row.rmse:.4f}" in table for row in league())
