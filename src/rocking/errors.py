@@ -33,5 +33,9 @@ class MissingExtraError(RockingError, ImportError):
     """A feature needs an optional dependency that is not installed."""
 
 
+class PureRockingWarning(UserWarning):
+    """Pure rocking is not credible for a response: the body would slide or fly, see `simulate_with_contact`."""
+
+
 class SlowEngineWarning(UserWarning):
     """The fast engine was not built, and the reference engine serves in its place."""

@@ -1,6 +1,7 @@
 """The two questions that users ask of one body: how does it rock under a motion, and how does it rock when let go."""
 
 import math
+import warnings
 from dataclasses import fields
 from typing import Any
 
@@ -10,7 +11,7 @@ from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.run import run
 from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
@@ -32,6 +33,7 @@ def simulate(  # noqa: PLR0913 - every one of them is a question that users ask
     duration: float | None = None,
     engine: str = "auto",
     key: int = 0,
+    friction: float | None = None,
     **options: Any,
 ) -> Response:
     """Return how a body rocks under a ground motion.
@@ -57,6 +59,9 @@ def simulate(  # noqa: PLR0913 - every one of them is a question that users ask
         Which engine; which one ran is in `Response.engine`.
     key : int
         Number of the history, for random coefficients.
+    friction : float, optional
+        Coefficient of friction between body and ground [-]; where the response takes more, or the body would fly, a
+        `PureRockingWarning` says so. Without it nothing is checked; `Response.contact` holds what it takes.
     **options
         Fields of `Settings`: linear, rest_speed, most_impacts, longest_step, order, tolerance.
 
@@ -96,10 +101,10 @@ def simulate(  # noqa: PLR0913 - every one of them is a question that users ask
     found = run(
         rocker, segments, settings, engine=engine, scale=scale, key=_key(key), rotation=rotation, velocity=velocity
     )
-    return Response(body, motion, rocker, settings, segments, scale, key, found)
+    return _credible(Response(body, motion, rocker, settings, segments, scale, key, found), friction)
 
 
-def free_rocking(
+def free_rocking(  # noqa: PLR0913 - as for `simulate`
     body: Body,
     rotation: float = 0.0,
     restitution: Any = "ked",
@@ -109,6 +114,7 @@ def free_rocking(
     duration: float | None = None,
     engine: str = "auto",
     key: int = 0,
+    friction: float | None = None,
     **options: Any,
 ) -> Response:
     """Return how a body rocks when it is let go, or pushed, on ground at rest.
@@ -131,6 +137,9 @@ def free_rocking(
         Which engine.
     key : int
         Number of the history, for random coefficients.
+    friction : float, optional
+        Coefficient of friction between body and ground [-]; where the response takes more, or the body would fly, a
+        `PureRockingWarning` says so. Without it nothing is checked; `Response.contact` holds what it takes.
     **options
         Fields of `Settings`.
 
@@ -163,7 +172,7 @@ def free_rocking(
     found = run(rocker, segments, settings, engine=engine, key=_key(key), rotation=rotation, velocity=velocity)
     if duration is None:
         found, segments = _until_rest(found, segments)
-    return Response(body, None, rocker, settings, segments, 1.0, key, found)
+    return _credible(Response(body, None, rocker, settings, segments, 1.0, key, found), friction)
 
 
 def settings_of(gravity: float, options: dict[str, Any]) -> Settings:
@@ -251,3 +260,10 @@ def _until_rest(found: Any, segments: Segments) -> tuple[Any, Segments]:
         return found, segments
     shorter = replace(found, rotation=found.rotation[: last + 1], angular_velocity=found.angular_velocity[: last + 1])
     return shorter, Segments.still(segments.step, last)
+
+
+def _credible(response: Response, friction: float | None) -> Response:
+    if friction is not None:
+        for sentence in response.contact.warnings(friction):
+            warnings.warn(sentence, PureRockingWarning, stacklevel=3)
+    return response

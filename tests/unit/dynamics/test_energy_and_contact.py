@@ -1,6 +1,7 @@
 """The energy of a response adds up, and the forces of the ground are those of the closed forms."""
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import engine
+from rocking.errors import InvalidValueError, PureRockingWarning
 
 ENGINES = [
     pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
@@ -140,3 +142,19 @@ def test_forces_follow_from_the_motion(name: str) -> None:
     # samples interpolated linearly at steps of 0.05 / p, and differences of second order: 1e-3 of the weight
     np.testing.assert_allclose(np.interp(t, contact.time, contact.horizontal), f_x, atol=1e-3 * scale)
     np.testing.assert_allclose(np.interp(t, contact.time, contact.vertical), f_z, atol=1e-3 * scale)
+
+
+def test_simulate_warns_where_sliding_would_follow() -> None:
+    """With a coefficient of friction the call itself warns, and names the engine that slides; with enough none."""
+    pulse = rk.pulses.sine(amplitude=4.5, period=0.4)
+    with pytest.warns(PureRockingWarning, match="simulate_with_contact"):
+        slides = rk.simulate(BLOCK, pulse, R, friction=0.2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        holds = rk.simulate(BLOCK, pulse, R, friction=5.0)
+        rk.simulate(BLOCK, pulse, R)
+    np.testing.assert_array_equal(slides.rotation, holds.rotation)
+    with pytest.warns(PureRockingWarning, match="impacts without slip"):
+        rk.free_rocking(BLOCK, START, R, friction=0.1)
+    with pytest.raises(InvalidValueError, match="friction"):
+        rk.simulate(BLOCK, pulse, R, friction=-0.3)
