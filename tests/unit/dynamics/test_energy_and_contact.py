@@ -147,14 +147,16 @@ def test_forces_follow_from_the_motion(name: str) -> None:
 def test_simulate_warns_where_sliding_would_follow() -> None:
     """With a coefficient of friction the call itself warns, and names the engine that slides; with enough none."""
     pulse = rk.pulses.sine(amplitude=4.5, period=0.4)
-    with pytest.warns(PureRockingWarning, match="simulate_with_contact"):
+    with pytest.warns(PureRockingWarning) as told:
         slides = rk.simulate(BLOCK, pulse, R, friction=0.2)
+    assert all("simulate_with_contact" in str(each.message) for each in told)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         holds = rk.simulate(BLOCK, pulse, R, friction=5.0)
         rk.simulate(BLOCK, pulse, R)
     np.testing.assert_array_equal(slides.rotation, holds.rotation)
-    with pytest.warns(PureRockingWarning, match="impacts without slip"):
+    with pytest.warns(PureRockingWarning) as told:
         rk.free_rocking(BLOCK, START, R, friction=0.1)
+    assert any("impacts without slip" in str(each.message) for each in told)
     with pytest.raises(InvalidValueError, match="friction"):
         rk.simulate(BLOCK, pulse, R, friction=-0.3)
