@@ -14,7 +14,7 @@ from rocking.restitution.shifted_impulse import shifted
 Predict = Callable[[FloatArray, DataSet, int], FloatArray]
 BLOCKS = ("S", "M", "L")
 DAMPED = (1.0, DAMPING[1])
-"""Damping ratios that are fitted [-]: below 1 hops are left over, and the table states errors as large as the scatter."""
+"""Damping ratios that are fitted [-]: below 1 hops are left over, and the stated error nears the scatter."""
 
 
 @dataclass(frozen=True)
