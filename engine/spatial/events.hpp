@@ -77,16 +77,33 @@ void Run<D>::impact(int vertex) {
     }
     if (stance_->contact == kEdge || count > 2) closed = body_.every();
     if (closed == body_.every()) flatten();
+    if (at_once_ > kPiled) return stick(closed);
     land(landed(body_, state(), closed, static_cast<int>(row_.law), row_.coefficient), closed);
+}
+
+// Impacts that pile up at one moment leave the largest set of touching points at rest, pulled or not.
+template <int D>
+void Run<D>::stick(std::uint64_t closed) {
+    const double before = kinetic();
+    const State now = state();
+    const Pivot* stays = nullptr;
+    any_candidate(body_, closed, [&](const Pivot& stance) { return stays = &stance, true; });
+    const Vec after = plastic_after(body_, now, *stays);
+    stand(*stays);
+    velocity_ = after, touching_ = 0;
+    sticks_ = stays->contact == kEdge;
+    made_.lost += before - kinetic();
+    note(kImpact, before, kinetic());
+    guard();
 }
 
 template <int D>
 void Run<D>::land(const Choice& landing, std::uint64_t touching) {
-    const double before = kinetic();
+    const double before = kinetic() + (stance_->contact == kRolling ? potential() : 0.0);  // a height given up is lost
     if (!landing.stance) return stop(kFailed, kNotFinite);
     stand(*landing.stance);
     velocity_ = landing.velocity;
-    const bool weak = kinetic() + potential() < weak_;
+    const bool weak = calm();
     const Choice stays = settled(body_, state(), landing, touching, slow_, weak);
     stand(*stays.stance);
     velocity_ = stays.velocity;

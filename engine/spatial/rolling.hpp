@@ -113,6 +113,11 @@ inline void read_rolling(const Body& body, Step& step) {
     }
 }
 
+// Whether it leans so little that a loss of contact is a hop below its own gap: then it is held down, and `held` says so.
+inline bool nearly_flat(const Body& body, Vec up) {
+    return std::sqrt(up.x * up.x + up.y * up.y) * body.centre.z < 0.01 * body.radius;
+}
+
 // When a round base begins to roll, or lies flat.
 inline double rim_event(const Body& body, const Pivot& stance, const Step& step) {
     double lean[kMostOrder + 1], steep[kMostOrder + 1];
@@ -127,7 +132,10 @@ inline double rim_event(const Body& body, const Pivot& stance, const Step& step)
         return first_zero(lean, order, false, 0.0);
     }
     steep[0] += kStartRolling;
-    return lesser(first_zero(lean, order, std::fabs(lean[0]) < kNothing, 0.0), first_zero(steep, order, false, 0.0));
+    // lifted from rest it leans with the cube of time: what rounding leaves of lower powers decides nothing
+    const double pull = norm({step.field[0][0], step.field[0][1], step.field[0][2]});
+    const double floor = 0.25 * kSlowOpening * pull * step.length * step.length / body.radius;
+    return lesser(first_zero(lean, order, std::fabs(lean[0]) < kNothing, floor), first_zero(steep, order, false, 0.0));
 }
 
 }  // namespace ROCKING_ISA

@@ -37,12 +37,25 @@ void Run<D>::step_on_rim(int order, double angle) {
     if (done_) return;
     double normal[kMostOrder + 1];
     normal_force(step_, normal);
-    const double letting = first_zero(normal, step_.s.order - 2, false, 0.0), turn = rim_event(body_, *stance_, step_);
+    double letting = first_zero(normal, step_.s.order - 2, false, 0.0);
+    const double turn = rim_event(body_, *stance_, step_);
+    const bool held = letting <= 1.0 && nearly_flat(body_, vec(value_at(step_.s.z, step_.s.order, letting)));
+    if (held) letting = kNone;
     const double at = lesser(1.0, lesser(letting, turn));
     arrive(at, whole_ && at == 1.0);
+    if (z_.z <= 0.0) return finish_step();  // it lies before anything else happens
     if (turn == at) return change_on_rim();
     if (letting == at) return released(-1);
+    if (held) made_.held += at * step_.length;
+    if (lies_down()) return land({&body_.face, {}, 0.0}, 0);
     finish_step();
+}
+
+// Whether a round base with hardly any energy left would stay flat: rolling alone never comes to rest.
+template <int D>
+bool Run<D>::lies_down() const {
+    if (!(nearly_flat(body_, z_) && calm())) return false;
+    return forces(body_, body_.face, {}, z_, field_now()).support > 0.0;
 }
 
 template <int D>

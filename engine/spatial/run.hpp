@@ -6,8 +6,8 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-constexpr double kPull = 1e-9, kSlowOpening = 1e-9, kPatience = 300.0;
-constexpr int kStuck = 100, kUpkeep = 16, kHalvings = 60;
+constexpr double kPull = 1e-9, kPatience = 300.0;
+constexpr int kStuck = 100, kPiled = 60, kUpkeep = 16, kHalvings = 60;
 
 // Angles 1.5 rate h below which a series of an order is exact to the tolerance: x^(n + 1) / (n + 1)! = tolerance.
 struct Orders {
@@ -75,7 +75,9 @@ private:
     void start_round();
     void step_on_rim(int order, double angle);
     void change_on_rim();
+    bool lies_down() const;
     void impact(int vertex);
+    void stick(std::uint64_t closed);
     void released(int which);
     void land(const Choice& choice, std::uint64_t touching);
     void note(int kind, double before, double after);
@@ -132,6 +134,8 @@ private:
     }
     State state() const { return {stance_->at, velocity_, z_, field_now()}; }
     double kinetic() const { return 0.5 * dot(velocity_, stance_->inertia * velocity_); }
+    // Whether hardly any energy is left; a body on its way down has less than none, and is not at rest.
+    bool calm() const { return kinetic() + std::fabs(potential()) < weak_; }
     double potential() const { return body_.mass * set_.gravity * rise(body_, z_, stance_->at); }
 
     const Body& body_;
@@ -153,6 +157,7 @@ private:
     Turn turn_;
     bool spelled_ = true;  // whether the series of the axes are there, which a step about an edge rarely needs
     bool whole_ = false, to_horizon_ = false;
+    bool sticks_ = false;  // whether impacts piled up on this edge, so that no end of it is released
     double peak_ = 0.0, peak_time_ = 0.0, fastest_ = 0.0, over_time_ = kNan;  // the peak as the square of its sine
     int over_contact_ = -1, over_number_ = -1;
     Pivot rims_[2];

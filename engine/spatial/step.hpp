@@ -58,6 +58,7 @@ void Run<D>::move() {
     }
     if (done_) return;
     if (clear) {
+        sticks_ = false;
         arrive(1.0, whole_);
         return finish_step();
     }
@@ -78,9 +79,16 @@ void Run<D>::locate() {
         const double at = first_zero(gap, step_.s.order, (touching_ & bit(number)) != 0, floor);
         if (at < contact || (at == contact && at <= 1.0 && number < vertex)) contact = at, vertex = number;
     }
-    const Release letting = first_release(body_, *stance_, step_);
+    Release letting = first_release(body_, *stance_, step_);
+    sticks_ = sticks_ && letting.which >= 0;
+    if (sticks_) {  // no end is released
+        double push[kMostOrder + 1];
+        normal_force(step_, push);
+        letting = {first_zero(push, step_.s.order - 2, false, 0.0), -1};
+    }
     const double at = lesser(1.0, lesser(contact, letting.at));
     arrive(at, whole_ && at == 1.0);
+    if (z_.z <= 0.0) return finish_step();  // it lies before anything else happens
     if (contact == at) return impact(vertex);
     if (letting.at == at) return released(letting.which);
     if (stance_->contact == kEdge) {

@@ -6,7 +6,7 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-constexpr double kNone = 2.0, kNothing = 1e-13;
+constexpr double kNone = 2.0, kNothing = 1e-13, kSlowOpening = 1e-9;
 
 inline double value_of(const double* c, int order, double at) {
     double total = c[order];

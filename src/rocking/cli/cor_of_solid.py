@@ -1,13 +1,37 @@
 """`rocking cor` of a body in space: from the options to what is printed."""
 
+import json
 from pathlib import Path
 from typing import Any
 
+from rocking.bodies.solid import RoundBase
 from rocking.cli import solid_cor_output
 from rocking.cli.files_output import check_files
 from rocking.cli.solid_impact import SolidAnswer
 from rocking.cli.solid_options import refuse, solid_from, spelt
 from rocking.conventions import g
+
+ROUND_BASE = (
+    "a round base rolls round its rim and has no impact in one plane: these values hold only if the body is held to "
+    "one vertical plane, and must not be used for one that is free; `rocking simulate` follows it as it rolls"
+)
+"""What must be known before a plane coefficient of a round base is used."""
+
+
+def notes(found: SolidAnswer) -> list[str]:
+    """Return what limits the use of the coefficients.
+
+    Parameters
+    ----------
+    found : SolidAnswer
+        Body and coefficients.
+
+    Returns
+    -------
+    list of str
+        One sentence each; none for a base with corners.
+    """
+    return [ROUND_BASE] if isinstance(found.file.solid.base, RoundBase) else []
 
 
 def answer(
@@ -58,8 +82,11 @@ def answer(
     if picture is not None:
         solid_cor_output.draw(found.file, picture)
     if as_json:
-        print(solid_cor_output.as_json(found))
+        facts = json.loads(solid_cor_output.as_json(found))
+        print(json.dumps({**facts, "notes": notes(found)}, indent=2, allow_nan=False))
         return
     solid_cor_output.show(found)
+    for sentence in notes(found):
+        print(f"! {sentence}")
     for path in filter(None, (csv, picture)):
         print(f"wrote {path}")

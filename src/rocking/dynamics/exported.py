@@ -55,8 +55,9 @@ class Exported:
 
     @property
     def headed(self) -> dict[str, np.ndarray]:
-        """Samples by headings such as ``rotation [rad]``; ``[-]`` for numbers without a unit."""
-        return {f"{name} [{'-' if q.unit == '1' else q.unit}]": q.values for name, q in self.samples.items()}
+        """Samples by headings such as ``rotation [rad]``; ``[-]`` for numbers without a unit, nothing for words."""
+        units = {name: "-" if one.unit == "1" else one.unit for name, one in self.samples.items()}
+        return {f"{name} [{units[name]}]" if units[name] else name: q.values for name, q in self.samples.items()}
 
 
 def told(motion: Any) -> str:

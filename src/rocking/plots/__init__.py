@@ -6,6 +6,7 @@ from rocking.plots.cloud import cloud_picture
 from rocking.plots.crossings import crossings_picture
 from rocking.plots.crossings_of_many import crossings_of_many_picture
 from rocking.plots.difference_map import difference_map_picture
+from rocking.plots.falling import falling_picture
 from rocking.plots.figure_1 import figure_1
 from rocking.plots.figure_2 import figure_2
 from rocking.plots.fragility import fragility_picture
@@ -38,6 +39,7 @@ __all__ = [
     "crossings_picture",
     "difference_map_picture",
     "energy_picture",
+    "falling_picture",
     "figure_1",
     "figure_2",
     "figure_3",

@@ -103,6 +103,17 @@ def test_round_base(capsys, file):
     assert "a circle of radius 0.5 m" in page
 
 
+def test_round_base_says_that_it_rolls(capsys, file):
+    """Page and JSON say that the values of a drum hold in one plane only (3.5); a prism needs no such words."""
+    drum, prism = file(DRUM, "drum.toml"), file(PRISM, "prism.toml")
+    (note,) = answered(capsys, drum)["notes"]
+    assert "rolls round its rim" in note
+    assert "one vertical plane" in note
+    assert f"! {note}" in run(capsys, drum)[1]
+    assert answered(capsys, prism)["notes"] == []
+    assert "rolls" not in run(capsys, prism)[1]
+
+
 def test_edge_without_a_parallel_one_lands_on_a_corner(capsys, file):
     """On a triangle the body falls from an edge onto the corner that faces it, with the flags of the models."""
     path = file(WEDGE)

@@ -117,7 +117,7 @@ def mesh_from_file(
     BodyFileError
         If the file is no such mesh or damaged.
     GeometryError
-        If the surface cannot be closed safely.
+        If the surface cannot be closed safely or passes through itself.
     InvalidValueError
         If unit or axis are unknown.
     MissingExtraError
@@ -132,7 +132,10 @@ def mesh_from_file(
         if kind not in MESH_FORMATS:
             raise BodyFileError(f"is no mesh that is read here: {', '.join(MESH_FORMATS)}")
         vertices, faces = _loaded(_content(path), kind)
-        done = repaired(vertices * scale @ _UP[up].T, faces, weld_tolerance=weld_tolerance, fill_holes=fill_holes)
+        done = repaired(
+            vertices * scale @ _UP[up].T, faces, weld_tolerance=weld_tolerance, fill_holes=fill_holes,
+            place=lambda where: _in_file(where @ _UP[up] / scale, units),
+        )  # fmt: skip
         doubts = [*_size_doubts(done.shape, units), *_precision_doubts(vertices, kind)]
         if kind == "glb" and units != "m":
             doubts.append(f"GLB files are in m by their specification; read in {units} as asked")
@@ -175,6 +178,10 @@ def solid_from_mesh(
     mesh = mesh_from_file(path, units=units, **options)
     with blamed(Path(path).name):
         return mesh.solid(density, base=base, base_tolerance=base_tolerance), mesh.repairs
+
+
+def _in_file(place: FloatArray, units: str) -> str:
+    return f"({', '.join(f'{round(x, 9) + 0.0:.4g}' for x in place.tolist())}) {units}"
 
 
 def _content(path: Path) -> bytes:

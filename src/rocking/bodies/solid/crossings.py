@@ -1,4 +1,4 @@
-"""Which points lie inside a closed surface of triangles: count the faces above them."""
+"""How often a closed surface of triangles winds round points: count the faces above them."""
 
 import numpy as np
 
@@ -32,7 +32,32 @@ def inside(points: FloatArray, triangles: FloatArray) -> BoolArray:
     >>> inside(np.array([[0.1, 0.1, 0.5], [0.1, 0.1, 1.5]]), box(1.0, 1.0, 1.0).corners).tolist()
     [True, False]
     """
-    result = np.zeros(len(points), dtype=bool)
+    return winding(points, triangles) > 0.5
+
+
+def winding(points: FloatArray, triangles: FloatArray) -> FloatArray:
+    """Return how many times a closed, oriented surface winds round each point.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Points [m].
+    triangles : ndarray, shape (m, 3, 3)
+        Corners, counter-clockwise seen from outside [m].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        1 inside a body, 0 outside; anything else where the surface overlaps itself or is inside out [-].
+
+    Examples
+    --------
+    >>> from rocking.bodies.solid import box
+    >>> cube = box(1.0, 1.0, 1.0).corners
+    >>> winding(np.array([[0.1, 0.1, 0.5]]), np.concatenate([cube, cube])).tolist()
+    [2.0]
+    """
+    result = np.zeros(len(points))
     if not len(points):
         return result
     # an irrational nudge keeps plumb lines off edges and vertices of regular meshes
@@ -50,15 +75,15 @@ def inside(points: FloatArray, triangles: FloatArray) -> BoolArray:
     return result
 
 
-def _counted(points: FloatArray, triangles: FloatArray) -> BoolArray:
+def _counted(points: FloatArray, triangles: FloatArray) -> FloatArray:
     if not len(triangles):
-        return np.zeros(len(points), dtype=bool)
+        return np.zeros(len(points))
     step = max(1, _MOST_PAIRS // len(triangles))
-    pieces = [_winding(points[i : i + step], triangles) for i in range(0, len(points), step)]
-    return np.concatenate(pieces) > 0.5
+    pieces = [_plumbed(points[i : i + step], triangles) for i in range(0, len(points), step)]
+    return np.concatenate(pieces)
 
 
-def _winding(points: FloatArray, triangles: FloatArray) -> FloatArray:
+def _plumbed(points: FloatArray, triangles: FloatArray) -> FloatArray:
     flat = triangles[None, :, :, :2] - points[:, None, None, :2]
     x, y = flat[..., 0], flat[..., 1]
     # shares of the corners: the areas that the plumb line cuts off opposite each

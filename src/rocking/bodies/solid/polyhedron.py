@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.bodies.solid.crossings import inside
 from rocking.bodies.solid.moments import SolidMoments, polyhedron_moments
+from rocking.bodies.solid.self_crossing import check_crossings
 from rocking.bodies.solid.shape import Footprint, Shape, placed_points
 from rocking.bodies.solid.surfaces import Surface
 from rocking.bodies.solid.triangle_surface import TriangleSurface
@@ -24,11 +25,13 @@ class Polyhedron(Shape):
         Vertices [m].
     faces : array_like of int, shape (m, 3)
         Corners of each triangle, counter-clockwise seen from outside; cavities are lined by faces that look inward.
+    simple : bool
+        Whether the surface is known not to pass through itself, and is not tried for it.
 
     Raises
     ------
     GeometryError
-        If the surface is not closed and oriented, is inside out, or encloses no volume.
+        If the surface is not closed and oriented, is inside out, encloses no volume, or passes through itself.
 
     Examples
     --------
@@ -37,10 +40,12 @@ class Polyhedron(Shape):
     0.166666666667
     """
 
-    def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, simple: bool = False) -> None:
         self.vertices = _vertices(vertices)
         self.faces = _faces(faces, len(self.vertices))
         _check_closed(self.faces)
+        if not simple:
+            check_crossings(self.corners)
         self._check_volume()
 
     def __repr__(self) -> str:
@@ -142,7 +147,7 @@ class Polyhedron(Shape):
         Polyhedron
             The larger or smaller shape.
         """
-        return Polyhedron(self.vertices * checks.positive("size", size), self.faces)
+        return Polyhedron(self.vertices * checks.positive("size", size), self.faces, simple=True)
 
     def mirrored(self) -> "Polyhedron":
         """Return the mirror image x -> -x.
@@ -152,7 +157,7 @@ class Polyhedron(Shape):
         Polyhedron
             With faces turned, so that they look outward again.
         """
-        return Polyhedron(self.vertices * np.array([-1.0, 1.0, 1.0]), self.faces[:, ::-1])
+        return Polyhedron(self.vertices * np.array([-1.0, 1.0, 1.0]), self.faces[:, ::-1], simple=True)
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
         """Return tetrahedra between the faces and the centre, if the whole surface is seen from there.

@@ -44,7 +44,9 @@ class Prism(Polyhedron):
         a, b = sides.T
         around = np.concatenate([np.stack([a, b, b + count], axis=1), np.stack([a, b + count, a + count], axis=1)])
         super().__init__(
-            np.concatenate([bottom, top]), np.concatenate([self._caps[:, ::-1], self._caps + count, around])
+            np.concatenate([bottom, top]),
+            np.concatenate([self._caps[:, ::-1], self._caps + count, around]),
+            simple=True,
         )
 
     def moments(self) -> SolidMoments:
@@ -132,7 +134,7 @@ class Box(Polyhedron):
         names = ("width", "depth", "height")
         self.size = np.array([checks.length(n, v) for n, v in zip(names, (width, depth, height), strict=True)])
         unit = np.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)], dtype=np.float64)
-        super().__init__((unit - np.array([0.5, 0.5, 0.0])) * self.size, _BOX_FACES)
+        super().__init__((unit - np.array([0.5, 0.5, 0.0])) * self.size, _BOX_FACES, simple=True)
 
     def moments(self) -> SolidMoments:
         """Return volume, centre and second moments in closed form, ``V a^2/12`` along each axis.

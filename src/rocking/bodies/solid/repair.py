@@ -4,6 +4,7 @@ The order matters. A surface that is not welded has no neighbours, so that turni
 harm; nothing is integrated before the surface is closed.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies.solid.holes import boundary_loops, filled, holes_sentence
 from rocking.bodies.solid.polyhedron import Polyhedron, open_edges
+from rocking.bodies.solid.self_crossing import check_crossings, in_metres
 from rocking.bodies.solid.shells import oriented_shells, turned_consistently
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import GeometryError
@@ -39,7 +41,12 @@ class Repaired:
 
 
 def repaired(
-    vertices: FloatArray, faces: IntArray, *, weld_tolerance: float | None = None, fill_holes: bool = False
+    vertices: FloatArray,
+    faces: IntArray,
+    *,
+    weld_tolerance: float | None = None,
+    fill_holes: bool = False,
+    place: Callable[[FloatArray], str] = in_metres,
 ) -> Repaired:
     """Return the closed surface that triangles describe, with a sentence for every change.
 
@@ -54,6 +61,8 @@ def repaired(
         1e-6 of its size.
     fill_holes : bool
         Whether holes of less than 1 % of the surface may be closed.
+    place : callable
+        Turns a place in the given coordinates [m] into the words that the user reads.
 
     Returns
     -------
@@ -63,7 +72,7 @@ def repaired(
     Raises
     ------
     GeometryError
-        If the triangles do not enclose a volume and no small repair makes them.
+        If the triangles do not enclose a volume and no small repair makes them, or pass through each other.
 
     Examples
     --------
@@ -74,7 +83,7 @@ def repaired(
     >>> repaired(cube.vertices, faces).repairs
     ('turned round 1 of 12 faces that looked the other way than their neighbours',)
     """
-    _check_finite(vertices)
+    vertices, faces = _triangles(vertices, faces)
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     points = vertices - middle
     size = checks.length("largest dimension of the mesh", float(np.ptp(points, axis=0).max()))
@@ -90,9 +99,28 @@ def repaired(
     _check_orientable(faces)
     faces = oriented_shells(points, faces, said)
     points, faces = _used(points, faces)
-    shape = Polyhedron(points, faces)
+    if not check_crossings(points[faces], lambda where: place(where + middle)):
+        said.append("too many faces lie side by side to try whether all of them keep clear of each other")
+    shape = Polyhedron(points, faces, simple=True)
     _check_hull(shape)
     return Repaired(shape, middle, tuple(said))
+
+
+def _triangles(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    points, numbers = checks.real_array("vertices", vertices, "m"), np.asarray(faces)
+    if points.ndim != 2 or points.shape[1:] != (3,):
+        raise GeometryError(f"vertices must be points (x, y, z) in m, got an array of shape {points.shape}")
+    if numbers.ndim != 2 or numbers.shape[1:] != (3,) or numbers.dtype.kind not in "iu" or not len(numbers):
+        raise GeometryError(
+            f"faces must be triangles, each of three vertex numbers, got {numbers.dtype} of shape {numbers.shape}"
+        )
+    _check_finite(points)
+    if numbers.min() < 0 or numbers.max() >= len(points):
+        raise GeometryError(
+            f"faces must name vertices 0 to {len(points) - 1}, got {numbers.min()} to {numbers.max()}; "
+            "do the numbers start at 1, or belong to another list of vertices?"
+        )
+    return points, numbers.astype(np.int64)
 
 
 def _check_finite(vertices: FloatArray) -> None:

@@ -14,6 +14,7 @@ from rocking.bodies.solid.moments import SolidMoments, combined
 from rocking.bodies.solid.overlap import check_disjoint
 from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.placement import rotation_about
+from rocking.bodies.solid.possible import check_possible
 from rocking.bodies.solid.prism import Prism
 from rocking.bodies.solid.shape import Shape
 from rocking.bodies.solid.support import Base, RoundBase
@@ -42,8 +43,8 @@ class Solid:
     Raises
     ------
     GeometryError
-        If parts overlap, the body does not stand on the ground, has no base with an area, or its centre is not
-        above the base.
+        If parts overlap or have moments that no body has, the body does not stand on the ground, has no base with
+        an area, or its centre is not above the base.
     InvalidValueError
         If a number is not finite.
 
@@ -74,6 +75,7 @@ class Solid:
         middle = 0.5 * (low + high)
         self.origin: FloatArray = np.array([middle[0], middle[1], self._ground])
         self.local_parts = tuple(part.moved(*(-self.origin).tolist()) for part in listed)
+        check_possible(self.local_parts)
         check_disjoint(self.local_parts)
         self.local_base = self._placed_base(base, tolerance)
         self._check_support()

@@ -19,6 +19,7 @@ from rocking.dynamics.bed.tables import COUNTS, RESULTS, SAMPLES, Setup
 from rocking.errors import InvalidValueError, MissingExtraError
 
 BedEngine = Literal["auto", "fast", "reference"]
+ENGINES: tuple[BedEngine, ...] = ("auto", "fast", "reference")
 MOST_STEPS = 500_000
 
 
@@ -172,6 +173,8 @@ def bed_impact(
 
     Raises
     ------
+    InvalidValueError
+        If a value is outside its range, the law cannot carry the body, or there is no such engine.
     MissingExtraError
         If the fast engine was asked for and not built.
 
@@ -185,6 +188,8 @@ def bed_impact(
     >>> round(impact.coefficient, 2)
     0.7
     """
+    if engine not in ENGINES:
+        raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {engine!r:.40}; a typing error?")
     setup = setup_of(
         body, bed, rotation=rotation, angular_velocity=angular_velocity, impulsive=impulsive,
         ground_acceleration=ground_acceleration, tolerance=tolerance,
@@ -241,10 +246,8 @@ def setup_of(
     given: tuple[object, object] = (body, bed)
     if not (isinstance(given[0], Body) and isinstance(given[1], ContactBed)):
         raise InvalidValueError(f"body and bed must be a Body and a ContactBed, got {body!r:.40} and {bed!r:.40}")
-    push = checks.number("horizontal ground acceleration", ground_acceleration[0], "m/s2")
-    total = checks.positive("gravity", gravity, "m/s2") + checks.number(
-        "vertical ground acceleration", ground_acceleration[1], "m/s2"
-    )
+    push, lift = _accelerations(ground_acceleration)
+    total = checks.positive("gravity", gravity, "m/s2") + lift
     total = checks.positive("gravity + vertical ground acceleration", total, "m/s2", hint="the body floats")
     tolerance = checks.within("tolerance", tolerance, 1e-13, 1e-3)
     law = bed.law.numbers(body.mass)
@@ -259,3 +262,15 @@ def setup_of(
     if impulsive:
         longest = min(longest, 1e6 * start.depth / start.speed)
     return Setup(rigid, law, start, push, tolerance, longest)
+
+
+def _accelerations(given: object) -> tuple[float, float]:
+    if not isinstance(given, (tuple, list, np.ndarray)) or np.shape(given) != (2,):
+        raise InvalidValueError(
+            f"ground_acceleration must be two finite numbers, horizontal and vertical [m/s2], got {given!r:.60}; "
+            "for a horizontal one alone give (value, 0.0)"
+        )
+    return (
+        checks.number("horizontal ground acceleration", given[0], "m/s2"),
+        checks.number("vertical ground acceleration", given[1], "m/s2"),
+    )

@@ -42,7 +42,8 @@ def simulate_spatial(  # noqa: PLR0913 - every one of them is a question that us
     """Return how a body rocks in space under up to three components of ground motion.
 
     The body turns about the edges and vertices of its base, or rolls on its rim, and does not slip; where it would
-    leave the ground, the history stops and says so.
+    leave the ground, the history stops and says so. A round base under two components rolls and has no impacts, so that
+    the restitution does not matter; after it has rolled through lying nearly flat, small causes have large effects.
 
     Parameters
     ----------

@@ -58,6 +58,53 @@ def _least_pull(body: SpatialBody, state: State, touching: tuple[int, ...]) -> C
     return best
 
 
+def stuck(body: SpatialBody, state: State, touching: tuple[int, ...]) -> Choice:
+    """Return what impacts leave that pile up at one moment: the largest set of touching points, pulled or not.
+
+    A body that turns about the vertical on one corner while its neighbour chatters beside it comes to stick on both: in
+    the limit both are at rest, and without slip nothing else is. Its impulses show the pull: in truth a corner slips.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        With a polygon for a base.
+    state : State
+        Before the impact.
+    touching : tuple of int
+        Vertices on the ground.
+
+    Returns
+    -------
+    Choice
+        Edge or face, after a plastic impact.
+    """
+    stance = next(candidates(body, touching))
+    velocity = np.zeros(3)
+    if stance.contact is not Contact.REST:
+        velocity = projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
+    return Choice(stance, velocity, impulses(body, state, stance, velocity))
+
+
+def laid_down(body: SpatialBody, state: State) -> Choice | None:
+    """Return a round base laid flat, where the ground would hold it there: rolling alone never comes to rest.
+
+    Parameters
+    ----------
+    body : SpatialBody
+        With a round base.
+    state : State
+        Hardly any energy left.
+
+    Returns
+    -------
+    Choice, optional
+        At rest; None where it would be lifted at once.
+    """
+    flat, still = stances.face(body), np.zeros(3)
+    holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
+    return Choice(flat, still, impulses(body, state, flat, still)) if holds else None
+
+
 def rim_landed(body: SpatialBody, state: State, law: SpatialImpactLaw) -> Choice:
     """Return what the impact of a round base that falls flat leaves: its far side, or all of it.
 

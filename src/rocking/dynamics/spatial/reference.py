@@ -13,7 +13,7 @@ from rocking.dynamics.spatial.course import Course
 from rocking.dynamics.spatial.events import Step
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
-from rocking.dynamics.spatial.landing import CLOSED, landed, rim_landed, settled, started
+from rocking.dynamics.spatial.landing import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
 from rocking.dynamics.spatial.outcome import Contact, SpatialStatus
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.rolling import RollingFlow
@@ -23,7 +23,7 @@ from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.spatial.trajectory import Piece, SpatialEventKind, SpatialTrajectory
 
 _PULL = 1e-9
-_STUCK = 100
+_STUCK, _PILED = 100, 60
 _PATIENCE = 300.0
 
 
@@ -56,6 +56,7 @@ class SpatialReference:
         self.place = np.zeros(2)
         self.touching: tuple[int, ...] = ()
         self.at_once, self.moment = 0, -1.0  # events at one moment
+        self.sticks = False  # whether impacts piled up on this edge, so that no end of it is released
 
     # ---- the course of a history ------------------------------------------------------------------------------------
 
@@ -129,20 +130,31 @@ class SpatialReference:
         contact = events.first_contact(self.body, self.stance, step, self.touching)
         letting = release.first_release(self.body, self.stance, step)
         rim = events.rim_events(self.body, self.stance, step) if self.body.round else None
+        held = letting is not None and self._held_down(letting, step)
+        letting = None if held else letting
+        self.sticks &= held
         at = min([1.0, *(e[0] for e in (contact, letting) if e is not None), *([] if rim is None else [rim])])
         self._arrive(piece, at, step.up[:, 2], whole=whole and at == 1.0)
+        if self._up[2] <= 0.0:  # it lies before anything else happens
+            return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
         if contact is not None and contact[0] == at:
             return self._impact(contact[1])
         if rim is not None and rim == at:
             return self._rim()
         if letting is not None and letting[0] == at:
             return self._released(letting[1])
-        if (
-            self.stance.contact is Contact.EDGE
-            and min(release.end_forces(self.body, self.stance, step, at)) < -self.pull
-        ):
-            self.course.held += step.length
+        return self._stepped(step, at, held=held)
+
+    def _stepped(self, step: Step, at: float, *, held: bool) -> tuple[Outcome, SpatialStatus] | None:
+        """Look at where a step without event has led."""
+        pulls = self.stance.contact is Contact.EDGE
+        pulls = pulls and min(release.end_forces(self.body, self.stance, step, at)) < -self.pull
+        self.course.held += step.length if pulls or held else 0.0
         self.touching = ()
+        if self.body.round and events.nearly_flat(self.body, self._up) and self._weak:
+            flat = laid_down(self.body, self._state())
+            if flat is not None:
+                return self._land(flat, ())
         return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
 
     # ---- a step -----------------------------------------------------------------------------------------------------
@@ -209,7 +221,24 @@ class SpatialReference:
         touching = tuple(sorted(closed))
         if len(touching) == len(body.vertices):
             self.quaternion = attitude.flat(self.quaternion)
+        if self.at_once > _PILED:
+            return self._stick(touching)
         return self._land(landed(body, self._state(), touching, self.law), touching)
+
+    def _stick(self, touching: tuple[int, ...]) -> tuple[Outcome, SpatialStatus] | None:
+        before, choice = self._kinetic(), stuck(self.body, self._state(), touching)
+        self._stand(choice.stance)
+        self.velocity, self.touching = choice.velocity, ()
+        self.sticks = choice.stance.contact is Contact.EDGE
+        kind = SpatialEventKind.IMPACT
+        self.course.note(self.time, kind, choice.stance, before, self._kinetic(), choice.supports)
+        return self._guard()
+
+    def _held_down(self, letting: tuple[float, int], step: Step) -> bool:
+        """Whether contact stays although the ground would let go there."""
+        if letting[1] >= 0:
+            return self.sticks
+        return events.nearly_flat(self.body, flow.value(step.up, letting[0]))
 
     def _rim(self) -> tuple[Outcome, SpatialStatus] | None:
         up = self._up
@@ -224,10 +253,10 @@ class SpatialReference:
         return self._land(rim_landed(self.body, state, self.law), ())
 
     def _land(self, choice: Choice, touching: tuple[int, ...]) -> tuple[Outcome, SpatialStatus] | None:
-        before = self._kinetic()
+        before = self._kinetic() + (self._potential() if self.stance.contact is Contact.ROLLING else 0.0)
         self._stand(choice.stance)
         self.velocity = choice.velocity
-        weak = self._kinetic() + self._potential() < self.weak
+        weak = self._weak
         choice = settled(self.body, self._state(), choice, touching, self.slow, weak=weak)
         self._stand(choice.stance)
         self.velocity = choice.velocity
@@ -303,3 +332,8 @@ class SpatialReference:
 
     def _potential(self) -> float:
         return self.body.mass * self.settings.gravity * stances.rise(self.body, self._pivot, self._up)
+
+    @property
+    def _weak(self) -> bool:
+        """Whether hardly any energy is left; a body on its way down has less than none, and is not at rest."""
+        return self._kinetic() + abs(self._potential()) < self.weak

@@ -12,6 +12,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import attitude
+from rocking.dynamics.spatial.events import NEARLY_FLAT
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
 from rocking.dynamics.spatial.outcome import Contact, SpatialStatus
@@ -197,7 +198,7 @@ class SpatialResponse(Exportable):
         if run.outcome is Outcome.ROCKED:
             return (
                 f"rocked and stayed standing: largest tilt {math.degrees(run.peak_tilt):.4g} degrees, {count} "
-                f"impact{'s' * (count != 1)}{self._pulled}"
+                f"impact{'s' * (count != 1)}{self._pulled}{self._nearly_flat}"
             )
         return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
 
@@ -205,6 +206,27 @@ class SpatialResponse(Exportable):
     def _pulled(self) -> str:
         count = int((self.impacts["pull"] > 1e-9 * np.abs(self.impacts["impulse"])).sum())
         return f"; at {count} of them a corner would have slipped or bounced rather than stuck" if count else ""
+
+    @cached_property
+    def near_flat_passages(self) -> int:
+        """How often a round base rolled through lying nearly flat, below 1 % of its slenderness angle."""
+        if not self.body.round:
+            return 0
+        rolling = [p for p in self.trajectory.pieces if p.stance.contact is Contact.ROLLING and p.start < self.end]
+        tilts = attitude.tilt(np.array([p.quaternions[0] for p in rolling]).reshape(-1, 4))
+        low = (tilts[1:-1] <= tilts[:-2]) & (tilts[1:-1] < tilts[2:])
+        return int((low & (tilts[1:-1] < NEARLY_FLAT * self.body.radius / self.body.centre[2])).sum())
+
+    @property
+    def _nearly_flat(self) -> str:
+        count, held = self.near_flat_passages, self.trajectory.held
+        if not count:
+            return ""
+        pulled = f"; there its rim would have hopped or slipped for {held:.2g} s" if held else ""
+        return (
+            f"; it rolled {count} time{'s' * (count != 1)} through lying nearly flat, after which small causes have "
+            f"large effects: take many motions, not one{pulled}"
+        )
 
     @cached_property
     def energy(self) -> "ResponseEnergy":

@@ -118,7 +118,7 @@ class SpatialTrajectory:
         The edge or vertex over which it overturned.
     held : float
         For how long an end of an edge was held down although the ground would have had to pull there, because its
-        friction kept it from opening: there it slips in truth [s].
+        friction kept it from opening: there it slips in truth; or a rim nearly flat, which hops [s].
     engine : str
         Which engine, and how.
     """

@@ -9,6 +9,7 @@ from rocking import checks, conventions
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial_batch import engine as engines
+from rocking.dynamics.spatial_batch.export import provenance
 from rocking.dynamics.spatial_batch.ground import joined
 from rocking.dynamics.spatial_batch.laws import batch_law
 from rocking.dynamics.spatial_batch.result import SpatialBatch
@@ -106,7 +107,8 @@ def simulate_spatial_batch(  # noqa: PLR0913 - every one of them is a question t
         "scale": factors.tolist(),
         "restitution": [law.label for law in laws],
     }
-    return SpatialBatch(shape, values, used, labels, refused)
+    source = provenance(made, _listed("motions", motions), starts, settings, duration)
+    return SpatialBatch(shape, values, used, labels, refused, source)
 
 
 def _horizon(body: SpatialBody | None, ground: SpatialGround, duration: float | None, gravity: float) -> float:

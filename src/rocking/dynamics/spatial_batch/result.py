@@ -1,17 +1,22 @@
 """What a batch in space hands back: arrays over body, motion, scale, restitution and start."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial_batch.outcome import SpatialBatchStatus
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import xarray as xr
+
+    from rocking.dynamics.exported import Exported
 
 DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
 """Axes of the arrays of a batch, in order."""
@@ -28,7 +33,7 @@ UNITS: dict[str, tuple[str, str]] = {
     "direction": ("rad", "direction in which it lies, from x towards y"),
     "first_uplift": ("s", "first uplift"),
     "end_time": ("s", "end of the history"),
-    "held": ("s", "for how long an end of an edge that should slip was held down"),
+    "held": ("s", "for how long a corner, or a rim that is nearly flat, was held down though it should slip or hop"),
     "lost": ("J", "kinetic energy lost at impacts"),
     "impacts": ("1", "number of impacts"),
     "uplifts": ("1", "number of uplifts from rest"),
@@ -44,7 +49,7 @@ WHOLES = ("outcome", "status", "over_contact", "over_number", "impacts", "uplift
 
 
 @dataclass(frozen=True, eq=False)
-class SpatialBatch:
+class SpatialBatch(Exportable):
     """The results of a batch; every array has the shape (body, motion, scale, restitution, start).
 
     Parameters
@@ -59,6 +64,8 @@ class SpatialBatch:
         Names of motions and restitutions, and the scales.
     refused : dict of int to str
         Why a body was refused, by its number.
+    provenance : dict of str to Any
+        Bodies, starts and settings as plain values.
 
     Examples
     --------
@@ -72,6 +79,7 @@ class SpatialBatch:
     engine: str
     labels: dict[str, list[object]] = field(default_factory=dict, repr=False)
     refused: dict[int, str] = field(default_factory=dict)
+    provenance: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Return an array by name."""
@@ -106,8 +114,20 @@ class SpatialBatch:
         """Direction in which it lies, from x towards y; NaN if it does not [rad]."""
         return self["direction"]
 
+    def exported(self) -> "Exported":
+        """Return what the tables and files of this batch hold.
+
+        Returns
+        -------
+        Exported
+            One row a history, with units and provenance.
+        """
+        from rocking.dynamics.spatial_batch.export import exported
+
+        return exported(self)
+
     def to_xarray(self) -> "xr.Dataset":
-        """Return the results as a labelled dataset with units.
+        """Return the results as a labelled dataset with units and provenance.
 
         Returns
         -------
@@ -115,6 +135,7 @@ class SpatialBatch:
             Over body, motion, scale, restitution and start.
         """
         from rocking.dynamics.export import extra
+        from rocking.dynamics.spatial_batch.export import stated
 
         xarray = extra("xarray", "a labelled dataset")
         data = {
@@ -122,6 +143,27 @@ class SpatialBatch:
             for name, values in self.values.items()
         }
         made: xr.Dataset = xarray.Dataset(
-            data, coords={name: (name, row) for name, row in self.labels.items()}, attrs={"engine": self.engine}
+            data, coords={name: (name, row) for name, row in self.labels.items()}, attrs=stated(self)
         )
         return made
+
+    def to_netcdf(self, path: "str | Path") -> "Path":
+        """Write the labelled dataset as netCDF 4, which xarray and MATLAB open.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        from rocking.dynamics.export import extra, target_of
+
+        extra("h5py", "netCDF")
+        extra("h5netcdf", "netCDF")
+        target = target_of(path)
+        self.to_xarray().to_netcdf(target, engine="h5netcdf")
+        return target

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies.solid import Corner, Edge, Solid
+from rocking.bodies.solid import Base, Corner, Edge, RoundBase, Solid, SupportPolygon
 from rocking.bodies.solid.shape import vector
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
@@ -88,7 +88,7 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
     InvalidValueError
         If the body does not come down, or a value is not finite.
     GeometryError
-        If pivot or landing point are no points of the ground.
+        If pivot or landing point are no points of the base: off the ground, or outside it.
 
     Examples
     --------
@@ -111,6 +111,11 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
 
 def edge_coefficient(solid: Solid, model: Any = "ked-3d", *, start: float = 0, onto: float | None = None) -> float:
     """Return the coefficient of restitution of a body that falls back from one edge of its base onto another.
+
+    A round base has no such impact of its own: free in space it rolls round its rim, and in the ideal model keeps its
+    energy where it passes flat (M. Srinivasan, A. Ruina, "Rocking and rolling: a can that appears to rock might
+    actually roll", 2008). What is returned for one is the coefficient of a drum that is held to one vertical plane; it
+    must not be used for a free one, which the response in space follows as it rolls.
 
     Onto the parallel edge it is the plane coefficient; from an edge e1 onto an edge e2 at an angle KED and
     horizontal momentum give ``|e1 . e2|`` times the coefficient of e2, because the horizontal velocities are
@@ -146,8 +151,6 @@ def edge_coefficient(solid: Solid, model: Any = "ked-3d", *, start: float = 0, o
     >>> round(edge_coefficient(Solid(cylinder(1.0, 2.0))), 12)
     0.837210880308
     """
-    from rocking.bodies.solid import SupportPolygon
-
     base = solid.base
     before = base.edge(start)
     if onto is None and isinstance(base, SupportPolygon):
@@ -162,8 +165,35 @@ def _local(solid: Solid, name: str, value: Any) -> Corner | Edge:
         along = vector(f"direction of {name}", value.direction, "-")
         if abs(float(np.linalg.norm(along)) - 1.0) > 1e-9 or along[2] != 0.0:
             raise GeometryError(f"{name}: the direction of an edge must be a level unit vector, got {along.tolist()}")
-        return Edge(_grounded(solid, name, value.point), along)
-    return Corner(_grounded(solid, name, value.point if isinstance(value, Corner) else value))
+        edge = Edge(_grounded(solid, name, value.point), along)
+        _check_on_base(solid, name, edge.point, _gap_of_line(solid.local_base, edge))
+        return edge
+    corner = Corner(_grounded(solid, name, value.point if isinstance(value, Corner) else value))
+    _check_on_base(solid, name, corner.point, -solid.local_base.margin(corner.point[:2]))
+    return corner
+
+
+def _gap_of_line(base: Base, edge: Edge) -> float:
+    """Return how far a line in the ground passes the base, zero or less where it touches it [m]."""
+    reach = base.radius if isinstance(base, RoundBase) else 0.0
+    if isinstance(base, RoundBase):
+        points = base.centre[None]
+    elif isinstance(base, SupportPolygon):
+        points = base.vertices
+    else:
+        return -base.margin(edge.point[:2])
+    along, arm = edge.direction, points - edge.point[:2]
+    aside = along[0] * arm[:, 1] - along[1] * arm[:, 0]
+    return float(max(aside.min(), -aside.max())) - reach
+
+
+def _check_on_base(solid: Solid, name: str, given: FloatArray, gap: float) -> None:
+    if gap > 1e-9 * solid.size:
+        x, y = (solid.origin + given)[:2].tolist()
+        raise GeometryError(
+            f"{name} must touch the base, got ({x:g}, {y:g}) m, which passes it at {gap:.3g} m or more; is it in the "
+            "unit and the coordinates of the body?"
+        )
 
 
 def _grounded(solid: Solid, name: str, value: Any) -> FloatArray:

@@ -56,8 +56,13 @@ def points_study(values: Sequence[int], laboratory: Laboratory | None = None) ->
     -------
     LaboratoryStudy
         As `study`.
+
+    Raises
+    ------
+    InvalidValueError
+        If one of them is no whole number of at least 2.
     """
-    return study("points", "1", values, lambda lab, x: lab.but(points=int(x)), laboratory)
+    return study("points", "1", values, lambda lab, x: lab.but(points=whole("points", x, 2)), laboratory)
 
 
 def damping_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
@@ -220,6 +225,41 @@ def study(
         attrs=provenance(name, start),
     )
     return LaboratoryStudy(made)
+
+
+def whole(name: str, value: Any, least: int) -> int:
+    """Return a number that counts something.
+
+    Parameters
+    ----------
+    name : str
+        What the error calls it.
+    value : Any
+        What was given.
+    least : int
+        The smallest that is allowed [-].
+
+    Returns
+    -------
+    int
+        The number.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no whole number, or below the least.
+
+    Examples
+    --------
+    >>> whole("points", 41.0, 2)
+    41
+    """
+    result = checks.number(name, value)
+    if result != int(result) or result < least:
+        raise InvalidValueError(
+            f"{name} must be a whole number of at least {least}, got {result:g}; it counts, and is not rounded"
+        )
+    return int(result)
 
 
 def _layered(laboratory: Laboratory | None) -> Laboratory:

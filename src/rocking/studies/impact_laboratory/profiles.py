@@ -7,7 +7,7 @@ import numpy as np
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.studies.impact_laboratory.beds import Laboratory
-from rocking.studies.impact_laboratory.dependence import study
+from rocking.studies.impact_laboratory.dependence import study, whole
 from rocking.studies.impact_laboratory.result import LaboratoryStudy
 
 Shape = Literal["convex", "concave", "tilted", "random"]
@@ -25,9 +25,9 @@ def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tu
     amplitude : float
         Difference between the highest and the lowest point, or its bound [m].
     points : int
-        Number of points.
+        Number of points, two or more.
     seed : int
-        For "random".
+        For "random", zero or above.
 
     Returns
     -------
@@ -37,15 +37,16 @@ def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tu
     Raises
     ------
     InvalidValueError
-        If the shape is unknown or the amplitude negative.
+        If the shape is unknown, the amplitude negative, or points or seed are no such whole numbers.
 
     Examples
     --------
     >>> profile("concave", 0.001, 3)
     (0.0, 0.001, 0.0)
     """
-    checks.within("amplitude", amplitude, 0.0, 10.0, unit="m")
-    s = np.linspace(-1.0, 1.0, points)
+    amplitude = checks.within("amplitude", amplitude, 0.0, 10.0, unit="m")
+    count, start = whole("points", points, 2), whole("seed", seed, 0)
+    s = np.linspace(-1.0, 1.0, count)
     if shape == "concave":
         heights = amplitude * (1.0 - s**2)
     elif shape == "convex":
@@ -53,7 +54,7 @@ def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tu
     elif shape == "tilted":
         heights = 0.5 * amplitude * (1.0 + s)
     elif shape == "random":
-        heights = np.random.default_rng(seed).uniform(0.0, amplitude, points)
+        heights = np.random.default_rng(start).uniform(0.0, amplitude, count)
     else:
         raise InvalidValueError(f"shape must be one of {', '.join(SHAPES)}, got {shape!r}")
     return tuple(heights.tolist())
@@ -108,6 +109,6 @@ def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None 
 
     def rough(start: Laboratory, seed: float) -> Laboratory:
         """Return the laboratory with the base of a seed."""
-        return start.but(profile=profile("random", amplitude, start.points, seed=int(seed)))
+        return start.but(profile=profile("random", amplitude, start.points, seed=whole("seed", seed, 0)))
 
     return study("seed", "1", seeds, rough, laboratory)

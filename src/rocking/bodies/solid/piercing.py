@@ -1,0 +1,126 @@
+"""Faces that pass through each other: the lines in which pairs of triangles cross."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.bodies.solid.box_pairs import meeting_boxes
+from rocking.bodies.solid.surfaces import area_vectors
+from rocking.conventions import BoolArray, FloatArray, IntArray
+
+DEPTH = 1e-6
+"""Faces that reach through each other by less of the size are said to touch [-]."""
+
+MOST_PAIRS = 20_000_000
+"""So many pairs of faces whose boxes meet are tried [-]."""
+
+_THINNEST = 1e-7
+
+
+@dataclass(frozen=True)
+class Piercing:
+    """Where faces of a surface pass through each other.
+
+    Parameters
+    ----------
+    pairs : int
+        Pairs of faces that do.
+    place : ndarray, shape (3,)
+        Middle of the longest line in which two of them cross [m].
+    complete : bool
+        Whether every pair could be tried.
+    """
+
+    pairs: int
+    place: FloatArray
+    complete: bool
+
+
+def pierced(triangles: FloatArray) -> Piercing:
+    """Return where triangles pass through each other; those that share corners or edges, or touch, do not.
+
+    Two triangles cross if each has corners on both sides of the other's plane and the pieces of the common line of
+    both planes that lie in them overlap (T. Moeller, "A fast triangle-triangle intersection test", 1997), all by more
+    than 1e-6 of the size. Triangles in one plane do not cross, nor do those that are thinner than 1e-7 of the size.
+
+    Parameters
+    ----------
+    triangles : ndarray, shape (n, 3, 3)
+        Corners, the middle of their box near the origin [m].
+
+    Returns
+    -------
+    Piercing
+        Number of pairs and one place.
+
+    Examples
+    --------
+    >>> flat = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 2.0, 0.0]])
+    >>> pierced(np.stack([flat, flat[:, [2, 1, 0]]])).pairs
+    1
+    """
+    size = float(np.ptp(triangles, axis=(0, 1)).max())
+    doubled = area_vectors(triangles) * 2.0
+    length = np.linalg.norm(doubled, axis=1)
+    longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    broad = length > _THINNEST * size * longest
+    kept, normals = triangles[broad], doubled[broad] / length[broad, None]
+    best, place, count, tried = 0.0, np.zeros(3), 0, 0
+    for one, two in _pairs(kept):
+        tried += len(one)
+        if tried > MOST_PAIRS:
+            break
+        lengths, places = _lines(kept, normals, one, two, DEPTH * size)
+        count += int((lengths > 0.0).sum())
+        if len(lengths) and lengths.max() > best:
+            best, place = float(lengths.max()), places[int(np.argmax(lengths))]
+    return Piercing(count, place, tried <= MOST_PAIRS)
+
+
+def _pairs(triangles: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
+    if len(triangles) < 2:
+        return iter(())
+    return meeting_boxes(triangles.min(axis=1), triangles.max(axis=1))
+
+
+def _lines(
+    triangles: FloatArray, normals: FloatArray, one: IntArray, two: IntArray, slack: float
+) -> tuple[FloatArray, FloatArray]:
+    """Lengths and middles of the lines in which pairs cross; zero where they cross by less than `slack`."""
+    first = _heights(triangles[one], triangles[two, 0], normals[two])
+    keep = _both_sides(first, slack)
+    one, two, first = one[keep], two[keep], first[keep]
+    second = _heights(triangles[two], triangles[one, 0], normals[one])
+    keep = _both_sides(second, slack)
+    one, two, first, second = one[keep], two[keep], first[keep], second[keep]
+    along = np.cross(normals[one], normals[two])
+    along /= np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
+    start, end, ends = _within(triangles[one], first, along)
+    other_start, other_end, _ = _within(triangles[two], second, along)
+    begin, finish = np.maximum(start, other_start), np.minimum(end, other_end)
+    place = ends + along * (0.5 * (begin + finish) - start)[:, None]
+    return np.where(finish - begin > slack, finish - begin, 0.0), place
+
+
+def _heights(corners: FloatArray, point: FloatArray, normal: FloatArray) -> FloatArray:
+    heights: FloatArray = np.einsum("kci,ki->kc", corners - point[:, None], normal)
+    return heights
+
+
+def _both_sides(heights: FloatArray, slack: float) -> BoolArray:
+    found: BoolArray = (heights.max(axis=1) > slack) & (heights.min(axis=1) < -slack)
+    return found
+
+
+def _within(corners: FloatArray, heights: FloatArray, along: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Start and end along the common line of the piece inside the triangle, and the point where it starts."""
+    before, above = np.roll(corners, 1, axis=1), np.roll(heights, 1, axis=1)
+    crosses = (heights > 0.0) != (above > 0.0)
+    share = np.divide(heights, heights - above, out=np.zeros_like(heights), where=crosses)
+    points = corners + share[..., None] * (before - corners)
+    places = np.einsum("kci,ki->kc", points, along)
+    first = np.where(crosses, places, np.inf)
+    at = np.argmin(first, axis=1)
+    rows = np.arange(len(at))
+    return first[rows, at], np.where(crosses, places, -np.inf).max(axis=1), points[rows, at]

@@ -1,0 +1,164 @@
+"""Which way a body falls: share and direction of overturning by the azimuth of the shaking, by model of restitution."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.spatial_batch.result import SpatialBatch
+from rocking.errors import InvalidValueError
+from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, in_journal_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+HEIGHT = 3.1
+_SECTORS = 36
+_BOTH, _NONE, _UNKNOWN = "#BDBDBD", "white", "#222222"
+
+
+@in_journal_style
+def falling_picture(batch: SpatialBatch, azimuths: Any, base: Any = None) -> "Figure":
+    """Draw how often a body falls by the direction of the shaking, which way, and where two restitutions differ.
+
+    Parameters
+    ----------
+    batch : SpatialBatch
+        One body under one record turned to every azimuth, at ascending scales, with two restitutions.
+    azimuths : array_like
+        Of its motions: direction of their first component, from x towards y, ascending [rad].
+    base : array_like, shape (n, 2), optional
+        Corners of the base, drawn in the middle of the rose for orientation, any scale.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels, two columns wide.
+
+    Raises
+    ------
+    InvalidValueError
+        If the batch has several bodies or starts, not two restitutions, or another number of motions than azimuths.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.dynamics.spatial import SpatialBody
+    >>> from rocking.dynamics.spatial_batch import simulate_spatial_batch
+    >>> pulse, angles = rk.pulses.sine(amplitude=4.0, period=0.8), np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False)
+    >>> motions = [(pulse.scaled(np.cos(a)), pulse.scaled(np.sin(a))) for a in angles]
+    >>> box, scales = SpatialBody.box(0.5, 0.4, 2.0), np.linspace(0.5, 2.0, 4)
+    >>> found = simulate_spatial_batch(box, motions, ["housner-3d", "ked-3d"], scales=scales)
+    >>> len(falling_picture(found, angles).axes)
+    3
+    """
+    angles = checks.real_array("azimuths", azimuths, "rad")
+    counts = batch.shape
+    if counts[0] != 1 or counts[4] != 1 or counts[3] != 2 or angles.shape != (counts[1],) or counts[1] < 2:
+        raise InvalidValueError(
+            f"the batch must have one body and start, two restitutions and a motion for each of {angles.size} "
+            f"azimuths, got (body, motion, scale, restitution, start) = {counts}"
+        )
+    figure, panels = new_figure(DOUBLE, HEIGHT)
+    panels[0].remove()
+    grid = figure.add_gridspec(1, 3, width_ratios=[1.0, 1.0, 1.25])
+    share = figure.add_subplot(grid[0, 0], projection="polar")
+    rose = figure.add_subplot(grid[0, 1], projection="polar")
+    difference = figure.add_subplot(grid[0, 2])
+    _share(share, batch, angles)
+    _rose(rose, batch, None if base is None else checks.real_array("base", base, "m"))
+    _difference(difference, batch, angles)
+    return figure
+
+
+def _look(batch: SpatialBatch, number: int) -> tuple[str, Any, str]:
+    """Colour, line and label of a restitution."""
+    name = str(batch.labels["restitution"][number])
+    style = MODEL_STYLE.get(name.removesuffix("-3d"), {"color": INK, "linestyle": "-", "label": f"r = {name}"})
+    return style["color"], style["linestyle"], style["label"]
+
+
+def _compass(axes: "Axes", letter: str, title: str) -> None:
+    axes.set_title(f"{letter}  {title}", loc="left", pad=12.0)
+    axes.set_xticks(np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False))
+    axes.tick_params(axis="x", pad=-1.0)
+    axes.grid(linewidth=0.4, color="#d5d5d5")
+    axes.spines["polar"].set_linewidth(0.6)  # a polar panel has this spine alone
+    axes.set_axisbelow(True)
+    for label in axes.get_yticklabels():
+        label.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8})
+        label.set_zorder(5.0)
+
+
+def _share(axes: "Axes", batch: SpatialBatch, angles: FloatArray) -> None:
+    over = batch.overturned[0, :, :, :, 0].mean(axis=1)
+    closed = np.append(angles, angles[0] + 2.0 * np.pi)
+    for k in range(2):
+        color, line, label = _look(batch, k)
+        share = 100.0 * np.append(over[:, k], over[0, k])
+        axes.plot(closed, share, linewidth=1.1, color=color, linestyle=line, label=label)
+    top = max(10.0, 10.0 * np.ceil(10.0 * over.max()))
+    axes.set_ylim(0.0, top)
+    axes.set_yticks([0.5 * top, top], [f"{0.5 * top:g}", f"{top:g} %"])
+    axes.set_rlabel_position(22.5)  # type: ignore[attr-defined]
+    _compass(axes, "a", "Scales that overturn it")
+    axes.set_xlabel("by direction of the shaking", labelpad=2.0)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.24), ncols=2, borderaxespad=0.0)
+
+
+def _rose(axes: "Axes", batch: SpatialBatch, base: FloatArray | None) -> None:
+    edges = (np.arange(_SECTORS + 1) - 0.5) * 2.0 * np.pi / _SECTORS
+    tops = []
+    for k in range(2):
+        fell = batch.overturned[0, :, :, k, 0]
+        where = np.mod(batch.direction[0, :, :, k, 0][fell] - edges[0], 2.0 * np.pi) + edges[0]
+        part = 100.0 * np.histogram(where, edges)[0] / max(1, fell.sum())
+        color, line, _ = _look(batch, k)
+        axes.stairs(part, edges, fill=False, linewidth=1.1, color=color, linestyle=line)
+        tops.append(float(part.max()))
+    top = max(5.0, 5.0 * np.ceil(max(tops) / 5.0))
+    axes.set_ylim(0.0, top)
+    axes.set_yticks([0.5 * top, top], [f"{0.5 * top:g}", f"{top:g} %"])
+    axes.set_rlabel_position(22.5)  # type: ignore[attr-defined]
+    if base is not None:
+        outline = np.vstack([base, base[:1]])
+        size = 0.22 * top / float(np.hypot(*outline.T).max())
+        turns = np.arctan2(outline[:, 1], outline[:, 0])
+        walk = np.linspace(0.0, len(base), 40 * len(base) + 1)
+        x, y = (np.interp(walk, np.arange(len(outline)), outline[:, i]) for i in range(2))
+        axes.fill(np.arctan2(y, x), size * np.hypot(x, y), facecolor="#f0f0f0", edgecolor=GREY, linewidth=0.8, zorder=1)
+        axes.plot(turns, size * np.hypot(*outline.T), linestyle="none")
+        axes.annotate("base", (0.0, 0.0), ha="center", va="center", fontsize=6.0, color=GREY)
+    axes.set_xlabel("share of all falls, by direction", labelpad=2.0)
+    _compass(axes, "b", "Where it lies, by 10 degrees")
+
+
+def _difference(axes: "Axes", batch: SpatialBatch, angles: FloatArray) -> None:
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    over = batch.overturned[0, :, :, :, 0]
+    classes = 1 * over[..., 0] + 2 * over[..., 1]
+    classes[(batch.outcome[0, :, :, :, 0] == Outcome.FAILED.code).any(axis=-1)] = 4
+    looks = [_look(batch, k) for k in range(2)]
+    colors = [_NONE, looks[0][0], looks[1][0], _BOTH, _UNKNOWN]
+    scales = np.array(batch.labels["scale"], dtype=np.float64)
+    mesh = axes.pcolormesh(
+        np.degrees(angles), scales, classes.T, cmap=ListedColormap(colors), vmin=-0.5, vmax=4.5, shading="nearest",
+        rasterized=True,
+    )  # fmt: skip
+    mesh.set_edgecolor("face")
+    axes.set_xticks([0, 90, 180, 270, 360])
+    axes.set_xlim(np.degrees(angles[0]), np.degrees(angles[-1]))
+    axes.set_xlabel("direction of the shaking [degrees]")
+    axes.set_ylabel("scale of the record [-]")
+    differ = float(((classes == 1) | (classes == 2)).mean())
+    axes.set_title(f"c  Verdicts: {100.0 * differ:.1f} % differ", loc="left", pad=12.0)
+    words = ["neither", f"{looks[0][2]} alone", f"{looks[1][2]} alone", "both", "no result"]
+    shown = [k for k in range(5) if (classes == k).any() or k in (1, 2)]
+    handles = [Patch(facecolor=colors[k], edgecolor=GREY, linewidth=0.5, label=words[k]) for k in shown]
+    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=3, borderaxespad=0.0,
+                handlelength=1.2, columnspacing=1.0)  # fmt: skip

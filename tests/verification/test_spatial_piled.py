@@ -1,0 +1,96 @@
+"""Impacts that pile up at one moment, and bodies on their way down: every history ends, and ends right.
+
+A corner that turns about the vertical while its neighbour chatters beside it has infinitely many impacts in a finite
+time; without slip it comes to stick on both. A body past its balance has less energy than at rest, and is not at rest.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.spatial import SpatialBody, reference, simulate_spatial
+from rocking.dynamics.spatial.outcome import SpatialStatus
+from rocking.dynamics.spatial_batch import SpatialBatchStatus, engine, simulate_spatial_batch
+
+STEP, LENGTH = 0.02, 8.0
+LAWS = ["housner-3d", "horizontal-momentum-3d", 0.9]
+built = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
+
+
+def _record(rng):
+    """Three components: noise of 40 sines under an envelope, the vertical one half as strong."""
+    time = np.arange(round(LENGTH / STEP) + 1) * STEP
+    envelope = np.minimum(1.0, time) * np.exp(-np.maximum(0.0, time - 0.6 * LENGTH))
+    frequency = rng.uniform(0.3, 6.0, 40)
+    made = []
+    for strength in (1.0, 1.0, 0.5):
+        waves = np.sin(2.0 * np.pi * frequency[:, None] * time + rng.uniform(0.0, 2.0 * np.pi, (40, 1)))
+        made.append(rk.GroundMotion(strength * envelope * ((1.0 / (1.0 + frequency)) @ waves), STEP))
+    return tuple(made)
+
+
+def _polygon(rng):
+    """A convex base of 3 to 8 vertices on a circle, and an off-centre, inhomogeneous body over it."""
+    count = int(rng.integers(3, 9))
+    angle = np.sort((np.arange(count) + rng.uniform(-0.3, 0.3, count)) * 2.0 * np.pi / count)
+    radius, height = rng.uniform(0.2, 0.7), rng.uniform(0.8, 2.5)
+    base = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    centre = np.array([*(base.mean(axis=0) + 0.02 * radius * rng.uniform(-1.0, 1.0, 2)), height])
+    arms = rng.normal(size=(30, 3)) * np.array([radius, 0.8 * radius, 0.6 * height])
+    arms -= arms.mean(axis=0)
+    inertia = 50.0 * (np.square(arms).sum() * np.eye(3) - arms.T @ arms)
+    return SpatialBody(1500.0, centre, inertia, base)
+
+
+def _case(seed):
+    rng = np.random.default_rng(seed)
+    box = SpatialBody.box(rng.uniform(0.3, 1.4), rng.uniform(0.3, 1.4), rng.uniform(1.5, 5.0))
+    body = box if seed % 2 else _polygon(rng)
+    return body, _record(rng), 1.5 * float(rng.uniform(0.3, 1.6))
+
+
+def _reference(seed, law):
+    body, motion, scale = _case(seed)
+    return simulate_spatial(body, *motion, law, scale=scale, duration=LENGTH)
+
+
+def test_a_corner_whose_neighbour_chatters_comes_to_stick(monkeypatch):
+    """The history ends and its energy closes to 1e-9; impacts that may pile up for ever stop it."""
+    sticks = _reference(96, "housner-3d")
+    assert sticks.status is SpatialStatus.GOOD
+    assert sticks.energy.closure < 1e-9
+    monkeypatch.setattr(reference, "_PILED", 10**9)
+    assert _reference(96, "housner-3d").status is SpatialStatus.TOO_MANY_EVENTS
+
+
+def test_a_body_on_its_way_down_is_not_at_rest(monkeypatch):
+    """An impact at 83 degrees: it falls, energy to 1e-9; were less energy than at rest called rest, it would stand."""
+    falls = _reference(154, 0.9)
+    assert falls.outcome is Outcome.OVERTURNED
+    assert falls.energy.closure < 1e-9
+    signed = property(lambda self: self._kinetic() + self._potential() < self.weak)
+    monkeypatch.setattr(reference.SpatialReference, "_weak", signed)
+    wrong = _reference(154, 0.9)
+    assert wrong.outcome is Outcome.ROCKED
+    assert wrong.energy.closure > 0.1
+
+
+@built
+def test_no_history_on_polygons_ends_in_piled_impacts():
+    """Boxes and polygons under 200 records at 3 scales by 3 laws: no pile, under 1 % that take off, peaks below 90."""
+    found = [
+        simulate_spatial_batch(body, motion, LAWS, scales=scale * np.array([0.5, 1.0, 1.6]))
+        for body, motion, scale in map(_case, range(200))
+    ]
+    status, outcome = (np.concatenate([one[name].ravel() for one in found]) for name in ("status", "outcome"))
+    peak = np.concatenate([one.peak_tilt.ravel() for one in found])
+    assert len(status) == 1800
+    assert not (status == SpatialBatchStatus.TOO_MANY_EVENTS.code).any()
+    assert not (status == SpatialBatchStatus.NOT_FINITE.code).any()
+    assert (outcome == Outcome.FAILED.code).mean() < 0.01
+    assert peak[outcome == Outcome.ROCKED.code].max() < 0.5 * math.pi
+    assert (outcome == Outcome.OVERTURNED.code).mean() > 0.2
+    assert (outcome == Outcome.ROCKED.code).mean() > 0.1
