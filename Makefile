@@ -69,7 +69,7 @@ lint: $(VENV)/dev $(ENGINE)
 # What measures time, or drives a browser, runs alone; the rest on two processes.
 test: lint
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not timed" --cov --cov-report=
-	$(BIN)/python -m pytest -m timed --ignore=tests/browser --cov --cov-append --cov-report=
+	$(BIN)/python -m pytest tests -m timed --ignore=tests/browser --cov --cov-append --cov-report=
 	$(BIN)/python -m pytest tests/browser --cov --cov-append --cov-report=term
 
 fuzz: $(VENV)/dev
