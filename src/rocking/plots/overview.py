@@ -68,7 +68,7 @@ def league_figure(rows: Sequence[LeagueRow]) -> "Figure":
         left.plot([row.rmse_low, row.rmse_high], [y, y], color=color, linewidth=1.0)
         left.plot([row.rmse], [y], marker="o", color=color, markerfacecolor="white" if row.parameters else color)
     left.set_yticks(place, [f"{row.name}  {row.fitted}".strip() for row in rows])
-    left.set_xlabel("RMSE of r, 39 measurements [-]\n95 % bootstrap interval; open: fitted")
+    left.set_xlabel("RMSE of r, 39 measurements;\n95 % bootstrap interval; open: fitted [-]")
     left.set_xlim(left=0.0)
     markers = ("v", "o", "^")
     for marker, band_name in zip(markers, rows[0].by_band, strict=True):
