@@ -35,8 +35,8 @@ _ABOUT = """\
 The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers are SI, float64, with every digit.
 
 A script sends with every request `Authorization: Bearer KEY`, where KEY stands in the file `api-key` of the data
-folder and is new at every start, and with every POST or DELETE also `Origin: http://127.0.0.1:8765`, the server's
-own address. Errors are `{"error": {"kind", "message"}}`."""
+folder and is new at every start, and with every POST or DELETE also `Origin: {origin}`, the server's
+own address. Errors are `{{"error": {{"kind", "message"}}}}`."""
 
 
 def create_app(settings: Settings) -> FastAPI:
@@ -55,7 +55,7 @@ def create_app(settings: Settings) -> FastAPI:
     app = FastAPI(
         title="rocking",
         version=__version__,
-        description=_ABOUT,
+        description=_ABOUT.format(origin=settings.origin),
         docs_url=None,
         redoc_url=None,
         openapi_url="/api/openapi.json",

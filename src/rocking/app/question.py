@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Question", "body_from", "motion_from", "question_of"]
 
+_LIGHTEST = 1e-200
+"""Products of smaller masses and moments leave the range of numbers that have all their digits."""
+
 Question = ResponseQuestion
 """Body, motion, restitutions and settings, made and checked; `answered_with` gives the response."""
 
@@ -112,10 +115,20 @@ class _Hashed:
 def _body(key: _Hashed) -> Body:
     with blamed("body"):
         try:
-            return check_contact(body_of(key.given.table(), None))
+            return _check_inertia(check_contact(body_of(key.given.table(), None)))
         except InvalidValueError as error:
             kind = type(error.__cause__) if isinstance(error.__cause__, RockingError) else InvalidValueError
             raise kind(str(error)) from error
+
+
+def _check_inertia(body: Body) -> Body:
+    mass, inertia = body.mass, body.moment_of_inertia
+    if min(mass, inertia or mass) < _LIGHTEST:
+        raise InvalidValueError(
+            f"mass {mass:.3g} kg and moment of inertia {inertia:.3g} kg m2 must be > {_LIGHTEST:g}, below which digits "
+            "are lost; is a density or a mass in a wrong unit?"
+        )
+    return body
 
 
 def _made(given: "MotionInput") -> Motion:

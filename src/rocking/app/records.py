@@ -43,6 +43,11 @@ class RecordStore:
         self._lock = threading.RLock()
         self._motions: OrderedDict[tuple[Any, ...], GroundMotion] = OrderedDict()
 
+    @property
+    def largest(self) -> int:
+        """Size of the largest file that is kept [bytes]."""
+        return self._limits.upload_bytes
+
     def add(self, content: bytes, name: str) -> StoredRecord:
         """Keep a file; the same bytes under another name take that name.
 

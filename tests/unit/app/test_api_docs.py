@@ -88,3 +88,12 @@ def test_page_shows_every_endpoint_and_its_calls_work(served: tuple[FastAPI, str
     run = subprocess.run([sys.executable, "-c", call], check=False, capture_output=True, text=True, cwd=tmp_path)
     assert run.returncode == 0, run.stderr
     assert "'label': 'ked'" in run.stdout
+
+
+def test_the_origin_is_that_of_the_server(served):
+    """A script is told the origin that this server asks for, on any port."""
+    app, origin = served
+    told = app.openapi()["info"]["description"]
+    assert f"`Origin: {origin}`" in told
+    assert origin.endswith(":8765") or "8765" not in told
+    assert '`{"error": {"kind", "message"}}`' in told

@@ -1,6 +1,7 @@
 """GET /api/info: what there is to choose from."""
 
 import inspect
+import math
 from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
@@ -29,6 +30,9 @@ PARAMETERS = {
     "n": ("-", "main cycles"),
 }
 """Unit and words of the parameters of pulses."""
+
+UNLIMITED = "unlimited"
+"""What stands for an infinite default, which JSON has no number for."""
 
 
 @router.get(
@@ -103,13 +107,19 @@ def _models() -> list[dict[str, Any]]:
 
 
 def _parameters(made_by: Any) -> dict[str, dict[str, Any]]:
-    """Return what something takes, with unit and usual value; None where there is none."""
+    """Return what something takes, with unit and usual value."""
     found = {}
     for name, one in inspect.signature(made_by).parameters.items():
-        unit, words = PARAMETERS.get(name, ("-", name))
-        usual = None if one.default is inspect.Parameter.empty else one.default
-        found[name] = {"unit": unit, "words": words, "default": usual}
+        unit, words = PARAMETERS.get(name, ("-", name.replace("_", " ")))
+        found[name] = {"unit": unit, "words": words, "default": _usual(one)}
     return found
+
+
+def _usual(one: inspect.Parameter) -> Any:
+    """Return the default of a parameter; None where a value must be given, which an infinite default is not."""
+    if one.default is inspect.Parameter.empty:
+        return None
+    return UNLIMITED if isinstance(one.default, float) and math.isinf(one.default) else one.default
 
 
 def _pulses() -> dict[str, dict[str, Any]]:

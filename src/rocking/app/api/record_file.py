@@ -5,16 +5,22 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
+
 from rocking.app.disk_room import room_on_disk
 from rocking.app.files import safe_name
 from rocking.app.schemas.caps import check_record, check_samples
 from rocking.conventions import ACCELERATION_UNITS
-from rocking.errors import RecordError
+from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats import formats, read_record
 from rocking.motions.formats.record import Component, Record
+from rocking.motions.motion import GroundMotion
 
 _STAND_IN = {"units": "m/s2", "time_step": 0.01}
 """What stands for an answer that is missing, to find out what else is."""
+
+_QUIETEST = 1e-100
+"""Smaller accelerations have no energy: their squares vanish in floating point, whatever the unit."""
 
 _FOR_PROGRAMS = "; say "
 """What follows in the words of the library names an argument; people see the choices instead."""
@@ -78,7 +84,7 @@ class Looked:
         Raises
         ------
         RecordError
-            If it cannot be read, whatever is told.
+            If it cannot be read, or cannot be a motion, whatever is told.
         TooLarge
             If it has too many samples.
         """
@@ -108,6 +114,7 @@ class Looked:
                 given[missing] = _STAND_IN[missing]
             else:
                 check_samples(sum(part.acceleration.size for part in record.components))
+                _check_motions(record, path.name, unit_is_known="units" not in needs)
                 if len(record.components) > 1:
                     needs.append("component")
                     names = ", ".join(part.name for part in record.components)
@@ -146,3 +153,17 @@ class Looked:
             "duration_s": (part.acceleration.size - 1) * part.time_step if step else None,
             "peak_m_s2": part.peak * ACCELERATION_UNITS[part.unit] if unit else None,
         }
+
+
+def _check_motions(record: Record, name: str, *, unit_is_known: bool) -> None:
+    """Refuse what no ground does: in its unit, or while that is not told in the smallest one."""
+    if max(part.peak for part in record.components) < _QUIETEST:
+        raise RecordError(f"{name}: the acceleration is zero throughout; is this the right file?")
+    for part in record.components:
+        factor = ACCELERATION_UNITS[part.unit] if unit_is_known else min(ACCELERATION_UNITS.values())
+        with np.errstate(over="ignore"):  # what overflows is infinite, and refused
+            values = part.acceleration * factor
+        try:
+            GroundMotion(values, part.time_step)
+        except InvalidValueError as error:
+            raise RecordError(f"{name}, {part.name}: {error}") from error

@@ -1,5 +1,6 @@
 """A body in a request: a body file as JSON, or the size of a block; it names no files."""
 
+import sys
 from typing import Any
 
 from pydantic import model_validator
@@ -42,6 +43,7 @@ class BodyInput(Document):
                 if getattr(region, key) is not None:
                     raise _refused(f"section.region[{k}].{key}: {_UPLOAD}")
         check_size(self)
+        _refuse_subnormal(self.table(), "")
         return self
 
     def table(self) -> dict[str, Any]:
@@ -53,6 +55,19 @@ class BodyInput(Document):
             Plain values; what was not given is left out.
         """
         return self.model_dump(exclude_none=True, exclude_unset=True)
+
+
+def _refuse_subnormal(given: Any, key: str) -> None:
+    """Refuse numbers that have lost digits already: what is computed from them would have none that are right."""
+    if isinstance(given, float) and 0.0 < abs(given) < sys.float_info.min:
+        least = f"{sys.float_info.min:.3g}"
+        raise _refused(f"{key} is {given!r}, too small for a number with all its digits ({least}); a wrong unit?")
+    if isinstance(given, dict):
+        for name, value in given.items():
+            _refuse_subnormal(value, f"{key}.{name}" if key else name)
+    if isinstance(given, (list, tuple)):
+        for place, value in enumerate(given):
+            _refuse_subnormal(value, f"{key}[{place}]")
 
 
 def _refused(words: str) -> PydanticCustomError:

@@ -1,7 +1,7 @@
 """Documents to take away: the report, the animation, the inputs as a file, and such a file read again."""
 
 import datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response as Answer
@@ -9,16 +9,14 @@ from starlette.responses import Response as Answer
 from rocking.app.answers import JsonAnswer
 from rocking.app.api.uploads import OCTETS
 from rocking.app.files import attachment
-from rocking.app.problems import NotFound, Refused
-from rocking.app.records import RecordStore
 from rocking.app.schemas.answers.answer import answered, answered_with_file
 from rocking.app.schemas.inputs import Inputs, ResponseInputs
 from rocking.app.state import state_of
 from rocking.app.takeaway.asked import Asked
 from rocking.app.takeaway.bundle import bundle_of
+from rocking.app.takeaway.bundle_reading import inputs_from_file
 from rocking.app.takeaway.film import MEDIA_TYPES, gif_of, page_of
-from rocking.app.takeaway.inputs_file import inputs_as_toml, inputs_from_toml, plain_inputs
-from rocking.app.takeaway.plain_text import record_file_name
+from rocking.app.takeaway.inputs_file import inputs_as_toml, plain_inputs
 from rocking.app.takeaway.report import report_of
 from rocking.app.work import heavy
 
@@ -149,12 +147,12 @@ async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
     responses=answered(Inputs, "The inputs."),
 )
 async def inputs_read(request: Request) -> JsonAnswer:
-    """Return the inputs that a file of inputs holds.
+    """Return the inputs that a file of inputs holds, or the archive of it and its record, which is kept.
 
     Parameters
     ----------
     request : Request
-        With the bytes of the file.
+        With the bytes of the TOML or ZIP file.
 
     Returns
     -------
@@ -162,24 +160,7 @@ async def inputs_read(request: Request) -> JsonAnswer:
         The inputs.
     """
     data = await request.body()
-    return JsonAnswer(await heavy(request, _read, data, state_of(request).records))
-
-
-def _read(data: bytes, records: RecordStore) -> dict[str, Any]:
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise Refused(f"this is not a text file in UTF-8 (byte {error.start})") from error
-    return plain_inputs(inputs_from_toml(text, lambda word: _stored(word, records)))
-
-
-def _stored(word: str, records: RecordStore) -> str | None:
-    """Return the hash of an uploaded record, given that or its name; of several with one name, the latest."""
-    try:
-        return records.get(word).record
-    except NotFound:
-        named = (one.record for one in records.stored() if record_file_name(one.file_name) == record_file_name(word))
-        return next(named, None)
+    return JsonAnswer(plain_inputs(await heavy(request, inputs_from_file, data, state_of(request).records)))
 
 
 def _name(asked: Asked, ending: str) -> str:

@@ -1,42 +1,55 @@
-"""Columns of numbers without a header: one value a line, or a time and one to three accelerations."""
+"""Columns of numbers, with or without a line of names: one value a line, or a time and accelerations."""
 
-import re
 from typing import ClassVar
 
 import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
+from rocking.motions.formats.column_names import ColumnName, NamedColumns
+from rocking.motions.formats.column_text import MARK, MOST_NAMED, ColumnText, states_sampling
 from rocking.motions.formats.number_lines import one_line
 from rocking.motions.formats.numbers import number
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
-from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, step_between_samples
+from rocking.motions.formats.units_and_steps import in_unit, step_between_samples
 
 _MOST_COLUMNS = 4
 _LOOK = 5
 _LONGEST_HEADER = 100
-# a header that states its own sampling is of another format, damaged: not to be passed over as a comment
-_OTHER_HEADER = re.compile(r"\s*[#%].*(sample\s*rate|sampling|record\s*length|npts|ndata)", re.IGNORECASE)
-_SEPARATOR = re.compile(r"\s*,\s*|\s+")
 
 
 class Columns(RecordFormat):
-    """Plain columns of text; the last resort, since such a file says nothing about itself."""
+    """Plain columns of text; the last resort, since such a file says little about itself.
+
+    Without names, a line holds one acceleration, or a time and one to three of them; blanks, tabs or commas part
+    them, or semicolons. Lines that begin with ``#`` or ``%`` are comments, and stay so.
+
+    One line of names may stand above the numbers, ``time [s], NS [g], EW [g]``, with the unit of a column in brackets
+    or parentheses. A key of `rocking.conventions.ACCELERATION_UNITS` is taken, m/s^2, m/s/s and Gal as well; any
+    other unit, or none, is asked for. A column that is called time, or t where it stands first, is the time, in
+    seconds; one in another unit (m/s, m, rad), or called a velocity or displacement, is left out, and the metadata
+    say so. Without a time the step is asked for, if the rest is clear: otherwise the error names the columns and says
+    what to write or remove. Semicolons, tabs, commas or blanks part names and numbers alike.
+
+    Where commas part nothing they are decimal points, as a spreadsheet of much of Europe writes them; a file with
+    both, or one where commas may be either, is refused.
+    """
 
     name: ClassVar[str] = "columns"
-    title: ClassVar[str] = "Columns of numbers: a, or t a, or t a1 a2 a3"
+    title: ClassVar[str] = "Columns of numbers: a, or t a, or t a1 a2 a3, or under a line of names"
     suffixes: ClassVar[tuple[str, ...]] = (".txt", ".dat", ".csv")
     states_unit: ClassVar[bool] = False
     states_time_step: ClassVar[bool] = False
     notes: ClassVar[str] = (
-        "Verified on five real files. Nothing tells an acceleration from a velocity, nor g from m/s2: the unit must "
-        "be known from elsewhere. A missing first or last line cannot be noticed, nor any without a time column."
+        "Verified on five real files. Without names, as time [s], acc [g], nothing tells an acceleration from a "
+        "velocity, nor g from m/s2: the unit must be known from elsewhere. A missing first or last line cannot be "
+        "noticed, nor any without a time column."
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the first lines hold nothing but 1 to 4 numbers each.
+        """Return whether the first lines hold nothing but 1 to 4 numbers each, or names and as many numbers.
 
         Parameters
         ----------
@@ -48,15 +61,22 @@ class Columns(RecordFormat):
         bool
             True if so.
         """
-        if not source.is_text or any(_OTHER_HEADER.match(text[:200]) for text in source.lines[:_LONGEST_HEADER]):
+        if not source.is_text or any(states_sampling(text) for text in _comments(source, _LONGEST_HEADER)):
             return False
-        rows = [words for _, words in _rows(source, _LOOK)]
+        text = ColumnText.of(source, _LOOK)
+        # damage further down is told by the reader, with its line, where names say that these are columns
+        looked = text.rows if text.names is None else text.rows[:1]
         try:
-            for words in rows:
-                _ = [number(source, 0, word) for word in words]
+            _ = [_value(source, line, cell) for line, cells in looked for cell in cells]
         except RecordError:
             return False
-        return bool(rows) and len({len(words) for words in rows}) == 1 and len(rows[0]) <= _MOST_COLUMNS
+        counts = {len(cells) for _, cells in looked}
+        if len(counts) != 1:
+            return False
+        if text.names is None:
+            return max(counts) <= _MOST_COLUMNS
+        # so is one name more or less, where the separator is clear
+        return max(counts) <= MOST_NAMED and (counts == {len(text.names)} or text.separator in {";", "\t", ","})
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, with a component for each column of accelerations.
@@ -66,40 +86,43 @@ class Columns(RecordFormat):
         source : Source
             The file.
         units : str, optional
-            Unit of the accelerations; must be given.
+            Unit of the accelerations; must be given where no name states it.
         time_step : float, optional
             Must be given where there is no column of times; refused where it contradicts one [s].
 
         Returns
         -------
         Record
-            Component "acceleration", or "column 2", "column 3", "column 4" after the times.
+            Components by their names; without names "acceleration", or "column 2", "column 3", "column 4" after the
+            times.
 
         Raises
         ------
         RecordError
-            If it is damaged, the times are unevenly spaced, or the unit or step is missing.
+            If it is damaged, the times are unevenly spaced, it is not clear which column is what, or the unit or step
+            is missing.
         """
         if not source.is_text:
             raise source.error(None, "not a text file")
-        comments = [text for text in source.lines if text.lstrip()[:1] in {"#", "%"}]
-        values, digit = _table(source)
-        if values.shape[1] == 1:
-            step = step_between_samples(source, None, time_step)
-            names, metadata = ["acceleration"], {}
-        else:
-            step = uniform_step(source, values[:, 0], digit)
-            if time_step is not None and abs(step - time_step) * len(values) <= 2.0 * digit:
-                step = time_step
-            step = step_between_samples(source, step, time_step)
-            names, metadata = (
-                [f"column {k}" for k in range(2, values.shape[1] + 1)],
-                {"first time": f"{values[0, 0]:g} s"},
-            )
-        unit = acceleration_unit(source, None, units)
-        columns = values[:, -len(names) :].T
-        parts = tuple(Component(name, row.copy(), unit, step) for name, row in zip(names, columns, strict=True))
-        return Record(self.name, parts, "\n".join(comments), metadata)
+        text = ColumnText.of(source)
+        if not text.rows:
+            raise source.error(None, "no line with numbers")
+        chosen = _by_place(source, text) if text.names is None else NamedColumns.of(source, text.names)
+        values = _table(source, text)
+        step, metadata = time_step, {}
+        if chosen.time is not None:
+            times, place = values[:, chosen.time.place], chosen.time.place
+            step = _step(source, times, _last_digit([cells[place] for _, cells in text.rows]), time_step)
+            metadata = {"first time": f"{times[0]:g} s"}
+        step = step_between_samples(source, None, step)
+        if chosen.left_out:
+            metadata["left out"] = ", ".join(chosen.left_out)
+        parts = tuple(
+            Component(one.name, values[:, one.place].copy(), one.unit or "", step)
+            for one in chosen.with_unit(source, units).accelerations
+        )
+        header = [*_comments(source), *filter(None, [text.heading])]
+        return Record(self.name, parts, "\n".join(header), metadata)
 
     def write(self, record: Record) -> bytes:
         """Return the content of a file with a column of times and one to three of accelerations, to all digits.
@@ -155,7 +178,7 @@ def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
     if times.size < 2:
         raise source.error(None, f"at least 2 samples are needed, found {times.size}")
     steps = times.size - 1
-    mean = float(times[-1] - times[0]) / steps
+    mean = (float(times[-1]) - float(times[0])) / steps
     if not 1e-6 <= mean <= 10.0:
         raise source.error(None, f"time step must be in [1e-6, 10] s, got {mean:g}; is the first column a time?")
     # beyond rounding or cutting at the last digit, times that went through single precision are accepted
@@ -179,47 +202,69 @@ def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
     return step
 
 
-def _rows(source: Source, most: int | None = None) -> list[tuple[int, list[str]]]:
-    rows: list[tuple[int, list[str]]] = []
-    for line, text in enumerate(source.lines):
-        bare = text.strip(" \t\x1a")
-        if bare and bare[0] not in "#%":
-            rows.append((line, _SEPARATOR.split(bare.rstrip(",").rstrip())))
-            if len(rows) == most:
-                break
-    return rows
+def _comments(source: Source, most: int | None = None) -> list[str]:
+    return [text for text in source.lines[:most] if text.removeprefix(MARK).lstrip()[:1] in {"#", "%"}]
 
 
-def _table(source: Source) -> tuple[FloatArray, float]:
-    """Return the numbers, and one unit of the last digit printed in the first column."""
-    rows = _rows(source)
-    if not rows:
-        raise source.error(None, "no line with numbers")
-    columns = len(rows[0][1])
-    if columns > _MOST_COLUMNS:
-        raise source.error(rows[0][0], f"1 to {_MOST_COLUMNS} columns expected, found {columns}; which format is it?")
-    _refuse_decimal_commas(source, rows)
-    values = np.empty((len(rows), columns))
-    for row, (line, words) in enumerate(rows):
-        if len(words) != columns:
-            raise source.error(line, f"{columns} numbers expected as on the first line, found {len(words)}")
-        values[row] = [number(source, line, word) for word in words]
-    if len(rows) < 2:
+def _by_place(source: Source, text: ColumnText) -> NamedColumns:
+    """Return what columns without names are: a lone acceleration, or a time and one to three of them."""
+    line, cells = text.rows[0]
+    if len(cells) > _MOST_COLUMNS:
+        raise source.error(line, f"1 to {_MOST_COLUMNS} columns expected, found {len(cells)}; which format is it?")
+    if len(cells) == 1:
+        return NamedColumns(None, (ColumnName(0, "", "acceleration"),), ())
+    named = [ColumnName(place, "", f"column {place + 1}") for place in range(len(cells))]
+    return NamedColumns(named[0], tuple(named[1:]), ())
+
+
+def _table(source: Source, text: ColumnText) -> FloatArray:
+    columns = len(text.rows[0][1] if text.names is None else text.names)
+    _refuse_unclear_commas(source, text)
+    values = np.empty((len(text.rows), columns))
+    for row, (line, cells) in enumerate(text.rows):
+        if len(cells) != columns:
+            raise _ragged(source, line, text, len(cells), columns)
+        values[row] = [_value(source, line, cell) for cell in cells]
+    if len(text.rows) < 2:
         raise source.error(None, "at least 2 samples are needed, found 1")
-    return values, _last_digit([words[0] for _, words in rows])
+    return values
 
 
-def _refuse_decimal_commas(source: Source, rows: list[tuple[int, list[str]]]) -> None:
-    commas = [line for line, _ in rows if "," in source.lines[line]]
-    if commas and not any("." in word for _, words in rows for word in words):
+def _value(source: Source, line: int, cell: str) -> float:
+    return number(source, line, cell.replace(",", "."))
+
+
+def _ragged(source: Source, line: int, text: ColumnText, found: int, columns: int) -> RecordError:
+    if text.names is None:
+        return source.error(line, f"{columns} numbers expected as on the first line, found {found}")
+    hint = "; where commas part the columns, decimals need a point" if text.separator == "," else ""
+    return source.error(line, f"{columns} numbers expected, as many as there are names, found {found}{hint}")
+
+
+def _refuse_unclear_commas(source: Source, text: ColumnText) -> None:
+    commas = [line for line, _ in text.rows if "," in source.lines[line]]
+    points = [line for line, cells in text.rows if any("." in cell for cell in cells)]
+    if not commas or text.separator == ",":
+        return
+    if text.separator == "" and not points:
         raise source.error(commas[0], "commas but no decimal point: write decimal commas as points")
+    if text.separator and points:
+        raise source.error(commas[0], f"decimal commas here and decimal points on line {points[0] + 1}: write one kind")
+
+
+def _step(source: Source, times: FloatArray, digit: float, told: float | None) -> float:
+    """Return the step of a column of times; the told one where it is the same to the digits of the column."""
+    step = uniform_step(source, times, digit)
+    if told is not None and abs(step - told) * times.size <= 2.0 * digit:
+        return told
+    return step_between_samples(source, step, told)
 
 
 def _last_digit(words: list[str]) -> float:
     plain: list[int] = []
     powers: list[int] = []
     for word in words:
-        digits, _, power = word.lower().replace("d", "e").partition("e")
+        digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
         (powers if power else plain).append(len(digits.partition(".")[2]) - int(power or 0))
     # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
     places = min(powers) if powers else max(plain)

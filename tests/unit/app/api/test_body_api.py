@@ -173,3 +173,26 @@ def test_info_names_everything_that_can_be_chosen(client):
     for kind in info["study_kinds"]:  # each can be launched here: what is refused is the missing rest of the job
         answer = client.post("/api/studies", json={"job": {"campaign": {"name": "x", "kind": kind["name"]}}})
         assert "kind must be one of" not in answer.json()["error"]["message"]
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ({"width": 0.6, "height": 1.8, "density": 1e-320}, "density is 1e-320, too small"),
+        ({"width": 5e-324, "height": 1.8}, "width is 5e-324, too small"),
+        ({"block": {"width": 0.6, "height": 1.8, "density": 2e-308}}, "block.density"),
+        (
+            {"mass_points": {"points": [[0.0, 0.0], [1.0, 1.0]], "masses": [1.0, 5e-324], "feet": [0.0, 1.0]}},
+            "mass_points.masses[1]",
+        ),
+        ({"width": 0.6, "height": 1.8, "density": 1e-250}, "digits are lost"),
+    ],
+)
+@pytest.mark.parametrize("path", ["body", "impact"])
+def test_numbers_that_have_lost_digits_are_no_body(client, path, body, words):
+    """Subnormal sizes, densities and masses are refused by their key, and a body without weight in words."""
+    answer = client.post(f"/api/{path}", json={"body": {"units": "m", **body}})
+    assert answer.status_code == 422
+    assert words in answer.json()["error"]["message"]
+    light = {"units": "m", "width": 0.6, "height": 1.8, "density": 1e-100}
+    assert client.post(f"/api/{path}", json={"body": light}).status_code == 200  # the control: odd, and computed

@@ -60,6 +60,7 @@ CASES = {
 }
 
 
+@pytest.mark.timed
 @pytest.mark.parametrize("endpoint", ["body", "impact"])
 @pytest.mark.parametrize(("make", "most"), CASES.values(), ids=CASES)
 def test_the_largest_body_is_answered_and_one_more_is_refused(client, make, most, endpoint):

@@ -86,6 +86,92 @@ def test_what_is_no_record_is_refused_and_not_kept(client, content):
     assert client.get("/api/records").json() == []
 
 
+@pytest.mark.parametrize(
+    ("content", "told", "words"),
+    [
+        ("1e308\n-1e308\n0\n1", {"units": "g", "time_step": 0.01}, "within 1e+06 m/s2"),  # infinite in m/s2
+        ("1e308\n-1e308\n0\n1", {"units": "mm/s2", "time_step": 0.01}, "within 1e+06 m/s2"),
+        ("1e308\n-1e308\n0\n1", {}, "within 1e+06 m/s2"),  # in no unit
+        ("1e5\n-1.1e9\n0\n1", {}, "within 1e+06 m/s2"),
+        ("0\n1.02e5\n0\n1", {"units": "g", "time_step": 0.01}, "within 1e+06 m/s2"),  # a tenth of it in m/s2
+        ("0 0 0\n0.01 1 1e308\n0.02 0 0", {"units": "g"}, "column 3"),
+        ("0\n1\n0\n1", {"units": "g", "time_step": 5e-324}, "time step must be in"),
+        ("0\n1\n0\n1", {"units": "g", "time_step": 1e308}, "time step must be in"),
+        ("0 0\n5e-324 1\n1e-323 1", {"units": "g"}, "time step must be in"),
+        ("-1e308 0\n1e308 1", {"units": "g"}, "time step must be in"),
+        ("0\n0\n0\n-0.0", {"units": "g", "time_step": 0.01}, "zero throughout"),
+        ("5e-324\n-1e-320\n0\n0", {"units": "mm/s2", "time_step": 0.01}, "zero throughout"),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_what_no_ground_does_is_refused_and_not_kept(client, content, told, words):
+    """Accelerations beyond all range in their unit, or in every unit, and impossible steps are refused in words."""
+    answer = sent(client, content.encode(), **told)
+    assert answer.status_code == 422
+    assert words in answer.json()["error"]["message"]
+    assert client.get("/api/records").json() == []
+
+
+def test_what_was_kept_once_and_is_no_motion_is_refused_when_looked_at(client):
+    """A kept file, told a unit in which no ground moves so hard, is refused; with another unit it is read."""
+    record = sent(client, b"0\n1.5e5\n0\n1").json()["record"]
+    path = f"/api/records/{record}"
+    assert client.get(path).status_code == 200
+    assert client.get(path, params={"units": "g", "time_step": 0.01}).status_code == 422
+    asked = {"motion": {"record": record, "units": "g", "time_step": 0.01}}
+    assert client.post("/api/motion", json=asked).status_code == 422
+    (part,) = client.get(path, params={"units": "gal", "time_step": 0.01}).json()["components"]
+    assert part["peak_m_s2"] == 1500.0
+
+
+def test_a_table_with_names_is_taken(client):
+    """A header is read: a unit that it states is not asked for, one that it does not state is."""
+    plain = COLUMNS.replace(b" ", b",")
+    assert sent(client, b"time,acc\n" + plain).json()["needs"] == ["units"]
+    made = sent(client, b"time,acc [g]\n" + plain).json()
+    assert made["needs"] == []
+    (part,) = made["components"]
+    assert (part["name"], part["unit"], part["samples"]) == ("acc", "g", 800)
+    german = b"Zeit [s];Beschleunigung [m/s\xb2]\r\n" + plain.replace(b",", b";").replace(b".", b",")
+    (part,) = sent(client, german).json()["components"]
+    assert np.isclose(part["peak_m_s2"], np.abs(np.round(WAVE, 6)).max(), rtol=1e-12)
+    refused = sent(client, b"x,y\n" + plain)
+    assert refused.status_code == 422
+    assert "which of 'x', 'y' is the time?" in refused.json()["error"]["message"]
+
+
+@pytest.mark.parametrize("pulse", ["sine:amplitude=3,period=0.8", "ricker:amplitude=2,period=0.37"])
+def test_the_table_of_a_motion_comes_back(client, pulse, tmp_path):
+    """The table "Motion: a, v, d" as CSV, dropped back, is the same motion: every sample, nothing asked."""
+    asked = {"body": {"units": "m", "width": 0.6, "height": 1.8}, "motion": {"pulse": pulse}}
+    table = client.post("/api/table/motion.csv", json=asked).content
+    numbers = np.array([[float(word) for word in line.split(",")] for line in table.decode().splitlines()[1:]])
+    made = sent(client, table, "motion.csv").json()
+    assert made["needs"] == []
+    assert made["components"][0]["name"] == "acceleration"
+    (tmp_path / "motion.csv").write_bytes(table)
+    motion = rk.read_motion(tmp_path / "motion.csv")
+    assert motion.acceleration.tolist() == numbers[:, 1].tolist()
+    assert np.allclose(motion.time, numbers[:, 0], rtol=0.0, atol=1e-12)
+
+
+def test_the_table_of_a_record_comes_back(client):
+    """The table of a scaled record with a vertical part has both, and they are the same to the last digit."""
+    rows = "\n".join(f"{k * 0.01:.2f} {a:.6f} {0.5 * a:.6f}" for k, a in enumerate(WAVE)).encode()
+    record = sent(client, rows).json()["record"]
+    motion = {"record": record, "units": "g", "component": "column 2", "vertical": "column 3", "scale": 1.1}
+    asked = {"body": {"units": "m", "width": 0.6, "height": 1.8}, "motion": motion}
+    made = sent(client, client.post("/api/table/motion.csv", json=asked).content, "motion.csv").json()
+    assert made["needs"] == ["component"]
+    assert made["choices"]["component"] == ["acceleration", "vertical_acceleration"]
+    again = {"record": made["record"], "component": "acceleration", "vertical": "vertical_acceleration"}
+    first, second = (
+        client.post("/api/motion", json={"motion": one, "points": 20000}).json()["series"] for one in (motion, again)
+    )
+    for name in ("acceleration", "vertical"):
+        assert first[name] == second[name]
+
+
 def test_a_motion_has_the_numbers_of_the_library(client):
     """Intensity measures and spectrum of the scaled record equal those of the library to the last digit."""
     record = sent(client, COLUMNS, units="g").json()["record"]
@@ -221,7 +307,7 @@ def test_dense_miniseed_is_refused_before_it_is_unpacked(client, monkeypatch, or
         answer = sent(client, content, "dense.mseed")
     assert answer.status_code == 413
     assert "got 2100000" in answer.json()["error"]["message"]
-    few = packed(np.zeros(1000), byteorder=order)  # the control: a usual one gets as far as the decoder
+    few = packed(np.ones(1000), byteorder=order)  # the control: a usual one gets as far as the decoder
     assert sent(client, few, "usual.mseed").json()["components"][0]["samples"] == 1000
 
 

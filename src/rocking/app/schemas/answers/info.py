@@ -1,5 +1,7 @@
 """What there is to choose from."""
 
+from typing import Literal
+
 from pydantic import Field
 
 from rocking.app.schemas.answers.answer import Answer
@@ -17,7 +19,9 @@ class ParameterFacts(Answer):
 
     unit: str
     words: str
-    default: float | None = Field(description="in `unit`; null where one must be given")
+    default: float | Literal["unlimited"] | None = Field(
+        description='in `unit`; "unlimited" where it is infinite, null where one must be given'
+    )
 
 
 class ModelFacts(Answer):

@@ -1,0 +1,70 @@
+"""The body of `rocking cor` in a file that says a whole response, as the application gives one to take away."""
+
+from pathlib import Path
+from typing import Any
+
+from rocking.bodies import Body
+from rocking.errors import InvalidValueError
+from rocking.studies.job.inputs import Inputs
+from rocking.studies.job.parts import body_of
+from rocking.studies.job.reading import located, read_text, validated
+from rocking.studies.job.table import JobTable
+from rocking.studies.job.tables import SettingsTable
+
+
+class BodyOfDocument(JobTable):
+    """The tables of such a file of which only the body and the settings are looked at."""
+
+    body: dict[str, Any]
+    settings: SettingsTable = SettingsTable()
+    response: Any = None
+    motion: Any = None
+    restitution: Any = None
+
+
+def body_and_gravity(path: Path, size: dict[str, object]) -> tuple[Body, float | None]:
+    """Return the body of a file with a table [response], and the gravity that it states.
+
+    Parameters
+    ----------
+    path : Path
+        The file; those that only its motion needs are not read.
+    size : dict
+        Options that say a body, which are refused.
+
+    Returns
+    -------
+    body : Body
+        The body.
+    gravity : float or None
+        Acceleration of gravity, None if the file states none [m/s2].
+
+    Raises
+    ------
+    InvalidValueError
+        If the file is no such document, its body cannot be made, or an option says a body as well.
+    """
+    given = [f"--{name.replace('_', '-')}" for name, value in size.items() if value is not None]
+    if given:
+        raise InvalidValueError(f"{path} has a table [body] and says everything itself, so it takes no {given[0]}")
+    with located(str(path)):
+        document = validated(BodyOfDocument, read_text(path))
+        with located("body"):
+            body = body_of(document.body, Inputs(path.parent))
+    return body, document.settings.gravity
+
+
+def sentence(path: Path) -> str:
+    """Return what is not used of such a file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    str
+        One sentence.
+    """
+    return f"{path.name}: body and gravity are taken from it; everything else it says is for `rocking simulate`."
