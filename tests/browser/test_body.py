@@ -73,7 +73,14 @@ def test_the_unit_changes_the_numbers_typed_and_not_the_body(page: Any) -> None:
 
 @pytest.mark.parametrize(
     ("text", "sentence"),
-    [("", "A number is needed"), ("wide", "not a number"), ("-1", "More than 0"), ("0", "More than 0")],
+    [
+        ("", "A number is needed"),
+        ("wide", "not a number"),
+        ("-1", "More than 0"),
+        ("0", "More than 0"),
+        ("1e-320", "At least 1"),
+        ("1e12", "At most 1"),
+    ],
 )
 def test_a_wrong_number_says_so_and_keeps_the_last_body(page: Any, text: str, sentence: str) -> None:
     """The field is marked, its help says why, and the numbers stay those of the last body."""
@@ -459,3 +466,66 @@ def test_a_rounded_zero_is_a_zero(page: Any) -> None:
     page.route("**/api/body", lambda route: answered(route, -1.67e-9))
     page.get_by_label("Height").fill("2.2")
     settled(page, "Centre of mass, x m", -1.67e-9)
+
+
+HOLED = (
+    "units = 'm'\n[section]\nfeet = [0.1, 1.9]\n"
+    "[[section.region]]\noutline = [[0, 0], [2, 0], [2, 2], [0, 2]]\ndensity = 2000\n"
+    "holes = [[[0.5, 0.5], [1.5, 0.5], [1.5, 1.5], [0.5, 1.5]]]\n"
+    "[[section.region]]\noutline = [[0, 2], [2, 2], [2, 3], [0, 3]]\ndensity = 1000\n"
+)
+
+
+def test_a_pasted_outline_is_the_whole_body(page: Any, tmp_path: Path, shot: Callable[..., Any]) -> None:
+    """Pasted over a body with a hole, a second region and feet inside, 1 m by 3 m has h/b 3; Undo restores all."""
+    path = tmp_path / "holed.toml"
+    path.write_text(HOLED, encoding="utf-8")
+    page.get_by_label("Body file").set_input_files(path)
+    former = 2000.0 * (4.0 - 1.0) + 1000.0 * 2.0
+    settled(page, "Mass kg", former)
+    paste(page, "0,0\n1,0\n1,3\n0,3", "Use as outline")
+    settled(page, "Slenderness h/b", 3.0)
+    assert number(page, "Mass kg") == pytest.approx(2000.0 * 3.0, rel=1e-12)
+    assert page.get_by_label("Left foot").input_value() == ""
+    told = page.get_by_test_id("editor").locator(".paste [role=status]")
+    expect(told).to_contain_text("1 hole, 1 other region and the feet")
+    expect(told).to_contain_text("Undo brings them back")
+    shot(page, "body-pasted")
+    undo, redo = (page.get_by_role("button", name=name, exact=True) for name in ("Undo", "Redo"))
+    undo.click()
+    settled(page, "Mass kg", former)
+    assert page.get_by_label("Left foot").input_value() == "0.1"
+    redo.click()
+    settled(page, "Slenderness h/b", 3.0)
+    undo.click()
+    expect(page.get_by_label("Right foot")).to_have_value("1.9")
+    settled(page, "Mass kg", former)
+
+
+def test_undo_of_a_drawing_leaves_feet_that_were_typed_since(page: Any) -> None:
+    """A region added and undone takes nothing along that was typed in the form between the two."""
+    page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+    page.get_by_role("button", name="Add region").click()
+    page.get_by_label("Left foot").fill("0.1")
+    page.get_by_label("Right foot").fill("0.4")
+    settled(page, "Slenderness h/b", 1.25 / 0.15)
+    page.get_by_role("button", name="Undo").click()
+    settled(page, "Slenderness h/b", 1.0 / 0.15)
+
+
+def test_a_regular_polygon_becomes_a_polygon_with_every_digit(page: Any) -> None:
+    """The corners of a hexagon of radius 1 m are those of the closed form, whatever unit was shown in between."""
+    page.get_by_label("Shape").select_option("regular_polygon")
+    page.get_by_label("Sides").fill("6")
+    page.get_by_label("Radius").fill("1")
+    settled(page, "Slenderness h/b", math.sqrt(3.0))
+    before = facts(page)
+    page.get_by_label("Shape").select_option("section")
+    page.get_by_test_id("board").wait_for()
+    for unit in ("ft", "mm", "m"):
+        page.get_by_role("radio", name=unit, exact=True).check()
+    found = page.evaluate("JSON.parse(sessionStorage.getItem('rocking.inputs')).body.section.region[0].outline")
+    sides = [math.dist(a, b) for a, b in zip(found, [*found[1:], found[0]], strict=True)]
+    assert sides == pytest.approx([1.0] * 6, rel=1e-15, abs=4e-16)
+    settled(page, "Mass kg", float(before["Mass kg"][0]), rel=1e-15)

@@ -209,18 +209,20 @@ def test_an_unreadable_file_takes_the_question_of_the_last_one_along(view: Any) 
     expect(pending).to_be_empty()
 
 
-def test_a_refused_answer_takes_its_question_along(view: Any) -> None:
-    """What the server cannot read as it was told is refused; nothing is asked any more, and a file can be chosen."""
+def test_a_refused_file_leaves_what_was_answered(view: Any) -> None:
+    """Of a file that cannot be read as it was told the reason is shown; the answers stay, and can be changed."""
     words = {"error": {"kind": "record", "message": "site.csv: the file is damaged"}}
-    view.route(re.compile(r"/api/records\?.*units="), lambda route: route.fulfill(status=422, json=words))
+    view.route(re.compile(r"/api/records\?.*units=gal"), lambda route: route.fulfill(status=422, json=words))
     way(view, "Record file")
     view.evaluate(DROP, ["site.csv", "\n".join(f"{STEP * k:.3f},{math.sin(0.7 * k):.6f}" for k in range(201))])
-    needs = view.get_by_test_id("record-needs")
-    needs.get_by_label("Unit of the accelerations").select_option("g")
-    needs.get_by_role("button", name="Read it so").click()
+    unit = view.get_by_test_id("record-needs").get_by_label("Unit of the accelerations")
+    unit.select_option("gal")
+    view.get_by_role("button", name="Read it so").click()
     expect(view.locator("[data-testid=record-answer] .note.error")).to_contain_text("damaged")
-    expect(needs).to_be_empty()
-    expect(view.get_by_role("button", name="Choose a file").and_(view.locator("#view-motion button"))).to_be_focused()
+    expect(unit).to_have_value("gal")
+    unit.select_option("g")
+    view.get_by_role("button", name="Read it so").click()
+    expect(view.get_by_test_id("record-held")).to_contain_text("site.csv")
 
 
 def inputs_or_first(page: Any) -> Any:

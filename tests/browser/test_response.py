@@ -416,3 +416,45 @@ def test_dark_and_phone(answered: Callable[..., Any], shot: Callable[..., Path])
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
         page.get_by_test_id("scene-ground").select_option("magnified")
         shot(page, f"response-{name}")
+
+
+def test_the_fallen_body_is_told_with_one_angle(answered: Callable[..., Any]) -> None:
+    """Lying on its side a block of h/b 4 has turned 90 degrees, which are 90 / 14.04 of alpha and not more."""
+    page = answered(link(DECISIVE, restitution={"models": ["ked"]}))
+    page.get_by_test_id("scene-stage").focus()
+    page.keyboard.press("End")
+    alpha = math.degrees(response(DECISIVE, "ked").rocker.right.slenderness_angle)
+    words = page.get_by_test_id("scene-rotation").inner_text().replace("\u2212", "-")
+    degrees, share = (abs(float(each)) for each in re.findall(r"-?[0-9.]+", words))
+    assert degrees == pytest.approx(90.0, abs=0.01)
+    assert share == pytest.approx(90.0 / alpha, abs=0.006)
+
+
+def test_the_curve_of_a_fall_ends(answered: Callable[..., Any]) -> None:
+    """The rotation is drawn up to 1.5 alpha, as the words under it say: no flat line goes on after it."""
+    page = answered(link(DECISIVE, restitution={"models": ["ked"]}))
+    expect(page.get_by_text("Curves of a body that overturns end at 1.5 \u03b1")).to_be_visible()
+    chart = page.get_by_test_id("chart-rotation")
+    chart.locator("summary").click()
+    page.get_by_role("button", name=re.compile("Copy table: Rotation over slenderness")).click()
+    rows = [row.split("\t") for row in pasted(page).splitlines()[1:]]
+    found = response(DECISIVE, "ked")
+    alpha = found.rocker.right.slenderness_angle
+    fall = float(found.time[int(np.argmax(np.abs(found.rotation) > 1.5 * alpha))])
+    shown = [(float(time), abs(float(share))) for time, share in (row[:2] for row in rows) if share.strip()]
+    assert max(share for _, share in shown) <= 1.5
+    assert shown[-1][0] <= fall
+    assert float(rows[-1][0]) > fall
+
+
+def test_many_impacts_scroll_in_a_box(answered: Callable[..., Any]) -> None:
+    """Let go from 0.9 of alpha a body impacts more often than a screen has lines: the table scrolls, not the page."""
+    page = answered(link(None, response={"free": 0.9}, restitution={"value": 0.98}))
+    table = page.get_by_test_id("impacts-table")
+    expect(table.locator("tbody tr").nth(60)).to_be_attached()
+    box = page.get_by_test_id("impacts").locator(".table-scroll")
+    assert box.evaluate("node => node.scrollHeight > 2 * node.clientHeight")
+    assert box.evaluate("node => node.clientHeight <= innerHeight / 1.5")
+    box.evaluate("node => node.scrollTo(0, node.scrollHeight)")
+    head = table.locator("thead th").first.bounding_box()
+    assert abs(head["y"] - box.bounding_box()["y"]) < 3.0

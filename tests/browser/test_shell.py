@@ -485,3 +485,29 @@ def test_a_step_chosen_while_the_page_still_starts_is_taken(open_page: Callable[
     page.reload()
     page.get_by_role("tab", name="Impact").click()
     expect(page.locator("#view-impact")).to_be_visible()
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        ({"status": 500, "json": {"error": {"kind": "internal", "message": "something went wrong"}}}, "went wrong"),
+        ({"status": 429, "json": {"error": {"kind": "busy", "message": "too much at once; try again"}}}, "at once"),
+        (None, "The server does not answer"),
+    ],
+)
+def test_a_start_that_fails_says_what_failed(
+    browser: Any, served: Any, signed_in: Any, answer: Any, words: str, shot: Callable[..., Any]
+) -> None:
+    """A user who is signed in is told what went wrong and tries again; nobody asks for a link of the terminal."""
+    context = browser.new_context(storage_state=signed_in)
+    page = context.new_page()
+    page.route("**/api/info", lambda route: route.fulfill(**answer) if answer else route.abort())
+    page.goto(f"{served.url}/#view=impact")
+    failure = page.get_by_test_id("failure")
+    expect(failure).to_contain_text(words)
+    expect(page.get_by_test_id("door")).to_have_count(0)
+    shot(page, f"start-failed-{(answer or {}).get('status', 0)}")
+    page.unroute("**/api/info")
+    failure.get_by_role("button", name="Try again").click()
+    page.wait_for_selector("#view-impact[data-ready=true]:not([hidden])")
+    context.close()

@@ -214,6 +214,16 @@ def test_rocking_spectra(studies: Any, shot: Any) -> None:
     studies.get_by_test_id("study-launch").click()
     studies.get_by_test_id("spectrum-chart").wait_for(timeout=60_000)
     assert studies.locator("[data-testid=spectrum-chart] .legend li").count() == 6
+    keys = studies.locator("[data-testid=spectrum-chart] .legend li")
+    looks = {}
+    for key in keys.all():
+        line = key.locator("path")
+        looks[key.inner_text()] = (line.get_attribute("stroke"), line.get_attribute("stroke-dasharray"))
+    assert len(set(looks.values())) == 6
+    # the dash is the model's: KED's line is whole, Housner's is not; no colour is that of another model
+    assert {dash for words, (_, dash) in looks.items() if "KED" in words} == {None}
+    assert {dash for words, (_, dash) in looks.items() if "Housner" in words} == {"6 4"}
+    assert not {colour for colour, _ in looks.values()} & {"#0072B2", "#D55E00"}
     shot(studies, "studies-spectra")
 
 
@@ -277,3 +287,29 @@ def test_phone_and_dark(open_page: Callable[..., Any], shot: Any) -> None:
         launched_map(page, f"phone {scheme}", 12)
         assert page.evaluate("document.documentElement.scrollWidth") <= 360
         shot(page, f"studies-phone-{scheme}")
+
+
+def test_a_spectrum_of_one_slenderness_wears_the_look_of_its_model(studies: Any) -> None:
+    """With one angle KED is KED's whole orange line and Housner his blue dashes, as everywhere in the page."""
+    studies.get_by_role("radio", name="Rocking spectra").check(force=True)
+    parts = studies.locator("#view-studies .range-fields")
+    upper, lower = parts.nth(0).bounding_box(), parts.nth(1).bounding_box()
+    assert lower["y"] - upper["y"] - upper["height"] > 8.0
+    for field, text in (("from", "0.2"), ("to", "0.2"), ("number", "1")):
+        parts.nth(0).get_by_label(field).fill(text)
+    parts.nth(1).get_by_label("number").fill("8")
+    studies.locator("#study-name").fill("one slenderness")
+    studies.get_by_test_id("study-launch").click()
+    keys = studies.locator("[data-testid=spectrum-chart] .legend li")
+    expect(keys).to_have_count(2, timeout=60_000)
+    ked, housner = (keys.filter(has_text=name).locator("path") for name in ("KED", "Housner"))
+    expect(ked).to_have_attribute("stroke", "#D55E00")
+    assert ked.get_attribute("stroke-dasharray") is None
+    expect(housner).to_have_attribute("stroke", "#0072B2")
+    expect(housner).to_have_attribute("stroke-dasharray", "6 4")
+
+
+@pytest.mark.parametrize(("view", "words"), [("studies", "Studies"), ("takeaway", "Take away")])
+def test_each_step_has_a_heading(open_page: Callable[..., Any], view: str, words: str) -> None:
+    """A screen reader finds the step by its first heading."""
+    expect(open_page(view=view).get_by_role("heading", level=1)).to_have_text(words)

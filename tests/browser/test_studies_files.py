@@ -93,3 +93,20 @@ def test_files_are_of_the_model_that_is_shown(open_page: Callable[..., Any], ser
     assert first["svg"] != second["svg"]
     assert first["xml"] != second["xml"]
     assert first["csv"] == second["csv"]  # a table holds all of them
+
+
+def test_where_no_curve_fits_the_chart_says_so(open_page: Callable[..., Any], served: Any, shot: Any) -> None:
+    """Uplift under a given PGA is certain or impossible: dots alone, no legend of a curve, and the reason."""
+    same = {"motions": {"pulse": ["sine:amplitude=1,period=0.8", "sine:amplitude=1,period=0.82"]}}
+    made = finished(served, "a step", fragility={"levels": [0.5, 1.0, 40.0, 60.0], "states": [0.5]}, **same)
+    page = open_page(view="studies")
+    opened(page, made)
+    why = page.get_by_test_id("no-curve").first
+    # tan(alpha) g of a block of h/b 4
+    expect(why).to_contain_text(f"No curve is drawn: below {9.80665 / 4:.3f}\u00a0m/s\u00b2 the body cannot uplift")
+    expect(why).to_contain_text("a step from 0 to 1")
+    chart = page.get_by_test_id("fragility-chart").first
+    assert "most likely" not in chart.inner_text()
+    assert "95 % band" not in chart.inner_text()
+    expect(chart).to_contain_text("Probability")
+    shot(page, "studies-no-curve")

@@ -9,7 +9,7 @@ export {
 } from "/app/controls.js";
 export { tableOf } from "/app/table.js";
 
-/** A number with its unit; decimal commas and arrow keys work. An element with `value` and `setError`. */
+/** A number with its unit; decimal commas and arrow keys work. Has `value`, `fault` and `setError`. */
 export const numberField = ({
   label, unit, value, min, above, max, step, onChange, help, optional = false, name,
 }) => {
@@ -46,9 +46,8 @@ export const numberField = ({
     if (!same) input.value = editable(next);
     setError("", decimalWords(input.value, next));
   };
-  return withValue(
-    field, input, () => checked(input.value, limits).given, setValue, setError,
-  );
+  withValue(field, input, () => checked(input.value, limits).given, setValue, setError);
+  return Object.assign(field, { fault: () => checked(input.value, limits).fault ?? "" });
 };
 
 /** A line of text. An element with `value` and `setError`. */

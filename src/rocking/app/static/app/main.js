@@ -10,6 +10,7 @@ import { followAddress, UNREADABLE } from "/app/navigation.js";
 import { whenBack } from "/app/offline.js";
 import { fieldOf, plainWords } from "/app/refusal.js";
 import { say } from "/app/say.js";
+import { showFailure } from "/app/failure.js";
 import { exchange, linkForAnother, showDoor } from "/app/session.js";
 import { mountSummary } from "/app/summary.js";
 import { createTabs } from "/app/tabs.js";
@@ -106,4 +107,4 @@ document.querySelector(".skip").addEventListener("click", (event) => {
   document.getElementById("main").focus();
 });
 
-start().catch((error) => showDoor(error.message));
+start().catch((error) => (error.status === 401 ? showDoor(error.message) : showFailure(error.message)));

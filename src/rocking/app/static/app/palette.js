@@ -40,7 +40,8 @@ export const modelStyle = (label) => STYLES[family(label)] ?? spare(String(label
 export const modelWords = (label) => {
   const text = String(label);
   const name = family(text);
-  const parameter = text.includes(":") ? `, ${text.split(":")[1].replaceAll("=", "\u00a0=\u00a0").replaceAll(",", ", ")}` : "";
+  const told = text.includes(":") ? text.split(":")[1].replaceAll(",", ", ") : "";
+  const parameter = told ? `, ${told.replaceAll("=", "\u00a0=\u00a0")}` : "";
   const factor = text.includes("*") ? `${text.split("*")[0]}\u00a0\u00d7\u00a0` : "";
   return WORDS[name] ? `${factor}${WORDS[name]}${parameter}` : text;
 };
@@ -56,6 +57,17 @@ export const dashKey = ({ colour, dash = [], dots = false }) => {
   return svg("svg", {
     class: "dash-key", width: 34, height: 10, viewBox: "0 0 34 10", "aria-hidden": "true", focusable: "false",
   }, mark);
+};
+
+const ANGLES = ["#7A5195", "#4D9221", "#A6761D", "#B5446E", "#2A7F8E", "#6B6B6B"];
+const DASHES = [[], [9, 3], [3, 3], [9, 3, 3, 3], [6, 2], [2, 2, 6, 2]];
+
+/** Look of a curve of one of several angles: the model's own, or a colour of the angle that no model has. */
+export const angleStyle = (model, index, { angles, models }) => {
+  const own = modelStyle(model);
+  if (angles < 2) return own;
+  const at = index % ANGLES.length;
+  return { colour: ANGLES[at], dash: models < 2 ? DASHES[at] : own.dash };
 };
 
 /** Colour for the n-th of several curves that are no models. */

@@ -4,7 +4,10 @@ import { number, pretty } from "/app/format.js";
 
 const METRES = { m: 1, cm: 0.01, mm: 0.001, ft: 0.3048, in: 0.0254 };
 
-const FIELDS = { "settings.gravity": "Gravity", "body.name": "Name", "body.units": "The unit of length" };
+const FIELDS = {
+  "settings.gravity": "Gravity", "body.name": "Name", "body.units": "The unit of length",
+  time_step: "The time between two samples", units: "The unit",
+};
 
 /** A refusal in plain words; lengths in metres are told in the body's unit. */
 export const plainWords = (message, body) => {
@@ -24,7 +27,7 @@ const withoutPlaces = (words) =>
 const withFields = (words) =>
   words.replace(/^body\.section\.region\[(\d+)\]\.(\w+)(\[\d+\])*/, (_, index, key) =>
     `The ${key} of region ${Number(index) + 1}`)
-    .replace(/^[a-z]+\.[a-z_]+(?= must )/, (path) => FIELDS[path] ?? path)
+    .replace(/^[a-z]+(?:\.[a-z]+)?(?:_[a-z]+)*(?= must )/, (path) => FIELDS[path] ?? path)
     .replace(/^body\.(?:[a-z_]+\.)?([a-z]+)(?= must )/, (_, key) => `The ${key}`);
 
 const withRegions = (words) =>

@@ -25,10 +25,13 @@ export const tableOf = (columns, rows, { caption, csv, testid, copyRows, actions
       "tbody", {},
       rows.map((row) => el("tr", {}, row.map((value, index) => cell(value, heads[index], index)))),
     ));
+  const scroll = `table-scroll${rows.length > LONG ? " long" : ""}`;
   return el("div", { class: "table-block" },
     el("div", { class: "table-head" }, el("p", { id, class: "caption" }, caption), toolbar(tools)),
-    el("div", { class: "table-scroll", tabindex: "0", role: "region", "aria-labelledby": id }, table));
+    el("div", { class: scroll, tabindex: "0", role: "region", "aria-labelledby": id }, table));
 };
+
+const LONG = 20;
 
 const heading = ({ label, unit, numeric }) =>
   el("th", { scope: "col", class: numeric === false ? "text" : "" }, label,

@@ -1,4 +1,4 @@
-/** A chart as a file: SVG, and PNG drawn from it at twice the size. */
+/** A chart or a picture as a file: SVG, and PNG drawn from it at twice the size. */
 
 import { saveBlob } from "/app/api.js";
 import { el } from "/app/dom.js";
@@ -24,11 +24,11 @@ export const savePng = async (picture, title) => {
   }
 };
 
-/** Buttons that save a chart; `vector` draws it. */
-export const chartFiles = (title, vector) => {
+/** Buttons that save a chart, or what else `what` says; `vector` draws it. */
+export const chartFiles = (title, vector, what = "chart") => {
   const kinds = [["PNG", savePng], ["SVG", saveSvg]];
   return el("div", { class: "chart-files" }, kinds.map(([kind, save]) => el("button", {
-    type: "button", class: "button quiet", "aria-label": `${kind} of the chart ${title}`,
+    type: "button", class: "button quiet", "aria-label": `${kind} of the ${what} ${title}`,
     onclick: () => save(vector(), title),
   }, kind)));
 };

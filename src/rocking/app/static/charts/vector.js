@@ -94,7 +94,8 @@ const bandOf = (frame, { series: [high, low], fill }, data) => {
   return d ? svg("path", { d, fill }) : null;
 };
 
-const legendOf = (series, width) => {
+/** Keys and words of several curves in rows: {rows, node}. */
+export const legendOf = (series, width) => {
   let [x, row] = [MARGIN, 1];
   const entries = series.map(({ label, colour: paint, dash, points, width: thick }) => {
     const wide = 46 + LETTER * label.length;

@@ -6,12 +6,14 @@ const HATCH = 14;
 const NO_DASH = [];
 const TICKS = new Map();
 
-const tickStep = (scale) => {
+/** Metres between two ticks of the ruler at so many pixels a metre. */
+export const tickStep = (scale) => {
   for (let k = 0; k < STEPS.length; k += 1) if (STEPS[k] * scale > 72) return STEPS[k];
   return 5000;
 };
 
-const tickText = (value, step) => {
+/** A place on the ruler in words. */
+export const tickText = (value, step) => {
   const key = Math.round(value / step) * step;
   let text = TICKS.get(key);
   if (text === undefined) {

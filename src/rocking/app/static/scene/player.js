@@ -5,6 +5,7 @@ import { Clock } from "/scene/clock.js";
 import { controlsOf } from "/scene/controls.js";
 import { noteFrame, resetFrames } from "/scene/frames.js";
 import { Stage } from "/scene/stage.js";
+import { sceneStill } from "/scene/still.js";
 import { Strip } from "/scene/strip.js";
 
 const READOUT_MS = 66;
@@ -120,6 +121,11 @@ export class Player {
     noteFrame(performance.now() - started);
     if (this.clock.running) requestAnimationFrame(this.frame);
     else this.controls.tellRunning(false);
+  }
+
+  /** The instant that is shown as a picture of its own; `names` are the models in words. */
+  still(names) {
+    return sceneStill(this.stage, this.clock.now, `The body at ${this.clock.now.toFixed(3)} s`, names);
   }
 
   /** Writes instant and rotation in numbers. */

@@ -43,7 +43,7 @@ export const actorOf = (answer, shape, style) => {
     scaledDash: [],
     falls,
     rotation: new Track([...time, ...later], [...seen, ...lower]),
-    share: new Track(time, sharesOf(rotation, answer.body)),
+    share: new Track([...time, ...later], sharesOf([...seen, ...lower], answer.body)),
     impactTimes: Float64Array.from(impacts, (one) => one.time_s),
     impactFeet: Float64Array.from(impacts, (one) => (one.onto === "right" ? 1 : 0)),
     impactWords: impacts.map((one) => `r = ${one.coefficient.toFixed(3)}`),

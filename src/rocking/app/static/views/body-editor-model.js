@@ -76,18 +76,20 @@ export const createHistory = (most = 200) => {
       past = [...past, value].slice(-most);
       future = [];
     },
-    undo: (now) => travel(past, future, now),
-    redo: (now) => travel(future, past, now),
+    undo: (nowLike) => travel(past, future, nowLike),
+    redo: (nowLike) => travel(future, past, nowLike),
     clear: () => [past, future] = [[], []],
     canUndo: () => past.length > 0,
     canRedo: () => future.length > 0,
   };
 };
 
-const travel = (from, to, now) => {
+// What is left behind is kept as the value that takes its place was.
+const travel = (from, to, nowLike) => {
   if (!from.length) return null;
-  to.push(now);
-  return from.pop();
+  const found = from.pop();
+  to.push(nowLike(found));
+  return found;
 };
 
 const withRing = (regions, { region, ring }, change) => {

@@ -35,11 +35,16 @@ const createEditor = (app) => {
   const body = () => app.inputs.get().body;
   const regions = () => editable(body().section, app.body.get(), body().units);
   const tell = () => watchers.forEach((each) => each());
-  const now = () => ({ regions: regions(), units: body().units });
+  // Feet and depth are typed beside the board: a step takes them along only if it changed them itself.
+  const now = ({ whole = false } = {}) => {
+    const { section, units } = body();
+    return { section, regions: regions(), units, whole };
+  };
   const put = (next) => app.inputs.set("body.section.region", next);
   const step = () => state.step ?? firstStep(regions());
   const editor = {
     state, history, regions, step,
+    section: () => body().section,
     units: () => body().units,
     facts: () => app.body.get(),
     metres: () => METRES[body().units],
@@ -53,6 +58,15 @@ const createEditor = (app) => {
       put(next);
       tell();
     },
+    replace: (section) => {
+      history.keep(now({ whole: true }));
+      editor.show(section, { region: 0, ring: -1, vertex: 0 });
+    },
+    show: (section, place) => {
+      state.place = place;
+      app.inputs.set("body.section", section);
+      tell();
+    },
     keep: () => history.keep(now()),
     select: (place) => {
       state.place = place;
@@ -60,11 +74,13 @@ const createEditor = (app) => {
     },
     snapped: (point) => model.snapped(point, state.snap ? step() : 0, tidy),
     travel: (direction) => {
-      const found = history[direction](now());
+      const found = history[direction](now);
       if (!found) return;
-      const before = { units: found.units, section: { region: found.regions } };
-      const next = inUnits(before, body().units).section.region;
-      editor.adjust(next, withinReach(next, state.place));
+      const table = found.whole ? found.section : { region: found.regions };
+      const { section } = inUnits({ units: found.units, section: table }, body().units);
+      const place = withinReach(found.regions, state.place);
+      if (found.whole) editor.show(section, place);
+      else editor.adjust(section.region, place);
     },
     say: app.say,
     tell,

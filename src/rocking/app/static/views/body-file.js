@@ -1,17 +1,19 @@
 /** A drawing or body file, dropped or chosen: DXF, WKT, GeoJSON or TOML. */
 
+import { contentOf } from "/app/file-content.js";
 import { button, el, fill, note, selectField } from "/views/body-parts.js";
 import { METRES } from "/views/body-units.js";
 
 /** The place to drop a file, and its unit where the file does not say it. */
 export const dropZone = (app) => {
   let held = null;
+  let content = null;
   let placed = "";
   const said = el("div", { class: "refusal", role: "alert", "data-testid": "file-refusal" });
   const name = el("p", { class: "field-help", "data-testid": "held-file" });
   // The file is kept: another unit reads it again, unless the body was changed since by hand.
   const again = () => {
-    if (held && (!placed || JSON.stringify(app.inputs.get().body) === placed)) take(held);
+    if (held && (!placed || JSON.stringify(app.inputs.get().body) === placed)) read();
   };
   const units = selectField({
     label: "Unit of the file", value: "", onChange: again,
@@ -25,24 +27,34 @@ export const dropZone = (app) => {
   const chooser = el("input", {
     type: "file", accept: ".dxf,.wkt,.txt,.geojson,.json,.toml", class: "visually-hidden",
     "aria-label": "Body file",
-    tabindex: "-1", onchange: () => chooser.files[0] && take(chooser.files[0]),
+    tabindex: "-1", onchange: () => {
+      const [file] = chooser.files;
+      chooser.value = ""; // or the same file, mended, could not be chosen again
+      if (file) take(file);
+    },
   });
-  const take = async (file) => {
-    [held, placed] = [file, ""];
-    fill(said);
+  const take = (file) => {
+    [held, content] = [file, null];
     fill(name, `File: ${file.name}. Choosing another unit reads it again.`);
+    return read();
+  };
+  const read = async () => {
+    const file = held;
+    placed = "";
+    fill(said);
     try {
+      content ??= await contentOf(file);
       const query = { name: file.name, units: units.value || undefined };
-      const answer = await app.call("body/file", { body: file, query });
+      const answer = await app.call("body/file", { body: content, query });
+      if (file !== held) return;
       app.inputs.set("body", answer.body);
       placed = JSON.stringify(app.inputs.get().body);
       app.say(`Read ${file.name}.`);
     } catch (error) {
+      if (file !== held) return;
       fill(said, note(error.message, "error"));
       app.say(error.message, "error");
       if (/unit/.test(error.message)) units.input.focus();
-    } finally {
-      chooser.value = "";
     }
   };
   const zone = el("div", { class: "drop", "data-testid": "body-drop" },

@@ -2,7 +2,7 @@
 
 import { el, fill, note, numberField, segmented, selectField, textField } from "/views/body-parts.js";
 import { asShape, pathOfShape, SHAPES, shapeOf, tableOfShape } from "/views/body-shapes.js";
-import { inUnits, METRES } from "/views/body-units.js";
+import { fromMetres, inUnits, METRES } from "/views/body-units.js";
 
 /** The form; follow() brings it up to date with the inputs. */
 export const createForm = (app) => {
@@ -89,7 +89,8 @@ const fieldsOf = (app) => {
   const isMassPoints = shapeOf(body) === "mass_points";
   const common = isMassPoints ? [] : [
     [(table) => table.depth, numberField({
-      label: "Depth", unit: units, optional: true, above: 0, onChange: (value) => put("depth", value),
+      label: "Depth", unit: units, optional: true, ...sizeLimits(units),
+      onChange: (value) => put("depth", value),
       help: "Out of the picture; only the mass needs it. Empty: 1\u00a0m.",
     }), false, "depth"],
   ];
@@ -103,9 +104,17 @@ const fieldsOf = (app) => {
   ];
 };
 
+// What the solver takes, in metres; other sizes are slips of the keyboard or of the unit.
+const [LEAST, MOST] = [1e-9, 1e9];
+
+const sizeLimits = (unit) => {
+  const [min, max] = [LEAST, MOST].map((length) => fromMetres(length, unit));
+  return METRES[unit] ? { above: 0, min, max } : { above: 0 };
+};
+
 const sizeField = (key, label, { whole, ...more }, put) => {
   const field = numberField({
-    label, ...(more.min === undefined ? { above: 0 } : {}), ...more,
+    label, ...(more.min === undefined ? sizeLimits(more.unit) : {}), ...more,
     onChange: (value) => (
       whole && !Number.isInteger(value) ? field.setError("A whole number is needed.") : put(key, value)
     ),

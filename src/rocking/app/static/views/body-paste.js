@@ -22,9 +22,15 @@ export const pastePart = (editor) => {
     tell(read);
     if (!read.fault) editor.change(...make(editor.regions(), read.points, editor.state.place));
   };
-  const asOutline = (regions, points, { region }) => [
-    regions.with(region, { ...regions[region], outline: points }), { region, ring: -1, vertex: 0 },
-  ];
+  const asOutline = () => {
+    const read = parsePoints(box.value);
+    tell(read);
+    if (read.fault) return;
+    const lost = lostWords(editor.section(), editor.regions());
+    editor.replace(replaced(editor.section(), editor.regions()[editor.state.place.region], read.points));
+    const words = `The ${read.points.length} points are the whole body now.`;
+    fill(told, lost ? `${words} ${lost}` : words);
+  };
   const asRegion = (regions, points) => [
     model.withRegion(regions, points, regions.at(-1).density), {
       region: regions.length, ring: -1, vertex: 0,
@@ -39,7 +45,28 @@ export const pastePart = (editor) => {
       el("div", { class: "field" },
         el("label", { for: id }, "Points, x and y on each line"), box, told),
       toolbar(
-        button({ text: "Use as outline", kind: "primary", onClick: use(asOutline) }),
+        button({ text: "Use as outline", kind: "primary", onClick: asOutline }),
         button({ text: "Add as region", onClick: use(asRegion) }),
         button({ text: "Add as hole", onClick: use(asHole) }))));
+};
+
+// What is typed of the material stays; what belonged to the former outline does not.
+const replaced = ({ depth }, { density }, outline) => ({
+  region: [density === undefined ? { outline } : { outline, density }],
+  ...(depth === undefined ? {} : { depth }),
+});
+
+/** What of the former body is gone, in words; nothing if it had no more than its outline. */
+const lostWords = (section, regions) => {
+  const holes = regions.flatMap((each) => each.holes ?? []).length;
+  const others = regions.length - 1;
+  const gone = [
+    holes ? `${holes} hole${holes > 1 ? "s" : ""}` : "",
+    others ? `${others} other region${others > 1 ? "s" : ""}` : "",
+    section.feet ? "the feet" : "",
+    section.ground ? "the height of the ground" : "",
+  ].filter(Boolean);
+  if (!gone.length) return "";
+  const list = gone.join(", ").replace(/, ([^,]*)$/, " and $1");
+  return `Gone with the former body: ${list}. Undo brings them back.`;
 };

@@ -18,7 +18,13 @@ export const inUnits = (body, units) => {
 };
 
 /** A length in metres in a unit. */
-export const fromMetres = (length, units) => tidy(length / METRES[units]);
+export const fromMetres = (length, units) => exact(length, 1 / METRES[units]);
+
+// What binary arithmetic left behind is rounded away only where that is all that is rounded away.
+const exact = (value, factor) => {
+  const neat = tidy(value * factor);
+  return Math.abs(neat / factor - value) <= 4 * Number.EPSILON * Math.abs(value) ? neat : value * factor;
+};
 
 const rescaled = (table, factor) =>
   Object.fromEntries(Object.entries(table).map(([key, value]) => [
@@ -33,5 +39,5 @@ const nested = (value, factor) =>
 const isTable = (value) => typeof value === "object" && value !== null;
 
 const times = (value, factor) => (
-  Array.isArray(value) ? value.map((each) => times(each, factor)) : tidy(value * factor)
+  Array.isArray(value) ? value.map((each) => times(each, factor)) : exact(value, factor)
 );

@@ -7,6 +7,8 @@ import { impulseRows } from "/views/impact-impulse.js";
 import { evidenceParts } from "/views/impact-evidence.js";
 import { ledgerPicture } from "/drawing/ledger-picture.js";
 import { pictureTools } from "/drawing/picture-tools.js";
+import { chartFiles } from "/charts/save.js";
+import { stillOf } from "/charts/still.js";
 import { responsive } from "/drawing/responsive.js";
 import { stagesPicture } from "/drawing/stages-picture.js";
 
@@ -36,6 +38,10 @@ export const mount = (section, app) => {
   const stages = drawn(
     (answer, foot, width) => stagesPicture(answer.body, fieldOf(answer.stages[foot]), foot, { width })
   );
+  const still = (box, title) => {
+    const named = () => stillOf(box.querySelector("svg"), `${title}, ${state.foot} foot`);
+    return el("div", { class: "chart-foot" }, chartFiles(title, named, "picture"));
+  };
   const tools = (what) => pictureTools(app, what, () => `?onto=${state.foot}`);
   fill(section,
     el("header", { class: "view-head" },
@@ -53,11 +59,12 @@ export const mount = (section, app) => {
         el(
           "p", { class: "lead" }, "Along the base: 0 is below the centre of mass of a block, 1 is the foot.",
         ),
-        impulse,
+        impulse, still(impulse, "Where the impulse acts"),
       ),
       card(
         "Where the energy goes, by KED",
-        el("p", { class: "lead" }, "Kinetic energy kept and lost (hatched), from 100\u202f%."), ledger,
+        el("p", { class: "lead" }, "Kinetic energy kept and lost (hatched), from 100\u202f%."),
+        ledger, still(ledger, "Where the energy goes, by KED"),
       )),
     card("The three stages of KED", stages, tools("stages")));
 

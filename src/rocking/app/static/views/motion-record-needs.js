@@ -12,6 +12,18 @@ const HELP = {
   time_step: "The file does not name it.",
 };
 
+const MISSING = {
+  units: "Choose the unit.",
+  component: "Choose the horizontal component.",
+  format: "Choose the format.",
+};
+
+/** Words by which a refusal names what was answered wrongly. */
+const SIGNS = {
+  time_step: /time step|time between two samples/i, units: /\bunits?\b/i,
+  component: /component/i, format: /format/i,
+};
+
 const nameOf = (one) => one.name || one;
 
 const choicesOf = (one, answer, info) => {
@@ -26,23 +38,47 @@ const choicesOf = (one, answer, info) => {
 const namesOf = (given) =>
   Array.isArray(given) ? given.map((one) => one.name ?? one.label ?? one) : Object.keys(given || {});
 
-/** Returns the questions to ask: [{name, field}]. */
+/** Returns the questions to ask: [{name, field, wrong}]; `wrong()` says what an answer lacks. */
 export const questionsOf = (answer, info, given) =>
   answer.needs.map((one) => {
     const name = nameOf(one);
     const label = LABELS[name] || name;
-    const help = one.message || HELP[name];
-    if (name === "time_step") {
-      const limits = { min: 1e-6, max: 10, step: 0.005 };
-      return { name, field: numberField({ label, unit: "s", value: given.time_step, ...limits, help }) };
-    }
-    const choices = choicesOf(one, answer, info);
-    const options = [{ value: "", text: "Choose" }, ...choices.map((value) => ({ value, text: value }))];
-    return { name, field: selectField({ label, options, value: given[name] ?? "", help }) };
+    const about = { label, value: given[name] ?? "", help: one.message || HELP[name] };
+    if (name === "time_step") return stepQuestion(about);
+    return choiceQuestion(name, about, choicesOf(one, answer, info));
   });
+
+const stepQuestion = (about) => {
+  const limits = { min: 1e-6, max: 10, step: 0.005 };
+  const field = numberField({ ...about, value: about.value || null, unit: "s", ...limits });
+  return { name: "time_step", field, wrong: () => field.fault() };
+};
+
+const choiceQuestion = (name, about, choices) => {
+  const options = [{ value: "", text: "Choose" }, ...choices.map((value) => ({ value, text: value }))];
+  const field = selectField({ ...about, options, onChange: () => field.setError("") });
+  const open = () => choices.length > 0 && field.value === "";
+  return { name, field, wrong: () => (open() ? MISSING[name] ?? "Choose one." : "") };
+};
+
+/** Whether every question has an answer; if not, says beside each field what is missing. */
+export const allAnswered = (questions) => {
+  for (const { field, wrong } of questions) if (wrong()) field.setError(wrong());
+  const first = questions.find(({ wrong }) => wrong());
+  first?.field.input.focus();
+  return !first;
+};
+
+/** Says a refusal of the server beside the field it is about; false if it is about none of them. */
+export const blamed = (questions, message) => {
+  const found = questions.find(({ name }) => SIGNS[name]?.test(message));
+  found?.field.setError(message);
+  found?.field.input.focus();
+  return Boolean(found);
+};
 
 /** Returns what was answered, without what was left open. */
 export const answersOf = (questions) => {
   const pairs = questions.map(({ name, field }) => [name, field.value]);
-  return Object.fromEntries(pairs.filter(([, value]) => value !== "" && value !== null && value !== undefined));
+  return Object.fromEntries(pairs.filter(([, value]) => value !== "" && (value ?? null) !== null));
 };

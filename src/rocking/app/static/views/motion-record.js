@@ -1,8 +1,9 @@
 /** A record file: dropped or chosen, with what it does not say asked for. */
 import { el, fill } from "/app/dom.js";
 import { button, note } from "/app/fields.js";
+import { contentOf } from "/app/file-content.js";
 import { componentFields } from "/views/motion-components.js";
-import { answersOf, questionsOf } from "/views/motion-record-needs.js";
+import { allAnswered, answersOf, blamed, questionsOf } from "/views/motion-record-needs.js";
 import { rememberTold } from "/views/motion-told.js";
 
 const TOLD = ["format", "units", "time_step"];
@@ -19,6 +20,7 @@ class RecordEditor {
     this.onWait = onWait;
     this.waiting = false;
     this.file = null;
+    this.questions = [];
     this.said = el("div", { "aria-live": "polite", "data-testid": "record-answer" });
     this.asked = el("div", { "data-testid": "record-needs" });
     this.name = el("p", { class: "record-name", tabindex: "-1" });
@@ -33,10 +35,14 @@ class RecordEditor {
       "aria-label": "Record file",
       "data-testid": "record-file",
       tabindex: "-1",
-      onchange: () => this.take(input.files[0]),
+      onchange: () => {
+        const [file] = input.files;
+        input.value = ""; // or the same file, mended, could not be chosen again
+        this.take(file);
+      },
     });
     const choose = button({ text: "Choose a file", kind: "primary", onClick: () => input.click() });
-    const words = 
+    const words =
       "PEER, ESM, COSMOS, CSMIP, USGS, K-NET, CWA, GeoNet, BHRC, SAC, columns, " +
       "and miniSEED that holds accelerations (counts need a StationXML, which is not read here)";
     this.chooser = choose;
@@ -62,13 +68,25 @@ class RecordEditor {
   }
 
   /** Sends a file that the user gave. */
-  take(file) {
-    if (!file) return;
-    this.file = file;
-    this.given = {};
-    fill(this.asked);
+  async take(file) {
+    if (!file) return undefined;
+    [this.file, this.content, this.given] = [file, null, {}];
+    this.forget();
     this.wait(true);
-    this.send();
+    const most = this.app.info.limits?.upload_bytes;
+    if (most && file.size > most) {
+      const room = Math.round(most / 2 ** 20);
+      return this.unread(`${file.name} is larger than the ${room} MiB that the server takes.`);
+    }
+    return this.send();
+  }
+
+  /** Takes away what was asked about an earlier file. */
+  forget() {
+    const lost = this.asked.contains(document.activeElement);
+    this.questions = [];
+    fill(this.asked);
+    if (lost) this.chooser.focus();
   }
 
   wait(on) {
@@ -77,32 +95,43 @@ class RecordEditor {
   }
 
   async send() {
-    const most = this.app.info.limits?.upload_bytes;
-    if (most && this.file.size > most) {
-      const room = Math.round(most / 2 ** 20);
-      const words = `${this.file.name} is larger than the ${room} MiB that the server takes.`;
-      return this.unread(words);
-    }
-    fill(this.said, note(`Reading ${this.file.name}`));
+    const { file } = this;
+    fill(this.said, note(`Reading ${file.name}`));
     try {
-      const query = { name: this.file.name, ...this.told() };
-      this.took(await this.app.call("records", { method: "POST", body: this.file, query }));
+      this.content ??= await contentOf(file);
+      const query = { name: file.name, ...this.told() };
+      const answer = await this.app.call("records", { method: "POST", body: this.content, query });
+      if (file === this.file) this.took(answer);
     } catch (error) {
-      this.unread(error.message);
-      if (error.needs?.length) this.ask(error);
+      if (file === this.file) this.refuse(error);
     }
-    return undefined;
+  }
+
+  /** What was answered stays as it was typed, with the refusal beside the field that it is about. */
+  refuse(error) {
+    if (error.needs?.length) {
+      this.unread(error.message);
+      this.ask(error);
+    } else if (!this.questions.length) {
+      this.unread(error.message);
+    } else if (blamed(this.questions, error.message)) {
+      fill(this.said);
+    } else {
+      this.tellWhy(error.message);
+    }
   }
 
   /** Says why a file was not read; what was asked about an earlier one goes with it. */
   unread(words) {
+    this.tellWhy(words);
+    this.forget();
+    this.wait(false);
+  }
+
+  tellWhy(words) {
     const stays = this.app.inputs.get().motion ? " The motion stays as it was." : "";
     const named = words.startsWith(`${this.file.name}:`) ? `The file ${words}` : words;
     fill(this.said, note(`${named.replace(/([^.?!])$/, "$1.")}${stays}`, "error"));
-    const lost = this.asked.contains(document.activeElement);
-    fill(this.asked);
-    if (lost) this.chooser.focus();
-    this.wait(false);
   }
 
   told() {
@@ -116,6 +145,7 @@ class RecordEditor {
       this.ask(answer);
       return;
     }
+    this.questions = [];
     fill(this.asked);
     fill(this.said);
     this.choose();
@@ -128,10 +158,12 @@ class RecordEditor {
 
   ask(answer) {
     const questions = questionsOf(answer, this.app.info, this.given);
+    this.questions = questions;
     const go = button({
       text: "Read it so",
       kind: "primary",
       onClick: () => {
+        if (!allAnswered(questions)) return;
         this.given = { ...this.given, ...answersOf(questions) };
         this.send();
       },

@@ -93,7 +93,7 @@ class MotionView {
     this.tell(this.app.inputs.get().motion);
   }
 
-  /** Says when what is measured is not what the form shows: another way, a file that waits, a field in error. */
+  /** Says when what is measured is not what the form shows: another way, a file that waits, an error. */
   markStale() {
     const { motion } = this.app.inputs.get();
     const wrong = [this.place, this.scale.element].some((part) => part.querySelector("[aria-invalid=true]"));
@@ -101,7 +101,7 @@ class MotionView {
     const stale = Boolean(motion && (wrong || waits || wayOf(motion) !== this.way));
     const name = motion?.file_name ?? "the motion from before";
     const file = waits ? "The new file is not read yet" : "No file is chosen yet";
-    const why = wrong ? "A number is marked as wrong" : file;
+    const why = wrong && !waits ? "A number is marked as wrong" : file;
     const words = `${why}: what is measured below, and what shakes the body, is still ${name}.`;
     const told = stale ? words : "";
     if (told !== this.told) fill(this.pending, told ? note(told, "warning") : null);

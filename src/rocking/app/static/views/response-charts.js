@@ -11,8 +11,6 @@ const TIME = { label: "time", unit: "s" };
 const MOST_FRICTION = 3;
 const FALL_SHOWN = 1.5;
 
-const held = (share) => Math.max(-FALL_SHOWN, Math.min(FALL_SHOWN, share));
-const shareOf = (answer) => sharesOf(answer.series.rotation, answer.body).map(held);
 
 // what follows the point of no return is a fall to the ground, beside which no rocking could be seen
 const untilFall = (answer, values) => {
@@ -36,7 +34,7 @@ const CURVES = [
     key: "rotation",
     title: "Rotation over slenderness angle",
     y: { label: "\u03b8/\u03b1", unit: "-", range: rotationRange },
-    values: shareOf,
+    values: (answer) => untilFall(answer, sharesOf(answer.series.rotation, answer.body)),
   },
   {
     key: "velocity",

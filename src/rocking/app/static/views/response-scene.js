@@ -1,11 +1,12 @@
 /** The animation of the answers: which body is solid, which are ghosts, and where the ground is. */
 import { el } from "/app/dom.js";
+import { chartFiles } from "/charts/save.js";
 import { Player } from "/scene/player.js";
 import { actorOf } from "/scene/sampled.js";
 import { shapeOf } from "/scene/shape.js";
 import { peakInstant, Track } from "/scene/track.js";
 import { chosenOf } from "/views/response-chosen.js";
-import { styleOf } from "/views/response-labels.js";
+import { styleOf, wordsOf } from "/views/response-labels.js";
 import { sceneWords } from "/views/response-words.js";
 
 const SETTLE = 0.4;
@@ -33,8 +34,11 @@ export const sceneOf = () => {
   const player = new Player();
   const words = "Space plays and pauses; with the picture in focus the arrow keys step.";
   const keys = el("p", { class: "field-help" }, words);
-  const element = el("div", { class: "scene-holder" }, player.element, keys);
   let actors = [];
+  const still = () => player.still(actors.map(({ label }) => wordsOf(label)));
+  const files = chartFiles("The body at this instant", still, "picture");
+  const foot = el("div", { class: "chart-foot" }, keys, files);
+  const element = el("div", { class: "scene-holder" }, player.element, foot);
   const leadOf = () => {
     const labels = actors.map(({ label }) => label);
     return Math.max(0, labels.indexOf(chosenOf(labels)));

@@ -5,86 +5,86 @@ import { greek } from "/views/studies-words.js";
 
 const FAILED = "#999999";
 const VERDICTS = [
-    { paint: "#F2F0E8", words: "does not lift" },
-    { paint: "#9CC9E8", words: "rocks and stays standing" },
-    { paint: "#B33D00", words: "overturns without an impact" },
-    { paint: "#E69F00", words: "overturns after one impact" },
-    { paint: "#F5DC57", words: "overturns after more impacts" },
-    { paint: FAILED, words: "could not be computed" },
+  { paint: "#F2F0E8", words: "does not lift" },
+  { paint: "#9CC9E8", words: "rocks and stays standing" },
+  { paint: "#B33D00", words: "overturns without an impact" },
+  { paint: "#E69F00", words: "overturns after one impact" },
+  { paint: "#F5DC57", words: "overturns after more impacts" },
+  { paint: FAILED, words: "could not be computed" },
 ];
 const RAMP = ["#F2F0E8", "#C6DDEE", "#8FBEDD", "#5A9BC7", "#2F77A8", "#1B557F", "#0C3557"];
 
 const verdictOf = (outcome, impacts) => {
-    if (outcome === 0 || outcome === 1) return outcome;
-    if (outcome === 2) return impacts === 0 ? 2 : impacts === 1 ? 3 : 4;
-    return 5;
+  if (outcome === 0 || outcome === 1) return outcome;
+  if (outcome === 2) return impacts === 0 ? 2 : impacts === 1 ? 3 : 4;
+  return 5;
 };
 
 const ramp = (share) => RAMP[Math.min(RAMP.length - 1, Math.max(0, Math.floor(share * RAMP.length)))];
 
 /** The layers of one result: {value, text, paint(ix, iy), legend}. */
 export const layersOf = (found, k, other) => {
-    const outcome = found.outcome[k];
-    const impacts = found.impacts[k];
-    const peak = found.peak[k];
-    const most = Math.max(1, ...impacts.flat().filter(Number.isFinite));
-    const layers = [
-        {
-            value: "verdict",
-            text: "Verdict",
-            legend: VERDICTS,
-            paint: (ix, iy) => VERDICTS[verdictOf(outcome[iy][ix], impacts[iy][ix])].paint,
-        },
-        {
-            value: "peak",
-            text: "Peak rotation",
-            legend: [
-                ...RAMP.map((paint, n) => ({
-                    paint,
-                    words: `${number(n / RAMP.length, 2)}\u2013${number((n + 1) / RAMP.length, 2)} \u03b1`,
-                })),
-                { paint: "#B33D00", words: "overturns" },
-                { paint: FAILED, words: "could not be computed" },
-            ],
-            paint: (ix, iy) =>
-                outcome[iy][ix] === 2 ? "#B33D00" : outcome[iy][ix] > 2 ? FAILED : ramp(peak[iy][ix]),
-        },
-        {
-            value: "impacts",
-            text: "Impacts",
-            legend: [
-                { paint: RAMP[0], words: "none" },
-                { paint: RAMP.at(-1), words: `${most}` },
-                { paint: FAILED, words: "could not be computed" },
-            ],
-            paint: (ix, iy) => (outcome[iy][ix] > 2 ? FAILED : ramp(impacts[iy][ix] / (most + 1))),
-        },
-    ];
-    if (other !== null) layers.push(difference(found, k, other));
-    return layers;
+  const outcome = found.outcome[k];
+  const impacts = found.impacts[k];
+  const peak = found.peak[k];
+  const most = Math.max(1, ...impacts.flat().filter(Number.isFinite));
+  const layers = [
+    {
+      value: "verdict",
+      text: "Verdict",
+      legend: VERDICTS,
+      paint: (ix, iy) => VERDICTS[verdictOf(outcome[iy][ix], impacts[iy][ix])].paint,
+    },
+    {
+      value: "peak",
+      text: "Peak rotation",
+      legend: [
+        ...RAMP.map((paint, n) => ({
+          paint,
+          words: `${number(n / RAMP.length, 2)}\u2013${number((n + 1) / RAMP.length, 2)} \u03b1`,
+        })),
+        { paint: "#B33D00", words: "overturns" },
+        { paint: FAILED, words: "could not be computed" },
+      ],
+      paint: (ix, iy) =>
+        outcome[iy][ix] === 2 ? "#B33D00" : outcome[iy][ix] > 2 ? FAILED : ramp(peak[iy][ix]),
+    },
+    {
+      value: "impacts",
+      text: "Impacts",
+      legend: [
+        { paint: RAMP[0], words: "none" },
+        { paint: RAMP.at(-1), words: `${most}` },
+        { paint: FAILED, words: "could not be computed" },
+      ],
+      paint: (ix, iy) => (outcome[iy][ix] > 2 ? FAILED : ramp(impacts[iy][ix] / (most + 1))),
+    },
+  ];
+  if (other !== null) layers.push(difference(found, k, other));
+  return layers;
 };
 
 const difference = (found, k, other) => {
-    const [mine, theirs] = [found.outcome[k], found.outcome[other]];
-    const names = [k, other].map((place) => modelWords(found.restitutions[place]));
-    const legend = [
-        { paint: "#F2F0E8", words: "same verdict" },
-        { paint: "#D55E00", words: `overturns only with ${names[0]}` },
-        { paint: "#0072B2", words: `overturns only with ${names[1]}` },
-    ];
-    const paint = (ix, iy) => {
-        const [a, b] = [mine[iy][ix] === 2, theirs[iy][ix] === 2];
-        return legend[a === b ? 0 : a ? 1 : 2].paint;
-    };
-    return { value: "difference", text: `Difference to ${names[1]}`, legend, paint };
+  const [mine, theirs] = [found.outcome[k], found.outcome[other]];
+  const names = [k, other].map((place) => modelWords(found.restitutions[place]));
+  const legend = [
+    { paint: "#F2F0E8", words: "same verdict" },
+    { paint: "#D55E00", words: `overturns only with ${names[0]}` },
+    { paint: "#0072B2", words: `overturns only with ${names[1]}` },
+  ];
+  const paint = (ix, iy) => {
+    const [a, b] = [mine[iy][ix] === 2, theirs[iy][ix] === 2];
+    return legend[a === b ? 0 : a ? 1 : 2].paint;
+  };
+  return { value: "difference", text: `Difference to ${names[1]}`, legend, paint };
 };
 
 /** One cell in words. */
 export const cellWords = (found, k, { ix, iy }) => {
-    const outcome = found.outcome[k][iy][ix];
-    const impacts = found.impacts[k][iy][ix];
-    const named = ({ words, values, unit }, place) => `${greek(words)} = ${quantity(values[place], unit)}`;
-    const where = `${named(found.x, ix)}; ${named(found.y, iy)}`;
-    const peak = outcome === 1 ? `, peak ${number(found.peak[k][iy][ix])} \u03b1` : "";
-    return `${where}: ${VERDICTS[verdictOf(outcome, impacts)].words}${peak}`;
+  const outcome = found.outcome[k][iy][ix];
+  const impacts = found.impacts[k][iy][ix];
+  const named = ({ words, values, unit }, place) => `${greek(words)} = ${quantity(values[place], unit)}`;
+  const where = `${named(found.x, ix)}; ${named(found.y, iy)}`;
+  const peak = outcome === 1 ? `, peak ${number(found.peak[k][iy][ix])} \u03b1` : "";
+  return `${where}: ${VERDICTS[verdictOf(outcome, impacts)].words}${peak}`;
 };
