@@ -134,7 +134,7 @@ export const mount = (section, app) => {
         { class: "toolbar" },
         fileButton("/api/inputs.toml", "toml", "Inputs", null, "take-toml"),
         fileButton("/api/inputs.zip", "zip", "Inputs", null, "take-zip"),
-        button({ text: "Read a TOML \u2026", onClick: () => chooser.click() }),
+        button({ text: "Read a TOML or its ZIP \u2026", onClick: () => chooser.click() }),
       ),
     ),
     card(
@@ -215,7 +215,7 @@ export const mount = (section, app) => {
     type: "file",
     accept: ".toml,.zip",
     hidden: true,
-    "aria-label": "TOML file of inputs",
+    "aria-label": "File of inputs, TOML or ZIP",
     "data-testid": "read-toml",
   });
   chooser.addEventListener("change", async () => {
