@@ -34,7 +34,13 @@ class Done(NamedTuple):
 
 
 class Pace:
-    """How many histories at a time take as long as nobody minds to wait, learned from one piece to the next."""
+    """How many histories at a time take as long as nobody minds to wait, learned from one piece to the next.
+
+    Parameters
+    ----------
+    engine : str
+        The engine that computes them.
+    """
 
     def __init__(self, engine: str) -> None:
         self.step = _FIRST[kind_of(engine)]
