@@ -139,10 +139,13 @@ public:
         offset_ = offset_s_ = offset_z_ = 0.0;
         pressing = 0;
         touching_.clear();
+        middle_s_ = middle_z_ = 0.0;
+        for (std::int64_t i = p_.points.count; linear() && i-- > 0;)
+            if (mode[i] != Mode::away) middle_s_ = p_.points.at[i], middle_z_ = p_.points.height[i];
         for (std::int64_t i = 0; i < p_.points.count; ++i) {
-            const double s = p_.points.at[i], z = p_.points.height[i], share = p_.points.share[i];
-            const double k = p_.stiffness * share;
+            const double share = p_.points.share[i], k = p_.stiffness * share;
             if (mode[i] == Mode::pressing || mode[i] == Mode::spring) ++pressing;
+            const double s = p_.points.at[i] - middle_s_, z = p_.points.height[i] - middle_z_;
             if (!linear()) {
                 if (mode[i] != Mode::away) touching_.add(s, z, k, mode[i] == Mode::pressing ? 1.0 : 0.0);
                 continue;
@@ -171,11 +174,14 @@ public:
             m -= a.s * y - a.ss * g + a.sz * k;
             t -= a.z * y - a.sz * g + a.zz * k;
         };
+        const double y = x.gap(middle_s_, middle_z_), dy = x.rate(middle_s_, middle_z_);
         Load l{-offset_, -offset_s_, -offset_z_, 0.0};
-        of(elastic_, x.y, x.sigma, x.kappa, l.force, l.moment, l.tilt);
-        of(viscous_, x.dy, x.dsigma, x.dkappa, l.force, l.moment, l.tilt);
-        l.loss = viscous_.product(x.dy, x.dsigma, x.dkappa, x.dy, x.dsigma, x.dkappa) +
-                 lost_.product(x.y, x.sigma, x.kappa, x.dy, x.dsigma, x.dkappa);
+        of(elastic_, y, x.sigma, x.kappa, l.force, l.moment, l.tilt);
+        of(viscous_, dy, x.dsigma, x.dkappa, l.force, l.moment, l.tilt);
+        l.moment += middle_s_ * l.force;
+        l.tilt += middle_z_ * l.force;
+        l.loss = viscous_.product(dy, x.dsigma, x.dkappa, dy, x.dsigma, x.dkappa) +
+                 lost_.product(y, x.sigma, x.kappa, dy, x.dsigma, x.dkappa);
         return l;
     }
 
@@ -268,6 +274,7 @@ private:
     const Problem& p_;
     Sums elastic_, viscous_, lost_;
     double offset_ = 0.0, offset_s_ = 0.0, offset_z_ = 0.0;
+    double middle_s_ = 0.0, middle_z_ = 0.0;  // sums are about a point that touches: about the base centre, gaps drown in rounding
 
     double power(double d) const { return p_.exponent == 1.5 ? d * std::sqrt(d) : std::pow(d, p_.exponent); }
     double push(double d, double v) const {

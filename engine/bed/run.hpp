@@ -8,6 +8,7 @@ namespace rocking::bed {
 
 constexpr double kLeak = 0.09;   // energy that one step may lose or find, over tolerance and energy of the impact
 constexpr double kBudget = 7.0;  // the same for the whole impact: as it is used up, steps are allowed less
+constexpr double kLeast = 3e-4;  // what is always allowed of it, near rounding
 constexpr double kAgain = 1.2;   // first step after a switch over the last such step, where forces begin as d^n
 
 class Run : Switches {
@@ -67,7 +68,7 @@ private:
     double energy_ = 0.0, leak_ = 0.0, instant_ = 0.0, contraction_ = 1.0;
     double after_ = 0.0;
     bool after_switch_ = false;
-    int stuck_ = 0, early_ = 0;
+    int stuck_ = 0, early_ = 0, late_ = 0;
     enum class Known { nothing, ahead, within } known_ = Known::nothing;  // what step_ says about the time after x_
     bool local_known_ = false;
     Tangent<5> local_;
@@ -120,7 +121,7 @@ private:
             const Tally sum = tally();
             const double after = motion_.energy(step_.end(), places_[kStages], out_.travel + sum.travel, rates_[kStages]);
             const double leak = after - energy_ + sum.bed_loss + sum.friction_loss;
-            const double allowed = leak_ * std::max(1.0 - std::abs(out_.residual) / (kBudget / kLeak * leak_), 0.01);
+            const double allowed = allowance(leak);
             if (std::abs(leak) > allowed && step_.h > 1e5 * shortest && (stuck_ == 0 || stuck_ > 100)) {
                 h = step_.h * std::max(0.1, 0.8 * std::pow(allowed / std::abs(leak), 1.0 / 3.5));
                 ++out_.rejected;
@@ -137,6 +138,12 @@ private:
             if (ended()) return;
         }
         out_.status = kTimeOut;
+    }
+
+    // What a step may lose or find: less as the budget is used up, unless the step gives some of it back.
+    double allowance(double leak) const {
+        const double used = leak * out_.residual > 0.0 ? std::abs(out_.residual) / (kBudget / kLeak * leak_) : 0.0;
+        return leak_ * std::max(1.0 - used, kLeast);
     }
 
     // A step from x_; its guess comes from the last step, which leads up to x_ or was refused from there.
@@ -170,20 +177,23 @@ private:
         if (tau >= 1.0) return true;
         const Step<5> covering = step_;
         const Cause cause = *std::min_element(causes_.begin(), causes_.end(), [](const Cause& a, const Cause& b) { return a.at < b.at; });
-        double h = tau * covering.h;
+        double h = tau * covering.h, late = 0.0;
         bool early = false;
-        for (int round = 0; round < 4; ++round) {
+        for (int round = 0; round < 6; ++round) {
             Guess<5> guess;
             guess.any = true;
             for (int k = 0; k < kStages; ++k) guess.stage[k] = covering.at(radau::node[k] * h / covering.h);
             if (!take_step(motion_, x_, h, unit_, local_, guess, contraction_, step_)) return false;
             const double here = margin(cause, step_.end()), fall = (margin(cause, step_.at(0.999)) - here) / (1e-3 * h);
-            const double late = fall > 0.0 ? -here / fall : 0.0;
+            late = fall > 0.0 ? -here / fall : 0.0;
             const double more = 0.3 * instant_ - late;
             early = here > 0.0 && !(late >= -instant_ && fall > 0.0);
             if ((late >= 0.0 && late <= instant_) || !(fall > 0.0) || more > std::max(0.02 * h, instant_) || more < -0.5 * h) break;
             h += more;
         }
+        // a step that ends late may have passed another switch: a shorter one knows better
+        late_ = late > instant_ ? late_ + 1 : 0;
+        if (late_ > 0 && late_ <= 3) return false;
         // on its own polynomial the step ends before the switch, or grazes it; but not for ever
         early_ = early ? early_ + 1 : 0;
         if (early && early_ <= 3) causes_.clear();
@@ -285,7 +295,7 @@ private:
                     continue;
                 }
                 leaves = motion_.slip == 0;
-                x_[kU] = 0.0;
+                arrest();
                 rest = true;
             } else {
                 const bool before = holds(c.point);
@@ -305,6 +315,15 @@ private:
         if (!peak) return false;
         out_.status = kPeak;
         return true;
+    }
+
+    // What is left of the sliding is taken out by a shear impulse: its moment turns the body, its work is counted.
+    void arrest() {
+        const double h = p_.height, inertia = p_.inertia + p_.mass * h * h, impulse = -p_.mass * p_.inertia / inertia * x_[kU];
+        out_.friction_loss -= 0.5 * impulse * x_[kU];
+        shear_ += impulse;
+        x_[kOmega] -= impulse * h / p_.inertia;
+        x_[kU] = 0.0;
     }
 
     void calm() {

@@ -2,6 +2,7 @@
 
 import math
 import os
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from rocking.dynamics.bed import (
     KelvinVoigt,
     PlasticUnloading,
     RegularisedCoulomb,
+    Sticking,
     bed_free_rocking,
     bed_impact,
     bed_impacts,
@@ -25,9 +27,11 @@ from rocking.dynamics.bed import (
     reference,
     setup_of,
 )
+from rocking.dynamics.bed.friction import BaseFriction
 from rocking.dynamics.bed.impact import MOST_STEPS
-from rocking.dynamics.bed.law import LawNumbers
+from rocking.dynamics.bed.law import ContactLaw, LawNumbers
 from rocking.dynamics.bed.tables import RESULTS, Setup
+from rocking.errors import InvalidValueError
 
 pytestmark = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
 
@@ -322,33 +326,77 @@ def test_a_squat_body_stops() -> None:
         assert impact.coefficient == pytest.approx(max(1.0 - 1.5 / (1.0 + ratio**2), 0.0), abs=1e-8)
 
 
+def random_law(name: str, block: Block, random: np.random.Generator) -> ContactLaw:
+    stiffness = block.mass * 10.0 ** random.uniform(4.6, 9.0)
+    if name == "kelvin-voigt":
+        return KelvinVoigt(stiffness, damping_ratio=10.0 ** random.uniform(-2.0, 0.7))
+    if name == "plastic":
+        return PlasticUnloading(stiffness, 10.0 ** random.uniform(-1.7, 0.0))
+    exponent = 1.5 if name == "hunt-crossley" else random.uniform(1.0, 2.5)
+    viscosity = 10.0 ** random.uniform(-1.5, 0.7)
+    return HuntCrossley(stiffness * 100.0 ** (exponent - 1.0), exponent, viscosity)
+
+
+def random_friction(random: np.random.Generator) -> BaseFriction:
+    coefficient, creep = random.uniform(0.05, 1.0), 10.0 ** random.uniform(-3.0, -1.0)
+    kinds = (Sticking(), Coulomb(coefficient), Coulomb(coefficient), RegularisedCoulomb(coefficient, creep))
+    return kinds[random.integers(4)]
+
+
 def random_rows(name: str, count: int, tolerance: float = 1e-9) -> list[Setup]:
+    """Blocks on 2 to 41 points, half of them with bases rough by 1e-5 to 3e-3 of their width."""
     random = np.random.default_rng(7)
-    rows = []
-    for _ in range(count):
+    rows: list[Setup] = []
+    while len(rows) < count:
         ratio, width = random.uniform(1.2, 8.0), 10.0 ** random.uniform(-1.0, 0.3)
         block = Block(width=width, height=width * ratio)
-        law = {
-            "kelvin-voigt": sprung(block, 10.0 ** random.uniform(1.5, 3.0), 10.0 ** random.uniform(-1.5, 0.5)),
-            "plastic": PlasticUnloading(block.mass * (400.0 * math.pi) ** 2, random.uniform(0.1, 0.9)),
-            "hunt-crossley": HuntCrossley(block.mass * 10.0 ** random.uniform(6.0, 9.0), viscosity=1.0),
-        }[name]
-        bed = ContactBed.uniform(block, 21, law, friction=Coulomb(random.uniform(0.1, 1.0)))
+        points = int(random.choice([2, 3, 5, 11, 21, 41]))
+        bed = ContactBed.uniform(block, points, random_law(name, block, random), friction=random_friction(random))
+        if random.random() < 0.5:
+            bed = bed.with_profile(width * 10.0 ** random.uniform(-5.0, -2.5) * random.standard_normal(points))
         angle = random.uniform(0.1, 0.8) * math.atan(1.0 / ratio)
-        rows.append(setup_of(block, bed, rotation=angle, tolerance=tolerance))
+        with suppress(InvalidValueError):  # a rough base may not reach that far
+            rows.append(setup_of(block, bed, rotation=angle, tolerance=tolerance))
     return rows
 
 
-@pytest.mark.parametrize("name", ["kelvin-voigt", "plastic", "hunt-crossley"])
+@pytest.mark.parametrize("name", ["kelvin-voigt", "plastic", "hunt-crossley", "exponents"])
 def test_energy_audit_of_random_impacts(name: str) -> None:
-    """The audit closes to 1e-8 in every case: bodies, laws and friction drawn at random, 6,000 a law in campaigns."""
-    rows = random_rows(name, 6000 if os.environ.get("ROCKING_CAMPAIGN") else 400)
+    """The audit closes to 1e-8 in every case: bodies, beds and friction drawn at random, 6,000 a law in campaigns."""
+    rows = random_rows(name, 6000 if os.environ.get("ROCKING_CAMPAIGN") else 300)
     impacts = bed_impacts(rows)
     assert np.isfinite(impacts.coefficient).all()
     assert np.abs(impacts.audit).max() < 1e-8
     # negative control: the audit sees the work of compression to the last thousandth
     missing = np.abs(impacts.audit - 1e-3 * impacts.result("bed_loss") / [row.start.energy for row in rows])
     assert (missing > 1e-8).mean() > 0.9
+
+
+@pytest.mark.parametrize("rebound", [0.02, 0.05, 0.2])
+def test_a_base_that_sticks_hundreds_of_times(rebound: float) -> None:
+    """Two points that hardly spring back: the audit closes, and r at tolerances 1e-8 and 1e-10 agrees to 1e-8.
+
+    With what is left of the sliding velocity forgotten at each stick, without its moment, r differs by 2e-7 at 0.05.
+    """
+    block, alpha = Block(width=0.2985, height=0.2985 * 7.27944), math.atan(1.0 / 7.27944)
+    law = PlasticUnloading(1.4213e8 * block.mass, rebound)
+    bed = ContactBed.uniform(block, 2, law, friction=Coulomb(0.60262))
+    rows = [setup_of(block, bed, rotation=0.552826 * alpha, tolerance=t) for t in (1e-8, 1e-9, 1e-10)]
+    impacts = bed_impacts(rows)
+    assert impacts.contacts[1] > 100
+    assert np.abs(impacts.audit[1:]).max() < 1e-8
+    assert np.ptp(impacts.coefficient) < 1e-8
+
+
+def test_a_bed_that_yields_by_atoms() -> None:
+    """Springs that yield by e^2 2 g m / k = 6e-11 m under a base 4 cm high: rounding of forces does no work.
+
+    Forces summed about the base centre, not about a point that touches, miss by 1e-8 on the way down of half a second.
+    """
+    block = Block(width=1.39, height=1.39 * 6.4338)
+    law = PlasticUnloading(1.1e9 * block.mass, 0.0585)
+    bed = ContactBed.uniform(block, 2, law, friction=RegularisedCoulomb(0.6, 1e-2))
+    assert abs(bed_impacts([setup_of(block, bed, rotation=0.0514)]).audit[0]) < 1e-9
 
 
 def test_the_audit_follows_the_tolerance() -> None:
