@@ -39,9 +39,9 @@ def map_job() -> Callable[..., Tables]:
 
 @pytest.fixture
 def long_job(map_job: Callable[..., Tables]) -> Tables:
-    """Return a job that takes some ten seconds in small chunks."""
+    """Return a job that takes many seconds in small chunks, however fast the engine."""
     return map_job(1000, campaign={"name": "long", "kind": "overturning-map", "chunk": 4096},
-                   settings={"longest_step": 0.02})  # fmt: skip
+                   settings={"longest_step": 0.004})  # fmt: skip
 
 
 @pytest.fixture
