@@ -124,7 +124,7 @@ def test_progress_is_pushed(client: TestClient, long_job: Tables) -> None:
             seen.append(facts)
             times.append(time.monotonic())
         client.post(f"/api/studies/{study}/cancel")
-        while seen[-1]["state"] not in {"cancelled", "finished", "failed"}:  # after these nothing more is told
+        while seen[-1]["state"] not in {"cancelled", "done", "failed"}:  # after these nothing more is told
             seen.append(socket.receive_json()["studies"][0])
     assert [each["state"] for each in seen][-1] == "cancelled"
     done = [each["histories_done"] for each in seen]
