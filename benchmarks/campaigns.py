@@ -49,7 +49,7 @@ def pulses(count: int) -> Product:
     return Product(MotionList(shapes), sides, np.linspace(0.2, 1.5, count // 2000))
 
 
-def overhead(count: int = 524_288, repeats: int = 3) -> tuple[float, float, int]:
+def overhead(count: int = 524_288, repeats: int = 7) -> tuple[float, float, int]:
     """Median seconds of a bare run and of a campaign of the same histories, in turn, one thread each; its chunks."""
     work = records(count)
     work.run(0, 1000, threads=1)
