@@ -76,7 +76,7 @@ fuzz: $(VENV)/dev
 	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py -q
 
 fuzz-web: $(VENV)/dev $(ENGINE)
-	ROCKING_WEB_FUZZ=5000 ROCKING_WEB_LOAD=60 $(BIN)/python -m pytest tests/verification/test_web_fuzz.py \
+	ROCKING_WEB_FUZZ=6500 ROCKING_WEB_LOAD=60 $(BIN)/python -m pytest tests/verification/test_web_fuzz.py \
 		tests/verification/test_web_load.py -q -rP
 
 durability: $(VENV)/dev $(ENGINE)
