@@ -190,10 +190,28 @@ def to_netcdf(content: Exported, path: "str | Path") -> "Path":
     Path
         The file.
     """
+    return dataset_to_netcdf(to_xarray(content), path)
+
+
+def dataset_to_netcdf(dataset: "xr.Dataset", path: "str | Path") -> "Path":
+    """Write a labelled dataset as netCDF 4, which xarray and MATLAB open.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        With units and provenance in its attributes.
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
     extra("h5py", "netCDF")
     extra("h5netcdf", "netCDF")
     target = target_of(path)
-    to_xarray(content).to_netcdf(target, engine="h5netcdf")
+    dataset.to_netcdf(target, engine="h5netcdf")
     return target
 
 

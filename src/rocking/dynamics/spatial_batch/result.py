@@ -160,10 +160,6 @@ class SpatialBatch(Exportable):
         Path
             The file.
         """
-        from rocking.dynamics.export import extra, target_of
+        from rocking.dynamics.export import dataset_to_netcdf
 
-        extra("h5py", "netCDF")
-        extra("h5netcdf", "netCDF")
-        target = target_of(path)
-        self.to_xarray().to_netcdf(target, engine="h5netcdf")
-        return target
+        return dataset_to_netcdf(self.to_xarray(), path)

@@ -116,11 +116,7 @@ class LaboratoryStudy:
         Path
             The file.
         """
-        export.extra("h5py", "netCDF")
-        export.extra("h5netcdf", "netCDF")
-        target = export.target_of(path)
-        self.dataset.to_netcdf(target, engine="h5netcdf")
-        return target
+        return export.dataset_to_netcdf(self.dataset, path)
 
 
 def about(name: str, unit: str) -> dict[str, str]:
