@@ -109,6 +109,14 @@ inline Pace pace_of(const Shake& shake, double p, double over_gravity, double lo
 // its longest step: as good, and quicker.
 inline double reach_of_order_six(double longest_step) { return std::pow(std::pow(longest_step, 9) / 7200.0, 1.0 / 7.0); }
 
+// Whether all steps of a row are so short that order 6 takes the place of order 8.
+inline bool takes_order_six(const Motions& m, const Rows& rows, std::int64_t row, const Settings& set, double reach) {
+    if (set.order != 8 || m.degree != 1 || set.linear) return false;
+    if (rows.motion[row] < 0 || rows.motion[row] >= static_cast<std::int64_t>(m.shakes.size())) return false;
+    const double p = std::max(rows.p_right[row], rows.p_left[row]);
+    return pace_of(m.shakes[rows.motion[row]], p, rows.scale[row] / set.gravity, set.longest_step).reach < reach;
+}
+
 // Rows that wait; threads take a few at a time, fewer towards the end, so that all of them end together.
 struct Queue {
     std::int64_t end, chunk, threads;

@@ -5,9 +5,9 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Four registers' worth of lanes side by side hide the latency of the multiply-adds, and two groups of them fill the
-// registers of those that land; a single history takes one.
-constexpr int kMany = 4, kGroups = 6;
+// Registers of a group, whose flags fill one word where a register holds eight numbers, and groups: enough lanes for
+// those that land to fill registers of their own, few enough for the caches. A single history takes one.
+constexpr int kMany = 8, kGroups = 3;
 
 Run kernel_for(bool single, const Choice& c) {
     if (c.order == 8) {

@@ -29,16 +29,21 @@ constexpr double kHalfPi = 1.57079632679489661923;
 
 #define ROCKING_KERNEL template <int G, int U, int N, int D, bool Z, bool L>
 #define ROCKING_LANES ROCKING_UNROLL for (int j = 0; j < U; ++j)
+#define ROCKING_SIDE_BY_SIDE ROCKING_UNROLL for (int j = 0; j < Q; ++j)
 
 // G groups of U registers of lanes, order N, motions of degree D, with a vertical part if Z, slender-linear if L.
 ROCKING_KERNEL
 class Kernel {
     static constexpr int P = Pack::width, W = G * U * P;
+    static constexpr int stride = D == 1 ? (Z ? 2 : 1) : D + 1;  // numbers of a sample or stretch
+    static constexpr int Q = U > 1 ? 2 : 1;  // registers that step side by side
     static constexpr int M = G > 1 ? 2 : 1;  // registers of lanes that land side by side
+    using Bits = std::uint64_t;              // one a lane of a group
 
     // state of the lanes; unused ones stay at rest on stretch zero
-    alignas(64) double u[W], v[W], tau[W], len[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], idx[W], last[W],
-        err[W], fastest[W], gate[W];
+    alignas(64) double u[W], v[W], tau[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], err[W], fastest[W], gate[W];
+    alignas(64) std::int64_t idx[W], last[W];
+    alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U];
     alignas(64) double fresh[N + 3][U * P];  // terms and ends of the steps that a group has just made
     alignas(64) double queued[N + 3][W + M * P] = {};  // the same of the lanes that may touch the ground
     alignas(64) double above[W + M * P] = {}, span[W + M * P] = {};  // their heights and steps
@@ -52,10 +57,10 @@ class Kernel {
         double operator[](int k) const { return terms[k * pitch]; }
     };
     struct Lane {
-        std::int64_t row = -1, impacts = 0, uplifts = 0, still = 0;
+        std::int64_t row = -1, impacts = 0, uplifts = 0, still = 0, first;
         int side = 0;
         Side sides[2];
-        double scale, ax, az, step, first, peak_signed, peak_time, over_time, first_uplift;
+        double scale, ax, az, step, peak_signed, peak_time, over_time, first_uplift;
         const Shake* shake;
     } lanes[W];
     // A highest point that is bounded only: it is solved for if another comes close to it, or when the history ends.
@@ -79,7 +84,7 @@ class Kernel {
     Trace* trace;
     Queue& queue;
     std::int64_t next = 0, end = 0;  // rows taken from the queue and not yet begun
-    int active = 0, used = G, busy[G] = {};
+    int active = 0, used = G * U;    // lanes with a row, registers with such lanes
 
   public:
     Work work;
@@ -102,9 +107,9 @@ class Kernel {
 
     const Side& here(int i) const { return lanes[i].sides[lanes[i].side < 0]; }
 
-    static int count_of(unsigned long bits) {
+    static int count_of(Bits bits) {
 #if defined(__GNUC__)
-        return __builtin_popcountl(bits);
+        return __builtin_popcountll(bits);
 #else
         int n = 0;
         for (; bits; bits &= bits - 1) ++n;
@@ -112,9 +117,9 @@ class Kernel {
 #endif
     }
 
-    static int lowest(unsigned long bits) {
+    static int lowest(Bits bits) {
 #if defined(__GNUC__)
-        return __builtin_ctzl(bits);
+        return __builtin_ctzll(bits);
 #else
         int i = 0;
         while (!(bits >> i & 1)) ++i;
@@ -124,16 +129,18 @@ class Kernel {
 
     // ---- all lanes at once ------------------------------------------------------------------------------------------
     void sweep();
-    void step(int group, unsigned long& flagged, unsigned long& near);
+    void step(int base, int count, Bits& flagged, Bits& near);
     void land(const int* who, int from, int count);
-    void forcing(int base, const Pack* i0, const Pack* t0, const Pack* h, Pack (*b)[U], Pack (*z)[U]) const;
+    Pack step_of(int at) const { return min(Pack::load(sub + at), Pack(1.0) - Pack::load(tau + at)); }
+    void forcing(int base);
 
     // ---- one lane ---------------------------------------------------------------------------------------------------
 
+    double length(int i) const { return std::min(sub[i], 1.0 - tau[i]); }  // of the next step, over a stretch
+    double stretch_of(int i) const { return static_cast<double>((idx[i] - lanes[i].first) / stride); }
     double now(int i, double fraction) const {
         const Lane& lane = lanes[i];
-        const double index = (idx[i] - lane.first) / motions.stride();
-        return (index + (tau[i] + fraction * len[i])) * lane.step;
+        return (stretch_of(i) + (tau[i] + fraction * length(i))) * lane.step;
     }
     void sample(int i);
     void note(int i, EventKind kind, double time, double before, double after, double coefficient);
@@ -189,6 +196,7 @@ class Kernel {
     std::int64_t listed(std::int64_t k) const { return rows.list ? rows.list[k] : k; }
     void write_invalid(std::int64_t row);
     void prepare(std::int64_t row);
+    void look_ahead() const;
     void start(int i);
 };
 

@@ -20,10 +20,10 @@ class Landings {
     Pack zero[M], slope[M];
 
     // `raw` holds the height above the ground and the terms of the speed towards it. Returns which arcs were plain.
-    unsigned long solve(const Pack (*raw)[M]) {
+    std::uint64_t solve(const Pack (*raw)[M]) {
         take(raw);
-        unsigned long found = 0;
-        ROCKING_BOTH found |= static_cast<unsigned long>(plain[m].bits()) << (m * P);
+        std::uint64_t found = 0;
+        ROCKING_BOTH found |= static_cast<std::uint64_t>(plain[m].bits()) << (m * P);
         if (found) iterate();
         return found;
     }
@@ -31,16 +31,13 @@ class Landings {
   private:
     void take(const Pack (*raw)[M]) {
         const Pack none(0.0);
-        Pack sum[M], fall[M], bend[M], end[M];
+        Pack fall[M], bend[M], end[M];
         ROCKING_BOTH {
-            sum[m] = fall[m] = bend[m] = twist[m] = none;
+            fall[m] = bend[m] = none;
             c[0][m] = raw[0][m];
         }
         ROCKING_UNROLL
-        for (int k = 0; k <= N; ++k) ROCKING_BOTH {
-            sum[m] = sum[m] + abs(raw[k + 1][m]);
-            c[k + 1][m] = raw[k + 1][m] * Pack(-1.0 / (k + 1));
-        }
+        for (int k = 0; k <= N; ++k) ROCKING_BOTH c[k + 1][m] = raw[k + 1][m] * Pack(-1.0 / (k + 1));
         // one that starts on the ground is divided by that known zero
         ROCKING_BOTH arch[m] = (c[0][m] == none) & (c[1][m] > none);
         ROCKING_UNROLL
@@ -57,12 +54,12 @@ class Landings {
             if (k > 1) fall[m] = fall[m] + abs(d[k - 1][m]);
             if (k > 1) e[k - 2][m] = Pack(k - 1) * d[k - 1][m];
             if (k > 2) bend[m] = bend[m] + abs(e[k - 2][m]);
-            if (k > 2) twist[m] = fma(Pack((k - 2) / 6.0), abs(e[k - 2][m]), twist[m]);
         }
         ROCKING_BOTH {
             curve[m] = fma(Pack(0.5), bend[m], abs(c[2][m]));
+            twist[m] = Pack((N - 1) / 6.0) * bend[m];
             const Mask falls = none - d[0][m] > fall[m], curves = none - e[0][m] > bend[m];
-            plain[m] = (sum[m] < Pack(1e100)) & (c[0][m] > none) & (end[m] < none) & (falls | curves);
+            plain[m] = (abs(d[0][m]) + fall[m] < Pack(1e100)) & (c[0][m] > none) & (end[m] < none) & (falls | curves);
         }
     }
 

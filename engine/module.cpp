@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "ranges.hpp"
 #include "table.hpp"
 
 namespace nb = nanobind;
@@ -24,43 +25,6 @@ template <class T>
 using In = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 template <class T>
 using Out = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-
-// Range of an acceleration within a stretch: of its samples, or of a polynomial's terms.
-static void widen(Range& range, const double* a, int degree) {
-    double low = a[0], high = a[0];
-    for (int j = 1; degree > 1 && j <= degree; ++j) (a[j] < 0.0 ? low : high) += a[j];
-    range.low = std::min(range.low, low);
-    range.high = std::max(range.high, high);
-}
-
-static void find_later(Ranges& ranges, std::int64_t block, Range& all) {
-    all = {0.0, 0.0};
-    ranges.later.resize(ranges.within.size());
-    for (std::int64_t b = static_cast<std::int64_t>(ranges.within.size()); b-- > block;) {
-        all = {std::min(all.low, ranges.within[b].low), std::max(all.high, ranges.within[b].high)};
-        ranges.later[b] = all;
-    }
-}
-
-void Motions::find_ranges() {
-    const int hop = stride();
-    for (Shake& shake : shakes) {
-        shake.block = static_cast<std::int64_t>(horizontal.within.size());
-        const std::int64_t whole = shake.segments + shake.still;
-        for (std::int64_t from = 0; from < whole; from += kBlock) {
-            Range across{1e300, -1e300}, up = across;
-            const std::int64_t stop = std::min(whole, from + kBlock) + (degree == 1);
-            for (const double* a = data + shake.first + from * hop; a < data + shake.first + stop * hop; a += hop) {
-                widen(across, a, degree);
-                if (vertical_part) widen(up, a + 1, 1);
-            }
-            horizontal.within.push_back(across);
-            if (vertical_part) vertical.within.push_back(up);
-        }
-        find_later(horizontal, shake.block, shake.horizontal);
-        find_later(vertical, vertical_part ? shake.block : 0, shake.vertical);
-    }
-}
 
 static std::vector<std::string> instruction_sets() {
     std::vector<std::string> found;
@@ -194,14 +158,6 @@ static Settings settings_of(double gravity, double longest_step, double rest, st
     if (!(gravity > 0.0) || !(longest_step > 0.0) || !(rest >= 0.0) || most_impacts < 1)
         throw std::invalid_argument("settings must be positive");
     return {gravity, longest_step, rest, most_impacts, linear, order, ground};
-}
-
-// Whether all steps of a row are so short that order 6 takes the place of order 8.
-static bool takes_order_six(const Motions& m, const Rows& rows, std::int64_t row, const Settings& set, double reach) {
-    if (set.order != 8 || m.degree != 1 || set.linear) return false;
-    if (rows.motion[row] < 0 || rows.motion[row] >= static_cast<std::int64_t>(m.shakes.size())) return false;
-    const double p = std::max(rows.p_right[row], rows.p_left[row]);
-    return pace_of(m.shakes[rows.motion[row]], p, rows.scale[row] / set.gravity, set.longest_step).reach < reach;
 }
 
 // Rows for one kernel, in the order in which threads take them.

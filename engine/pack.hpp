@@ -11,16 +11,21 @@
 
 #if defined(__clang__)
 #define ROCKING_UNROLL _Pragma("clang loop unroll(full)")
+#define ROCKING_ROLLED _Pragma("clang loop unroll(disable)")
 #elif defined(__GNUC__)
 #define ROCKING_UNROLL _Pragma("GCC unroll 16")
+#define ROCKING_ROLLED _Pragma("GCC unroll 1")
 #else
 #define ROCKING_UNROLL
+#define ROCKING_ROLLED
 #endif
 
 namespace rocking {
 namespace ROCKING_ISA {
 
-#if defined(ROCKING_AVX512)
+#if defined(ROCKING_PACK)
+#include ROCKING_PACK  // numbers that also count what is done with them: see benchmarks/counted_pack.hpp
+#elif defined(ROCKING_AVX512)
 
 struct Mask {
     __mmask8 m;
@@ -39,10 +44,9 @@ struct Pack {
     static Pack load(const double* p) { return _mm512_load_pd(p); }
     static Pack load_any(const double* p) { return _mm512_loadu_pd(p); }
     void store(double* p) const { _mm512_store_pd(p, r); }
-    static Pack gather(const double* base, Pack index) {
-        return _mm512_i32gather_pd(_mm512_cvtpd_epi32(index.r), base, 8);
+    static Pack gather(const double* base, const std::int64_t* k) {
+        return _mm512_i64gather_pd(_mm512_load_si512(k), base, 8);
     }
-    void store_whole(std::int64_t* p) const { _mm512_store_si512(p, _mm512_cvtpd_epi64(r)); }
     // Numbers and those next to them in memory: fewer loads than two gathers.
     static void pairs(const double* base, const std::int64_t* k, Pack& first, Pack& second) {
         const auto two = [&](int i) {
@@ -71,6 +75,15 @@ inline Mask operator==(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.r, b.r, _C
 inline Pack select(Mask m, Pack yes, Pack no) { return _mm512_mask_blend_pd(m.m, no.r, yes.r); }
 #define ROCKING_SCALAR_FMA(a, b, c) __builtin_fma(a, b, c)
 
+struct Whole {
+    __m512i r;
+    static Whole load(const std::int64_t* p) { return {_mm512_load_si512(p)}; }
+    void store(std::int64_t* p) const { _mm512_store_si512(p, r); }
+    Whole plus(std::int64_t n, Mask where) const { return {_mm512_mask_add_epi64(r, where.m, r, _mm512_set1_epi64(n))}; }
+};
+inline Mask operator>=(Whole a, Whole b) { return {_mm512_cmpge_epi64_mask(a.r, b.r)}; }
+inline Whole select(Mask m, Whole yes, Whole no) { return {_mm512_mask_blend_epi64(m.m, no.r, yes.r)}; }
+
 #elif defined(ROCKING_AVX2)
 
 struct Mask {
@@ -90,11 +103,8 @@ struct Pack {
     static Pack load(const double* p) { return _mm256_load_pd(p); }
     static Pack load_any(const double* p) { return _mm256_loadu_pd(p); }
     void store(double* p) const { _mm256_store_pd(p, r); }
-    static Pack gather(const double* base, Pack index) {
-        return _mm256_i32gather_pd(base, _mm256_cvtpd_epi32(index.r), 8);
-    }
-    void store_whole(std::int64_t* p) const {
-        _mm256_store_si256(reinterpret_cast<__m256i*>(p), _mm256_cvtepi32_epi64(_mm256_cvtpd_epi32(r)));
+    static Pack gather(const double* base, const std::int64_t* k) {
+        return _mm256_i64gather_pd(base, _mm256_load_si256(reinterpret_cast<const __m256i*>(k)), 8);
     }
     static void pairs(const double* base, const std::int64_t* k, Pack& first, Pack& second) {
         const auto two = [&](int i) {
@@ -122,6 +132,19 @@ inline Mask operator==(Pack a, Pack b) { return {_mm256_cmp_pd(a.r, b.r, _CMP_EQ
 inline Pack select(Mask m, Pack yes, Pack no) { return _mm256_blendv_pd(no.r, yes.r, m.m); }
 #define ROCKING_SCALAR_FMA(a, b, c) __builtin_fma(a, b, c)
 
+struct Whole {
+    __m256i r;
+    static Whole load(const std::int64_t* p) { return {_mm256_load_si256(reinterpret_cast<const __m256i*>(p))}; }
+    void store(std::int64_t* p) const { _mm256_store_si256(reinterpret_cast<__m256i*>(p), r); }
+    Whole plus(std::int64_t n, Mask where) const {
+        return {_mm256_add_epi64(r, _mm256_and_si256(_mm256_castpd_si256(where.m), _mm256_set1_epi64x(n)))};
+    }
+};
+inline Mask operator>=(Whole a, Whole b) { return !Mask{_mm256_castsi256_pd(_mm256_cmpgt_epi64(b.r, a.r))}; }
+inline Whole select(Mask m, Whole yes, Whole no) {
+    return {_mm256_blendv_epi8(no.r, yes.r, _mm256_castpd_si256(m.m))};
+}
+
 #else
 
 struct Mask {
@@ -141,10 +164,7 @@ struct Pack {
     static Pack load(const double* p) { Pack a; ROCKING_EACH a.r[i] = p[i]; return a; }
     static Pack load_any(const double* p) { return load(p); }
     void store(double* p) const { ROCKING_EACH p[i] = r[i]; }
-    static Pack gather(const double* base, Pack index) {
-        Pack a; ROCKING_EACH a.r[i] = base[static_cast<std::int64_t>(index.r[i])]; return a;
-    }
-    void store_whole(std::int64_t* p) const { ROCKING_EACH p[i] = static_cast<std::int64_t>(r[i]); }
+    static Pack gather(const double* base, const std::int64_t* k) { Pack a; ROCKING_EACH a.r[i] = base[k[i]]; return a; }
     static void pairs(const double* base, const std::int64_t* k, Pack& first, Pack& second) {
         ROCKING_EACH first.r[i] = base[k[i]], second.r[i] = base[k[i] + 1];
     }
@@ -169,6 +189,15 @@ inline Mask operator>(Pack a, Pack b) { Mask m; ROCKING_EACH m.m[i] = a.r[i] > b
 inline Mask operator>=(Pack a, Pack b) { Mask m; ROCKING_EACH m.m[i] = a.r[i] >= b.r[i]; return m; }
 inline Mask operator==(Pack a, Pack b) { Mask m; ROCKING_EACH m.m[i] = a.r[i] == b.r[i]; return m; }
 inline Pack select(Mask m, Pack yes, Pack no) { ROCKING_EACH no.r[i] = m.m[i] ? yes.r[i] : no.r[i]; return no; }
+
+struct Whole {
+    std::int64_t r[4];
+    static Whole load(const std::int64_t* p) { Whole a; ROCKING_EACH a.r[i] = p[i]; return a; }
+    void store(std::int64_t* p) const { ROCKING_EACH p[i] = r[i]; }
+    Whole plus(std::int64_t n, Mask where) const { Whole a; ROCKING_EACH a.r[i] = r[i] + (where.m[i] ? n : 0); return a; }
+};
+inline Mask operator>=(Whole a, Whole b) { Mask m; ROCKING_EACH m.m[i] = a.r[i] >= b.r[i]; return m; }
+inline Whole select(Mask m, Whole yes, Whole no) { ROCKING_EACH no.r[i] = m.m[i] ? yes.r[i] : no.r[i]; return no; }
 
 #endif
 

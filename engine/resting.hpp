@@ -56,8 +56,8 @@ double Kernel<G, U, N, D, Z, L>::release(int i, int side, std::int64_t at, doubl
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, double most_varies, Window& w) const {
     const Lane& lane = lanes[i];
-    const int hop = motions.stride();
-    const double* a = motions.data + static_cast<std::int64_t>(idx[i]);
+    constexpr int hop = stride;
+    const double* a = motions.data + idx[i];
     double least, most, varies = 0.0, least_weight = 1.0, most_weight = 1.0, weight_varies = 0.0;
     if (D == 1) {
         double last_a = least = most = a[0] + (a[hop] - a[0]) * tau[i];
@@ -114,7 +114,7 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const Lane& lane = lanes[i];
     const Side &s = here(i), &o = lane.sides[lane.side > 0 ? 1 : 0];
     const double unit = s.p * s.alpha * lane.step;
-    const std::int64_t at = static_cast<std::int64_t>(idx[i]);
+    const std::int64_t at = idx[i];
     double d[D + 1];
     holding(i, lane.side, at, d);
     const double held = value_of<D>(d, tau[i]);
@@ -128,15 +128,16 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const double flights = 2.0 * after * (other * across + q * one * held), rate = one * held * (other * across) * lost;
     if (!(across > 0.0 && flights < kLongest * rate)) return false;
     const double left = 1.0 - tau[i], guess = 1.5 * (flights / rate);
-    const std::int64_t rest_of_it = static_cast<std::int64_t>(last[i] - idx[i]) / motions.stride();
+    const std::int64_t rest_of_it = (last[i] - idx[i]) / stride;
     const std::int64_t stretches = guess > left ? std::min(static_cast<std::int64_t>(guess - left) + 2, rest_of_it) : 1;
     const double end = left + static_cast<double>(stretches - 1);
-    // What follows grows with x = (variation + kHeights) / 2, and all >= flights / rate (1 + x + x^2): beyond this
+    // What follows grows with x = (variation + kHeights) / 2, and all >= flights / rate (1 + x + x^2), so that
+    // (2 x + 1)^2 <= spare / flights, and x <= spare / flights / 8 since no root is above its tangent. Beyond this
     // variation of the ground it is bound to fail, so the rest of the window need not be seen.
-    const double spare = 4.0 * (end * rate) - 3.0 * flights, x_most = std::min(1.0, 0.5 * (std::sqrt(spare / flights) - 1.0));
-    if (!(spare > 0.0 && x_most > 0.5 * kHeights)) return false;
-    const double most_varies = (1.0 + 1e-9) * (2.0 * x_most - kHeights) /
-                               (std::fabs(lane.ax) * std::max(s.cosine / held, o.cosine / across));
+    const double spare = 4.0 * (end * rate) - 3.0 * flights, least = 0.999999 * (1.0 + kHeights) * (1.0 + kHeights);
+    if (!(spare > least * flights)) return false;
+    const double most_varies = 1.000001 * std::min((0.25 * spare - kHeights * flights) * held * across, 2.0 * flights * held * across) /
+                               (std::fabs(lane.ax) * flights * std::max(s.cosine * across, o.cosine * held));
     Window w;
     if (!window(i, stretches, most_varies, w)) return false;
     const int k = lane.side > 0 ? 0 : 1;
@@ -164,7 +165,7 @@ std::int64_t Kernel<G, U, N, D, Z, L>::first_loud(std::int64_t at, std::int64_t 
 // place that is not before `stop`.
 ROCKING_KERNEL
 std::int64_t Kernel<G, U, N, D, Z, L>::first_block(const Lane& lane, std::int64_t at, std::int64_t stop) const {
-    const std::int64_t first = static_cast<std::int64_t>(lane.first), length = kBlock * motions.stride();
+    const std::int64_t first = lane.first, length = kBlock * stride;
     for (std::int64_t k = (at - first) / length; at < stop; at = first + ++k * length) {
         const std::int64_t block = lane.shake->block + k;
         if (may_lift(lane, motions.horizontal.within[block], up(motions.vertical.within, block))) break;
@@ -177,15 +178,14 @@ ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::rest(int i) {
     const std::int64_t now_ = block_at(i);
     const bool ever = may_lift(lanes[i], motions.horizontal.later[now_], up(motions.vertical.later, now_));
-    await(i, static_cast<std::int64_t>(ever ? idx[i] : last[i]));
+    await(i, ever ? idx[i] : last[i]);
 }
 
 // From a sample on, at rest up to there.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::await(int i, std::int64_t at) {
     const Lane& lane = lanes[i];
-    const int stride_ = motions.stride();
-    const std::int64_t stop = static_cast<std::int64_t>(last[i]);
+    const std::int64_t stop = last[i];
     double from = tau[i];
     const double calm = (1.0 - 1e-12) * std::min(lane.sides[0].sine / lane.sides[0].cosine, lane.sides[1].sine / lane.sides[1].cosine);
     while (at < stop) {
@@ -195,9 +195,9 @@ void Kernel<G, U, N, D, Z, L>::await(int i, std::int64_t at) {
             from = 0.0;
             continue;
         }
-        const std::int64_t k = (at - static_cast<std::int64_t>(lane.first)) / stride_;
+        const std::int64_t k = (at - lane.first) / stride;
         if (D == 1 && !Z) {  // samples that cannot lift it, many at once
-            const std::int64_t block_end = static_cast<std::int64_t>(lane.first) + (k / kBlock + 1) * kBlock;
+            const std::int64_t block_end = lane.first + (k / kBlock + 1) * kBlock;
             const std::int64_t heard = first_loud(at, std::min(stop, block_end) + 1, std::fabs(lane.ax), calm);
             if (heard > at + 1) {
                 at = heard - 1;
@@ -209,7 +209,7 @@ void Kernel<G, U, N, D, Z, L>::await(int i, std::int64_t at) {
         int side = right < left ? 1 : left < right ? -1 : 0;
         if (side == 0 && right <= 1.0) side = preferred(i, at, right);
         if (side) return lift(i, at, side, side > 0 ? right : left);
-        at += stride_;
+        at += stride;
         from = 0.0;
     }
     idx[i] = last[i];
@@ -237,7 +237,7 @@ int Kernel<G, U, N, D, Z, L>::preferred(int i, std::int64_t at, double from) con
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::lift(int i, std::int64_t at, int side, double when) {
     Lane& lane = lanes[i];
-    idx[i] = static_cast<double>(at);
+    idx[i] = at;
     lane.side = side;
     stand(i);
     u[i] = alpha[i];

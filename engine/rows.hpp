@@ -28,7 +28,6 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     rows.impacts[row] = lane.impacts;
     rows.uplifts[row] = lane.uplifts;
     --active;
-    --busy[i / (U * P)];
     idle(i);
 }
 
@@ -37,17 +36,18 @@ void Kernel<G, U, N, D, Z, L>::idle(int i) {
     lanes[i].row = -1;
     tops[i].open = false;
     u[i] = 0.0;
-    v[i] = tau[i] = kappa[i] = ca[i] = cz[i] = idx[i] = err[i] = fastest[i] = gate[i] = len[i] = sub[i] = 0.0;
+    v[i] = tau[i] = kappa[i] = ca[i] = cz[i] = err[i] = fastest[i] = gate[i] = sub[i] = 0.0;
+    idx[i] = 0;
     alpha[i] = peak[i] = 1.0;
-    last[i] = std::numeric_limits<double>::infinity();
+    last[i] = std::numeric_limits<std::int64_t>::max();
 }
 
-// The queue is empty: the lanes of the last group go where others have ended, so that groups are full to the end.
+// The queue is empty: the lanes of the last registers go where others have ended, so that all are full to the end.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::close_ranks() {
-    --used;
+    used -= Q;
     int to = 0;
-    for (int i = used * U * P; i < (used + 1) * U * P; ++i) {
+    for (int i = used * P; i < (used + Q) * P; ++i) {
         if (lanes[i].row < 0) continue;
         while (lanes[to].row >= 0) ++to;
         move_lane(i, to);
@@ -56,12 +56,10 @@ void Kernel<G, U, N, D, Z, L>::close_ranks() {
 
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::move_lane(int from, int to) {
-    for (double* value : {u, v, tau, len, sub, kappa, ca, cz, alpha, peak, idx, last, err, fastest, gate})
-        value[to] = value[from];
+    for (double* value : {u, v, tau, sub, kappa, ca, cz, alpha, peak, err, fastest, gate}) value[to] = value[from];
+    for (std::int64_t* value : {idx, last}) value[to] = value[from];
     lanes[to] = lanes[from];
     tops[to] = tops[from];
-    --busy[from / (U * P)];
-    ++busy[to / (U * P)];
     idle(from);
 }
 
@@ -88,6 +86,7 @@ void Kernel<G, U, N, D, Z, L>::fill(int i) {
         if (ready.sound) start(i);
         else write_invalid(row);
         if (next < end) prepare(listed(next));
+        look_ahead();
     }
 }
 
@@ -100,6 +99,20 @@ void Kernel<G, U, N, D, Z, L>::write_invalid(std::int64_t row) {
     rows.peak[row] = rows.peak_time[row] = rows.peak_velocity[row] = nan;
     rows.overturning_time[row] = rows.first_uplift[row] = rows.error[row] = nan;
     rows.impacts[row] = rows.uplifts[row] = 0;
+}
+
+// Rows further on: what is read of them when they are made ready comes from memory in the meantime.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::look_ahead() const {
+    const auto known = [&](std::int64_t row) {
+        const std::int64_t k = rows.motion[row];
+        return k >= 0 && k < static_cast<std::int64_t>(motions.shakes.size());
+    };
+    if (next + 2 < end && known(listed(next + 2))) __builtin_prefetch(&motions.shakes[rows.motion[listed(next + 2)]]);
+    if (next + 1 < end && known(listed(next + 1))) {
+        const std::int64_t block = motions.shakes[rows.motion[listed(next + 1)]].block;
+        for (int k = 0; k < 16; k += 4) __builtin_prefetch(motions.horizontal.within.data() + block + k);
+    }
 }
 
 // All that a row needs before a lane is free for it.
@@ -119,7 +132,7 @@ void Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     lane.ax = lane.az = rows.scale[row] / set.gravity;
     lane.sides[0] = side_of(rows.alpha_right[row], rows.p_right[row], rows.r_right[row], lane.step, lane.ax);
     lane.sides[1] = side_of(rows.alpha_left[row], rows.p_left[row], rows.r_left[row], lane.step, -lane.ax);
-    lane.first = static_cast<double>(shake.first);
+    lane.first = shake.first;
     lane.still = shake.still;
     ready.parts = pace_of(shake, std::max(rows.p_right[row], rows.p_left[row]), lane.ax, set.longest_step).parts;
     const double angle = rows.rotation[row], speed = rows.velocity[row];
@@ -127,12 +140,12 @@ void Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     ready.still = turned.alpha - std::fabs(angle) == turned.alpha && std::fabs(speed) <= kNothing * turned.p * turned.alpha;
     ready.from = shake.first;
     if (ready.still) {
-        const std::int64_t stop = shake.first + shake.segments * motions.stride();
+        const std::int64_t stop = shake.first + shake.segments * stride;
         ready.from = may_lift(lane, shake.horizontal, shake.vertical) ? first_block(lane, ready.from, stop) : stop;
         if (ready.from >= stop) return;
     }
     for (int k = 0; k < 6; ++k) __builtin_prefetch(motions.data + ready.from + 8 * k);
-    __builtin_prefetch(&motions.horizontal.later[shake.block + (ready.from - shake.first) / (kBlock * motions.stride())]);
+    __builtin_prefetch(&motions.horizontal.later[shake.block + (ready.from - shake.first) / (kBlock * stride)]);
 }
 
 // Puts the row that is ready into a lane.
@@ -140,15 +153,13 @@ ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::start(int i) {
     Lane& lane = lanes[i];
     ++active;
-    ++busy[i / (U * P)];
     lane = ready.lane;
     const Shake& shake = *lane.shake;
     idx[i] = lane.first;
-    last[i] = lane.first + static_cast<double>(shake.segments) * motions.stride();
+    last[i] = lane.first + shake.segments * stride;
     cz[i] = lane.az;
     sub[i] = 1.0 / ready.parts;
     tau[i] = 0.0;
-    len[i] = sub[i];
     if (!(ready.parts * static_cast<double>(shake.segments + shake.still) <= kMostSteps)) return finish(i, kFailed, kNotResolved);
     peak[i] = 0.0;
     if (ready.still) return await(i, ready.from);

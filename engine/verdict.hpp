@@ -38,7 +38,7 @@ double Kernel<G, U, N, D, Z, L>::next_look(int i) const {
 ROCKING_KERNEL
 std::int64_t Kernel<G, U, N, D, Z, L>::block_at(int i) const {
     const Lane& lane = lanes[i];
-    const std::int64_t k = static_cast<std::int64_t>((idx[i] - lane.first) / motions.stride());
+    const std::int64_t k = (idx[i] - lane.first) / stride;
     return lane.shake->block + k / kBlock;
 }
 

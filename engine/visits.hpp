@@ -15,7 +15,7 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     for (int k = 0; k <= N; ++k)
         for (int m = 0; m < M; ++m) raw[k + 1][m] = Pack::load(&queued[k][from + m * P]);
     Landings<N, M> landings;
-    const unsigned long found = landings.solve(raw) & ((1ul << count) - 1);
+    const Bits found = landings.solve(raw) & ((Bits(1) << count) - 1);
     if (found) {
         ROCKING_UNROLL
         for (int m = 0; m < M; ++m) {
@@ -25,7 +25,7 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     }
     // one thing after another for all of them, and without branches that depend on the lane
     int rising[M * P], settling[M * P], risings = 0, settlings = 0;
-    for (unsigned long left = found; left; left &= left - 1) {
+    for (Bits left = found; left; left &= left - 1) {
         const int s = lowest(left), i = who[s];
         const double y0 = above[from + s], c1 = -queued[0][from + s];
         rising[risings] = s;
@@ -36,13 +36,13 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
         arc(who[rising[k]], {&queued[0][from + rising[k]], W + M * P}, c);
         note_peak(who[rising[k]], c, zero[rising[k]]);
     }
-    for (unsigned long left = found; left; left &= left - 1) {
+    for (Bits left = found; left; left &= left - 1) {
         const int s = lowest(left);
         settling[settlings] = who[s];
         settlings += bounce(who[s], zero[s], speed[s]);
     }
     for (int k = 0; k < settlings; ++k) settle(settling[k]);
-    for (unsigned long left = ~found & ((1ul << count) - 1); left; left &= left - 1) {
+    for (Bits left = ~found & ((Bits(1) << count) - 1); left; left &= left - 1) {
         const int s = lowest(left);
         visit(who[s], {&queued[0][from + s], W + M * P}, true);
     }
@@ -59,7 +59,7 @@ void Kernel<G, U, N, D, Z, L>::arc(int i, Step made, double* c) const {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::sample(int i) {
     const Lane& lane = lanes[i];
-    const std::int64_t k = static_cast<std::int64_t>((idx[i] - lane.first) / motions.stride());
+    const std::int64_t k = (idx[i] - lane.first) / stride;
     trace->rotation[k] = lane.side * (alpha[i] - u[i]);
     trace->velocity[k] = -lane.side * v[i] / lane.step;
 }
@@ -81,7 +81,7 @@ void Kernel<G, U, N, D, Z, L>::visit(int i, Step made, bool near) {
     if (!(zero <= 1.0)) return advance(i, made);
     double slopes[N + 1];
     slopes_of<N + 1>(c, slopes);
-    if (bounce(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / len[i]))) settle(i);
+    if (bounce(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / length(i)))) settle(i);
 }
 
 // First return to y = 0; a step that starts there is divided by the known zero first.
@@ -104,9 +104,10 @@ void Kernel<G, U, N, D, Z, L>::note_peak(int i, const double* c, double upto) {
     for (int k = 1; k <= N + 1; ++k) top += std::max(c[k], 0.0);
     if (!(top > peak[i])) return;
     slopes_of<N + 1>(c, slopes);
-    for (int k = 2; k <= N; ++k) sway += std::fabs(slopes[k]);
-    const double start = slopes[0];
-    if (start >= 0.0 && slopes[1] > sway) return;  // it rises all the way
+    for (int k = 4; k <= N; ++k) sway += std::fabs(slopes[k]);
+    const double bend = std::fabs(slopes[2]), twist = std::fabs(slopes[3]), start = slopes[0];
+    if (start >= 0.0 && slopes[1] > bend + twist + sway) return;  // it rises all the way
+    sway = fma(0.25, bend, fma(0.4, twist, sway));
     const double end = value_of<N>(slopes, upto);
     // the slope leaves the straight line between its ends by less than its sway: one turn, none, or any number of them
     if (start > sway && end < -sway) {
@@ -129,9 +130,9 @@ void Kernel<G, U, N, D, Z, L>::keep_top(int i, const double* c, double low, doub
         top.side = lanes[i].side;
         std::copy(c, c + N + 2, top.c);
         top.high = high;
-        top.index = (idx[i] - lanes[i].first) / motions.stride();
+        top.index = stretch_of(i);
         top.tau = tau[i];
-        top.len = len[i];
+        top.len = length(i);
         peak[i] = low;
         return;
     }
@@ -178,11 +179,10 @@ bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     stand(i);
     u[i] = s.alpha;
     v[i] = -after;
-    const double to = tau[i] + at * len[i];
+    const double to = tau[i] + at * length(i);
     const bool whole = to >= kWhole;
-    idx[i] += whole ? motions.stride() : 0;
+    idx[i] += whole ? stride : 0;
     tau[i] = whole ? 0.0 : to;
-    len[i] = std::min(sub[i], 1.0 - tau[i]);
     if (trace && whole) sample(i);
     return (lane.impacts >= set.most_impacts) | (idx[i] >= last[i]) | (after <= s.calm);
 }
@@ -193,7 +193,11 @@ void Kernel<G, U, N, D, Z, L>::settle(int i) {
     const double after = -v[i];
     if (lanes[i].impacts >= set.most_impacts) return finish(i, kFailed, kTooManyImpacts);
     if (over(i)) return conclude(i);
-    if (after <= here(i).calm && comes_to_rest(i, after)) {
+    if (!(after <= here(i).calm)) return;
+    const std::int64_t block = block_at(i);  // soon at rest: then these are needed
+    __builtin_prefetch(motions.horizontal.within.data() + block);
+    __builtin_prefetch(motions.horizontal.later.data() + block);
+    if (comes_to_rest(i, after)) {
         note(i, kRest, now(i, 0.0), 0.0, 0.0, 0.0);
         rest(i);
     }
@@ -221,12 +225,11 @@ void Kernel<G, U, N, D, Z, L>::stand(int i) {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::move(int i, double to) {
     if (to >= kWhole) {
-        idx[i] += motions.stride();
+        idx[i] += stride;
         tau[i] = 0.0;
     } else {
         tau[i] = to;
     }
-    len[i] = std::min(sub[i], 1.0 - tau[i]);
 }
 
 // Whether the motion has ended; where rest of the ground follows, its jump to zero is passed.
@@ -235,9 +238,9 @@ bool Kernel<G, U, N, D, Z, L>::over(int i) {
     Lane& lane = lanes[i];
     if (idx[i] < last[i]) return false;
     if (!lane.still) return true;
-    idx[i] += motions.stride();
-    lane.first += motions.stride();  // the pair of samples counts as one instant
-    last[i] = idx[i] + static_cast<double>(lane.still * motions.stride());
+    idx[i] += stride;
+    lane.first += stride;  // the pair of samples counts as one instant
+    last[i] = idx[i] + lane.still * stride;
     lane.still = 0;
     return false;
 }
@@ -256,7 +259,7 @@ void Kernel<G, U, N, D, Z, L>::advance(int i, Step made) {
     u[i] = u1;
     v[i] = v1;
     fastest[i] = std::max(fastest[i], std::fabs(v1));
-    move(i, tau[i] + len[i]);
+    move(i, tau[i] + length(i));
     const bool ended = over(i);
     if (trace && tau[i] == 0.0) sample(i);
     if (u1 < 0.0) {
