@@ -1,4 +1,4 @@
-"""How many floating-point operations a step takes, and how many a second the core could do."""
+"""How many floating-point operations a second the core could do."""
 
 import ctypes
 import shutil
@@ -75,22 +75,3 @@ def beside(work: Callable[[], object], repeats: int) -> tuple[float | None, floa
         if made is not None:
             speed.append(made[1] / cpu_seconds(made[0]))
     return statistics.median(speed) if speed else None, statistics.median(spent)
-
-
-def operations_of_a_step(order: int = 8) -> int:
-    """Additions, multiplications and divisions of one Taylor step of one lane (records, nonlinear, no vertical part).
-
-    A multiply-add counts as 2; comparisons, selections, minima, maxima, absolute values, changes of sign, loads and
-    stores as none. What the lane-by-lane part does at impacts is not counted either.
-    """
-    start = 2 + 1  # q = kappa h^2; V_0 = v h
-    forcing = 1 + 2 + 1 + 2  # difference of samples; value at t_0 by a multiply-add; times c; slope times c h
-    # reduction: 1 multiply-add, 1 subtraction, 2 multiply-adds; z; sine: 6 + 1 multiply-adds, 1 product; cosine: 8
-    sincos = (2 + 1 + 4) + 1 + (7 * 2 + 1) + 8 * 2
-    moment = 2 + (order - 1) * 4 + order * 2  # one, then two multiply-adds a coefficient; q / (k + 1) and its product
-    # S_{k+1}, C_{k+1} for k = 0 ... order - 2: a product, k multiply-adds and a factor for each of the two
-    series = sum(2 * (2 + 2 * k) for k in range(order - 1))
-    sums = order + (1 + 2 * order)  # velocity: additions; rotation: a product and multiply-adds
-    contact = 1 + 2 * (order - 1) + 2 + 3  # how far it can sag: a product, multiply-adds; y_0, y_1; the turning point
-    state = 1 + 1 + 1 + 1 + 1 + 1  # u_1, v_1 / h, time, index, length of the next step, error
-    return start + forcing + sincos + moment + series + sums + contact + state

@@ -44,11 +44,12 @@ class Kernel {
     alignas(64) double u[W], v[W], tau[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], err[W], fastest[W], gate[W];
     alignas(64) std::int64_t idx[W], last[W];
     alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U];
-    alignas(64) double fresh[N + 3][U * P];  // terms and ends of the steps that a group has just made
-    alignas(64) double queued[N + 3][W + M * P] = {};  // the same of the lanes that may touch the ground
-    alignas(64) double above[W + M * P] = {}, span[W + M * P] = {};  // their heights and steps
+    alignas(64) double to[W], on[W];         // where the last step ends: u and v
+    alignas(64) double fresh[N + 1][U * P];  // terms of the steps that a group has just made
+    alignas(64) double queued[N + 1][W + M * P] = {};  // the same of the lanes that may touch the ground
+    alignas(64) double above[W + M * P] = {}, crest[W + M * P] = {}, span[W + M * P] = {};  // their heights, peaks, steps
 
-    struct Side {  // kappa, push: of a stretch; calm: speed below which it may come to rest
+    struct alignas(64) Side {  // kappa, push: of a stretch; calm: speed below which it may come to rest
         double alpha, p, sine, cosine, r, kappa, push, calm;
     };
     struct Step {  // terms of the velocity, and where it ends: columns of a table
@@ -56,12 +57,11 @@ class Kernel {
         int pitch;
         double operator[](int k) const { return terms[k * pitch]; }
     };
-    struct Lane {
-        std::int64_t row = -1, impacts = 0, uplifts = 0, still = 0, first;
-        int side = 0;
+    struct alignas(64) Lane {
         Side sides[2];
-        double scale, ax, az, step, peak_signed, peak_time, over_time, first_uplift;
-        const Shake* shake;
+        std::int64_t row = -1, impacts = 0, uplifts = 0, still = 0, first, block;
+        int side = 0;
+        double ax, az, step, peak_signed, peak_time, over_time, first_uplift;
     } lanes[W];
     // A highest point that is bounded only: it is solved for if another comes close to it, or when the history ends.
     struct Top {
@@ -73,6 +73,7 @@ class Kernel {
         Lane lane;
         bool sound, still;         // whether its values are valid, and whether it starts at rest
         double parts;
+        std::int64_t segments;     // stretches of its motion
         std::int64_t from;         // before this sample nothing lifts it from rest
         std::int64_t row = -1;
     } ready;
@@ -132,7 +133,7 @@ class Kernel {
     void step(int base, int count, Bits& flagged, Bits& near);
     void land(const int* who, int from, int count);
     Pack step_of(int at) const { return min(Pack::load(sub + at), Pack(1.0) - Pack::load(tau + at)); }
-    void forcing(int base);
+    void forcing(int base, int j);
 
     // ---- one lane ---------------------------------------------------------------------------------------------------
 

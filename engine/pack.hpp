@@ -44,6 +44,7 @@ struct Pack {
     static Pack load(const double* p) { return _mm512_load_pd(p); }
     static Pack load_any(const double* p) { return _mm512_loadu_pd(p); }
     void store(double* p) const { _mm512_store_pd(p, r); }
+    void store_where(Mask where, double* p) const { _mm512_mask_store_pd(p, where.m, r); }
     static Pack gather(const double* base, const std::int64_t* k) {
         return _mm512_i64gather_pd(_mm512_load_si512(k), base, 8);
     }
@@ -103,6 +104,7 @@ struct Pack {
     static Pack load(const double* p) { return _mm256_load_pd(p); }
     static Pack load_any(const double* p) { return _mm256_loadu_pd(p); }
     void store(double* p) const { _mm256_store_pd(p, r); }
+    void store_where(Mask where, double* p) const { _mm256_maskstore_pd(p, _mm256_castpd_si256(where.m), r); }
     static Pack gather(const double* base, const std::int64_t* k) {
         return _mm256_i64gather_pd(base, _mm256_load_si256(reinterpret_cast<const __m256i*>(k)), 8);
     }
@@ -164,6 +166,7 @@ struct Pack {
     static Pack load(const double* p) { Pack a; ROCKING_EACH a.r[i] = p[i]; return a; }
     static Pack load_any(const double* p) { return load(p); }
     void store(double* p) const { ROCKING_EACH p[i] = r[i]; }
+    void store_where(Mask where, double* p) const { ROCKING_EACH p[i] = where.m[i] ? r[i] : p[i]; }
     static Pack gather(const double* base, const std::int64_t* k) { Pack a; ROCKING_EACH a.r[i] = base[k[i]]; return a; }
     static void pairs(const double* base, const std::int64_t* k, Pack& first, Pack& second) {
         ROCKING_EACH first.r[i] = base[k[i]], second.r[i] = base[k[i] + 1];

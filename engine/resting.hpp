@@ -167,7 +167,7 @@ ROCKING_KERNEL
 std::int64_t Kernel<G, U, N, D, Z, L>::first_block(const Lane& lane, std::int64_t at, std::int64_t stop) const {
     const std::int64_t first = lane.first, length = kBlock * stride;
     for (std::int64_t k = (at - first) / length; at < stop; at = first + ++k * length) {
-        const std::int64_t block = lane.shake->block + k;
+        const std::int64_t block = lane.block + k;
         if (may_lift(lane, motions.horizontal.within[block], up(motions.vertical.within, block))) break;
     }
     return at;

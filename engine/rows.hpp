@@ -127,7 +127,8 @@ void Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     lane.peak_signed = lane.peak_time = 0.0;
     lane.over_time = lane.first_uplift = std::numeric_limits<double>::quiet_NaN();
     const Shake& shake = motions.shakes[rows.motion[row]];
-    lane.shake = &shake;
+    lane.block = shake.block;
+    ready.segments = shake.segments;
     lane.step = shake.step;
     lane.ax = lane.az = rows.scale[row] / set.gravity;
     lane.sides[0] = side_of(rows.alpha_right[row], rows.p_right[row], rows.r_right[row], lane.step, lane.ax);
@@ -154,13 +155,12 @@ void Kernel<G, U, N, D, Z, L>::start(int i) {
     Lane& lane = lanes[i];
     ++active;
     lane = ready.lane;
-    const Shake& shake = *lane.shake;
     idx[i] = lane.first;
-    last[i] = lane.first + shake.segments * stride;
+    last[i] = lane.first + ready.segments * stride;
     cz[i] = lane.az;
     sub[i] = 1.0 / ready.parts;
     tau[i] = 0.0;
-    if (!(ready.parts * static_cast<double>(shake.segments + shake.still) <= kMostSteps)) return finish(i, kFailed, kNotResolved);
+    if (!(ready.parts * static_cast<double>(ready.segments + lane.still) <= kMostSteps)) return finish(i, kFailed, kNotResolved);
     peak[i] = 0.0;
     if (ready.still) return await(i, ready.from);
     const double angle = rows.rotation[lane.row], speed = rows.velocity[lane.row];

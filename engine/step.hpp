@@ -18,8 +18,9 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
         for (Bits left = near; left; left &= left - 1) {
             const int k = lowest(left), i = first * P + k;
             ROCKING_UNROLL
-            for (int m = 0; m < N + 3; ++m) queued[m][landings] = fresh[m][k];
+            for (int m = 0; m <= N; ++m) queued[m][landings] = fresh[m][k];
             above[landings] = alpha[i] - u[i];
+            crest[landings] = peak[i];
             span[landings] = length(i);
             landing[landings++] = i;
         }
@@ -39,9 +40,11 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
 // rolled up: what they hold is as much as a processor looks ahead, and as fits where it keeps what it has decoded.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& near) {
-    forcing(base);
+    // every lane reads a motion of its own, more streams than processors foresee: lines ahead, every eighth turn
+    for (int r = 0; r < count; ++r) __builtin_prefetch(motions.data + idx[base + r * P + work.sweeps % P] + 16);
     ROCKING_ROLLED
     for (int r = 0; r < count; ++r) {
+        forcing(base, r);
         const Pack angle = Pack::load(u + base + r * P);
         if (L) sines[r] = angle;
         else sine_cosine(angle, sines[r], cosines[r]);
@@ -63,7 +66,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
         // Terms that have just been made come last, so that what depends on them waits for little.
         ROCKING_UNROLL
         for (int k = 0; k < N; ++k) {
-            const Pack inverse(1.0 / (k + 1)), next(1.0 / (k + 2));
+            const Pack inverse(1.0 / (k + 1)), next(1.0 / (k + 2)), bow((k + 1.0) / (k + 2));
             ROCKING_SIDE_BY_SIDE {
                 Pack f = S[k][j];
                 if (Z && k > 0) f = fma(z[1][r + j], S[k - 1][j], f);
@@ -81,7 +84,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
                 if (k == 0) continue;
                 const Pack far = abs(V[k + 1][j]);
                 more[j] = k == 1 ? V[k + 1][j] * next : fma(V[k + 1][j], next, more[j]);
-                size[j] = k == 1 ? far * next : fma(far, next, size[j]);
+                size[j] = k == 1 ? far * bow : fma(far, bow, size[j]);
                 sway[j] = k == 1 ? far * Pack(0.25) : k == 2 ? fma(far, Pack(0.4), sway[j]) : far + sway[j];
             }
             if (k + 1 == N) break;
@@ -107,15 +110,17 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             const Pack du = V[0][j] + fma(V[1][j], Pack(0.5), more[j]);
             const Pack u1 = u0 + du, v1 = fma(Pack::load(kappa + at) * h[j], w[j], v0);
 
-            // With y = y0 + c1 x + c2 x^2 + ..., y >= min(y0, y1) - c2+ / 4 - c3+ - ...: between its ends a step can
-            // only sag by its convex terms. A step that starts at y = 0 is divided by its known zero first.
-            const Pack sag = fma(max(zero - V[1][j], zero), Pack(0.125), Pack(0.5) * (size[j] - more[j]));
-            const Pack y0 = Pack::load(alpha + at) - u0, y1 = y0 - du;
-            const Mask clear = (min(y0, y1) > sag) | ((y0 == zero) & (min(zero - V[0][j], y1) > sag));
+            // With y = y0 + c1 x + c2 x^2 + ..., y >= y0 (1 - x) + y1 x - sag x (1 - x), where sag = c2+ + 2 c3+ + ...:
+            // no zero if sag < (sqrt y0 + sqrt y1)^2. A step that starts at y = 0 is divided by its known zero first.
+            const Pack vh = v1 * h[j], away = zero - V[0][j], rest = vh - V[0][j] - V[1][j] - more[j];
+            const Pack sag = Pack(0.5) * (max(zero - V[1][j], zero) + (size[j] - rest));
+            const Pack y0 = Pack::load(alpha + at) - u0, y1 = y0 - du, start = select(y0 == zero, away, y0);
+            const Pack low = min(start, y1);
+            const Mask clear = (low > zero) & (fma(Pack(3.0), low, max(start, y1)) > sag);
             // The velocity leaves the straight line between its ends by less than its sway.
-            const Mask turns = ((v0 < zero) & (v1 >= zero)) | (sway[j] >= min(abs(V[0][j]), abs(v1 * h[j])));
-            const Mask turning = turns & (fma(Pack(4.0), sag, y0 + max(zero - V[0][j], zero)) > Pack::load(peak + at));
-            const Mask beyond = (u1 < Pack::load(gate + at)) | ((u1 < zero) & (max(u0, u1) + sag >= zero));
+            const Mask turns = ((v0 < zero) & (v1 >= zero)) | (sway[j] >= min(abs(V[0][j]), abs(vh)));
+            const Mask turning = turns & (y0 + max(away, zero) + sag > Pack::load(peak + at));
+            const Mask beyond = (u1 < Pack::load(gate + at)) | ((u1 < zero) & (fma(Pack(0.25), sag, max(u0, u1)) >= zero));
             const Pack t1 = t0 + h[j];
             const Mask done = t1 >= Pack(kWhole);
             const Whole i1 = i0.plus(stride, done);
@@ -123,16 +128,17 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             flagged |= static_cast<Bits>(visit.bits()) << col;
             near |= static_cast<Bits>((!clear).bits()) << col;
 
-            select(visit, u0, u1).store(u + at);
-            select(visit, v0, v1).store(v + at);
-            select(visit, t0, select(done, zero, t1)).store(tau + at);
+            const Mask goes = !visit;
+            u1.store_where(goes, u + at);
+            v1.store_where(goes, v + at);
+            select(done, zero, t1).store_where(goes, tau + at);
             select(visit, i0, i1).store(idx + at);
-            u1.store(&fresh[N + 1][col]);
-            v1.store(&fresh[N + 2][col]);
+            u1.store(to + at);
+            v1.store(on + at);
             // what happens beyond a quarter turn is of no interest
             (Pack::load(err + at) + select(u1 > Pack(-kHalfPi), abs(V[N][j]), zero)).store(err + at);
             const Pack top = Pack::load(fastest + at);
-            select(visit, top, max(top, abs(v1))).store(fastest + at);
+            max(top, abs(v1)).store_where(goes, fastest + at);
         }
     }
     near &= flagged;
@@ -141,12 +147,10 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
 
 // Series of the ground's acceleration over the step: s a_x / g in b, a_z / g in z.
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::forcing(int base) {
+void Kernel<G, U, N, D, Z, L>::forcing(int base, int j) {
     const double* data = motions.data;
     const std::int64_t* where = idx + base;
-    // every lane reads a motion of its own, more streams than processors foresee: lines ahead, every eighth turn
-    ROCKING_LANES __builtin_prefetch(data + where[j * P + work.sweeps % P] + 16);
-    ROCKING_LANES {
+    {
         const Pack c = Pack::load(ca + base + j * P), t0 = Pack::load(tau + base + j * P), h = step_of(base + j * P);
         if (D == 1) {
             constexpr int hop = Z ? 2 : 1;

@@ -39,7 +39,7 @@ ROCKING_KERNEL
 std::int64_t Kernel<G, U, N, D, Z, L>::block_at(int i) const {
     const Lane& lane = lanes[i];
     const std::int64_t k = (idx[i] - lane.first) / stride;
-    return lane.shake->block + k / kBlock;
+    return lane.block + k / kBlock;
 }
 
 // From now on, over gravity: the most that the ground can push the body back, and the least that it can weigh.

@@ -16,25 +16,23 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
         for (int m = 0; m < M; ++m) raw[k + 1][m] = Pack::load(&queued[k][from + m * P]);
     Landings<N, M> landings;
     const Bits found = landings.solve(raw) & ((Bits(1) << count) - 1);
+    Bits rising = 0;
     if (found) {
         ROCKING_UNROLL
         for (int m = 0; m < M; ++m) {
             landings.zero[m].store(zero + m * P);
+            const Mask rises = (raw[1][m] < Pack(0.0)) & (raw[0][m] - raw[1][m] > Pack::load(crest + from + m * P));
+            rising |= static_cast<Bits>(rises.bits()) << (m * P);
             max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::load(span + from + m * P)).store(speed + m * P);
         }
     }
     // one thing after another for all of them, and without branches that depend on the lane
-    int rising[M * P], settling[M * P], risings = 0, settlings = 0;
-    for (Bits left = found; left; left &= left - 1) {
-        const int s = lowest(left), i = who[s];
-        const double y0 = above[from + s], c1 = -queued[0][from + s];
-        rising[risings] = s;
-        risings += (c1 > 0.0) & (y0 + c1 > peak[i]);
-    }
-    for (int k = 0; k < risings; ++k) {
+    int settling[M * P], settlings = 0;
+    for (Bits left = found & rising; left; left &= left - 1) {
+        const int s = lowest(left);
         double c[N + 2];
-        arc(who[rising[k]], {&queued[0][from + rising[k]], W + M * P}, c);
-        note_peak(who[rising[k]], c, zero[rising[k]]);
+        arc(who[s], {&queued[0][from + s], W + M * P}, c);
+        note_peak(who[s], c, zero[s]);
     }
     for (Bits left = found; left; left &= left - 1) {
         const int s = lowest(left);
@@ -248,7 +246,7 @@ bool Kernel<G, U, N, D, Z, L>::over(int i) {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::advance(int i, Step made) {
     Lane& lane = lanes[i];
-    const double u1 = made[N + 1], v1 = made[N + 2];
+    const double u1 = to[i], v1 = on[i];
     if (u1 < 0.0) {
         double c[N + 2];
         c[0] = u[i];
