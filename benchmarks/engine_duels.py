@@ -94,14 +94,13 @@ def shares(batch: Histories, repeats: int) -> list[Row]:
             found.append(Row(what, "peak of the core", "not counted: no compiler", _goal(goal)))
             continue
         peak, spent = engine_peak.beside(work, repeats)
-        each, speed, more = spent / done.steps, done.total / spent, done.with_extremes / spent
-        cost = (
-            f"{each * 1e9:.1f} ns an active step of {done.total / done.steps:.0f} operations, {speed / 1e9:.1f} GFLOP/s"
-        )
+        each, speed = spent / done.steps, done.total / spent
+        cost = f"{each * 1e9:.1f} ns an active step of {done.total / done.steps:.0f} operations"
         if peak is None:
             found.append(Row(what, "peak of the core", f"{cost}; peak not measured", _goal(goal)))
             continue
-        share = f"{100.0 * speed / peak:.1f} % of {peak / 1e9:.1f} GFLOP/s ({cost}; {100.0 * more / peak:.1f} % with minima and maxima)"
+        more = f"{100.0 * done.with_extremes / spent / peak:.1f} % with minima and maxima"
+        share = f"{100.0 * speed / peak:.1f} % of {peak / 1e9:.1f} GFLOP/s ({cost}, {speed / 1e9:.1f} GFLOP/s; {more})"
         found.append(Row(what, "peak of the core", share, _goal(goal), None if goal is None else speed / peak >= goal))
     return found
 

@@ -60,7 +60,7 @@ class _Settings(ctypes.Structure):
 
 
 def counted(batch: Histories, p: np.ndarray | None = None, rotation: np.ndarray | None = None) -> Operations | None:
-    """Count the operations of a batch, with other p [rad/s] or let go at rotations if given; None without a compiler."""
+    """Count the operations of a batch, with another p or let go at rotations if given; None without a compiler."""
     library = _built()
     if library is None:
         return None

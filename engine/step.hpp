@@ -77,7 +77,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
                     ROCKING_UNROLL
                     for (int m = (k < D ? k : D); m >= 0; --m) f = fma(b[m][r + j], C[k - m][j], f);
                 }
-                f = f * inverse;
+                if (k > 0) f = f * inverse;
                 w[j] = k == 0 ? f : w[j] + f;
                 V[k + 1][j] = f * qh[j];
                 V[k + 1][j].store(&fresh[k + 1][(r + j) * P]);
@@ -98,7 +98,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
                         s = fma(V[m][j], C[k - m][j], s);
                         c = fma(V[m][j], S[k - m][j], c);
                     }
-                    S[k + 1][j] = s * inverse;
+                    S[k + 1][j] = k > 0 ? s * inverse : s;
                     C[k + 1][j] = c * Pack(-1.0 / (k + 1));
                 }
             }

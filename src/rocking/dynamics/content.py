@@ -24,7 +24,9 @@ def hash_of(values: np.ndarray) -> str:
         64 hexadecimal digits, the same on every machine.
     """
     little = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
-    return hashlib.sha256(str((little.dtype.str, little.shape)).encode() + little.tobytes()).hexdigest()
+    made = hashlib.sha256(str((little.dtype.str, little.shape)).encode())
+    made.update(little.view(np.uint8).data)
+    return made.hexdigest()
 
 
 def full_name(kind: type) -> str:

@@ -12,9 +12,10 @@ from rocking.studies.campaign.errors import (
     CampaignStorageError,
     CampaignWorkerError,
 )
-from rocking.studies.campaign.executors import Executor, Serial
+from rocking.studies.campaign.executors import Executor
 from rocking.studies.campaign.forecast import Forecast
 from rocking.studies.campaign.reading import Piece
+from rocking.studies.campaign.serial import Serial
 from rocking.studies.campaign.status import Progress, Status, Summary
 
 __all__ = [

@@ -183,7 +183,7 @@ class Campaign:
         order_seed : int, optional
             Seed of the order of the chunks; that of the histories, if not given. The results do not depend on it.
         progress : callable, optional
-            Called with a `Progress` at the start and after every chunk that is recorded.
+            Called with a `Progress` at the start and after every recorded chunk, while the next ones are computed.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Who computes the chunks: the rules for all, and the one that computes them here."""
+"""Who computes the chunks, and the rules for all who do."""
 
 import os
 import time
@@ -8,18 +8,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from rocking.dynamics.engine import empty_results
+from rocking.dynamics.engine import Arrays, empty_results
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import disk, fingerprint, identity, shard
-from rocking.studies.campaign.chunks import DEFAULT_CHUNK, Chunk
+from rocking.studies.campaign.chunks import Chunk
 from rocking.studies.campaign.errors import CampaignWorkerError
 from rocking.studies.campaign.fingerprint import kind_of
+from rocking.studies.campaign.pace import Pace
 from rocking.studies.histories import Histories
 
 SUFFIX = ".shard"
-_ASK = 0.3
-_FIRST = {"fast": 64, "reference": 4}
-_FASTER = 4
 
 
 class Done(NamedTuple):
@@ -31,48 +29,6 @@ class Done(NamedTuple):
     seconds: float
     worker: str
     attempts: int = 1
-
-
-class Pace:
-    """How many histories at a time take as long as nobody minds to wait, learned from one piece to the next.
-
-    Parameters
-    ----------
-    engine : str
-        The engine that computes them.
-    """
-
-    def __init__(self, engine: str) -> None:
-        self.step = _FIRST[kind_of(engine)]
-
-    def piece(self, left: int) -> int:
-        """Return how many of the histories that are left to take: equal pieces, since short ones leave lanes idle.
-
-        Parameters
-        ----------
-        left : int
-            At least 1.
-
-        Returns
-        -------
-        int
-            At most `step`.
-        """
-        return -(-left // -(-left // self.step))
-
-    def took(self, count: int, seconds: float) -> None:
-        """Learn from a piece.
-
-        Parameters
-        ----------
-        count : int
-            Its histories.
-        seconds : float
-            What they took [s].
-        """
-        wanted = int(count * _ASK / max(seconds, 1e-6))
-        if wanted < self.step or 2 * count >= self.step:  # the end of a chunk says nothing about longer pieces
-            self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,18 +97,39 @@ class Job:
         bytes or None
             The shard; None if it was stopped.
         """
-        self.check()
         results = empty_results(chunk.last - chunk.first)
+        return shard.pack(chunk, results) if self.fill(results, chunk, threads, stop) else None
+
+    def fill(self, results: Arrays, chunk: Chunk, threads: int | None, stop: Callable[[], bool]) -> bool:
+        """Compute the results of a chunk.
+
+        Parameters
+        ----------
+        results : dict of str to ndarray
+            The keys of `rocking.dynamics.engine.RESULTS`; written into.
+        chunk : Chunk
+            Which.
+        threads : int, optional
+            Threads of the fast engine; as many as the processor has, if None.
+        stop : callable
+            Whether to stop; asked every 0.3 s or so, whatever the histories take.
+
+        Returns
+        -------
+        bool
+            Whether all of them are there; False if it was stopped.
+        """
+        self.check()
         first = chunk.first
         while first < chunk.last:
             if first > chunk.first and stop():
-                return None
+                return False
             start, last = time.perf_counter(), first + self.pace.piece(chunk.last - first)
             for name, values in self.histories.run(first, last, threads=threads).items():
                 results[name][first - chunk.first : last - chunk.first] = values
             self.pace.took(last - first, time.perf_counter() - start)
             first = last
-        return shard.pack(chunk, results)
+        return True
 
     def keep(self, chunk: Chunk, data: bytes, seconds: float, worker: str = "") -> Done:
         """Write the shard of a chunk.
@@ -204,47 +181,6 @@ class Executor(ABC):
         """
 
 
-class Serial(Executor):
-    """Computes the chunks one after another in this process.
-
-    Parameters
-    ----------
-    threads : int, optional
-        Threads of the fast engine; as many as the processor has, if not given.
-    """
-
-    def __init__(self, threads: int | None = None) -> None:
-        self._threads = None if threads is None else whole("workers", threads)
-
-    def run(
-        self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
-    ) -> Iterator[Done]:
-        """Compute chunks.
-
-        Parameters
-        ----------
-        job : Job
-            What to compute.
-        chunks : iterator of Chunk
-            What remains to be done.
-        stop : callable
-            Whether to stop; a large chunk is left unfinished then.
-        retried : callable
-            Never called.
-
-        Yields
-        ------
-        Done
-            One after another.
-        """
-        for chunk in chunks:
-            start = time.perf_counter()
-            data = job.compute(chunk, self._threads, stop)
-            if data is None:
-                return
-            yield job.keep(chunk, data, time.perf_counter() - start)
-
-
 def cannot_be_sent(error: Exception) -> str:
     """Return what is said of histories that cannot be pickled.
 
@@ -291,6 +227,8 @@ def chosen(executor: "str | Executor", workers: int | None, start_method: str | 
             raise InvalidValueError(f"workers={workers!r} goes with the name of an executor; the object has its own")
         return given
     if given == "serial":
+        from rocking.studies.campaign.serial import Serial
+
         return Serial(workers)
     if given == "processes":
         from rocking.studies.campaign.processes import Processes

@@ -32,10 +32,13 @@ def pack(chunk: Chunk, arrays: Arrays) -> bytes:
     bytes
         Magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all that.
     """
-    columns = [np.ascontiguousarray(arrays[name], _little(kind)).tobytes() for name, kind in RESULTS.items()]
+    columns = [np.ascontiguousarray(arrays[name], _little(kind)).data for name, kind in RESULTS.items()]
     header = json.dumps(_header(chunk, columns), sort_keys=True, separators=(",", ":")).encode()
-    body = b"".join([_LENGTHS.pack(MAGIC, FORMAT, len(header)), header, *columns])
-    return body + hashlib.sha256(body).digest()
+    head = _LENGTHS.pack(MAGIC, FORMAT, len(header)) + header
+    made = hashlib.sha256(head)
+    for column in columns:
+        made.update(column)
+    return b"".join([head, *columns, made.digest()])
 
 
 def seal(data: bytes) -> str:
@@ -142,7 +145,7 @@ def _read_header(data: bytes, place: int) -> Any:
     return header
 
 
-def _header(chunk: Chunk, columns: list[bytes]) -> dict[str, Any]:
+def _header(chunk: Chunk, columns: list[memoryview]) -> dict[str, Any]:
     sums = {name: zlib.crc32(column) for name, column in zip(RESULTS, columns, strict=True)}
     return {"name": chunk.name, "first": chunk.first, "last": chunk.last, "columns": _names(), "crc32": sums}
 

@@ -50,6 +50,27 @@ def test_format_is_what_the_page_says() -> None:
     assert place == len(data) - 32
 
 
+def test_bytes_are_those_of_the_first_version() -> None:
+    """Campaigns that were begun long ago go on: the shard made by hand, of whatever arrays the numbers stand in."""
+    plain = arrays()
+    columns = {name: plain[name].astype(np.dtype(kind).newbyteorder("<")) for name, kind in RESULTS.items()}
+    content = {
+        "columns": [[name, values.dtype.str] for name, values in columns.items()],
+        "crc32": {name: zlib.crc32(values.tobytes()) for name, values in columns.items()},
+        "first": 120,
+        "last": 160,
+        "name": CHUNK.name,
+    }
+    header = json.dumps(content, separators=(",", ":"), sort_keys=True).encode()
+    body = struct.pack("<8sII", b"ROCKSHRD", 1, len(header)) + header
+    body += b"".join(values.tobytes() for values in columns.values())
+    made = body + hashlib.sha256(body).digest()
+    assert shard.pack(CHUNK, plain) == made
+    assert shard.pack(CHUNK, {name: np.repeat(values, 2)[::2] for name, values in plain.items()}) == made
+    swapped = {name: values.astype(values.dtype.newbyteorder(">")) for name, values in plain.items()}
+    assert shard.pack(CHUNK, swapped) == made
+
+
 def flipped(data: bytes, bit: int) -> bytes:
     changed = bytearray(data)
     changed[bit // 8] ^= 1 << bit % 8

@@ -20,8 +20,8 @@ from rocking.studies.campaign import (
     DaskExecutor,
     reading,
 )
-from rocking.studies.campaign.executors import Serial
 from rocking.studies.campaign.identity import Identity
+from rocking.studies.campaign.serial import Serial
 from rocking.studies.job import Job, JobFolder, answer, export, forecast, rounds, status_of
 from rocking.studies.lattice import absent, merged
 
