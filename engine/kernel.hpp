@@ -28,7 +28,6 @@ constexpr double kNothing = 1e-9;       // speeds over p alpha that are as good 
 constexpr double kHalfPi = 1.57079632679489661923;
 
 #define ROCKING_KERNEL template <int G, int U, int N, int D, bool Z, bool L>
-#define ROCKING_LANES ROCKING_UNROLL for (int j = 0; j < U; ++j)
 #define ROCKING_SIDE_BY_SIDE ROCKING_UNROLL for (int j = 0; j < Q; ++j)
 
 // G groups of U registers of lanes, order N, motions of degree D, with a vertical part if Z, slender-linear if L.
@@ -52,7 +51,7 @@ class Kernel {
     struct alignas(64) Side {  // kappa, push: of a stretch; calm: speed below which it may come to rest
         double alpha, p, sine, cosine, r, kappa, push, calm;
     };
-    struct Step {  // terms of the velocity, and where it ends: columns of a table
+    struct Step {  // terms of the velocity: a column of a table
         const double* terms;
         int pitch;
         double operator[](int k) const { return terms[k * pitch]; }
