@@ -20,7 +20,9 @@ FLAGS = ("-std=c++17", "-O2", "-ffp-contract=off", "-fno-math-errno", "-shared",
 
 @dataclass(frozen=True)
 class Operations:
-    """What steps and landings do, in lanes that hold a history; what single lanes do beside them is not counted.
+    """What steps, landings and the search for the next sample that lifts a body do, in lanes that hold a history.
+
+    What single lanes do beside that (impacts, tops, rest) is not counted, a few operations a step.
 
     Loads, stores, comparisons, selections, absolute values and whole numbers are no operations.
     """

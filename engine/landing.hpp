@@ -37,7 +37,7 @@ class Landings {
             c[0][m] = raw[0][m];
         }
         ROCKING_UNROLL
-        for (int k = 0; k <= N; ++k) ROCKING_BOTH c[k + 1][m] = raw[k + 1][m] * Pack(-1.0 / (k + 1));
+        for (int k = 0; k <= N; ++k) ROCKING_BOTH c[k + 1][m] = k > 0 ? raw[k + 1][m] * Pack(-1.0 / (k + 1)) : none - raw[1][m];
         // one that starts on the ground is divided by that known zero
         ROCKING_BOTH arch[m] = (c[0][m] == none) & (c[1][m] > none);
         ROCKING_UNROLL
@@ -50,9 +50,9 @@ class Landings {
         for (int k = N; k >= 0; --k) ROCKING_BOTH end[m] = end[m] + c[k][m];
         ROCKING_UNROLL
         for (int k = 1; k <= N + 1; ++k) ROCKING_BOTH {
-            d[k - 1][m] = Pack(k) * c[k][m];
+            d[k - 1][m] = k > 1 ? Pack(k) * c[k][m] : c[1][m];
             if (k > 1) fall[m] = fall[m] + abs(d[k - 1][m]);
-            if (k > 1) e[k - 2][m] = Pack(k - 1) * d[k - 1][m];
+            if (k > 1) e[k - 2][m] = k > 2 ? Pack(k - 1) * d[k - 1][m] : d[1][m];
             if (k > 2) bend[m] = bend[m] + abs(e[k - 2][m]);
         }
         ROCKING_BOTH {

@@ -176,7 +176,7 @@ static void short_ones_last(std::vector<std::int64_t>& list, const Motions& m, c
         const std::int64_t motion = rows.motion[row];
         return motion < 0 || motion >= static_cast<std::int64_t>(m.shakes.size()) ? 0 : m.shakes[motion].segments;
     };
-    const auto tail = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(list.size()), std::ptrdiff_t{1024} * threads);
+    const auto tail = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(list.size()), std::ptrdiff_t{512} * threads);
     std::stable_sort(list.end() - tail, list.end(), [&](auto a, auto b) { return length(a) > length(b); });
 }
 

@@ -40,7 +40,7 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
 // rolled up: what they hold is as much as a processor looks ahead, and as fits where it keeps what it has decoded.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& near) {
-    // every lane reads a motion of its own, more streams than processors foresee: lines ahead, every eighth turn
+    // every lane reads a motion of its own, more streams than processors foresee: lines ahead, a lane a turn
     for (int r = 0; r < count; ++r) __builtin_prefetch(motions.data + idx[base + r * P + work.sweeps % P] + 16);
     ROCKING_ROLLED
     for (int r = 0; r < count; ++r) {
@@ -53,7 +53,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
     ROCKING_ROLLED
     for (int r = 0; r < count; r += Q) {
         Pack S[N + 1][Q], C[N + 1][Q], V[N + 1][Q], h[Q], qh[Q], w[Q];
-        Pack more[Q], size[Q], sway[Q];  // sums over the terms from V2 on: of rotation, of its sizes, of velocity
+        Pack more[Q], size[Q], sway[Q];  // sums over the terms from V2 on: of rotation, of its bows, of velocity
         ROCKING_SIDE_BY_SIDE {
             const int at = base + (r + j) * P;
             h[j] = step_of(at);
@@ -99,7 +99,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
                         c = fma(V[m][j], S[k - m][j], c);
                     }
                     S[k + 1][j] = k > 0 ? s * inverse : s;
-                    C[k + 1][j] = c * Pack(-1.0 / (k + 1));
+                    C[k + 1][j] = k > 0 ? c * Pack(-1.0 / (k + 1)) : Pack(0.0) - c;
                 }
             }
         }
@@ -120,7 +120,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             // The velocity leaves the straight line between its ends by less than its sway.
             const Mask turns = ((v0 < zero) & (v1 >= zero)) | (sway[j] >= min(abs(V[0][j]), abs(vh)));
             const Mask turning = turns & (y0 + max(away, zero) + sag > Pack::load(peak + at));
-            const Mask beyond = (u1 < Pack::load(gate + at)) | ((u1 < zero) & (fma(Pack(0.25), sag, max(u0, u1)) >= zero));
+            const Mask beyond = (u1 < Pack::load(gate + at)) | ((u1 < zero) & (fma(Pack(0.25), max(sag, zero), max(u0, u1)) >= zero));
             const Pack t1 = t0 + h[j];
             const Mask done = t1 >= Pack(kWhole);
             const Whole i1 = i0.plus(stride, done);

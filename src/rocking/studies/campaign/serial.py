@@ -19,7 +19,7 @@ class Serial(Executor):
 
     While a chunk is packed, written, recorded and told, a second thread computes the next one: `Histories.run` is
     called there, never twice at a time, and at the same time as the function that is told of the progress. No more
-    than two chunks are held in memory, and the thread has ended when the run has, however it ends.
+    than two chunks and the file of one are held in memory, and the thread has ended when the run has, however it ends.
 
     Parameters
     ----------
