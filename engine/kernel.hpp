@@ -43,7 +43,7 @@ class Kernel {
     alignas(64) double u[W], v[W], tau[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], err[W], fastest[W], gate[W];
     alignas(64) std::int64_t idx[W], last[W];
     alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U];
-    alignas(64) double to[W], on[W];         // where the last step ends: u and v
+    alignas(64) double u_end[W], v_end[W];   // where the last step ends
     alignas(64) double fresh[N + 1][U * P];  // terms of the steps that a group has just made
     alignas(64) double queued[N + 1][W + M * P] = {};  // the same of the lanes that may touch the ground
     alignas(64) double above[W + M * P] = {}, crest[W + M * P] = {}, span[W + M * P] = {};  // their heights, peaks, steps

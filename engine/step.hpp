@@ -66,7 +66,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
         // Terms that have just been made come last, so that what depends on them waits for little.
         ROCKING_UNROLL
         for (int k = 0; k < N; ++k) {
-            const Pack inverse(1.0 / (k + 1)), next(1.0 / (k + 2)), bow((k + 1.0) / (k + 2));
+            const Pack inverse(1.0 / (k + 1)), shared(1.0 / (k + 2)), bow((k + 1.0) / (k + 2));
             ROCKING_SIDE_BY_SIDE {
                 Pack f = S[k][j];
                 if (Z && k > 0) f = fma(z[1][r + j], S[k - 1][j], f);
@@ -83,7 +83,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
                 V[k + 1][j].store(&fresh[k + 1][(r + j) * P]);
                 if (k == 0) continue;
                 const Pack far = abs(V[k + 1][j]);
-                more[j] = k == 1 ? V[k + 1][j] * next : fma(V[k + 1][j], next, more[j]);
+                more[j] = k == 1 ? V[k + 1][j] * shared : fma(V[k + 1][j], shared, more[j]);
                 size[j] = k == 1 ? far * bow : fma(far, bow, size[j]);
                 sway[j] = k == 1 ? far * Pack(0.25) : k == 2 ? fma(far, Pack(0.4), sway[j]) : far + sway[j];
             }
@@ -112,8 +112,8 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
 
             // With y = y0 + c1 x + c2 x^2 + ..., y >= y0 (1 - x) + y1 x - sag x (1 - x), where sag = c2+ + 2 c3+ + ...:
             // no zero if sag < (sqrt y0 + sqrt y1)^2. A step that starts at y = 0 is divided by its known zero first.
-            const Pack vh = v1 * h[j], away = zero - V[0][j], rest = vh - V[0][j] - V[1][j] - more[j];
-            const Pack sag = Pack(0.5) * (max(zero - V[1][j], zero) + (size[j] - rest));
+            const Pack vh = v1 * h[j], away = zero - V[0][j], signs = vh - V[0][j] - V[1][j] - more[j];
+            const Pack sag = Pack(0.5) * (max(zero - V[1][j], zero) + (size[j] - signs));
             const Pack y0 = Pack::load(alpha + at) - u0, y1 = y0 - du, start = select(y0 == zero, away, y0);
             const Pack low = min(start, y1);
             const Mask clear = (low > zero) & (fma(Pack(3.0), low, max(start, y1)) > sag);
@@ -133,8 +133,8 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             v1.store_where(goes, v + at);
             select(done, zero, t1).store_where(goes, tau + at);
             select(visit, i0, i1).store(idx + at);
-            u1.store(to + at);
-            v1.store(on + at);
+            u1.store(u_end + at);
+            v1.store(v_end + at);
             // what happens beyond a quarter turn is of no interest
             (Pack::load(err + at) + select(u1 > Pack(-kHalfPi), abs(V[N][j]), zero)).store(err + at);
             const Pack top = Pack::load(fastest + at);
@@ -150,42 +150,40 @@ ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::forcing(int base, int j) {
     const double* data = motions.data;
     const std::int64_t* where = idx + base;
-    {
-        const Pack c = Pack::load(ca + base + j * P), t0 = Pack::load(tau + base + j * P), h = step_of(base + j * P);
-        if (D == 1) {
-            constexpr int hop = Z ? 2 : 1;
-            Pack a, da, g, dg;
-            if (Z) {
-                Pack::pairs(data, where + j * P, a, g);
-                Pack::pairs(data + hop, where + j * P, da, dg);
-            } else {
-                Pack::pairs(data, where + j * P, a, da);
-            }
-            da = da - a;
-            b[0][j] = c * fma(da, t0, a);
-            b[1][j] = c * (da * h);
-            if (Z) {
-                const Pack w = Pack::load(cz + base + j * P);
-                dg = dg - g;
-                z[0][j] = w * fma(dg, t0, g);
-                z[1][j] = w * (dg * h);
-            }
+    const Pack c = Pack::load(ca + base + j * P), t0 = Pack::load(tau + base + j * P), h = step_of(base + j * P);
+    if (D == 1) {
+        constexpr int hop = Z ? 2 : 1;
+        Pack a, da, g, dg;
+        if (Z) {
+            Pack::pairs(data, where + j * P, a, g);
+            Pack::pairs(data + hop, where + j * P, da, dg);
         } else {
-            Pack p[D + 1];
+            Pack::pairs(data, where + j * P, a, da);
+        }
+        da = da - a;
+        b[0][j] = c * fma(da, t0, a);
+        b[1][j] = c * (da * h);
+        if (Z) {
+            const Pack w = Pack::load(cz + base + j * P);
+            dg = dg - g;
+            z[0][j] = w * fma(dg, t0, g);
+            z[1][j] = w * (dg * h);
+        }
+    } else {
+        Pack p[D + 1];
+        ROCKING_UNROLL
+        for (int k = 0; k <= D; ++k) p[k] = c * Pack::gather(data + k, where + j * P);
+        ROCKING_UNROLL
+        for (int k = 0; k < D; ++k) {  // Taylor shift to t0
             ROCKING_UNROLL
-            for (int k = 0; k <= D; ++k) p[k] = c * Pack::gather(data + k, where + j * P);
-            ROCKING_UNROLL
-            for (int k = 0; k < D; ++k) {  // Taylor shift to t0
-                ROCKING_UNROLL
-                for (int m = D - 1; m >= k; --m) p[m] = fma(t0, p[m + 1], p[m]);
-            }
-            Pack power = h;
-            b[0][j] = p[0];
-            ROCKING_UNROLL
-            for (int k = 1; k <= D; ++k) {
-                b[k][j] = p[k] * power;
-                power = power * h;
-            }
+            for (int m = D - 1; m >= k; --m) p[m] = fma(t0, p[m + 1], p[m]);
+        }
+        Pack power = h;
+        b[0][j] = p[0];
+        ROCKING_UNROLL
+        for (int k = 1; k <= D; ++k) {
+            b[k][j] = p[k] * power;
+            power = power * h;
         }
     }
 }

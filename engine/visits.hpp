@@ -246,7 +246,7 @@ bool Kernel<G, U, N, D, Z, L>::over(int i) {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::advance(int i, Step made) {
     Lane& lane = lanes[i];
-    const double u1 = to[i], v1 = on[i];
+    const double u1 = u_end[i], v1 = v_end[i];
     if (u1 < 0.0) {
         double c[N + 2];
         c[0] = u[i];
