@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "batch.hpp"
-#include "landing.hpp"
+#include "falls.hpp"
 #include "law.hpp"
 #include "pack.hpp"
 #include "roots.hpp"
@@ -62,15 +62,17 @@ class Kernel {
         int side = 0;
         double ax, az, step, peak_signed, peak_time, over_time, first_uplift;
     } lanes[W];
-    // A highest point that is bounded only: it is solved for if another comes close to it, or when the history ends.
+    // Steps within which a lane may have its highest point: their terms, the heights from which they start, whose they are.
+    alignas(64) double turning[N + 1][M * P] = {}, bases[M * P] = {};
     struct Top {
-        bool open = false;
-        int side;
-        double c[N + 2], high, index, tau, len;
-    } tops[W];
+        int lane, side;
+        std::int64_t row;
+        double stretch, tau, length, upto;
+    } tops[M * P];
+    int turns = 0;
     struct {  // the row that comes next, made ready so that no lane waits for memory
         Lane lane;
-        bool sound, still;         // whether its values are valid, and whether it starts at rest
+        bool still;                // whether it starts at rest
         double parts;
         std::int64_t segments;     // stretches of its motion
         std::int64_t from;         // before this sample nothing lifts it from rest
@@ -147,10 +149,11 @@ class Kernel {
     void arc(int i, Step made, double* c) const;
     void visit(int i, Step made, bool near);
     double first_contact(double* c) const;
-    void note_peak(int i, const double* c, double upto);
+    void keep_top(int i, Step made, double upto, double height, bool comes_back);
+    void find_tops();
+    void raise_peak(const Top& top, double at, double y);
     void raise_peak(int i, double y, double time);
-    void keep_top(int i, const double* c, double low, double high);
-    void settle_peak(int i);
+    bool turned(int i) const;
     bool bounce(int i, double at, double speed);
     void settle(int i);
     double coefficient(int i, double speed) const;
@@ -195,8 +198,10 @@ class Kernel {
     void fill(int i);
     std::int64_t listed(std::int64_t k) const { return rows.list ? rows.list[k] : k; }
     void write_invalid(std::int64_t row);
-    void prepare(std::int64_t row);
-    void look_ahead() const;
+    bool prepare(std::int64_t row);
+    void write_still(std::int64_t row);
+    void look_for_one();
+    const Shake* shake_of(std::int64_t waiting) const;
     void start(int i);
 };
 
@@ -214,5 +219,6 @@ Work run_rows(const Motions& m, const Law& law, const Rows& r, const Settings& s
 #include "resting.hpp"
 #include "rows.hpp"
 #include "step.hpp"
+#include "tops.hpp"
 #include "verdict.hpp"
 #include "visits.hpp"

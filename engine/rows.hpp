@@ -15,7 +15,7 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     }
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const bool good = status == kGood, down = outcome == kOverturned;
-    if (good && !down) settle_peak(i);
+    if (good && !down && turned(i)) find_tops();
     rows.outcome[row] = outcome;
     rows.status[row] = status;
     rows.side[row] = outcome == kOverturned ? static_cast<std::int8_t>(lane.side) : 0;
@@ -34,7 +34,6 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::idle(int i) {
     lanes[i].row = -1;
-    tops[i].open = false;
     u[i] = 0.0;
     v[i] = tau[i] = kappa[i] = ca[i] = cz[i] = err[i] = fastest[i] = gate[i] = sub[i] = 0.0;
     idx[i] = 0;
@@ -59,7 +58,8 @@ void Kernel<G, U, N, D, Z, L>::move_lane(int from, int to) {
     for (double* value : {u, v, tau, sub, kappa, ca, cz, alpha, peak, err, fastest, gate}) value[to] = value[from];
     for (std::int64_t* value : {idx, last}) value[to] = value[from];
     lanes[to] = lanes[from];
-    tops[to] = tops[from];
+    for (int s = 0; s < turns; ++s)
+        if (tops[s].lane == from) tops[s].lane = to;
     idle(from);
 }
 
@@ -75,18 +75,43 @@ bool Kernel<G, U, N, D, Z, L>::valid(const Rows& r, std::int64_t k, std::size_t 
            r.motion[k] >= 0 && r.motion[k] < static_cast<std::int64_t>(motions);
 }
 
-// Take rows from the queue until one needs steps.
+// Puts the row that is ready into a lane, and makes the next one ready.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::fill(int i) {
     idle(i);
     while (lanes[i].row < 0) {
-        if (next == end && !queue.take(next, end)) return;
+        if (ready.row < 0 && next == end && !queue.take(next, end)) return;
+        if (ready.row < 0) look_for_one();
+        if (ready.row < 0) continue;
+        start(i);
+        look_for_one();
+    }
+}
+
+// The motion of a row that waits, if there is one.
+ROCKING_KERNEL
+const Shake* Kernel<G, U, N, D, Z, L>::shake_of(std::int64_t waiting) const {
+    if (waiting >= end) return nullptr;
+    const std::int64_t k = rows.motion[listed(waiting)];
+    return k >= 0 && k < static_cast<std::int64_t>(motions.shakes.size()) ? &motions.shakes[k] : nullptr;
+}
+
+// The next row at hand that needs a lane, made ready; those that do not are done with.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::look_for_one() {
+    ready.row = -1;
+    while (next < end) {
         const std::int64_t row = listed(next++);
-        if (ready.row != row) prepare(row);
-        if (ready.sound) start(i);
-        else write_invalid(row);
-        if (next < end) prepare(listed(next));
-        look_ahead();
+        // What rows further on will need comes from memory in the meantime. It stands here because compilers take calls
+        // of functions that do nothing else for calls that do nothing.
+        if (const Shake* shake = shake_of(next + 6)) {
+            __builtin_prefetch(shake);
+            __builtin_prefetch(reinterpret_cast<const char*>(shake + 1) - 1);
+        }
+        if (const Shake* shake = shake_of(next + 3))
+            for (int k = 0; k < 24; k += 4) __builtin_prefetch(motions.horizontal.within.data() + shake->block + k);
+        if (!valid(rows, row, motions.shakes.size())) write_invalid(row);
+        else if (prepare(row)) return;
     }
 }
 
@@ -101,26 +126,22 @@ void Kernel<G, U, N, D, Z, L>::write_invalid(std::int64_t row) {
     rows.impacts[row] = rows.uplifts[row] = 0;
 }
 
-// Rows further on: what is read of them when they are made ready comes from memory in the meantime.
+// Nothing lifts it.
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::look_ahead() const {
-    const auto known = [&](std::int64_t row) {
-        const std::int64_t k = rows.motion[row];
-        return k >= 0 && k < static_cast<std::int64_t>(motions.shakes.size());
-    };
-    if (next + 2 < end && known(listed(next + 2))) __builtin_prefetch(&motions.shakes[rows.motion[listed(next + 2)]]);
-    if (next + 1 < end && known(listed(next + 1))) {
-        const std::int64_t block = motions.shakes[rows.motion[listed(next + 1)]].block;
-        for (int k = 0; k < 16; k += 4) __builtin_prefetch(motions.horizontal.within.data() + block + k);
-    }
+void Kernel<G, U, N, D, Z, L>::write_still(std::int64_t row) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    rows.outcome[row] = kNoUplift;
+    rows.status[row] = kGood;
+    rows.side[row] = 0;
+    rows.peak[row] = rows.peak_time[row] = rows.peak_velocity[row] = rows.error[row] = 0.0;
+    rows.overturning_time[row] = rows.first_uplift[row] = nan;
+    rows.impacts[row] = rows.uplifts[row] = 0;
 }
 
 // All that a row needs before a lane is free for it.
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
+bool Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     ready.row = row;
-    ready.sound = valid(rows, row, motions.shakes.size());
-    if (!ready.sound) return;
     Lane& lane = ready.lane;
     lane = Lane();
     lane.row = row;
@@ -143,10 +164,15 @@ void Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     if (ready.still) {
         const std::int64_t stop = shake.first + shake.segments * stride;
         ready.from = may_lift(lane, shake.horizontal, shake.vertical) ? first_block(lane, ready.from, stop) : stop;
-        if (ready.from >= stop) return;
+        if (ready.from >= stop && ready.parts * static_cast<double>(ready.segments + lane.still) <= kMostSteps) {
+            write_still(row);
+            ready.row = -1;
+            return false;
+        }
     }
     for (int k = 0; k < 6; ++k) __builtin_prefetch(motions.data + ready.from + 8 * k);
     __builtin_prefetch(&motions.horizontal.later[shake.block + (ready.from - shake.first) / (kBlock * stride)]);
+    return true;
 }
 
 // Puts the row that is ready into a lane.

@@ -9,19 +9,22 @@ namespace ROCKING_ISA {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     alignas(64) double zero[M * P], speed[M * P];
-    Pack raw[N + 2][M];
-    for (int m = 0; m < M; ++m) raw[0][m] = Pack::load(above + from + m * P);
+    Pack arcs[N + 2][M];
+    for (int m = 0; m < M; ++m) arcs[0][m] = Pack::load(above + from + m * P);
     ROCKING_UNROLL
     for (int k = 0; k <= N; ++k)
-        for (int m = 0; m < M; ++m) raw[k + 1][m] = Pack::load(&queued[k][from + m * P]);
-    Landings<N, M> landings;
-    const Bits found = landings.solve(raw) & ((Bits(1) << count) - 1);
+        for (int m = 0; m < M; ++m) {
+            const Pack term = Pack::load(&queued[k][from + m * P]);
+            arcs[k + 1][m] = k > 0 ? term * Pack(-1.0 / (k + 1)) : Pack(0.0) - term;
+        }
+    Falls<N + 1, M> landings;
+    const Bits found = landings.solve(arcs) & ((Bits(1) << count) - 1);
     Bits rising = 0;
     if (found) {
         ROCKING_UNROLL
         for (int m = 0; m < M; ++m) {
             landings.zero[m].store(zero + m * P);
-            const Mask rises = (raw[1][m] < Pack(0.0)) & (raw[0][m] - raw[1][m] > Pack::load(crest + from + m * P));
+            const Mask rises = (arcs[1][m] > Pack(0.0)) & (arcs[0][m] + arcs[1][m] > Pack::load(crest + from + m * P));
             rising |= static_cast<Bits>(rises.bits()) << (m * P);
             max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::load(span + from + m * P)).store(speed + m * P);
         }
@@ -30,9 +33,7 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
     int settling[M * P], settlings = 0;
     for (Bits left = found & rising; left; left &= left - 1) {
         const int s = lowest(left);
-        double c[N + 2];
-        arc(who[s], {&queued[0][from + s], W + M * P}, c);
-        note_peak(who[s], c, zero[s]);
+        keep_top(who[s], {&queued[0][from + s], W + M * P}, zero[s], 0.0, true);
     }
     for (Bits left = found; left; left &= left - 1) {
         const int s = lowest(left);
@@ -69,16 +70,23 @@ void Kernel<G, U, N, D, Z, L>::note(int i, EventKind kind, double time, double b
 
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::visit(int i, Step made, bool near) {
-    double c[N + 2];
     double sum = 0.0;
     for (int k = 0; k <= N; ++k) sum += std::fabs(made[k]);
-    arc(i, made, c);
     if (!(sum < 1e100)) return finish(i, kFailed, kNotFinite);
-    const double zero = near ? first_contact(c) : 2.0;
-    note_peak(i, c, zero < 1.0 ? zero : 1.0);
-    if (!(zero <= 1.0)) return advance(i, made);
+    double c[N + 2], zero = 2.0;
+    if (near) {
+        arc(i, made, c);
+        zero = first_contact(c);
+    }
+    if (!(zero <= 1.0)) {
+        // one term above the sum of the others, or of those that follow it where it starts from rest: no turn
+        if (!(2.0 * std::fabs(made[0] != 0.0 ? made[0] : made[1]) > sum))
+            keep_top(i, made, 1.0, alpha[i] - u_end[i], v_end[i] > 0.0);
+        return advance(i, made);
+    }
     double slopes[N + 1];
     slopes_of<N + 1>(c, slopes);
+    keep_top(i, made, zero, 0.0, true);
     if (bounce(i, zero, std::max(0.0, -value_of<N>(slopes, zero) / length(i)))) settle(i);
 }
 
@@ -93,74 +101,6 @@ double Kernel<G, U, N, D, Z, L>::first_contact(double* c) const {
     if (c[2] > 0.0) return first_zero<N - 1>(c + 2);
     if (c[3] > 0.0) return first_zero<N - 2>(c + 3);
     return 2.0;
-}
-
-// The highest point within a step, up to a place in it, if it is a new peak.
-ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::note_peak(int i, const double* c, double upto) {
-    double top = c[0], slopes[N + 1], sway = 0.0;
-    for (int k = 1; k <= N + 1; ++k) top += std::max(c[k], 0.0);
-    if (!(top > peak[i])) return;
-    slopes_of<N + 1>(c, slopes);
-    for (int k = 4; k <= N; ++k) sway += std::fabs(slopes[k]);
-    const double bend = std::fabs(slopes[2]), twist = std::fabs(slopes[3]), start = slopes[0];
-    if (start >= 0.0 && slopes[1] > bend + twist + sway) return;  // it rises all the way
-    sway = fma(0.25, bend, fma(0.4, twist, sway));
-    const double end = value_of<N>(slopes, upto);
-    // the slope leaves the straight line between its ends by less than its sway: one turn, none, or any number of them
-    if (start > sway && end < -sway) {
-        keep_top(i, c, std::max(c[0], value_of<N + 1>(c, upto)), top);
-    } else if (!(std::min(start, end) > sway) && !(std::max(start, end) < -sway)) {
-        each_fall<N>(slopes, [&](double at) {
-            if (at <= upto) raise_peak(i, value_of<N + 1>(c, at), now(i, at));
-        });
-    }
-}
-
-// Takes over a step with one highest point, known to lie between two bounds.
-ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::keep_top(int i, const double* c, double low, double high) {
-    Top& top = tops[i];
-    if (top.open && low <= top.high) settle_peak(i);
-    if (!(high > peak[i])) return;
-    if (low > peak[i]) {
-        top.open = true;
-        top.side = lanes[i].side;
-        std::copy(c, c + N + 2, top.c);
-        top.high = high;
-        top.index = stretch_of(i);
-        top.tau = tau[i];
-        top.len = length(i);
-        peak[i] = low;
-        return;
-    }
-    double slopes[N + 1];
-    slopes_of<N + 1>(c, slopes);
-    const double at = first_zero<N>(slopes);
-    raise_peak(i, value_of<N + 1>(c, at), now(i, at));
-}
-
-ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::settle_peak(int i) {
-    Top& top = tops[i];
-    if (!top.open) return;
-    top.open = false;
-    double slopes[N + 1];
-    slopes_of<N + 1>(top.c, slopes);
-    const double at = first_zero<N>(slopes);
-    peak[i] = value_of<N + 1>(top.c, at);
-    lanes[i].peak_signed = top.side * peak[i];
-    lanes[i].peak_time = (top.index + (top.tau + at * top.len)) * lanes[i].step;
-}
-
-ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::raise_peak(int i, double y, double time) {
-    if (y > peak[i]) settle_peak(i);
-    if (y > peak[i]) {
-        peak[i] = y;
-        lanes[i].peak_signed = lanes[i].side * y;
-        lanes[i].peak_time = time;
-    }
 }
 
 // An impact, at a place within the step [rad per stretch]. Whether more comes of it is told by settle().

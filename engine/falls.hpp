@@ -1,5 +1,5 @@
-// Where arcs come down, several side by side: those that fall, or curve down, all the way have one zero, and an
-// iteration of third order finds it for all of them at once. Whatever is not that plain is left to roots.hpp.
+// Where polynomials fall through zero, several side by side: those that fall, or curve down, all the way have one zero,
+// and an iteration of third order finds it for all of them at once. Whatever is not that plain is left to roots.hpp.
 #pragma once
 #include "pack.hpp"
 
@@ -8,20 +8,20 @@ namespace ROCKING_ISA {
 
 #define ROCKING_BOTH ROCKING_UNROLL for (int m = 0; m < M; ++m)
 
-// Zeros of y = c0 + c1 x + ... on (0, 1) and the slopes there, for M registers of arcs.
-template <int N, int M>  // terms V0 ... VN of the velocity, over which the rotation has degree N + 1
-class Landings {
+// Zeros of y = c0 + c1 x + ... on (0, 1) and the slopes there, for M registers of polynomials.
+template <int degree, int M>
+class Falls {
     static constexpr int P = Pack::width;
-    Pack c[N + 2][M], d[N + 1][M], e[N][M];  // the arc, its slope, its second derivative
+    Pack c[degree + 1][M], d[degree][M], e[degree - 1][M];  // the polynomial, its slope, its second derivative
     Pack curve[M], twist[M];                 // bounds on half its second and a sixth of its third derivative
     Mask arch[M], plain[M];
 
   public:
     Pack zero[M], slope[M];
 
-    // `raw` holds the height above the ground and the terms of the speed towards it. Returns which arcs were plain.
-    std::uint64_t solve(const Pack (*raw)[M]) {
-        take(raw);
+    // Returns which of them were plain.
+    std::uint64_t solve(const Pack (*terms)[M]) {
+        take(terms);
         std::uint64_t found = 0;
         ROCKING_BOTH found |= static_cast<std::uint64_t>(plain[m].bits()) << (m * P);
         if (found) iterate();
@@ -29,27 +29,24 @@ class Landings {
     }
 
   private:
-    void take(const Pack (*raw)[M]) {
+    void take(const Pack (*terms)[M]) {
         const Pack none(0.0);
         Pack fall[M], bend[M], end[M];
+        // one that starts at zero is divided by that known zero
         ROCKING_BOTH {
             fall[m] = bend[m] = none;
-            c[0][m] = raw[0][m];
+            arch[m] = (terms[0][m] == none) & (terms[1][m] > none);
         }
         ROCKING_UNROLL
-        for (int k = 0; k <= N; ++k) ROCKING_BOTH c[k + 1][m] = k > 0 ? raw[k + 1][m] * Pack(-1.0 / (k + 1)) : none - raw[1][m];
-        // one that starts on the ground is divided by that known zero
-        ROCKING_BOTH arch[m] = (c[0][m] == none) & (c[1][m] > none);
-        ROCKING_UNROLL
-        for (int k = 0; k <= N; ++k) ROCKING_BOTH c[k][m] = select(arch[m], c[k + 1][m], c[k][m]);
+        for (int k = 0; k < degree; ++k) ROCKING_BOTH c[k][m] = select(arch[m], terms[k + 1][m], terms[k][m]);
         ROCKING_BOTH {
-            c[N + 1][m] = select(arch[m], none, c[N + 1][m]);
-            end[m] = c[N + 1][m];
+            c[degree][m] = select(arch[m], none, terms[degree][m]);
+            end[m] = c[degree][m];
         }
         ROCKING_UNROLL
-        for (int k = N; k >= 0; --k) ROCKING_BOTH end[m] = end[m] + c[k][m];
+        for (int k = degree - 1; k >= 0; --k) ROCKING_BOTH end[m] = end[m] + c[k][m];
         ROCKING_UNROLL
-        for (int k = 1; k <= N + 1; ++k) ROCKING_BOTH {
+        for (int k = 1; k <= degree; ++k) ROCKING_BOTH {
             d[k - 1][m] = k > 1 ? Pack(k) * c[k][m] : c[1][m];
             if (k > 1) fall[m] = fall[m] + abs(d[k - 1][m]);
             if (k > 1) e[k - 2][m] = k > 2 ? Pack(k - 1) * d[k - 1][m] : d[1][m];
@@ -57,7 +54,7 @@ class Landings {
         }
         ROCKING_BOTH {
             curve[m] = fma(Pack(0.5), bend[m], abs(c[2][m]));
-            twist[m] = Pack((N - 1) / 6.0) * bend[m];
+            twist[m] = Pack((degree - 2) / 6.0) * bend[m];
             const Mask falls = none - d[0][m] > fall[m], curves = none - e[0][m] > bend[m];
             plain[m] = (abs(d[0][m]) + fall[m] < Pack(1e100)) & (c[0][m] > none) & (end[m] < none) & (falls | curves);
         }
@@ -82,9 +79,9 @@ class Landings {
         for (int round = 0; round < 200; ++round) {
             unsigned any = 0;
             Pack y[M], s[M], b[M];
-            value<N + 1>(c, x, y);
-            value<N>(d, x, s);
-            value<N - 1>(e, x, b);
+            value<degree>(c, x, y);
+            value<degree - 1>(d, x, s);
+            value<degree - 2>(e, x, b);
             ROCKING_BOTH {
                 const Mask above = y[m] > none, hit = y[m] == none;
                 low[m] = select(above, x[m], low[m]);
@@ -103,27 +100,27 @@ class Landings {
             if (!any) break;
         }
         Pack s[M];
-        value<N>(d, x, s);
+        value<degree - 1>(d, x, s);
         ROCKING_BOTH {
             zero[m] = x[m];
             slope[m] = select(arch[m], x[m] * s[m], s[m]);
         }
     }
 
-    template <int degree>
+    template <int top>
     static void value(const Pack (*a)[M], const Pack* x, Pack* y) {
         Pack z[M], even[M], odd[M];
         ROCKING_BOTH {
             z[m] = x[m] * x[m];
-            even[m] = a[degree][m];
-            odd[m] = a[degree - 1][m];
+            even[m] = a[top][m];
+            odd[m] = a[top - 1][m];
         }
         ROCKING_UNROLL
-        for (int k = degree - 2; k >= 0; k -= 2) ROCKING_BOTH {
+        for (int k = top - 2; k >= 0; k -= 2) ROCKING_BOTH {
             even[m] = fma(even[m], z[m], a[k][m]);
             if (k > 0) odd[m] = fma(odd[m], z[m], a[k - 1][m]);
         }
-        ROCKING_BOTH y[m] = degree % 2 ? fma(even[m], x[m], odd[m]) : fma(odd[m], x[m], even[m]);
+        ROCKING_BOTH y[m] = top % 2 ? fma(even[m], x[m], odd[m]) : fma(odd[m], x[m], even[m]);
     }
 };
 
