@@ -144,19 +144,19 @@ class Kernel {
         const Lane& lane = lanes[i];
         return (stretch_of(i) + (tau[i] + fraction * length(i))) * lane.step;
     }
-    void sample(int i);
-    void note(int i, EventKind kind, double time, double before, double after, double coefficient);
+    ROCKING_APART void sample(int i);
+    ROCKING_APART void note(int i, EventKind kind, double time, double before, double after, double coefficient);
     void arc(int i, Step made, double* c) const;
-    void visit(int i, Step made, bool near);
+    ROCKING_APART void visit(int i, Step made, bool near);
     double first_contact(double* c) const;
     void keep_top(int i, Step made, double upto, double height, bool comes_back);
-    void find_tops();
+    ROCKING_APART void find_tops();
     void raise_peak(const Top& top, double at, double y);
     void raise_peak(int i, double y, double time);
     bool turned(int i) const;
-    bool bounce(int i, double at, double speed);
+    ROCKING_INLINE bool bounce(int i, double at, double speed);
     void settle(int i);
-    double coefficient(int i, double speed) const;
+    ROCKING_APART double coefficient(int i, double speed) const;
     void stand(int i);
     void move(int i, double to);
     void advance(int i, Step made);

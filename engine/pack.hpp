@@ -12,12 +12,18 @@
 #if defined(__clang__)
 #define ROCKING_UNROLL _Pragma("clang loop unroll(full)")
 #define ROCKING_ROLLED _Pragma("clang loop unroll(disable)")
+#define ROCKING_INLINE inline __attribute__((always_inline))
+#define ROCKING_APART __attribute__((noinline))
 #elif defined(__GNUC__)
 #define ROCKING_UNROLL _Pragma("GCC unroll 16")
 #define ROCKING_ROLLED _Pragma("GCC unroll 1")
+#define ROCKING_INLINE inline __attribute__((always_inline))
+#define ROCKING_APART __attribute__((noinline))
 #else
 #define ROCKING_UNROLL
 #define ROCKING_ROLLED
+#define ROCKING_INLINE inline
+#define ROCKING_APART
 #endif
 
 namespace rocking {

@@ -18,10 +18,10 @@ WIDE = {"width": 1360, "height": 900}
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let everything here run when nothing else does."""
+    """Let everything here be told from the rest: what measures time is marked where it stands."""
     for item in items:
         if Path(__file__).parent in item.path.parents:
-            item.add_marker(pytest.mark.timed)
+            item.add_marker(pytest.mark.browser)
 
 
 @dataclass(frozen=True)

@@ -320,6 +320,7 @@ def test_names_are_text_and_never_markup(page: Any) -> None:
     assert page.locator("#summary img").count() == 0
 
 
+@pytest.mark.timed
 def test_typing_redraws_within_150_ms(page: Any) -> None:
     """From a key press to the new numbers on screen: the median of thirty is under 150 ms."""
     settled(page, "Slenderness h/b", 4.0)

@@ -276,6 +276,7 @@ def test_impacts_are_those_of_python(answered: Callable[..., Any]) -> None:
     assert [row[5] for row in rows[1:]] == found["onto"].tolist()
 
 
+@pytest.mark.timed
 @pytest.mark.parametrize(
     "words", ["Scale of the motion", "Size of the body, all lengths", "Coefficient of restitution r"]
 )
@@ -290,6 +291,7 @@ def test_a_slider_redraws_within_150_ms(answered: Callable[..., Any], words: str
     assert statistics.median(times) < 150.0, times
 
 
+@pytest.mark.timed
 def test_sixty_frames_a_second(answered: Callable[..., Any]) -> None:
     """Played in slow motion, at least 55 frames a second are drawn, and the script of one takes below 4 ms."""
     page = answered()
@@ -307,6 +309,7 @@ def test_sixty_frames_a_second(answered: Callable[..., Any]) -> None:
     assert script_ms < 4.0
 
 
+@pytest.mark.timed
 def test_space_plays_and_the_speed_is_true(answered: Callable[..., Any]) -> None:
     """Space starts and stops; at real speed the animation keeps time with the wall clock, else a tenth of it."""
     page = answered()

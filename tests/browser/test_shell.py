@@ -52,6 +52,7 @@ def test_the_recorder_sees_what_it_must_refuse(browser: Any, served: Any, new_re
     assert any("on purpose" in each for each in seen.faults)
 
 
+@pytest.mark.timed
 def test_first_page_under_one_second(open_page: Callable[..., Any]) -> None:
     """From an empty cache to the numbers of the first body in under 1 s; other work on the machine gets ten tries."""
     seconds: list[float] = []

@@ -227,6 +227,7 @@ def test_rocking_spectra(studies: Any, shot: Any) -> None:
     shot(studies, "studies-spectra")
 
 
+@pytest.mark.timed
 def test_cancel_and_resume(open_page: Callable[..., Any], shot: Any) -> None:
     """A long study shows progress, stops within a second of Cancel, keeps what is finished, and goes on."""
     models = ["ked", "housner", "horizontal-momentum", "shifted-impulse", "distributed-impulse", "plastic-winkler"]
