@@ -36,17 +36,18 @@ class Kernel {
     static constexpr int P = Pack::width, W = G * U * P;
     static constexpr int stride = D == 1 ? (Z ? 2 : 1) : D + 1;  // numbers of a sample or stretch
     static constexpr int Q = U > 1 ? 2 : 1;  // registers that step side by side
-    static constexpr int M = G > 1 ? 2 : 1;  // registers of lanes that land side by side
+    static constexpr int M = G > 1 ? 2 : 1;  // registers of lanes that land, or turn round, side by side
     using Bits = std::uint64_t;              // one a lane of a group
 
-    // state of the lanes; unused ones stay at rest on stretch zero
+    // state of the lanes; unused ones stay at rest on stretch zero. `peak` is a height that the body has had: points that are
+    // not above it are of no interest. It may lie below the highest point by what a step adds.
     alignas(64) double u[W], v[W], tau[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], err[W], fastest[W], gate[W];
     alignas(64) std::int64_t idx[W], last[W];
     alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U];
     alignas(64) double u_end[W], v_end[W];   // where the last step ends
     alignas(64) double fresh[N + 1][U * P];  // terms of the steps that a group has just made
     alignas(64) double queued[N + 1][W + M * P] = {};  // the same of the lanes that may touch the ground
-    alignas(64) double above[W + M * P] = {}, crest[W + M * P] = {}, span[W + M * P] = {};  // their heights, peaks, steps
+    alignas(64) double above[W + M * P] = {}, floors[W + M * P] = {}, span[W + M * P] = {};  // their heights, `peak`, steps
 
     struct alignas(64) Side {  // kappa, push: of a stretch; calm: speed below which it may come to rest
         double alpha, p, sine, cosine, r, kappa, push, calm;
@@ -60,16 +61,17 @@ class Kernel {
         Side sides[2];
         std::int64_t row = -1, impacts = 0, uplifts = 0, still = 0, first, block;
         int side = 0;
-        double ax, az, step, peak_signed, peak_time, over_time, first_uplift;
+        double ax, az, step, peak_signed, peak_time, over_time, first_uplift;  // the highest point found so far
     } lanes[W];
-    // Steps within which a lane may have its highest point: their terms, the heights from which they start, whose they are.
-    alignas(64) double turning[N + 1][M * P] = {}, bases[M * P] = {};
+    // Steps within which a lane may have its highest point: their terms, the heights from which they start, whose they are,
+    // the places up to which they count, and the heights there if the body has turned round by then, or -1.
+    alignas(64) double waiting[N + 1][M * P] = {}, bases[M * P] = {};
     struct Top {
         int lane, side;
         std::int64_t row;
-        double stretch, tau, length, upto;
+        double stretch, tau, length, upto, end;
     } tops[M * P];
-    int turns = 0;
+    int tops_waiting = 0;
     struct {  // the row that comes next, made ready so that no lane waits for memory
         Lane lane;
         bool still;                // whether it starts at rest
@@ -149,11 +151,11 @@ class Kernel {
     void arc(int i, Step made, double* c) const;
     ROCKING_APART void visit(int i, Step made, bool near);
     double first_contact(double* c) const;
-    void keep_top(int i, Step made, double upto, double height, bool comes_back);
+    void keep_top(int i, Step made, double upto, double height, bool comes_down);
     ROCKING_APART void find_tops();
     void raise_peak(const Top& top, double at, double y);
     void raise_peak(int i, double y, double time);
-    bool turned(int i) const;
+    bool has_tops(int i) const;
     ROCKING_INLINE bool bounce(int i, double at, double speed);
     void settle(int i);
     ROCKING_APART double coefficient(int i, double speed) const;
@@ -198,6 +200,7 @@ class Kernel {
     void fill(int i);
     std::int64_t listed(std::int64_t k) const { return rows.list ? rows.list[k] : k; }
     void write_invalid(std::int64_t row);
+    static bool resolved(double parts, std::int64_t stretches) { return parts * static_cast<double>(stretches) <= kMostSteps; }
     bool prepare(std::int64_t row);
     void write_still(std::int64_t row);
     void look_for_one();

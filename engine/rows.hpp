@@ -15,7 +15,7 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     }
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const bool good = status == kGood, down = outcome == kOverturned;
-    if (good && !down && turned(i)) find_tops();
+    if (good && !down && has_tops(i)) find_tops();
     rows.outcome[row] = outcome;
     rows.status[row] = status;
     rows.side[row] = outcome == kOverturned ? static_cast<std::int8_t>(lane.side) : 0;
@@ -58,7 +58,7 @@ void Kernel<G, U, N, D, Z, L>::move_lane(int from, int to) {
     for (double* value : {u, v, tau, sub, kappa, ca, cz, alpha, peak, err, fastest, gate}) value[to] = value[from];
     for (std::int64_t* value : {idx, last}) value[to] = value[from];
     lanes[to] = lanes[from];
-    for (int s = 0; s < turns; ++s)
+    for (int s = 0; s < tops_waiting; ++s)
         if (tops[s].lane == from) tops[s].lane = to;
     idle(from);
 }
@@ -75,7 +75,7 @@ bool Kernel<G, U, N, D, Z, L>::valid(const Rows& r, std::int64_t k, std::size_t 
            r.motion[k] >= 0 && r.motion[k] < static_cast<std::int64_t>(motions);
 }
 
-// Puts the row that is ready into a lane, and makes the next one ready.
+// Rows that are ready into a lane, until one stays there; the next one is made ready meanwhile.
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::fill(int i) {
     idle(i);
@@ -138,7 +138,7 @@ void Kernel<G, U, N, D, Z, L>::write_still(std::int64_t row) {
     rows.impacts[row] = rows.uplifts[row] = 0;
 }
 
-// All that a row needs before a lane is free for it.
+// All that a row needs before a lane is free for it. False if it needs none, since nothing lifts it: then it is done with.
 ROCKING_KERNEL
 bool Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     ready.row = row;
@@ -158,13 +158,14 @@ bool Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     lane.still = shake.still;
     ready.parts = pace_of(shake, std::max(rows.p_right[row], rows.p_left[row]), lane.ax, set.longest_step).parts;
     const double angle = rows.rotation[row], speed = rows.velocity[row];
-    const Side& turned = lane.sides[angle > 0.0 ? 0 : 1];
-    ready.still = turned.alpha - std::fabs(angle) == turned.alpha && std::fabs(speed) <= kNothing * turned.p * turned.alpha;
+    const Side& stood = lane.sides[angle > 0.0 ? 0 : 1];
+    ready.still = stood.alpha - std::fabs(angle) == stood.alpha && std::fabs(speed) <= kNothing * stood.p * stood.alpha;
     ready.from = shake.first;
     if (ready.still) {
         const std::int64_t stop = shake.first + shake.segments * stride;
         ready.from = may_lift(lane, shake.horizontal, shake.vertical) ? first_block(lane, ready.from, stop) : stop;
-        if (ready.from >= stop && ready.parts * static_cast<double>(ready.segments + lane.still) <= kMostSteps) {
+        if (ready.from >= stop) {
+            if (!resolved(ready.parts, ready.segments + lane.still)) return true;
             write_still(row);
             ready.row = -1;
             return false;
@@ -186,7 +187,7 @@ void Kernel<G, U, N, D, Z, L>::start(int i) {
     cz[i] = lane.az;
     sub[i] = 1.0 / ready.parts;
     tau[i] = 0.0;
-    if (!(ready.parts * static_cast<double>(ready.segments + lane.still) <= kMostSteps)) return finish(i, kFailed, kNotResolved);
+    if (!resolved(ready.parts, ready.segments + lane.still)) return finish(i, kFailed, kNotResolved);
     peak[i] = 0.0;
     if (ready.still) return await(i, ready.from);
     const double angle = rows.rotation[lane.row], speed = rows.velocity[lane.row];

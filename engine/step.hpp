@@ -20,7 +20,7 @@ void Kernel<G, U, N, D, Z, L>::sweep() {
             ROCKING_UNROLL
             for (int m = 0; m <= N; ++m) queued[m][landings] = fresh[m][k];
             above[landings] = alpha[i] - u[i];
-            crest[landings] = peak[i];
+            floors[landings] = peak[i];
             span[landings] = length(i);
             landing[landings++] = i;
         }

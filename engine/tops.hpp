@@ -5,19 +5,20 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Takes over a step, up to a place in it, at whose end the body stands `height` above the ground.
+// Takes over a step, up to a place in it at which the body stands `height` above the ground; whether it comes down there
+// tells, with the way in which it starts, that it has turned round.
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::keep_top(int i, Step made, double upto, double height, bool comes_back) {
-    const int s = turns++;
+void Kernel<G, U, N, D, Z, L>::keep_top(int i, Step made, double upto, double height, bool comes_down) {
+    const int s = tops_waiting++;
     ROCKING_UNROLL
-    for (int k = 0; k <= N; ++k) turning[k][s] = made[k];
-    const double start = alpha[i] - u[i];
-    bases[s] = start;
-    tops[s] = {i, lanes[i].side, lanes[i].row, stretch_of(i), tau[i], length(i), upto};
-    // Between two lower points there is one as high as these. No more is claimed before it is found, so that what
-    // this lane does next does not depend on others.
-    if (made[0] < 0.0 && comes_back) peak[i] = std::max(peak[i], std::max(start, height));
-    if (turns == M * P) find_tops();
+    for (int k = 0; k <= N; ++k) waiting[k][s] = made[k];
+    const bool turns = made[0] < 0.0 && comes_down;
+    bases[s] = alpha[i] - u[i];
+    tops[s] = {i, lanes[i].side, lanes[i].row, stretch_of(i), tau[i], length(i), upto, turns ? height : -1.0};
+    // Never by more, even when the highest point is found: what the lane does next must not depend on when that is, and
+    // so on other lanes.
+    if (turns) peak[i] = std::max(peak[i], std::max(bases[s], height));
+    if (tops_waiting == M * P) find_tops();
 }
 
 // Where the velocity changes its sign: all steps that wait, side by side.
@@ -27,31 +28,33 @@ void Kernel<G, U, N, D, Z, L>::find_tops() {
     Pack rise[N + 1][M];
     ROCKING_UNROLL
     for (int k = 0; k <= N; ++k)
-        for (int m = 0; m < M; ++m) rise[k][m] = Pack(0.0) - Pack::load(&turning[k][m * P]);
-    Falls<N, M> falls;
-    const Bits found = falls.solve(rise);
-    for (int m = 0; m < M; ++m) {
+        for (int m = 0; m < M; ++m) rise[k][m] = Pack(0.0) - Pack::load(&waiting[k][m * P]);
+    Falls<N, M> ends;
+    const Bits found = ends.solve(rise);
+    for (int m = 0; found && m < M; ++m) {
         Pack y = rise[N][m] * Pack(1.0 / (N + 1));
         ROCKING_UNROLL
-        for (int k = N - 1; k >= 0; --k) y = fma(y, falls.zero[m], rise[k][m] * Pack(1.0 / (k + 1)));
-        falls.zero[m].store(at + m * P);
-        fma(y, falls.zero[m], Pack::load(bases + m * P)).store(height + m * P);
+        for (int k = N - 1; k >= 0; --k) y = fma(y, ends.zero[m], rise[k][m] * Pack(1.0 / (k + 1)));
+        ends.zero[m].store(at + m * P);
+        fma(y, ends.zero[m], Pack::load(bases + m * P)).store(height + m * P);
     }
-    for (int s = 0; s < turns; ++s) {
-        if (lanes[tops[s].lane].row != tops[s].row) continue;  // it has overturned since
+    for (int s = 0; s < tops_waiting; ++s) {
+        const Top& top = tops[s];
+        if (lanes[top.lane].row != top.row) continue;  // it has ended since
         if (found >> s & 1) {
-            raise_peak(tops[s], at[s], height[s]);
-            continue;
+            raise_peak(top, at[s], height[s]);
+        } else {
+            double c[N + 2], slopes[N + 1];
+            c[0] = bases[s];
+            for (int k = 0; k <= N; ++k) {
+                slopes[k] = -waiting[k][s];
+                c[k + 1] = slopes[k] * (1.0 / (k + 1));
+            }
+            each_fall<N>(slopes, [&](double x) { raise_peak(top, x, value_of<N + 1>(c, x)); });
         }
-        double c[N + 2], slopes[N + 1];
-        c[0] = bases[s];
-        for (int k = 0; k <= N; ++k) {
-            slopes[k] = -turning[k][s];
-            c[k + 1] = slopes[k] * (1.0 / (k + 1));
-        }
-        each_fall<N>(slopes, [&](double x) { raise_peak(tops[s], x, value_of<N + 1>(c, x)); });
+        raise_peak(top, top.upto, top.end);  // a body may turn round at the end to rounding
     }
-    turns = 0;
+    tops_waiting = 0;
 }
 
 ROCKING_KERNEL
@@ -73,8 +76,8 @@ void Kernel<G, U, N, D, Z, L>::raise_peak(int i, double y, double time) {
 
 // Whether a step of this lane waits.
 ROCKING_KERNEL
-bool Kernel<G, U, N, D, Z, L>::turned(int i) const {
-    for (int s = 0; s < turns; ++s)
+bool Kernel<G, U, N, D, Z, L>::has_tops(int i) const {
+    for (int s = 0; s < tops_waiting; ++s)
         if (tops[s].lane == i && tops[s].row == lanes[i].row) return true;
     return false;
 }

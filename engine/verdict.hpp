@@ -55,7 +55,7 @@ void Kernel<G, U, N, D, Z, L>::still_to_come(int i, double& back, double& weight
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     Lane& lane = lanes[i];
-    if (turned(i)) find_tops();  // in their order, so that the first of several equal ones counts
+    if (has_tops(i)) find_tops();  // in their order, so that the first of several equal ones counts
     raise_peak(i, alpha[i] - u[i], now(i, 0.0));
     const double speed = v[i] / lane.step;
     const double e = energy(here(i), u[i], speed);

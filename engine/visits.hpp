@@ -24,7 +24,9 @@ void Kernel<G, U, N, D, Z, L>::land(const int* who, int from, int count) {
         ROCKING_UNROLL
         for (int m = 0; m < M; ++m) {
             landings.zero[m].store(zero + m * P);
-            const Mask rises = (arcs[1][m] > Pack(0.0)) & (arcs[0][m] + arcs[1][m] > Pack::load(crest + from + m * P));
+            // one that starts on the ground and is curved down only once divided by its zero may bend up at first
+            const Pack most = arcs[0][m] + arcs[1][m] + max(arcs[2][m], Pack(0.0));
+            const Mask rises = (arcs[1][m] > Pack(0.0)) & (most > Pack::load(floors + from + m * P));
             rising |= static_cast<Bits>(rises.bits()) << (m * P);
             max(Pack(0.0), Pack(0.0) - landings.slope[m] / Pack::load(span + from + m * P)).store(speed + m * P);
         }
@@ -80,8 +82,8 @@ void Kernel<G, U, N, D, Z, L>::visit(int i, Step made, bool near) {
     }
     if (!(zero <= 1.0)) {
         // one term above the sum of the others, or of those that follow it where it starts from rest: no turn
-        if (!(2.0 * std::fabs(made[0] != 0.0 ? made[0] : made[1]) > sum))
-            keep_top(i, made, 1.0, alpha[i] - u_end[i], v_end[i] > 0.0);
+        const bool comes_down = v_end[i] >= 0.0, none = 2.0 * std::fabs(made[0] != 0.0 ? made[0] : made[1]) > sum;
+        if (!none || (made[0] < 0.0 && comes_down)) keep_top(i, made, 1.0, alpha[i] - u_end[i], comes_down);
         return advance(i, made);
     }
     double slopes[N + 1];
