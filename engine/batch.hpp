@@ -90,31 +90,31 @@ struct Settings {
     bool to_the_ground;   // follow an overturning body until it lies
 };
 
-// How the stretches of a motion are stepped through by a body.
-struct Pace {
-    double parts;  // into which a stretch is cut
-    double reach;  // p times one of them, where the ground shakes with many g more [-]
-};
-
-// A ground that shakes with many g moves the body faster than gravity does.
-inline Pace pace_of(const Shake& shake, double p, double over_gravity, double longest_step) {
+// Largest acceleration of a motion over gravity, both directions together.
+inline double strength_of(const Shake& shake, double over_gravity) {
     const double push = std::max(shake.horizontal.high, -shake.horizontal.low);
     const double lift = std::max(shake.vertical.high, -shake.vertical.low);
-    const double reach = p * shake.step * std::sqrt(std::max(1.0, 0.5 * (std::fabs(over_gravity) * (push + lift))));
-    const double parts = std::max(1.0, std::ceil(reach / longest_step));
-    return {parts, reach / parts};
+    return std::fabs(over_gravity) * (push + lift);
 }
 
-// Reach up to which order 6 leaves out less, reach^7 / 7! of p alpha, than a hundredth of what order 8 may leave out at
-// its longest step: as good, and quicker.
+// Parts into which a stretch is cut. A ground that shakes with many g moves the body faster than gravity does.
+inline double parts_of(const Shake& shake, double p, double over_gravity, double longest_step) {
+    const double reach = p * shake.step * std::sqrt(std::max(1.0, 0.5 * strength_of(shake, over_gravity)));
+    return std::max(1.0, std::ceil(reach / longest_step));
+}
+
+// Reach, p times a step under 1 g, up to which order 6 leaves out less, reach^7 / 7! of p alpha, than a hundredth of what
+// order 8 may leave out at its longest step: as good, and quicker.
 inline double reach_of_order_six(double longest_step) { return std::pow(std::pow(longest_step, 9) / 7200.0, 1.0 / 7.0); }
 
-// Whether all steps of a row are so short that order 6 takes the place of order 8.
+// Whether all steps of a row are so short that order 6 takes the place of order 8. Under b g a rotation goes wrong by some
+// reach^5 b^3 / 70 of alpha in a step.
 inline bool takes_order_six(const Motions& m, const Rows& rows, std::int64_t row, const Settings& set, double reach) {
     if (set.order != 8 || m.degree != 1 || set.linear) return false;
     if (rows.motion[row] < 0 || rows.motion[row] >= static_cast<std::int64_t>(m.shakes.size())) return false;
+    const Shake& shake = m.shakes[rows.motion[row]];
     const double p = std::max(rows.p_right[row], rows.p_left[row]);
-    return pace_of(m.shakes[rows.motion[row]], p, rows.scale[row] / set.gravity, set.longest_step).reach < reach;
+    return p * shake.step * std::pow(std::max(1.0, strength_of(shake, rows.scale[row] / set.gravity)), 0.6) < reach;
 }
 
 // Rows that wait; threads take a few at a time, fewer towards the end, so that all of them end together.

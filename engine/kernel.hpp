@@ -204,7 +204,7 @@ class Kernel {
     bool prepare(std::int64_t row);
     void write_still(std::int64_t row);
     void look_for_one();
-    const Shake* shake_of(std::int64_t waiting) const;
+    const Shake* shake_of(std::int64_t place) const;
     void start(int i);
 };
 

@@ -88,11 +88,11 @@ void Kernel<G, U, N, D, Z, L>::fill(int i) {
     }
 }
 
-// The motion of a row that waits, if there is one.
+// The motion of the row at a place of the queue, if it is at hand.
 ROCKING_KERNEL
-const Shake* Kernel<G, U, N, D, Z, L>::shake_of(std::int64_t waiting) const {
-    if (waiting >= end) return nullptr;
-    const std::int64_t k = rows.motion[listed(waiting)];
+const Shake* Kernel<G, U, N, D, Z, L>::shake_of(std::int64_t place) const {
+    if (place >= end) return nullptr;
+    const std::int64_t k = rows.motion[listed(place)];
     return k >= 0 && k < static_cast<std::int64_t>(motions.shakes.size()) ? &motions.shakes[k] : nullptr;
 }
 
@@ -156,7 +156,7 @@ bool Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     lane.sides[1] = side_of(rows.alpha_left[row], rows.p_left[row], rows.r_left[row], lane.step, -lane.ax);
     lane.first = shake.first;
     lane.still = shake.still;
-    ready.parts = pace_of(shake, std::max(rows.p_right[row], rows.p_left[row]), lane.ax, set.longest_step).parts;
+    ready.parts = parts_of(shake, std::max(rows.p_right[row], rows.p_left[row]), lane.ax, set.longest_step);
     const double angle = rows.rotation[row], speed = rows.velocity[row];
     const Side& stood = lane.sides[angle > 0.0 ? 0 : 1];
     ready.still = stood.alpha - std::fabs(angle) == stood.alpha && std::fabs(speed) <= kNothing * stood.p * stood.alpha;
