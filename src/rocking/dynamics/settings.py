@@ -34,8 +34,9 @@ class Settings:
     order : {4, 6, 8}
         Order of the fast engine. With order 8, records whose samples are so close that order 6 leaves out less than a
         hundredth of what order 8 may leave out at the longest step are followed with order 6, under many g only if they
-        are closer still. Orders 4 and 6 by themselves exist only for many histories at once (`simulate_many`), with the nonlinear equations and motions
-        without a vertical part; elsewhere they are refused. The reference engine chooses its own order.
+        are closer still. Orders 4 and 6 by themselves exist only for many histories at once (`simulate_many`), with the
+        nonlinear equations and motions without a vertical part; elsewhere they are refused. The reference engine
+        chooses its own order.
     tolerance : float
         Bound on the last two terms of a Taylor step of the reference engine, over the angle alpha [-].
 
