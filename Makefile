@@ -73,7 +73,8 @@ test: lint
 	$(BIN)/python -m pytest tests/browser -n 2 --dist loadfile -m "not timed" --cov --cov-append --cov-report=term
 
 fuzz: $(VENV)/dev
-	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py -q
+	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py tests/unit/motions_formats/test_miniseed.py \
+		tests/unit/motions_formats/test_sac.py -q
 
 fuzz-web: $(VENV)/dev $(ENGINE)
 	ROCKING_WEB_FUZZ=6500 ROCKING_WEB_LOAD=60 $(BIN)/python -m pytest tests/verification/test_web_fuzz.py \

@@ -86,10 +86,21 @@ def single(batch: Histories) -> list[Row]:
     record = max(batch.records, key=np.size)
     motion = rk.GroundMotion(np.resize(record, 4001), STEP)
     block = rk.Block(width=0.5, height=2.0)
-    response = rk.simulate(block, motion, "ked", scale=5.0, engine="fast")
-    spent = statistics.median(
-        cpu_seconds(lambda: rk.simulate(block, motion, "ked", scale=5.0, engine="fast")) for _ in range(301)
-    )
+
+    def respond(scale: float) -> rk.Response:
+        return rk.simulate(block, motion, "ked", scale=scale, engine="fast")
+
+    def last(response: rk.Response) -> float:
+        return float(response.impacts["time"].max(initial=0.0))
+
+    def rocks_on(response: rk.Response) -> bool:
+        return response.outcome is rk.Outcome.ROCKED and last(response) > 35.0
+
+    # overturned or at rest a block is followed no further: the weakest shaking under which it rocks to the end
+    scales = np.arange(2.5, 10.0, 0.02).tolist()
+    scale = next((each for each in scales if rocks_on(respond(each))), scales[-1])
+    response = respond(scale)
+    spent = statistics.median(cpu_seconds(lambda: respond(scale)) for _ in range(301))
     found = [json.loads(_process("-c", FIRST)) for _ in range(5)]
     late, wall = (
         statistics.median(each[0][k] - statistics.median(later[k] for later in each[1:]) for each in found)
@@ -97,12 +108,12 @@ def single(batch: Histories) -> list[Row]:
     )
     return [
         Row(
-            f"A response of a 40 s record at 0.01 s, from Python ({response.impacts.size} impacts,"
-            f" {response.outcome.name.lower()})",
+            f"A response of a 40 s record at 0.01 s, from Python ({response.impacts.size} impacts, the last at"
+            f" {last(response):.1f} s, {response.outcome.name.lower()})",
             "-",
             f"{spent * 1e3:.2f} ms",
             "< 1 ms",
-            spent < 1e-3,
+            spent < 1e-3 and rocks_on(response),
         ),
         Row(
             "First response of a fresh process",

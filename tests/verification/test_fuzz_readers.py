@@ -1,7 +1,8 @@
 """Every text reader against damaged files: a refusal, or a record that its own header does not contradict.
 
 What the header states is read a second time by `stated_by_headers`, which shares nothing with the readers. The number
-of damaged copies a format is 2000, or the environment variable ROCKING_FUZZ.
+of damaged copies a format is 2000, or the environment variable ROCKING_FUZZ; the tests of miniSEED and SAC, beside
+their other tests, follow it with a part of it.
 """
 
 import importlib.util

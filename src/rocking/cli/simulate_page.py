@@ -31,6 +31,8 @@ def show(answer: Answer) -> None:
         console.print(f"{word + ':':<13} {value}", markup=False)
     console.print()
     console.print(_sentence(response.summary) + ".", style="bold", markup=False)
+    if response.still_rocking:
+        console.print(_sentence(response.unfinished) + ".", markup=False)
     if response.impacts.size:
         console.print()
         console.print(_impacts(response))

@@ -133,9 +133,32 @@ class Response(Exportable):
         return self.trajectory.overturning_time
 
     @property
+    def side(self) -> int:
+        """Side to which it overturned: 1 right, -1 left, 0 if it did not; as `simulate_many` has it [-]."""
+        return int(self.trajectory.side) if self.outcome is Outcome.OVERTURNED else 0
+
+    @property
     def summary(self) -> str:
         """The outcome in one sentence; it also says where the motion was cut, if that may have decided."""
         return self._ending + self._cut
+
+    @property
+    def still_rocking(self) -> bool:
+        """Whether it stands, but does not yet rest at the last sample; later impacts are then not among `impacts`."""
+        if self.outcome is not Outcome.ROCKED:
+            return False
+        return bool(self.rotation[-1] != 0.0 or self.angular_velocity[-1] != 0.0)
+
+    @property
+    def unfinished(self) -> str:
+        """A sentence that says when and how it still rocks where the computation ends; empty if it does not."""
+        if not self.still_rocking:
+            return ""
+        angle, rate = np.degrees(self.rotation[-1]), self.angular_velocity[-1]
+        return (
+            f"it is still rocking when the computation ends at {self.time[-1]:.4g} s, "
+            f"at {angle:.3g} degrees and {rate:.3g} rad/s; later impacts are not counted"
+        )
 
     @property
     def _ending(self) -> str:

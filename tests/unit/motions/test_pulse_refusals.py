@@ -81,7 +81,7 @@ def test_sampled() -> None:
     pulse = pulses.cosine(2.0, 0.5)
     motion = pulse.sampled(0.1)
     expected = [2.0 * math.cos(2.0 * math.pi * k / 5.0) for k in range(6)]
-    np.testing.assert_allclose(motion.acceleration[:6], expected, atol=1e-14)
+    np.testing.assert_allclose(motion.acceleration[:6], expected, rtol=0.0, atol=1e-14)
     assert motion.acceleration[-1] == 0.0
     assert motion.time_step == 0.1
     assert motion.name == pulse.name

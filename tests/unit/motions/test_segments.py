@@ -26,10 +26,10 @@ def test_refined_is_the_same_motion() -> None:
     cut = segments.refined(4)
     assert cut.count == 12
     assert cut.step == pytest.approx(0.05, rel=1e-15)
-    np.testing.assert_allclose(cut.horizontal[4:8, 0], [1.0, 0.25, -0.5, -1.25], atol=1e-15)
-    np.testing.assert_allclose(cut.horizontal[4:8, 1], np.full(4, -0.75), atol=1e-15)
+    np.testing.assert_allclose(cut.horizontal[4:8, 0], [1.0, 0.25, -0.5, -1.25], rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose(cut.horizontal[4:8, 1], np.full(4, -0.75), rtol=0.0, atol=1e-15)
     assert cut.vertical is not None
-    np.testing.assert_allclose(cut.vertical[8:, 0], [0.0, 1.0, 2.0, 3.0], atol=1e-15)
+    np.testing.assert_allclose(cut.vertical[8:, 0], [0.0, 1.0, 2.0, 3.0], rtol=0.0, atol=1e-15)
     assert segments.refined(1) is segments
     assert segments.refined(0) is segments
 
@@ -38,7 +38,7 @@ def test_refined_powers() -> None:
     """tau^7 cut in two is (tau / 2)^7 and, by the binomial series, ((1 + tau) / 2)^7."""
     one = Segments(1.0, np.eye(8)[7:])
     half = one.refined(2).horizontal * 2.0**7
-    np.testing.assert_allclose(half[0], np.eye(8)[7], atol=1e-14)
+    np.testing.assert_allclose(half[0], np.eye(8)[7], rtol=0.0, atol=1e-14)
     np.testing.assert_allclose(half[1], [1.0, 7.0, 21.0, 35.0, 35.0, 21.0, 7.0, 1.0], rtol=1e-14)
 
 

@@ -76,6 +76,102 @@ def test_ambiguous_file_names_its_candidates(tmp_path: Path, monkeypatch: pytest
     assert read_record(path, format="peer").format == "peer"
 
 
+KNET_WORDS = "Origin Time       1999/12/31 23:59:00\nSampling Freq(Hz) 100Hz\nScale Factor      2000(gal)/8388608\n"
+PEER_WORDS = "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 4, DT= 0.01 SEC\n"
+SAMPLES = "0.0 0.125 -0.25\n0.5\n"
+
+
+def test_a_file_with_the_headers_of_two_formats_is_ambiguous(tmp_path: Path) -> None:
+    """A file typed by hand with words of K-NET above the size line of PEER is neither's until format= says whose."""
+    both = _write(tmp_path, KNET_WORDS + PEER_WORDS + SAMPLES)
+    with pytest.raises(RecordError, match=r"^hand\.txt: it could be peer, knet; say format= one of these$"):
+        read_record(both)
+    with pytest.raises(RecordError, match="it could be peer, knet"):
+        read_motion(both)
+    (part,) = read_record(both, format="peer").components
+    assert (part.acceleration.tolist(), part.unit, part.time_step) == ([0.0, 0.125, -0.25, 0.5], "g", 0.01)
+    # settled the other way it is K-NET's reader that speaks, of its own header
+    with pytest.raises(RecordError, match=r"^hand\.txt: a K-NET header of 17 lines expected"):
+        read_record(both, format="knet")
+
+
+def test_either_header_alone_is_not_ambiguous(tmp_path: Path) -> None:
+    """The control: without the words of K-NET the same file is PEER's, without the lines of PEER it is K-NET's."""
+    alone = read_record(_write(tmp_path, "Somewhere\n" + PEER_WORDS + SAMPLES))
+    assert (alone.format, alone.components[0].acceleration.tolist()) == ("peer", [0.0, 0.125, -0.25, 0.5])
+    path = _write(tmp_path, KNET_WORDS + SAMPLES)
+    assert [one.name for one in formats().values() if one.recognises(Source.of_path(path))] == ["knet"]
+    with pytest.raises(RecordError, match=r"^hand\.txt: a K-NET header of 17 lines expected"):
+        read_record(path)
+
+
+@pytest.mark.parametrize("word", ["nan", "NaN", "-nan", "inf", "-Inf", "Infinity", "1e999", "-1d400"])
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("{}\n1\n2\n3\n", 1),
+        ("# comment\n\n1\n{}\n2\nnan\n", 4),
+        ("0.00 {}\n0.01 1\n0.02 2\n", 1),
+        ("{0} {0}\n0.01 1\n0.02 2\n", 1),
+        ("0.00,1.0\n0.01,2.0\n0.02,3.0\n0.03,4.0\n0.04,{}\n", 5),
+        ("0,00;1,5\n0,01;{}\n0,02;2,5\n", 2),
+        ("{0},{0}\n1,2\n", 1),
+        ("time,acc [g]\n0.0,{}\n0.1,2\n", 2),
+        ("time [s]\tx [g]\n{}\t1\n0.1\t2\n", 2),
+        ("x,y\n0.0,{}\n0.1,2\n", 2),
+    ],
+)
+def test_no_finite_number_on_the_first_lines_is_named(text: str, line: int, word: str, tmp_path: Path) -> None:
+    """File, line and value are named, whether the format is told or not; with a finite number the file is columns."""
+    path = _write(tmp_path, text.format(word))
+    words = rf"^hand\.txt, line {line}: number (expected, found|is beyond all range:) '{word}'$"
+    for told in (None, "columns"):
+        with pytest.raises(RecordError, match=words):
+            read_motion(path, told, "g", 0.01)
+    readers = formats().values()
+    assert not any(one.recognises(Source.of_path(path)) for one in readers)
+    finite = Source("finite", text.format("0").replace("nan", "3").encode())
+    assert [one.name for one in readers if one.recognises(finite)] == ["columns"]
+
+
+def test_no_finite_number_further_down_is_named_as_ever(tmp_path: Path) -> None:
+    """Below the first lines the reader of columns, which recognises the file, names the same."""
+    rows = [f"{0.01 * k:.2f} {k}" for k in range(20)]
+    rows[10] = "0.10 nan"
+    for told in (None, "columns"):
+        with pytest.raises(RecordError, match=r"^hand\.txt, line 11: number expected, found 'nan'$"):
+            read_motion(_write(tmp_path, "\n".join(rows)), told, "g")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Dear reader,\nnan is no record.\n",  # words beside it
+        "nan\n1 2\n3 4 5\n",  # ragged
+        "1 2 3 4 nan\n1 2 3 4 5\n",  # five columns without names
+        "nan x\n0.1 1\n0.2 2\n",  # another damage on the same line
+        "x5\n1\nnan\n",  # damage of another kind before it
+        "nano\n1\n2\n",  # a name
+        "#SampleRate(Hz): 50\n0 nan\n1 2\n",  # a comment of another format
+        "nan\0\n1\n",  # no text
+    ],
+)
+def test_files_that_would_be_no_columns_either_way_are_not_blamed_on_a_number(text: str, tmp_path: Path) -> None:
+    """A NaN is named only where the file would be columns without it."""
+    path = _write(tmp_path, text)
+    with pytest.raises(RecordError) as refused:
+        read_motion(path, units="g")
+    assert "found 'nan'" not in str(refused.value)
+    assert formats()["columns"].refusal(Source.of_path(path)) is None
+
+
+def test_only_columns_speak_of_files_that_nobody_recognises() -> None:
+    """A file that is recognised, and a format other than columns, give no refusal."""
+    good, damaged = Source("good", COLUMNS.encode()), Source("damaged", COLUMNS.replace("0.5", "nan").encode())
+    assert [name for name, one in formats().items() if one.refusal(good)] == []
+    assert [name for name, one in formats().items() if one.refusal(damaged)] == ["columns"]
+
+
 @pytest.mark.parametrize("name", [*TEXT_FORMATS, "columns", "smc-usgs", "knet", "cwa", "geonet-v2a", "bhrc"])
 def test_forced_format_refuses_foreign_content(name: str) -> None:
     """A format forced onto text or bytes that are not its own refuses them and raises nothing else."""

@@ -69,7 +69,7 @@ def test_units_are_those_of_each_file(made_up: Callable[..., Record], tmp_path: 
     motion = read_motion(along, vertical="up", vertical_path=three)
     assert motion.vertical is not None
     expected = made_up("90", "UP").components[1].acceleration
-    np.testing.assert_allclose(motion.vertical, expected, atol=1e-5)
+    np.testing.assert_allclose(motion.vertical, expected, rtol=0.0, atol=1e-5)
     with pytest.raises(InvalidValueError, match="say vertical= one of these"):
         read_motion(along, vertical_path=three)
     tables = [written(tmp_path, "columns", name, values, unit="g") for name, values in (("a", ALONG), ("b", UP))]
@@ -140,5 +140,5 @@ def test_both_parts_can_be_written_to_one_file(tmp_path: Path) -> None:
     path = tmp_path / "both.txt"
     write_motion(both, path, "columns")
     again = read_motion(path, units="m/s2", component="column 2", vertical="column 3")
-    np.testing.assert_allclose(again.acceleration, ALONG, atol=1e-6)
-    np.testing.assert_allclose(again.vertical, UP, atol=1e-6)
+    np.testing.assert_allclose(again.acceleration, ALONG, rtol=0.0, atol=1e-6)
+    np.testing.assert_allclose(again.vertical, UP, rtol=0.0, atol=1e-6)

@@ -1,5 +1,6 @@
 """Columns of numbers, with or without a line of names: one value a line, or a time and accelerations."""
 
+import math
 from typing import ClassVar
 
 import numpy as np
@@ -61,22 +62,41 @@ class Columns(RecordFormat):
         bool
             True if so.
         """
-        if not source.is_text or any(states_sampling(text) for text in _comments(source, _LONGEST_HEADER)):
+        looked = _looked_at(source)
+        if looked is None:
             return False
-        text = ColumnText.of(source, _LOOK)
-        # damage further down is told by the reader, with its line, where names say that these are columns
-        looked = text.rows if text.names is None else text.rows[:1]
         try:
             _ = [_value(source, line, cell) for line, cells in looked for cell in cells]
         except RecordError:
             return False
-        counts = {len(cells) for _, cells in looked}
-        if len(counts) != 1:
-            return False
-        if text.names is None:
-            return max(counts) <= _MOST_COLUMNS
-        # so is one name more or less, where the separator is clear
-        return max(counts) <= MOST_NAMED and (counts == {len(text.names)} or text.separator in {";", "\t", ","})
+        return True
+
+    def refusal(self, source: Source) -> RecordError | None:
+        """Return the error for a NaN or infinity on the first lines of what would be columns without it.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        RecordError or None
+            The error of `read` for the first such number; None if there is none, or anything else is wrong as well.
+        """
+        looked = _looked_at(source)
+        if looked is None:
+            return None
+        found: RecordError | None = None
+        for line, cells in looked:
+            for cell in cells:
+                try:
+                    _value(source, line, cell)
+                except RecordError as error:
+                    if not _beyond_numbers(cell):
+                        return None
+                    found = found or error
+        return found
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, with a component for each column of accelerations.
@@ -107,6 +127,9 @@ class Columns(RecordFormat):
         text = ColumnText.of(source)
         if not text.rows:
             raise source.error(None, "no line with numbers")
+        # such a number comes first: what it does to names, commas and widths would only hide it
+        for line, cells in text.rows[:_LOOK]:
+            _ = [_value(source, line, cell) for cell in cells if _beyond_numbers(cell)]
         chosen = _by_place(source, text) if text.names is None else NamedColumns.of(source, text.names)
         values = _table(source, text)
         step, metadata = time_step, {}
@@ -200,6 +223,31 @@ def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
             f"even step of {even:g} s; resample it first, or a line is missing",
         )
     return step
+
+
+def _looked_at(source: Source) -> list[tuple[int, list[str]]] | None:
+    """Return the first lines of cells, not yet numbers, that decide whether these are columns; None if they are not."""
+    if not source.is_text or any(states_sampling(text) for text in _comments(source, _LONGEST_HEADER)):
+        return None
+    text = ColumnText.of(source, _LOOK)
+    # damage further down is told by the reader, with its line, where names say that these are columns
+    looked = text.rows if text.names is None else text.rows[:1]
+    counts = {len(cells) for _, cells in looked}
+    if len(counts) != 1:
+        return None
+    if text.names is None:
+        return looked if max(counts) <= _MOST_COLUMNS else None
+    # so is one name more or less, where the separator is clear
+    clear = counts == {len(text.names)} or text.separator in {";", "\t", ","}
+    return looked if clear and max(counts) <= MOST_NAMED else None
+
+
+def _beyond_numbers(cell: str) -> bool:
+    """Return whether a cell is a NaN or an infinity, in letters or by its exponent."""
+    try:
+        return not math.isfinite(float(cell.replace(",", ".").lower().replace("d", "e")))
+    except ValueError:
+        return False
 
 
 def _comments(source: Source, most: int | None = None) -> list[str]:

@@ -246,9 +246,8 @@ def _recognised(source: Source) -> RecordFormat:
         raise source.error(None, f"it could be {names}; say format= one of these")
     if found or last.recognises(source):
         return found[0] if found else last
-    raise source.error(
-        None, f"not recognised as any of {', '.join([*known, LAST_RESORT])}; damaged, or another format?"
-    )
+    unknown = f"not recognised as any of {', '.join([*known, LAST_RESORT])}; damaged, or another format?"
+    raise last.refusal(source) or source.error(None, unknown)
 
 
 def _chosen(record: Record, what: str, name: str | None, other: Component | None = None) -> Component:

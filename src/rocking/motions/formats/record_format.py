@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from typing import ClassVar
 
+from rocking.errors import RecordError
 from rocking.motions.formats.record import Record
 from rocking.motions.formats.source import Source
 
@@ -45,6 +46,21 @@ class RecordFormat(ABC):
         bool
             True if this format should read it.
         """
+
+    def refusal(self, source: Source) -> RecordError | None:
+        """Return why a file that no format recognises would be of this one but for a damage that can be named.
+
+        Parameters
+        ----------
+        source : Source
+            The file.
+
+        Returns
+        -------
+        RecordError or None
+            The error to raise, with its line; None if the format has nothing to say.
+        """
+        return None
 
     @abstractmethod
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:

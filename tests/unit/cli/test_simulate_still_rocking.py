@@ -1,0 +1,83 @@
+"""`rocking simulate` says so where the body still rocks at the end of what was computed."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.cli import main
+
+G = 9.80665
+SIZE = ("--width", "0.5", "--height", "2", "--restitution", "ked")
+PULSE = ("--motion", "sine:amplitude=3.2,period=0.8")
+WORDS = "still rocking when the computation ends at"
+
+
+def printed(capsys: pytest.CaptureFixture[str], *words: object) -> str:
+    """Return what `rocking simulate WORDS` prints."""
+    with pytest.raises(SystemExit) as stop:
+        main(["simulate", *SIZE, *map(str, words)])
+    assert not stop.value.code
+    return capsys.readouterr().out
+
+
+@pytest.fixture
+def long_record(tmp_path):
+    """Record of the same pulse, and then a minute of ground at rest."""
+    time = np.arange(0.0, 60.0, 0.01)
+    push = np.where(time <= 0.8, 3.2 * np.sin(2.0 * math.pi * time / 0.8), 0.0)
+    path = tmp_path / "long.txt"
+    path.write_text("".join(f"{t:.3f} {a:.9f}\n" for t, a in zip(time, push, strict=True)), encoding="utf-8")
+    return "--motion", path, "--units", "m/s2"
+
+
+def test_last_state_is_the_closed_form(capsys):
+    """After the last impact of the linear equations theta is alpha - alpha cosh + v / p sinh, on the right foot."""
+    told = json.loads(printed(capsys, *PULSE, "--linear", "--json"))
+    last, end = told["impacts"][-1], told["still_rocking"]
+    alpha, p = math.atan(0.25), math.sqrt(0.75 * G / math.hypot(0.25, 1.0))
+    sign, speed = math.copysign(1.0, last["velocity_after_rad_s"]), abs(last["velocity_after_rad_s"])
+    x = p * (end["time_s"] - last["time_s"])
+    theta = alpha - alpha * math.cosh(x) + speed / p * math.sinh(x)
+    rate = p * (speed / p * math.cosh(x) - alpha * math.sinh(x))
+    assert x > 0.01
+    assert end["rotation_rad"] == pytest.approx(sign * theta, rel=1e-9)
+    assert end["angular_velocity_rad_s"] == pytest.approx(sign * rate, rel=1e-9)
+
+
+def test_page_says_it(capsys):
+    """The page and the sentence in --json name time, angle and velocity of the last state."""
+    page, told = printed(capsys, *PULSE), json.loads(printed(capsys, *PULSE, "--json"))
+    end = told["still_rocking"]
+    degrees = math.degrees(end["rotation_rad"])
+    words = f"{WORDS} {end['time_s']:.4g} s, at {degrees:.3g} degrees and {end['angular_velocity_rad_s']:.3g} rad/s"
+    assert words in page
+    assert words in end["sentence"]
+
+
+def test_what_comes_to_rest_is_not_said_to_rock(capsys, long_record):
+    """Negative control: with a minute of rest after the same pulse the impacts die out, and nothing is said."""
+    told = json.loads(printed(capsys, *long_record, "--json"))
+    short = json.loads(printed(capsys, *PULSE, "--json"))
+    assert told["still_rocking"] is None
+    assert "still rocking" not in printed(capsys, *long_record)
+    assert len(told["impacts"]) > 5 * len(short["impacts"])
+
+
+@pytest.mark.parametrize("amplitude", [1.0, 9.0])
+def test_no_uplift_and_overturned(capsys, amplitude):
+    """Negative control: neither a body at rest nor one that fell still rocks."""
+    motion = "--motion", f"sine:amplitude={amplitude},period=1"
+    told = json.loads(printed(capsys, *motion, "--json"))
+    assert told["outcome"] == ("no_uplift" if amplitude < 0.25 * G else "overturned")
+    assert told["still_rocking"] is None
+    assert "still rocking" not in printed(capsys, *motion)
+
+
+def test_python_says_it():
+    """`Response.still_rocking` is true for the pulse, and false once the computation is long enough."""
+    block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.2, 0.8)
+    assert rk.simulate(block, pulse, "ked").still_rocking is True
+    assert rk.simulate(block, pulse, "ked", duration=60.0).still_rocking is False
