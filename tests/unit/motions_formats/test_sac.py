@@ -26,6 +26,8 @@ def typed(values: list[float], order: str = "<", **numbers: float) -> bytes:
     floats[0], floats[1], floats[2] = numbers.get("delta", 0.02), min(values), max(values)
     floats[5], floats[6] = 0.0, numbers.get("e", (len(values) - 1) * 0.02)
     floats[1], floats[2] = numbers.get("depmin", floats[1]), numbers.get("depmax", floats[2])
+    for place, name in ((31, "stla"), (32, "stlo"), (35, "evla"), (36, "evlo")):
+        floats[place] = numbers.get(name, floats[place])
     integers[6], integers[9] = 6, int(numbers.get("npts", len(values)))
     integers[15], integers[16] = int(numbers.get("iftype", 1)), int(numbers.get("idep", 8))
     integers[35], integers[38] = int(numbers.get("leven", 1)), 1
@@ -83,6 +85,10 @@ def test_the_unit_is_never_guessed() -> None:
         ({"leven": 0}, "evenly spaced"),
         ({"idep": 7}, "velocity"),
         ({"depmax": float("nan")}, "not finite"),
+        ({"stla": 35.0, "stlo": 1e30, "evla": 36.0, "evlo": 139.0}, "stlo must be within 360"),  # ObsPy would not end
+        ({"evlo": -1e9}, "evlo"),
+        ({"evla": 91.0}, "evla"),
+        ({"stla": float("nan")}, "stla"),
     ],
 )
 def test_files_at_odds_with_their_header_are_refused(numbers: dict[str, float], message: str) -> None:
@@ -90,6 +96,14 @@ def test_files_at_odds_with_their_header_are_refused(numbers: dict[str, float], 
     pytest.importorskip("obspy")
     with pytest.raises(RecordError, match=message):
         Sac().read(Source("a.sac", typed(VALUES, "<", **numbers)), units="g")
+
+
+@pytest.mark.parametrize("east", [139.0, -221.0, 359.0])
+def test_places_on_earth_are_taken(east: float) -> None:
+    """The control: longitudes of either convention."""
+    pytest.importorskip("obspy")
+    content = typed(VALUES, stla=35.0, stlo=east, evla=-90.0, evlo=140.0)
+    assert Sac().read(Source("a.sac", content), units="g").components[0].acceleration.tolist() == VALUES
 
 
 def test_damaged_files_give_no_other_error() -> None:

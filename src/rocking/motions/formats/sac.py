@@ -23,6 +23,7 @@ _UNDEFINED = -12345.0
 _VERSIONS = (6, 7)
 _TIME_SERIES = 1
 _OTHER = {6: "displacement", 7: "velocity"}
+_PLACES = {"stla": (124, 90.0), "stlo": (128, 360.0), "evla": (140, 90.0), "evlo": (144, 360.0)}  # bytes, degrees
 
 
 class Sac(RecordFormat):
@@ -47,13 +48,7 @@ class Sac(RecordFormat):
         bool
             True if this format should read it.
         """
-        if len(source.content) < _HEADER:
-            return False
-        for order in "<>":
-            version, even = struct.unpack_from(order + "i", source.content, 304)[0], _field(source, order, 420)
-            if version in _VERSIONS and even in {0, 1} and _field(source, order, 432) in {0, 1, int(_UNDEFINED)}:
-                return True
-        return False
+        return _byte_order(source) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the time series.
@@ -77,8 +72,10 @@ class Sac(RecordFormat):
         RecordError
             If it is damaged, at odds with its own header, no acceleration, or its unit is missing.
         """
-        if not self.recognises(source):
+        order = _byte_order(source)
+        if order is None:
             raise source.error(None, "no SAC file of version 6 or 7")
+        _check_places(source, order)
         unit = units_and_steps.acceleration_unit(source, None, units)
         trace = read_traces(source, "SAC", checksize=True)[0]
         said = trace.stats.sac
@@ -133,6 +130,25 @@ class Sac(RecordFormat):
         content = BytesIO()
         trace.write(content, format="SAC")
         return content.getvalue()
+
+
+def _byte_order(source: Source) -> str | None:
+    """Return the byte order in which the header makes sense, None if it makes none."""
+    if len(source.content) < _HEADER:
+        return None
+    for order in "<>":
+        version, even = struct.unpack_from(order + "i", source.content, 304)[0], _field(source, order, 420)
+        if version in _VERSIONS and even in {0, 1} and _field(source, order, 432) in {0, 1, int(_UNDEFINED)}:
+            return order
+    return None
+
+
+def _check_places(source: Source, order: str) -> None:
+    """Refuse places that are not on Earth: ObsPy turns longitudes back by 360 degrees at a time, however large."""
+    for name, (offset, most) in _PLACES.items():
+        value = struct.unpack_from(order + "f", source.content, offset)[0]
+        if value != _UNDEFINED and not abs(value) <= most:
+            raise source.error(None, f"the header's {name} must be within {most:g} degrees of 0, found {value:g}")
 
 
 def read_traces(source: Source, form: str, **options: Any) -> list[Any]:
