@@ -66,10 +66,11 @@ lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/lint-imports
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
 
-# What measures time runs alone; the rest on two processes.
+# What measures time runs alone, and what drives a browser in a process of its own; the rest on two processes.
 test: lint
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not timed and not browser" --cov --cov-report=
-	$(BIN)/python -m pytest tests -m timed --cov --cov-append --cov-report=
+	$(BIN)/python -m pytest tests -m timed --ignore=tests/browser --cov --cov-append --cov-report=
+	$(BIN)/python -m pytest tests/browser -m timed --cov --cov-append --cov-report=
 	$(BIN)/python -m pytest tests/browser -n 2 --dist loadfile -m "not timed" --cov --cov-append --cov-report=term
 
 fuzz: $(VENV)/dev
