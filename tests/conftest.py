@@ -1,7 +1,10 @@
-"""Settings that all tests share: property tests draw the same examples on every run."""
+"""What all tests share: property tests that draw the same examples on every run, the folder of real records."""
 
+import os
 import signal
+from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 # programs that tests start as processes of their own
@@ -12,3 +15,13 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 settings.register_profile("rocking", derandomize=True, deadline=None, max_examples=40, database=None)
 settings.load_profile("rocking")
+
+
+@pytest.fixture(scope="session")
+def shared_records() -> Path:
+    """Folder with real records; tests that need them are skipped where it is absent."""
+    beside = Path(__file__).parents[1].parent / "shared" / "data" / "ground_motions"
+    folder = Path(os.environ.get("ROCKING_GROUND_MOTIONS", beside))
+    if not folder.is_dir():
+        pytest.skip("shared ground motions are absent")
+    return folder

@@ -1,6 +1,5 @@
 """The energy ledger closes on real records, where they are at hand: stored + lost = work of the ground."""
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -32,16 +31,6 @@ ENGINES = [
     pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="fast engine not built")),
     "reference",
 ]
-
-
-@pytest.fixture(scope="module")
-def shared_records() -> Path:
-    """Folder with real records; tests that need them are skipped where it is absent."""
-    beside = Path(__file__).parents[3].parent / "shared" / "data" / "ground_motions"
-    folder = Path(os.environ.get("ROCKING_GROUND_MOTIONS", beside))
-    if not folder.is_dir():
-        pytest.skip("shared ground motions are absent")
-    return folder
 
 
 def rocked(folder: Path, name: str, engine: str) -> rk.Response:

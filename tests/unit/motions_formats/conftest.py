@@ -1,23 +1,11 @@
-"""Where the real records lie that are not part of the repository, and a made-up record for round trips."""
+"""A made-up record for round trips."""
 
-import os
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rocking.motions.formats.record import Component, Record
-
-
-@pytest.fixture(scope="session")
-def shared_records() -> Path:
-    """Folder with real records; tests that need them are skipped where it is absent."""
-    beside = Path(__file__).parents[3].parent / "shared" / "data" / "ground_motions"
-    folder = Path(os.environ.get("ROCKING_GROUND_MOTIONS", beside))
-    if not folder.is_dir():
-        pytest.skip("shared ground motions are absent")
-    return folder
 
 
 @pytest.fixture(scope="session")

@@ -14,6 +14,7 @@ from rocking.motions.formats.numbers import number
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
+from rocking.motions.formats.time_column import step_of_times
 from rocking.motions.formats.units_and_steps import in_unit, step_between_samples
 
 _MOST_COLUMNS = 4
@@ -135,7 +136,7 @@ class Columns(RecordFormat):
         step, metadata = time_step, {}
         if chosen.time is not None:
             times, place = values[:, chosen.time.place], chosen.time.place
-            step = _step(source, times, _last_digit([cells[place] for _, cells in text.rows]), time_step)
+            step = step_of_times(source, times, [cells[place] for _, cells in text.rows], time_step)
             metadata = {"first time": f"{times[0]:g} s"}
         step = step_between_samples(source, None, step)
         if chosen.left_out:
@@ -174,55 +175,6 @@ class Columns(RecordFormat):
         for place, sample in enumerate(np.column_stack(rows)):
             lines.append(" ".join([f"{place * step:.9f}", *(repr(float(value)) for value in sample)]))
         return ("\n".join(lines) + "\n").encode("latin-1")
-
-
-def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
-    """Return the step of a time column that is uniform to the rounding of its digits.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    times : ndarray, shape (n,)
-        Times as printed [s].
-    unit : float
-        One unit of the last printed digit [s].
-
-    Returns
-    -------
-    float
-        The step; the shortest decimal number that fits the column [s].
-
-    Raises
-    ------
-    RecordError
-        If there are fewer than two times, they are unevenly spaced, or they have too few digits to tell.
-    """
-    if times.size < 2:
-        raise source.error(None, f"at least 2 samples are needed, found {times.size}")
-    steps = times.size - 1
-    mean = (float(times[-1]) - float(times[0])) / steps
-    if not 1e-6 <= mean <= 10.0:
-        raise source.error(None, f"time step must be in [1e-6, 10] s, got {mean:g}; is the first column a time?")
-    # beyond rounding or cutting at the last digit, times that went through single precision are accepted
-    slack = unit + 1.2e-7 * float(np.abs(times).max())
-    rounded = (round(mean, digits) for digits in range(1, 10))
-    step = next((step for step in rounded if step > 0.0 and abs(step - mean) * steps <= slack), mean)
-    even = mean
-    if slack > 0.26 * mean:
-        # so few digits could hide a missing line: the times must lie on the decimal step itself
-        even, slack = step, 0.501 * unit
-    if slack > 0.51 * mean:
-        raise source.error(None, f"the times have too few digits to tell their step of about {mean:g} s")
-    off = np.abs(times - times[0] - even * np.arange(times.size))
-    worst = int(off.argmax())
-    if off[worst] > slack:
-        raise source.error(
-            None,
-            f"the times are not evenly spaced: sample {worst + 1} at {times[worst]:g} s is {off[worst]:.3g} s off the "
-            f"even step of {even:g} s; resample it first, or a line is missing",
-        )
-    return step
 
 
 def _looked_at(source: Source) -> list[tuple[int, list[str]]] | None:
@@ -298,22 +250,3 @@ def _refuse_unclear_commas(source: Source, text: ColumnText) -> None:
         raise source.error(commas[0], "commas but no decimal point: write decimal commas as points")
     if text.separator and points:
         raise source.error(commas[0], f"decimal commas here and decimal points on line {points[0] + 1}: write one kind")
-
-
-def _step(source: Source, times: FloatArray, digit: float, told: float | None) -> float:
-    """Return the step of a column of times; the told one where it is the same to the digits of the column."""
-    step = uniform_step(source, times, digit)
-    if told is not None and abs(step - told) * times.size <= 2.0 * digit:
-        return told
-    return step_between_samples(source, step, told)
-
-
-def _last_digit(words: list[str]) -> float:
-    plain: list[int] = []
-    powers: list[int] = []
-    for word in words:
-        digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
-        (powers if power else plain).append(len(digits.partition(".")[2]) - int(power or 0))
-    # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
-    places = min(powers) if powers else max(plain)
-    return float(10.0 ** -min(15, max(-3, places)))

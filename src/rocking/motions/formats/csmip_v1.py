@@ -9,12 +9,12 @@ import numpy as np
 from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
 from rocking.motions.formats.agreement import check_count, check_end, check_peak, check_peak_time, half_digit
 from rocking.motions.formats.channels import LONGEST_LINE, Channel, distinct_names, names_in
-from rocking.motions.formats.columns import uniform_step
 from rocking.motions.formats.number_lines import in_width, one_line
 from rocking.motions.formats.numbers import fixed, fortran_form, number, whole
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
+from rocking.motions.formats.time_column import uniform_step
 from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, step_between_samples
 
 _TITLE = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.IGNORECASE)
