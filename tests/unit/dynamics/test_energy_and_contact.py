@@ -9,7 +9,7 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import engine
+from rocking.dynamics import engine, equations
 from rocking.errors import InvalidValueError, PureRockingWarning
 
 ENGINES = [
@@ -162,3 +162,51 @@ def test_simulate_warns_where_sliding_would_follow() -> None:
     assert any("impacts without slip" in str(each.message) for each in told)
     with pytest.raises(InvalidValueError, match="friction"):
         rk.simulate(BLOCK, pulse, R, friction=-0.3)
+
+
+SECTION = rk.Section([rk.Region([(0.0, 0.0), (1.0, 0.0), (0.6, 3.0), (0.1, 3.0)], 1000.0)], feet=(0.05, 0.9))
+
+
+@pytest.mark.parametrize("onto", ["left", "right"])
+def test_friction_of_an_impact_of_an_asymmetric_body(onto: Any) -> None:
+    """The impulse is the change of momentum: |Jx / Jz| by the centre's velocities about the old and the new foot."""
+    r = {"left": 0.83, "right": 0.71}
+    x, h = SECTION.centre
+    foot = dict(zip(("left", "right"), SECTION.feet, strict=True))
+    before, after = (np.array([h, foot[each] - x]) for each in ({"left": "right", "right": "left"}[onto], onto))
+    jump = r[onto] * after - before  # velocities of the centre at theta' = 1 before: omega times (y, -x) from the foot
+    new, old = (SECTION.side(each) for each in (onto, {"left": "right", "right": "left"}[onto]))
+    found = equations.friction_of_impact(new.centre_height, old.half_width, new.half_width, r[onto])
+    assert float(found) == pytest.approx(abs(jump[0] / jump[1]), rel=1e-12)
+
+
+def test_largest_friction_of_impacts_of_an_asymmetric_body() -> None:
+    """A response takes the larger of both feet's, each with its own levers."""
+    r = {"left": 0.5, "right": 0.4}
+    contact = rk.free_rocking(SECTION, 0.1, r).contact
+    x, h = SECTION.centre
+    left, right = x - SECTION.feet[0], SECTION.feet[1] - x
+    expected = max(
+        h * (1.0 - r["left"]) / (right + r["left"] * left), h * (1.0 - r["right"]) / (left + r["right"] * right)
+    )
+    swapped = max(
+        h * (1.0 - r["left"]) / (left + r["left"] * right), h * (1.0 - r["right"]) / (right + r["right"] * left)
+    )
+    assert contact.friction_of_impacts == pytest.approx(expected, rel=1e-12)
+    assert abs(swapped / expected - 1.0) > 0.05, "levers that differ"
+
+
+@pytest.mark.parametrize("onto", ["left", "right"])
+def test_energy_bound_of_an_asymmetric_body(onto: Any) -> None:
+    """r^2 I_new may not exceed I_old, with moments about the feet by Steiner from the centre's: above it is refused,
+    below it is taken, also where that is r > 1."""
+    x, h = SECTION.centre
+    about = {"left": (x - SECTION.feet[0]) ** 2, "right": (SECTION.feet[1] - x) ** 2}
+    inertia = {each: SECTION.moment_of_inertia + SECTION.mass * (h**2 + arm) for each, arm in about.items()}
+    other = {"left": "right", "right": "left"}[onto]
+    most = math.sqrt(inertia[other] / inertia[onto])
+    assert abs(most - 1.0) > 0.01
+    r = {onto: 0.9999 * most, other: 0.5}
+    assert rk.free_rocking(SECTION, 0.05, r).impacts.size
+    with pytest.raises(InvalidValueError, match=f"onto the {onto} foot must be in .0, {most:.6g}.*create energy"):
+        rk.free_rocking(SECTION, 0.05, {**r, onto: 1.0001 * most})

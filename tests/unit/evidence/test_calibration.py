@@ -4,9 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from rocking import Block
-from rocking.evidence.calibration import NAMES, calibrate, calibrate_on, interval_for
+from rocking.evidence.calibration import NAMES, calibrate, calibrate_on, interval_for, posterior_grid
 from rocking.evidence.coefficient_table import coefficient_table, outside_evidence
 from rocking.evidence.coverage import coverage
 from rocking.evidence.likelihood import fit_scatter, scatter
@@ -124,3 +125,17 @@ def test_table_of_a_body():
     assert any("stops" in warning for warning in rows["housner"].warnings)
     assert any("outside the measured range" in warning for warning in rows["calibrated"].warnings)
     assert outside_evidence(Block(width=1.0, height=4.0)) == ""
+
+
+def test_priors_are_the_stated_ones():
+    """1 - eta ~ Beta(1.5, 98.5) and k ~ N(0.6, 0.12), up to a constant, flat in the scatter and its power."""
+    from rocking.evidence import calibration
+
+    log_prior = posterior_grid(all_measurements()).log_prior
+    eta, k = calibration._ETA, calibration._K
+    expected = stats.beta.logpdf(1.0 - eta, 1.5, 98.5)[:, None] + stats.norm.logpdf(k, 0.6, 0.12)
+    assert log_prior.shape[2:] == (1, 1)
+    gap = log_prior[:, :, 0, 0] - expected
+    assert np.ptp(gap) < 1e-9
+    wrong = stats.beta.logpdf(1.0 - eta, 1.5, 97.5)[:, None] + stats.norm.logpdf(k, 0.6, 0.12)
+    assert np.ptp(log_prior[:, :, 0, 0] - wrong) > 1e-3

@@ -140,3 +140,12 @@ def test_round_trip_converts_to_g(made_up) -> None:
     assert (again.metadata["event"], again.metadata["station"]) == ("Somewhere", "Cellar")
     with pytest.raises(RecordError, match="holds 1 to 1 components"):
         PEER.write(made_up("a", "b"))
+
+
+@pytest.mark.parametrize("spacing", [0.02002, 0.01999, 0.0205])
+def test_a_step_in_words_that_differs_is_refused(spacing: float) -> None:
+    """A header that states the step twice, 0.1 % or more apart, is damaged; the same step twice is read."""
+    top = "Somewhere\n7 points at equal spacing of {} sec\nThe units are (g)\n"
+    assert PEER.read(_source(top.format(0.02) + SIZE + BODY)).components[0].time_step == 0.02
+    with pytest.raises(RecordError, match="stated here"):
+        PEER.read(_source(top.format(spacing) + SIZE + BODY))

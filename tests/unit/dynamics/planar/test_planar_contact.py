@@ -203,3 +203,25 @@ def test_kept_takes_out_rounding_exactly():
     flat = kept(TALL, State(rotation=1e-17, spin=1e-17), BOTH, stick=True)
     assert (flat.rotation, flat.spin, flat.w) == (0.0, 0.0, 0.0)
     assert math.copysign(1.0, kept(TALL, state, (), stick=True).u) == 1.0
+
+
+AWAY = Ground([-13.9], [-3.25], 0.3)
+UNEVEN = Footing(1.0, 0.42, 1.0, 0.65, 1.2)
+
+
+def test_two_motions_that_both_obey_coulomb_are_not_chosen_between():
+    """On ground that falls faster than g a tilted body at rest may fly; pushed so that its foot sticks instead with
+    N > 0 and |T| <= mu N, by the two equations of a foot that does not move, it may do either: that is said."""
+    friction, rotation = 2.3, 0.1
+    state = State(0.0, UNEVEN.rise_on(RIGHT, rotation), rotation, touching=(RIGHT,))
+    r_x, r_z = UNEVEN.arm(RIGHT, rotation)
+    j = UNEVEN.inertia
+    # v_t' = T - a_x + r_z theta'', v_n' = N - (g + a_z) - r_x theta'', j theta'' = T r_z - N r_x
+    sides = np.array([[1.0 + r_z**2 / j, -r_x * r_z / j], [-r_x * r_z / j, 1.0 + r_x**2 / j]])
+    tangential, normal = np.linalg.solve(sides, [AWAY.push[0], AWAY.lift[0]])
+    assert 0.0 < abs(tangential) < friction * normal, "it may stick"
+    assert -AWAY.lift[0] > 0.0, "and it may fly"
+    assert choose(UNEVEN, state, AWAY, friction) is PlanarStatus.AMBIGUOUS
+    frictionless = choose(UNEVEN, state, AWAY, 0.0)
+    assert isinstance(frictionless, Choice)
+    assert frictionless.mode == FLIGHT

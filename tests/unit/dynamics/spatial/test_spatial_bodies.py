@@ -9,7 +9,8 @@ import rocking as rk
 from rocking.dynamics.spatial import SpatialBody, SpatialSettings, attitude
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial, law_of
-from rocking.dynamics.spatial.selection import forces
+from rocking.dynamics.spatial.landing import landed
+from rocking.dynamics.spatial.selection import State, forces, of_impact
 from rocking.dynamics.spatial.stance import edge, face
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution.spatial import SpatialHousner
@@ -121,3 +122,22 @@ def test_settings_out_of_range_are_refused(bad):
     """Each setting has a range, and says so."""
     with pytest.raises(InvalidValueError, match="must be"):
         SpatialSettings(**bad)
+
+
+def test_of_two_contact_sets_the_larger_stays():
+    """A box that spins on a corner as it falls flat may land on an edge or on one of its corners, both without pull and
+    with different velocities: what more points of the ground hold is taken, as the docstring says."""
+    body, law, random = SpatialBody.box(0.8, 1.1, 3.0), law_of("housner-3d"), np.random.default_rng(3)
+    every, two = (0, 1, 2, 3), 0
+    for _ in range(1500):
+        pivot, velocity = body.vertices[random.integers(4)], random.normal(size=3)
+        state = State(pivot, velocity, UP, -9.81 * UP)
+        if (np.cross(velocity, body.vertices - pivot) @ UP).max() > 0.0:
+            continue
+        found = of_impact(body, state, every, law)
+        if len(found) > 1 and np.abs(found[0].velocity - found[1].velocity).max() > 0.01 * np.abs(velocity).max():
+            two += 1
+            chosen = landed(body, state, every, law).stance
+            assert len(chosen.points) == max(len(each.stance.points) for each in found)
+            assert len(chosen.points) > min(len(each.stance.points) for each in found)
+    assert two > 5
