@@ -220,7 +220,7 @@ def test_beyond_balance_it_returns_where_a_push_to_come_is_strong_enough(
     run = (
         run_fast(UNEVEN, segments, settings, **start)
         if name == "fast"
-        else Reference(UNEVEN, segments, settings).run(*start.values())
+        else Reference(UNEVEN, segments, settings, to_the_ground=False).run(*start.values())
     )
     assert (run.impacts > 0) is returns
     assert returns or run.outcome is Outcome.OVERTURNED
