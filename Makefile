@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test lint engine campaign fuzz fuzz-web durability bench gallery lock clean
+.PHONY: help demo test lint engine campaign fuzz fuzz-web durability bench mutants gallery lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
@@ -15,6 +15,7 @@ help:
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
 	@echo "make campaign the long verifications    make durability  kill campaigns 300 times"
 	@echo "make fuzz-web thousands of damaged requests to the web application, 50 users at once"
+	@echo "make mutants  deliberate errors in the numerical core, and how many the tests notice (3 hours; goes on where it stopped)"
 	@echo "make clean    remove what was made"
 
 $(VENV)/created:
@@ -38,6 +39,10 @@ $(VENV)/dev: $(VENV)/created requirements/dev.lock pyproject.toml
 $(VENV)/bench: $(VENV)/dev requirements/bench.lock
 	@echo "Installing the peers that the benchmark compares against (a minute or two, once) ..."
 	@$(PIP) install --require-hashes --only-binary=:all: -r requirements/bench.lock
+	@touch $@
+
+$(VENV)/mutants: $(VENV)/dev requirements/mutants.lock
+	@$(PIP) install --require-hashes --only-binary=:all: -r requirements/mutants.lock
 	@touch $@
 
 # The fast engine is built where it stands. Without a compiler the reference engine serves, and says so.
@@ -87,6 +92,9 @@ durability: $(VENV)/dev $(ENGINE)
 bench: $(VENV)/bench $(ENGINE)
 	$(BIN)/python -m benchmarks
 
+mutants: $(VENV)/mutants $(ENGINE)
+	$(BIN)/python -m benchmarks.mutants
+
 gallery: $(VENV)/dev $(ENGINE)
 	@for example in examples/*.py; do echo "== $$example"; $(BIN)/python $$example || exit 1; done
 
@@ -103,6 +111,9 @@ lock: $(VENV)/created
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
 		--no-annotate --no-emit-package rocking --upgrade --extra demo --constraint requirements/dev.lock pyproject.toml \
 		-o requirements/demo.lock
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-header \
+		--no-annotate --no-emit-package rocking --upgrade --extra mutants --constraint requirements/dev.lock pyproject.toml \
+		-o requirements/mutants.lock
 
 clean:
 	rm -rf src/rocking/dynamics/_*.so

@@ -1,0 +1,390 @@
+"""Deliberate errors in the numerical core, and how many of them the tests notice: `make mutants`.
+
+A random sample by seed of the mutations of Cosmic Ray's operators that keep a program meaningful (arithmetic, numbers,
+comparisons, signs, conditions, loops), each against the tests that run its line, quickest first, for a minute of tests
+at most; and the hand-made errors of mutants.toml in the compiled engines. It goes on where it was stopped: every
+verdict is a line in build/mutants/.
+"""
+
+import argparse
+import ast
+import json
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from queue import SimpleQueue
+from typing import NamedTuple
+
+from cosmic_ray.ast import ast_nodes, get_ast
+from cosmic_ray.mutating import mutate_code
+from cosmic_ray.plugins import get_operator
+
+from benchmarks import table
+from benchmarks.mutant_tests import ROOT, Covering, record
+
+CORE = {
+    "bodies": ("bodies/*.py", "bodies/solid/*.py"),
+    "restitution": ("restitution/*.py", "restitution/spatial/*.py"),
+    "plane": ("dynamics/*.py",),
+    "contact": ("dynamics/planar/*.py",),
+    "space": ("dynamics/spatial/*.py", "dynamics/spatial_batch/*.py"),
+    "contact bed": ("dynamics/bed/*.py",),
+    "motions": ("motions/*.py", "motions/synthetic/*.py"),
+    "readers": ("motions/formats/*.py",),
+    "fragility": ("studies/fragility/*.py",),
+    "evidence": ("evidence/*.py",),
+}
+NOT_NUMERICAL = ("export", "nrml", "lines.py", "tables.py", "words.py", "__init__")
+
+_SWAPS = (
+    "Add_Sub",
+    "Sub_Add",
+    "Mul_Div",
+    "Div_Mul",
+    "Pow_Mul",
+    "FloorDiv_Div",
+    "Mod_Mul",
+    "BitAnd_BitOr",
+    "BitOr_BitAnd",
+)
+_RELATIONS = (
+    "Eq_NotEq",
+    "NotEq_Eq",
+    "Lt_LtE",
+    "Lt_Gt",
+    "LtE_Lt",
+    "LtE_Gt",
+    "Gt_GtE",
+    "Gt_Lt",
+    "GtE_Gt",
+    "GtE_Lt",
+    "Is_IsNot",
+    "IsNot_Is",
+)
+OPERATORS = (
+    *(f"core/ReplaceBinaryOperator_{swap}" for swap in _SWAPS),
+    *(f"core/ReplaceComparisonOperator_{relation}" for relation in _RELATIONS),
+    *(f"core/ReplaceUnaryOperator_{change}" for change in ("Delete_USub", "Delete_Not", "Delete_Invert")),
+    *(f"core/Replace{change}" for change in ("AndWithOr", "OrWithAnd", "TrueWithFalse", "FalseWithTrue")),
+    *(f"core/{change}" for change in ("NumberReplacer", "AddNot", "ReplaceBreakWithContinue", "ZeroIterationForLoop")),
+)
+STAGES = (4.0, 15.0, 60.0)  # seconds of tests: most errors die in the first
+WALLS = 6.0  # a mutant that takes this many times as long as the tests do hangs
+
+
+class Mutant(NamedTuple):
+    """One deliberate error."""
+
+    package: str
+    path: str
+    operator: str
+    occurrence: int
+    first: int
+    last: int
+
+    @property
+    def key(self) -> str:
+        """What it is called in the ledger."""
+        return f"{self.path}:{self.first} {self.operator} {self.occurrence}"
+
+    def code(self) -> str:
+        """The module with the error in it."""
+        made = mutate_code(
+            (ROOT / self.path).read_text(encoding="utf-8"), get_operator(self.operator)(), self.occurrence
+        )
+        assert made is not None
+        return str(made)
+
+    def change(self) -> tuple[str, str]:
+        """The first line that it changes, before and after."""
+        old, new = (ROOT / self.path).read_text(encoding="utf-8").splitlines(), self.code().splitlines()
+        return next((a.strip(), b.strip()) for a, b in zip([*old, ""], [*new, ""], strict=False) if a != b)
+
+
+def mutants(package: str) -> list[Mutant]:
+    """Every mutation of a package that means something: not in annotations, messages, or what is only looked at."""
+    found = []
+    for path in sorted(each for pattern in CORE[package] for each in (ROOT / "src/rocking").glob(pattern)):
+        if any(word in path.name for word in NOT_NUMERICAL):
+            continue
+        source = path.read_text(encoding="utf-8")
+        quiet = set(_quiet_lines(ast.parse(source)))
+        nodes = list(ast_nodes(get_ast(source)))
+        for name in OPERATORS:
+            operator = get_operator(name)()
+            places = (place for node in nodes for place in operator.mutation_positions(node))
+            for occurrence, (start, end) in enumerate(places):
+                if start[0] not in quiet:
+                    found.append(Mutant(package, str(path.relative_to(ROOT)), name, occurrence, start[0], end[0]))
+    return found
+
+
+def _quiet_lines(tree: ast.AST) -> Iterator[int]:
+    """Lines of messages, annotations and decorators."""
+    for node in ast.walk(tree):
+        quiet: list[ast.AST | None] = []
+        if isinstance(node, ast.Raise):
+            quiet = [node.exc]
+        elif isinstance(node, (ast.JoinedStr, ast.AnnAssign)) and not getattr(node, "value", None):
+            quiet = [node]
+        elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            quiet = [*node.decorator_list]
+            if isinstance(node, ast.FunctionDef):
+                every = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+                quiet += [node.returns, *(each.annotation for each in every)]
+        for part in filter(None, quiet):
+            yield from range(part.lineno, (part.end_lineno or part.lineno) + 1)
+
+
+def sample(seed: int, count: int) -> tuple[list[Mutant], dict[str, int]]:
+    """The same number of every package, in an order that mixes them; and how many there are in all."""
+    draw, every, found = random.Random(seed), {}, []
+    for package in CORE:
+        there = mutants(package)
+        every[package] = len(there)
+        found += draw.sample(there, min(count, len(there)))
+    draw.shuffle(found)
+    return found, every
+
+
+class Worker:
+    """A copy of the sources in which one error at a time is put."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        shutil.rmtree(folder, ignore_errors=True)
+        skip = shutil.ignore_patterns("__pycache__")
+        for name in ("src", "tests", "benchmarks", "engine", "examples", "docs", "requirements"):
+            shutil.copytree(ROOT / name, folder / name, ignore=skip)
+        for name in ("pyproject.toml", "CMakeLists.txt", "Makefile", "README.md", "CHANGELOG.md", "CITATION.cff"):
+            shutil.copy2(ROOT / name, folder / name)
+        self._writes = 0
+
+    def write(self, path: str, text: str) -> None:
+        """Write a module with a time of its own, since compiled files are recognised by time and size."""
+        target = self.folder / path
+        target.write_text(text, encoding="utf-8")
+        self._writes += 1
+        os.utime(target, (2e9 + self._writes, 2e9 + self._writes))
+
+    def passes(self, tests: list[str], limit: float) -> bool:
+        """Whether these tests pass within a limit of time [s]."""
+        listed = self.folder / "tests.txt"
+        listed.write_text("\n".join(tests) + "\n", encoding="utf-8")
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-x",
+            "-q",
+            "--no-header",
+            "--tb=no",
+            "-p",
+            "no:cacheprovider",
+            f"@{listed}",
+        ]
+        paths = os.pathsep.join([str(self.folder / "src"), str(self.folder)])
+        try:
+            done = subprocess.run(
+                command,
+                cwd=self.folder,
+                env=os.environ | {"PYTHONPATH": paths},
+                timeout=limit,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return False
+        return done.returncode == 0
+
+
+def staged(tests: list[str], durations: dict[str, float]) -> list[list[str]]:
+    """Tests in batches of a few seconds, up to a limit for those that survive."""
+    batches: list[list[str]] = [[] for _ in STAGES]
+    spent, stage = 0.0, 0
+    for test in tests:
+        spent += durations[test]
+        while stage < len(STAGES) and spent > STAGES[stage]:
+            stage += 1
+        if stage == len(STAGES):
+            break
+        batches[stage].append(test)
+    return [batch for batch in batches if batch]
+
+
+def verdict(mutant: Mutant, worker: Worker, covering: Covering) -> dict[str, object]:
+    """Whether a mutant is noticed, by how many tests at most, and how long that took."""
+    began = time.monotonic()
+    tests = covering.tests(mutant.path, range(mutant.first, mutant.last + 1))
+    worker.write(mutant.path, mutant.code())
+    killed, asked = False, 0
+    for batch in staged(tests, covering.durations):
+        asked += len(batch)
+        if not worker.passes(batch, 20.0 + WALLS * sum(covering.durations[test] for test in batch)):
+            killed = True
+            break
+    worker.write(mutant.path, (ROOT / mutant.path).read_text(encoding="utf-8"))
+    return {
+        "key": mutant.key,
+        "killed": killed,
+        "tests": asked,
+        "of": len(tests),
+        "seconds": round(time.monotonic() - began, 1),
+    }
+
+
+def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[str, dict[str, object]]:
+    """Judge what is not in the ledger yet, until the time is up."""
+    ledger = folder / "verdicts.jsonl"
+    lines = ledger.read_text(encoding="utf-8").splitlines() if ledger.exists() else []
+    known = {entry["key"]: entry for entry in map(json.loads, lines)}
+    left, covering = [mutant for mutant in chosen if mutant.key not in known], Covering(folder)
+    if not left:
+        return known
+    free: SimpleQueue[Worker] = SimpleQueue()
+    for number in range(workers):
+        free.put(Worker(folder / f"worker-{number}"))
+    stop = time.monotonic() + 3600.0 * hours
+
+    def judge(mutant: Mutant) -> dict[str, object] | None:
+        if time.monotonic() > stop:
+            return None
+        worker = free.get()
+        try:
+            return verdict(mutant, worker, covering)
+        finally:
+            free.put(worker)
+
+    with ThreadPoolExecutor(workers) as pool, ledger.open("a", encoding="utf-8") as out:
+        for entry in filter(None, pool.map(judge, left)):
+            known[str(entry["key"])] = entry
+            out.write(json.dumps(entry) + "\n")
+            out.flush()
+            print(
+                f"{len(known):5d} of {len(chosen)}  {'killed  ' if entry['killed'] else 'SURVIVED'}  {entry['key']}",
+                flush=True,
+            )
+    return known
+
+
+def engines(folder: Path) -> list[tuple[str, str, bool]]:
+    """The hand-made errors of the compiled engines: each built, and judged by the tests that its entry names."""
+    by_hand = tomllib.loads((Path(__file__).parent / "mutants.toml").read_text(encoding="utf-8"))
+    entries = by_hand["engine"]
+    ledger = folder / "engines.json"
+    known: dict[str, bool] = json.loads(ledger.read_text(encoding="utf-8")) if ledger.exists() else {}
+    if all(entry["name"] in known for entry in entries):
+        return [(entry["file"], entry["name"], known[entry["name"]]) for entry in entries]
+    worker = Worker(folder / "worker-engine")
+    for entry in entries:
+        if entry["name"] in known:
+            continue
+        text = (ROOT / entry["file"]).read_text(encoding="utf-8")
+        if text.count(entry["old"]) != 1:
+            raise SystemExit(
+                f"mutants.toml: {entry['name']}: {entry['file']} has {entry['old']!r} {text.count(entry['old'])} times"
+            )
+        worker.write(entry["file"], text.replace(entry["old"], entry["new"]))
+        _build(worker.folder)
+        known[entry["name"]] = not worker.passes(by_hand["tests"][entry["of"]], 900.0)
+        worker.write(entry["file"], text)
+        ledger.write_text(json.dumps(known), encoding="utf-8")
+        print(f"{'killed  ' if known[entry['name']] else 'SURVIVED'}  {entry['file']}: {entry['name']}", flush=True)
+    return [(entry["file"], entry["name"], known[entry["name"]]) for entry in entries]
+
+
+def _build(folder: Path) -> None:
+    tools = Path(sys.executable).parent
+    options = [
+        "-G",
+        "Ninja",
+        f"-DCMAKE_MAKE_PROGRAM={tools / 'ninja'}",
+        "-DROCKING_INPLACE=ON",
+        f"-DPython_EXECUTABLE={sys.executable}",
+    ]
+    for command in (["-S", ".", "-B", "build/engine", *options], ["--build", "build/engine"]):
+        subprocess.run([str(tools / "cmake"), *command], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+
+
+def wilson(killed: float, count: int) -> tuple[float, float]:
+    """Interval of 95 % for a share (Wilson 1927, doi:10.1080/01621459.1927.10502953)."""
+    z = 1.959964
+    share, spread = killed / count, z * z / count
+    half = z * math.sqrt(share * (1.0 - share) / count + spread / (4.0 * count))
+    return tuple((share + spread / 2.0 + sign * half) / (1.0 + spread) for sign in (-1.0, 1.0))  # type: ignore[return-value]
+
+
+def page(
+    chosen: list[Mutant],
+    every: dict[str, int],
+    known: dict[str, dict[str, object]],
+    made: list[tuple[str, str, bool]],
+    seed: int,
+) -> bool:
+    """Print and keep the scores and every survivor; whether the lower end of the score is 85 % or more."""
+    explained = tomllib.loads((Path(__file__).parent / "mutants.toml").read_text(encoding="utf-8")).get("survivor", [])
+    judged = [mutant for mutant in chosen if mutant.key in known]
+    text = [
+        "# Deliberate errors",
+        "",
+        f"Made by `make mutants`; seed {seed}.",
+        "",
+        "| package | mutations | judged | noticed | score | 95 % |",
+        "|---|---|---|---|---|---|",
+    ]
+    for package in (*CORE, "all"):
+        of = [mutant for mutant in judged if package in {mutant.package, "all"}]
+        killed = sum(bool(known[mutant.key]["killed"]) for mutant in of)
+        if of:
+            low, high = wilson(killed, len(of))
+            count = sum(every.values()) if package == "all" else every[package]
+            text.append(
+                f"| {package} | {count:,} | {len(of)} | {killed} | {killed / len(of):.1%} | {low:.1%} to {high:.1%} |"
+            )
+    text += ["", "Survivors, with the reason where one is known:", ""]
+    for mutant in sorted(judged):
+        if not known[mutant.key]["killed"]:
+            old, new = mutant.change()
+            why = next(
+                (entry["why"] for entry in explained if entry["file"] == mutant.path and entry["line"] == new),
+                "not explained",
+            )
+            text.append(f"- `{mutant.path}`: `{old}` -> `{new}`: {why}")
+    if made:
+        text += ["", f"Compiled engines, by hand: {sum(entry[2] for entry in made)} of {len(made)} noticed.", ""]
+        text += [f"- {file}: {name}: {'noticed' if killed else 'SURVIVED'}" for file, name, killed in made]
+    table.keep("RESULTS-mutants.md", text)
+    return bool(judged) and wilson(sum(bool(known[m.key]["killed"]) for m in judged), len(judged))[0] >= 0.85
+
+
+def main() -> None:
+    """Sample, judge, report; leave with 1 if the score is too low."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.mutants", description="Deliberate errors, and which are noticed."
+    )
+    parser.add_argument("--seed", type=int, default=2024)
+    parser.add_argument("--count", type=int, default=105, help="mutations of each package")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--hours", type=float, default=3.0, help="stop after this; the next call goes on")
+    parser.add_argument("--no-engines", action="store_true", help="leave out the compiled engines")
+    asked = parser.parse_args()
+    folder = ROOT / "build/mutants"
+    folder.mkdir(parents=True, exist_ok=True)
+    record(folder)
+    chosen, every = sample(asked.seed, asked.count)
+    made = [] if asked.no_engines else engines(folder)
+    known = run(chosen, folder, asked.workers, asked.hours)
+    raise SystemExit(not page(chosen, every, known, made, asked.seed))
+
+
+if __name__ == "__main__":
+    main()
