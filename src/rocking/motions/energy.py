@@ -1,4 +1,9 @@
-"""Energy of a motion and when it comes: Arias intensity and significant durations, solved exactly inside steps."""
+"""Energy of a motion and when it comes: Arias intensity and significant durations.
+
+The squared samples are summed by the trapezoidal rule, as the field does. A record is band-limited, for which this sum
+is the integral of the square (Parseval) but for half of the end samples; straight lines between the samples, which
+drive bodies and oscillators, would lose up to a third of it.
+"""
 
 import math
 
@@ -13,6 +18,8 @@ from rocking.motions.motion import GroundMotion, checked_motion
 def arias_intensity(motion: GroundMotion, gravity: float = g) -> float:
     """Return the Arias intensity, ``pi / (2 g)`` times the integral of the squared acceleration.
 
+    Arias (1970), in Hansen (ed.), Seismic Design for Nuclear Power Plants, MIT Press, 438-483.
+
     Parameters
     ----------
     motion : GroundMotion
@@ -23,7 +30,7 @@ def arias_intensity(motion: GroundMotion, gravity: float = g) -> float:
     Returns
     -------
     float
-        The intensity; the squared lines are integrated exactly [m/s].
+        The intensity, by the trapezoidal rule [m/s].
 
     Examples
     --------
@@ -32,11 +39,13 @@ def arias_intensity(motion: GroundMotion, gravity: float = g) -> float:
     """
     motion = checked_motion(motion)
     gravity = checks.positive("gravity", gravity, "m/s2")
-    return 0.5 * math.pi / gravity * float(_energies(motion).sum())
+    return 0.5 * math.pi / gravity * float(_husid(motion)[-1])
 
 
 def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.0) -> tuple[float, float]:
     """Return the times at which two percentages of the Arias intensity are reached.
+
+    Husid (1969), Revista del IDIEM 8:21; straight lines between the samples of his plot.
 
     Parameters
     ----------
@@ -48,7 +57,7 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
     Returns
     -------
     tuple of float
-        Exact times, also inside steps [s].
+        The times, also inside steps [s].
 
     Raises
     ------
@@ -58,7 +67,7 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
     motion = checked_motion(motion)
     start = checks.within("start", start, 0.0, 100.0, unit="%")
     end = checks.within("end", end, start, 100.0, unit="%", open_low=True, hint="end must be above start")
-    total = np.concatenate([[0.0], np.cumsum(_energies(motion))])
+    total = _husid(motion)
     if not total[-1] > 0.0:
         raise InvalidValueError(f"motion must have energy > 0 m2/s3, got {total[-1]:g}; zero throughout?")
     return _crossing(motion, total, 0.01 * start), _crossing(motion, total, 0.01 * end)
@@ -66,6 +75,8 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
 
 def significant_duration(motion: GroundMotion, start: float = 5.0, end: float = 95.0) -> float:
     """Return the significant duration, between two percentages of the Arias intensity.
+
+    Trifunac & Brady (1975), Bulletin of the Seismological Society of America 65:581, for 5 to 95 %.
 
     Parameters
     ----------
@@ -88,18 +99,15 @@ def significant_duration(motion: GroundMotion, start: float = 5.0, end: float = 
     return last - first
 
 
-def _energies(motion: GroundMotion) -> FloatArray:
-    """Return the integral of the squared acceleration over each step [m2/s3]."""
-    a, b = motion.acceleration[:-1], motion.acceleration[1:]
-    return motion.time_step / 3.0 * (a * a + a * b + b * b)
+def _husid(motion: GroundMotion) -> FloatArray:
+    """Return the integral of the squared acceleration up to each sample [m2/s3]."""
+    squares = motion.acceleration**2
+    return np.concatenate([[0.0], np.cumsum(0.5 * motion.time_step * (squares[:-1] + squares[1:]))])
 
 
 def _crossing(motion: GroundMotion, total: FloatArray, fraction: float) -> float:
     wanted = fraction * float(total[-1])
-    i = min(max(int(np.searchsorted(total, wanted)) - 1, 0), len(motion) - 2)
-    a, b = float(motion.acceleration[i]), float(motion.acceleration[i + 1])
-    missing = 3.0 * (wanted - float(total[i])) / motion.time_step
-    # the integral of the squared line is (c^3 - a^3) / (3 (b - a)); factored, it can be solved when b is near a too
-    c = math.copysign(abs(cube := a**3 + (b - a) * missing) ** (1.0 / 3.0), cube)
-    size = c * c + c * a + a * a
-    return (i + (min(missing / size, 1.0) if size > 0.0 else 0.0)) * motion.time_step
+    i = min(max(int(np.searchsorted(total, wanted)), 1), len(motion) - 1)
+    rise = float(total[i] - total[i - 1])
+    share = (wanted - float(total[i - 1])) / rise if rise > 0.0 else 0.0
+    return (i - 1 + min(share, 1.0)) * motion.time_step
