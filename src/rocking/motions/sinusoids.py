@@ -1,11 +1,13 @@
 """Pulses made of sinusoids within a window: sine, cosine, A, B, C_n, Mavroeidis-Papageorgiou, harmonic, rectangle."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
+from rocking.motions.portable import cosine_sine
 from rocking.motions.pulse import Pulse
 
 Wave = tuple[float, float, float]
@@ -79,11 +81,11 @@ class Sinusoids(Pulse):
         for amplitude, frequency, phase in self.waves:
             if frequency == 0.0:
                 power = 2 - derivative
-                total += amplitude * np.sin(phase) * time**power / (1.0, 1.0, 2.0)[power]
+                total += amplitude * math.sin(phase) * time**power / (1.0, 1.0, 2.0)[power]
             elif derivative == 2:
-                total += amplitude * np.sin(frequency * time + phase)
+                total += amplitude * cosine_sine(frequency * time + phase)[1]
             elif derivative == 1:
-                total -= amplitude / frequency * np.cos(frequency * time + phase)
+                total -= amplitude / frequency * cosine_sine(frequency * time + phase)[0]
             else:
-                total -= amplitude / frequency**2 * np.sin(frequency * time + phase)
+                total -= amplitude / frequency**2 * cosine_sine(frequency * time + phase)[1]
         return total

@@ -72,7 +72,7 @@ def _stochastic(drawn: Mapping[str, float], seed: int, step: float, corner: floa
         drawn["frequency_hz"], drawn["slope_hz_s"], middle, drawn["damping"], lowest=0.2 * drawn["frequency_hz"]
     )
     # the high pass needs about two of its periods to come to rest
-    duration = modulation.time_of(0.999) + 2.0 / corner
+    duration = round(modulation.time_of(0.999) + 2.0 / corner, 9)
     return nonstationary_motion(modulation, shaper, seed=seed, time_step=step, duration=duration, corner=corner)
 
 

@@ -66,7 +66,8 @@ class Family:
         if np.shape(shares) != (len(self.distributions),):
             raise InvalidValueError(f"shares must be {len(self.distributions)} numbers, got shape {np.shape(shares)}")
         pairs = zip(self.distributions.items(), shares, strict=True)
-        return {name: spread.value_at(float(share)) for (name, spread), share in pairs}
+        # twelve digits: the last ones hang on the C library
+        return {name: float(f"{spread.value_at(float(share)):.12g}") for (name, spread), share in pairs}
 
     def motion(self, seed: int, number: int = 0, time_step: float | None = None) -> GroundMotion:
         """Return one motion of the family.

@@ -13,8 +13,9 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
+from rocking.motions.portable import exponential, recurrence
 from rocking.motions.synthetic.oscillator import transition
-from rocking.motions.synthetic.sampling import described, generator, times
+from rocking.motions.synthetic.sampling import described, normals, times
 
 LEAST_PHASE = 1e-3
 """Smallest phase of the filter in one step [rad]: below, the covariance of a step drowns in rounding."""
@@ -112,7 +113,7 @@ class Envelope:
     def __call__(self, time: FloatArray) -> FloatArray:
         """Return the factor, from 0 to 1, at times of at least zero."""
         up = np.minimum(time / self.rise, 1.0) ** 2 if self.rise > 0.0 else np.ones_like(time)
-        return np.asarray(up * np.exp(-self.decay * np.maximum(time - self.plateau, 0.0)))
+        return up * exponential(-self.decay * np.maximum(time - self.plateau, 0.0))
 
 
 def kanai_tajimi_motion(
@@ -165,7 +166,7 @@ def kanai_tajimi_motion(
     if not LEAST_PHASE <= omega * step < math.pi:
         low, high = LEAST_PHASE / omega, math.pi / omega
         raise InvalidValueError(f"time_step must be in [{low:g}, {high:g}) s for this layer, got {step:g}")
-    acceleration = envelope(time) * _stationary(layer, omega, step, time.size, generator(seed))
+    acceleration = envelope(time) * _stationary(layer, omega, step, normals(seed, time.size, 2))
     parameters = described(layer=layer, envelope=envelope, seed=int(seed), time_step=step, duration=duration)
     line = f"simulated: Kanai-Tajimi filtered white noise under an envelope, seed {seed}"
     return GroundMotion(
@@ -173,19 +174,17 @@ def kanai_tajimi_motion(
     )
 
 
-def _stationary(layer: KanaiTajimi, omega: float, step: float, count: int, random: np.random.Generator) -> FloatArray:
+def _stationary(layer: KanaiTajimi, omega: float, step: float, kicks: FloatArray) -> FloatArray:
     # displacement times omega, so that both states have the same variance and no correlation
     zeta = layer.damping
     deviation = math.sqrt(math.pi * layer.density / (2.0 * zeta * omega))
-    units = np.array([omega, 1.0])
-    move = transition(omega, zeta, step) * units[:, None] / units
-    spread = deviation * np.linalg.cholesky(np.eye(2) - move @ move.T)
-    kicks = random.standard_normal((count, 2))
-    state = deviation * kicks[0]
-    states = np.empty((count, 2))
-    states[0] = state
-    added = kicks @ spread.T
-    for i in range(1, count):
-        state = move @ state + added[i]
-        states[i] = state
-    return np.asarray(-omega * (states[:, 0] + 2.0 * zeta * states[:, 1]))
+    move = transition(omega, zeta, step) * np.array([[1.0, omega], [1.0 / omega, 1.0]])
+    (m00, m01), (m10, m11) = move.tolist()
+    # Cholesky's factor of the covariance that a step adds, the identity less move times its transpose
+    s00 = math.sqrt(1.0 - (m00 * m00 + m01 * m01))
+    s10 = -(m00 * m10 + m01 * m11) / s00
+    s11 = math.sqrt(1.0 - (m10 * m10 + m11 * m11) - s10 * s10)
+    first, second = deviation * kicks.T
+    added = s00 * first[1:], s10 * first[1:] + s11 * second[1:]
+    z, v = recurrence(move, (float(first[0]), float(second[0])), *added)
+    return -omega * (z + 2.0 * zeta * v)

@@ -8,6 +8,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
+from rocking.motions.portable import exponential, logarithm
 
 MIDDLE = 0.45
 """Share of the Arias intensity at the middle of the strong shaking (Rezaeian & Der Kiureghian 2010)."""
@@ -52,10 +53,9 @@ class GammaModulation:
 
     def __call__(self, time: FloatArray) -> FloatArray:
         """Return the standard deviation at times of at least zero."""
-        with np.errstate(divide="ignore"):
-            # in logarithms: the power alone can overflow
-            grown = (self.a2 - 1.0) * np.log(time) if self.a2 > 1.0 else np.zeros_like(time)
-        return np.exp(math.log(self.a1) + grown - self.a3 * time)
+        # in logarithms: the power alone can overflow
+        grown = (self.a2 - 1.0) * logarithm(time) if self.a2 > 1.0 else np.zeros_like(time)
+        return exponential(logarithm(np.array(self.a1)) + grown - self.a3 * time)
 
     def arias_intensity(self, gravity: float = g) -> float:
         """Return the expected Arias intensity of the whole motion.
@@ -146,11 +146,12 @@ def modulation_from_intensity(
         if wanted == most
         else float(brentq(lambda x: _ratio(math.exp(x)) - wanted, math.log(WIDEST), math.log(NARROWEST), xtol=1e-14))
     )
-    shape = math.exp(log_shape)
-    rate = _quantile(shape, MIDDLE) / middle
+    # eleven and twelve digits: the last ones hang on the C library
+    shape = float(f"{math.exp(log_shape):.11g}")
+    rate = float(f"{_quantile(shape, MIDDLE) / middle:.11g}")
     energy = 2.0 * gravity * intensity / math.pi
     size = math.exp(0.5 * (math.log(energy) + shape * math.log(rate) - math.lgamma(shape)))
-    return GammaModulation(size, 0.5 * (shape + 1.0), 0.5 * rate)
+    return GammaModulation(float(f"{size:.12g}"), 0.5 * (shape + 1.0), 0.5 * rate)
 
 
 def _quantile(shape: float, share: float) -> float:

@@ -1,12 +1,12 @@
 """A linear oscillator between two samples, exactly: what filters of white noise are made of."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
+from rocking.motions.portable import cosine_sine, exponential, recurrence
 
 LEAST_CYCLES = 1e-6
 """Smallest corner of the high pass in cycles a step [-]: below, its long memory drowns in rounding."""
@@ -35,10 +35,10 @@ def transition(omega: float, damping: float, step: float) -> FloatArray:
     [[-1.0, 0.0], [-0.0, -1.0]]
     """
     rate = omega * math.sqrt(1.0 - damping * damping)
+    cosine, sine = cosine_sine(np.array([rate * step]))
     # sin(x)/rate has a limit at critical damping
-    s = step * float(np.sinc(rate * step / math.pi))
-    c = math.cos(rate * step)
-    decay = math.exp(-damping * omega * step)
+    c, s = float(cosine[0]), float(sine[0]) / rate if rate > 0.0 else step
+    decay = float(exponential(np.array([-damping * omega * step]))[0])
     own = damping * omega * s
     return decay * np.array([[c + own, s], [-omega * omega * s, c - own]])
 
@@ -65,16 +65,11 @@ def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> 
     """
     low, high = LEAST_CYCLES / time_step, 0.5 / time_step
     w = 2.0 * math.pi * checks.within("corner frequency", frequency, low, high, unit="Hz", open_high=True)
-    step = transition(w, 1.0, time_step).tolist()
+    move = transition(w, 1.0, time_step)
     # against the moving equilibrium of a line a + b t, only free vibration is left
     w2, lag = 1.0 / (w * w), 2.0 / w**3
-    z, v = 0.0, 0.0
-    result = [float(acceleration[0])]
-    samples = acceleration.tolist()
-    for a, b in pairwise(samples):
-        slope = (b - a) / time_step
-        free, speed = z - (a * w2 - lag * slope), v - slope * w2
-        z = step[0][0] * free + step[0][1] * speed + b * w2 - lag * slope
-        v = step[1][0] * free + step[1][1] * speed + slope * w2
-        result.append(b - 2.0 * w * v - w * w * z)
-    return np.array(result)
+    a, slope = acceleration[:-1], np.diff(acceleration) / time_step
+    rest, end, speed = w2 * a - lag * slope, w2 * acceleration[1:] - lag * slope, w2 * slope
+    (m00, m01), (m10, m11) = move.tolist()
+    z, v = recurrence(move, (0.0, 0.0), end - (m00 * rest + m01 * speed), speed - (m10 * rest + m11 * speed))
+    return acceleration - 2.0 * w * v - w * w * z

@@ -14,7 +14,8 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
-from rocking.motions.synthetic.sampling import described, generator, times
+from rocking.motions.portable import exponential, logarithm
+from rocking.motions.synthetic.sampling import described, normals, times
 
 REFERENCE_DISTANCE = 1000.0
 """Distance at which the source spectrum holds [m]."""
@@ -106,12 +107,12 @@ class PointSource:
     @property
     def moment(self) -> float:
         """Seismic moment, ``10^(1.5 M + 16.05)`` dyn cm [N m]."""
-        return float(10.0 ** (1.5 * self.magnitude + 16.05 - 7.0))
+        return float(_power(np.array(10.0), 1.5 * self.magnitude + 16.05 - 7.0))
 
     @property
     def corner_frequency(self) -> float:
         """Corner frequency, ``4.9e6 beta (stress / M0)^(1/3)`` in km/s, bar and dyn cm [Hz]."""
-        return float(0.49 * self.shear_velocity * (self.stress_drop / self.moment) ** (1.0 / 3.0))
+        return float(0.49 * self.shear_velocity * _power(np.array(self.stress_drop / self.moment), 1.0 / 3.0))
 
     @property
     def duration(self) -> float:
@@ -129,7 +130,7 @@ class PointSource:
         starts = [start for start, _ in self.spreading]
         factor = 1.0
         for (start, exponent), end in zip(self.spreading, [*starts[1:], math.inf], strict=True):
-            factor *= max(min(self.distance, end) / start, 1.0) ** exponent
+            factor *= float(_power(np.array(max(min(self.distance, end) / start, 1.0)), exponent))
         return factor
 
     def amplitude(self, frequency: FloatArray) -> FloatArray:
@@ -150,8 +151,8 @@ class PointSource:
         constant /= 4.0 * math.pi * self.density * beta**3 * REFERENCE_DISTANCE
         source = (2.0 * np.pi * frequency) ** 2 / (1.0 + (frequency / self.corner_frequency) ** 2)
         # f / Q(f) written so that zero frequency needs no division
-        path = np.power(frequency, 1.0 - self.quality[1]) * self.distance / (self.quality[0] * beta)
-        loss = np.exp(-np.pi * (path + self.kappa * frequency))
+        path = _power(frequency, 1.0 - self.quality[1]) * self.distance / (self.quality[0] * beta)
+        loss = exponential(-np.pi * (path + self.kappa * frequency))
         return np.asarray(constant * self.moment * self.geometric_spreading() * source * loss)
 
 
@@ -190,6 +191,8 @@ def point_source_motion(
     >>> 0.1 < motion.peak < 10.0
     True
     """
+    from scipy.fft import next_fast_len
+
     lead, length = 1.0 / source.corner_frequency, STRETCH * source.duration
     if duration is None:
         duration = 2.0 * lead + length
@@ -199,11 +202,16 @@ def point_source_motion(
     step = float(time[1])
     if source.corner_frequency * step >= 0.5:
         raise InvalidValueError(f"time_step must be below {0.5 * lead:g} s for this source, got {step:g}")
-    noise = generator(seed).standard_normal(time.size) * window((time - lead) / length)
-    spectrum = np.fft.rfft(noise)
-    spectrum /= math.sqrt(float(np.mean(np.abs(spectrum) ** 2)))
-    target = source.amplitude(np.arange(spectrum.size, dtype=np.float64) / (time.size * step))
-    acceleration = np.fft.irfft(spectrum * target / step, time.size)
+    noise = normals(seed, time.size) * window((time - lead) / length)
+    # zeros behind, up to a length that is quick to transform
+    size = next_fast_len(time.size, real=True)
+    spectrum = np.fft.rfft(noise, size)
+    spread = math.sqrt(float(np.mean(spectrum.real**2 + spectrum.imag**2)))
+    target = source.amplitude(np.arange(spectrum.size, dtype=np.float64) / (size * step)) / (spread * step)
+    # a product of real numbers: complex ones round differently on some processors
+    spectrum.real *= target
+    spectrum.imag *= target
+    acceleration = np.fft.irfft(spectrum, size)[: time.size]
     parameters = described(source=source, seed=int(seed), time_step=step, duration=duration)
     line = f"simulated: stochastic point source (Boore 2003), seed {seed}"
     return GroundMotion(
@@ -231,7 +239,12 @@ def window(place: FloatArray) -> FloatArray:
     """
     power = -PEAK_AT * math.log(LEVEL_AT_END) / (1.0 + PEAK_AT * (math.log(PEAK_AT) - 1.0))
     ratio = np.maximum(place, 0.0) / PEAK_AT
-    return np.asarray(ratio**power * np.exp(power * (1.0 - ratio)))
+    return exponential(power * (logarithm(ratio) + 1.0 - ratio))
+
+
+def _power(base: FloatArray, exponent: float) -> FloatArray:
+    # 0 to the power of 0 is 1
+    return exponential(exponent * logarithm(base)) if exponent else np.ones_like(base)
 
 
 def _pairs(name: str, values: Any) -> FloatArray:

@@ -1,0 +1,267 @@
+"""Elementary functions and recurrences of sums and products alone, so that a seed has the same bits on every processor.
+
+NumPy and the C library choose other approximations of exp, log, sin and cos on other processors; sums and products are
+rounded alike everywhere. The compiled module does the same in the same order, and recurrences some hundred times as
+fast; without it these functions serve, with the same bits.
+"""
+
+import math
+from functools import cache
+from types import ModuleType
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+
+_INVERSE = tuple(1.0 / math.factorial(k) for k in range(19))
+_LOG2 = (6.93147180369123816490e-01, 1.90821492927058770002e-10)
+_HALF_PI = (1.57079632673412561417e00, 6.07710050650619224932e-11)
+_LANES = 4
+
+NEIGHBOURS = 10
+"""Oscillators that share an impulse; the compiled module has the same number."""
+
+
+@cache
+def compiled() -> ModuleType | None:
+    """Return the compiled module, or None where it was not built.
+
+    Returns
+    -------
+    module or None
+        The module.
+    """
+    try:
+        from rocking.motions import _filters
+    except ImportError:
+        return None
+    return _filters
+
+
+def exponential(x: FloatArray) -> FloatArray:
+    """Return the exponential function, to about a unit of the last digit.
+
+    Parameters
+    ----------
+    x : ndarray
+        Arguments of at most 709; below -708 the result is zero.
+
+    Returns
+    -------
+    ndarray
+        Their exponentials.
+
+    Examples
+    --------
+    >>> exponential(np.array([-math.inf, 0.0, 1.0])).round(12).tolist()
+    [0.0, 1.0, 2.718281828459]
+    """
+    if (module := compiled()) is not None:
+        out = np.empty(x.shape)
+        module.exponentials(x.ravel(), out.ravel())
+        return out
+    inside = np.minimum(np.maximum(x, -708.0), 709.0)
+    k = np.rint(inside * 1.44269504088896338700e00)
+    r = (inside - k * _LOG2[0]) - k * _LOG2[1]
+    p = np.full_like(r, _INVERSE[13])
+    for n in range(12, -1, -1):
+        p = p * r + _INVERSE[n]
+    return np.where(x < -708.0, 0.0, np.ldexp(p, k.astype(np.int32)))
+
+
+def logarithm(x: FloatArray) -> FloatArray:
+    """Return the natural logarithm, to about a unit of the last digit.
+
+    Parameters
+    ----------
+    x : ndarray
+        Arguments of at least zero.
+
+    Returns
+    -------
+    ndarray
+        Their logarithms.
+
+    Examples
+    --------
+    >>> logarithm(np.array([0.0, 1.0, 10.0])).tolist()
+    [-inf, 0.0, 2.302585092994046]
+    """
+    if (module := compiled()) is not None:
+        out = np.empty(x.shape)
+        module.logarithms(x.ravel(), out.ravel())
+        return out
+    m, exponent = np.frexp(x)
+    small = m < 0.70710678118654752440
+    m, e = np.where(small, 2.0 * m, m), (exponent - small).astype(np.float64)
+    s = (m - 1.0) / (m + 1.0)
+    z = s * s
+    p = np.full_like(s, 2.0 / 23.0)
+    for n in range(21, 0, -2):
+        p = p * z + 2.0 / n
+    return np.where(x >= np.finfo(np.float64).tiny, e * _LOG2[0] + (s * p + e * _LOG2[1]), -np.inf)
+
+
+def cosine_sine(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return cosine and sine, for arguments of up to some thousand turns.
+
+    Parameters
+    ----------
+    x : ndarray
+        Angles [rad].
+
+    Returns
+    -------
+    tuple of ndarray
+        Cosines and sines.
+
+    Examples
+    --------
+    >>> [round(float(part[0]), 15) for part in cosine_sine(np.array([math.pi / 6.0]))]
+    [0.866025403784439, 0.5]
+    """
+    if (module := compiled()) is not None:
+        c, s = np.empty(x.shape), np.empty(x.shape)
+        module.cosines_sines(x.ravel(), c.ravel(), s.ravel())
+        return c, s
+    k = np.rint(x * 6.36619772367581382433e-01)
+    r = (x - k * _HALF_PI[0]) - k * _HALF_PI[1]
+    z = r * r
+    c, s = np.full_like(r, _INVERSE[18]), np.full_like(r, _INVERSE[17])
+    for n in range(16, -1, -2):
+        c = _INVERSE[n] - c * z
+    for n in range(15, 0, -2):
+        s = _INVERSE[n] - s * z
+    s = s * r
+    quarter = k.astype(np.int64) & 3
+    return np.choose(quarter, [c, -s, -c, s]), np.choose(quarter, [s, c, -s, -c])
+
+
+def recurrence(
+    move: FloatArray, start: tuple[float, float], first: FloatArray, second: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return two states that a matrix moves on, with something added to each after every step.
+
+    Parameters
+    ----------
+    move : ndarray, shape (2, 2)
+        The matrix.
+    start : tuple of float
+        States at the beginning.
+    first, second : ndarray, shape (n,)
+        What is added to the states.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n + 1,)
+        Both states, from the beginning on.
+
+    Examples
+    --------
+    >>> turn = np.array([[0.0, -1.0], [1.0, 0.0]])
+    >>> [x.tolist() for x in recurrence(turn, (1.0, 0.0), np.array([0.5, 0.0]), np.zeros(2))]
+    [[1.0, 0.5, -1.0], [0.0, 1.0, 0.5]]
+    """
+    ((m00, m01), (m10, m11)), (a, b) = move.tolist(), start
+    if (module := compiled()) is not None:
+        z, v = np.empty(first.size + 1), np.empty(first.size + 1)
+        z[0], v[0] = start
+        module.recurrence(m00, m01, m10, m11, np.ascontiguousarray(first), np.ascontiguousarray(second), z, v)
+        return z, v
+    states = [(a, b)]
+    for p, q in zip(first.tolist(), second.tolist(), strict=True):
+        a, b = (m00 * a + m01 * b) + p, (m10 * a + m11 * b) + q
+        states.append((a, b))
+    z, v = np.array(states).T
+    return z, v
+
+
+def resonances(
+    noise: FloatArray,
+    omega: FloatArray,
+    place: FloatArray,
+    shared: bool,
+    nodes: tuple[FloatArray, FloatArray],
+    lasting: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the sum of impulses into damped oscillators of fixed frequencies, and the sum of squared responses.
+
+    Each impulse goes into one oscillator, or is shared between `NEIGHBOURS` of them by Lagrange's weights.
+
+    Parameters
+    ----------
+    noise, omega : ndarray, shape (n,)
+        Impulses, and their factors: the frequency that each is meant for [rad/s].
+    place : ndarray, shape (n,)
+        Its place between the oscillators, counted from the first one that it feeds plus what is beyond the
+        interval in the middle of its neighbours, from 0 to 1; never falling [-].
+    shared : bool
+        Whether it is shared.
+    nodes : tuple of ndarray, shape (m,)
+        Decayed cosine and sine of one step of each oscillator [-].
+    lasting : ndarray, shape (m,)
+        Steps after the last impulse after which an oscillator is left out.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n + 1,)
+        Sum of the decayed sines, and twice that of their squares, at every sample.
+
+    Examples
+    --------
+    >>> one = np.ones(1)
+    >>> total, squares = resonances(one, one, np.zeros(1), False, (0.8 * one, 0.6 * one), 9.0 * one)
+    >>> total.tolist(), squares.round(12).tolist()
+    ([0.0, 0.6], [0.0, 0.72])
+    """
+    total, squares = np.zeros(place.size + 1), np.zeros(place.size + 1)
+    cosine, sine = nodes
+    if (module := compiled()) is not None:
+        module.resonances(noise, omega, place, shared, cosine, sine, lasting.astype(np.int64), total, squares)
+        return total, squares
+    width = NEIGHBOURS if shared else 1
+    padding = (0, -cosine.size % _LANES)
+    c, s = np.pad(cosine, padding), np.pad(sine, padding)
+    q, cc, ss = c * c + s * s, c * c - s * s, 2.0 * (c * s)
+    u, v, e, f, g = (np.zeros(c.size) for _ in range(5))
+    fed, base = np.zeros(c.size, np.int64), place.astype(np.int64)
+    kicks = (noise[: base.size] * omega[: base.size])[:, np.newaxis] * (weights := _shares(place - base, width))
+    gains = (omega[: base.size] * omega[: base.size])[:, np.newaxis] * weights
+    low = high = 0
+    for n, b in enumerate(base.tolist()):
+        near = slice(b, b + width)
+        u[near] += kicks[n]
+        e[near] += gains[n]
+        f[near] += gains[n]
+        fed[near] = n
+        high = max(high, b + width)
+        while low < b and n - fed[low] > lasting[low]:
+            low += 1
+        on = slice(low // _LANES * _LANES, -(-high // _LANES) * _LANES)
+        u[on], v[on] = c[on] * u[on] - s[on] * v[on], s[on] * u[on] + c[on] * v[on]
+        e[on] *= q[on]
+        f[on], g[on] = cc[on] * f[on] - ss[on] * g[on], ss[on] * f[on] + cc[on] * g[on]
+        total[n + 1] = _lanes(v[on])
+        squares[n + 1] = _lanes(e[on] - f[on])
+    return total, squares
+
+
+def _shares(place: FloatArray, width: int) -> FloatArray:
+    """Return Lagrange's weights of neighbours at whole places around, a row for each place from 0 to 1."""
+    at = place + (width - 1) // 2
+    weights = np.ones((place.size, width))
+    for i in range(width):
+        for k in range(i):
+            weights[:, i] *= at - k
+        after, scale = np.ones_like(at), 1.0
+        for k in range(width - 1, i, -1):
+            after *= at - k
+        for k in range(width):
+            scale *= i - k if k != i else 1.0
+        weights[:, i] = (weights[:, i] * after) * (1.0 / scale)
+    return weights
+
+
+def _lanes(values: FloatArray) -> float:
+    a, b, c, d = values.reshape(-1, _LANES).sum(axis=0).tolist()
+    return float((a + b) + (c + d))
