@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import rocking as rk
-from benchmarks import campaigns, table
+from benchmarks import campaigns, synthetic, table
 from benchmarks.engine_batch import STEP, Histories, histories
 from benchmarks.engine_peers import scipy_events
 from benchmarks.table import Row
@@ -130,7 +130,7 @@ def refined_map() -> tuple[float, float]:
 
 def main() -> bool:
     """Print and keep the table; whether every goal was met."""
-    found = rows() + campaigns.rows()
+    found = rows() + synthetic.rows() + campaigns.rows()
     text = [
         "# Speed of studies and campaigns",
         "",

@@ -131,7 +131,15 @@ struct Four {
 #if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__)
 __attribute__((target_clones("avx2", "default")))
 #endif
-void turn(Four* from, const Four* end, double* sums, double* squares) {
+void turn(Four* from, const Four* end, Four* fed, int feeds, const double* weight, double kick, double gain, double* sums,
+          double* squares) {
+    for (int k = 0; k < feeds; ++k)
+        for (int i = 0; i < kLanes; ++i) {
+            const double share = weight[kLanes * k + i], more = gain * share;
+            fed[k].u[i] += kick * share;
+            fed[k].e[i] += more;
+            fed[k].f[i] += more;
+        }
     double sum[kLanes] = {}, square[kLanes] = {};
     for (; from != end; ++from) {
         Four& a = *from;
@@ -179,32 +187,35 @@ struct Shares {
     }
 };
 
-// Impulses into damped oscillators of fixed frequencies: each is shared between neighbours about its place. Sums of the
+// Impulses into damped oscillators of fixed frequencies, which they pass one way: each is shared between neighbours about its place. Sums of the
 // sines, and of the squared responses times two, after every step.
 template <int width>
 static void resonate(const double* noise, const double* omega, const double* place, std::int64_t count, std::vector<Four>& four,
                      const std::int64_t* lasting, std::int64_t nodes, double* total, double* variance) {
     std::vector<std::int64_t> fed(four.size() * kLanes, 0);
     const Shares<width> shares;
-    std::int64_t low = 0, high = 0;
+    std::int64_t low = 0, past = 0;
+    // the weights of a stretch of steps first: vectors are read long after the numbers in them were written
+    constexpr int kStretch = 32, kRoom = (width / kLanes + 2) * kLanes;
+    double weights[kStretch][kRoom];
     for (std::int64_t n = 0; n < count; ++n) {
-        const auto base = static_cast<std::int64_t>(place[n]);
-        check(base >= 0 && base + width <= nodes);
-        double weight[width];
-        shares.at(place[n] - static_cast<double>(base), weight);
-        const double w = omega[n], kick = noise[n] * w, gain = w * w;
-        for (int i = 0; i < width; ++i) {
-            Four& a = four[static_cast<std::size_t>(base + i) / kLanes];
-            const std::size_t lane = static_cast<std::size_t>(base + i) % kLanes;
-            a.u[lane] += kick * weight[i];
-            a.e[lane] += gain * weight[i];
-            a.f[lane] += gain * weight[i];
-            fed[base + i] = n;
+        const std::int64_t step = n % kStretch;
+        if (step == 0) {
+            std::memset(weights, 0, sizeof weights);
+            for (std::int64_t k = n; k < std::min(count, n + kStretch); ++k) {
+                const auto base = static_cast<std::int64_t>(place[k]);
+                check(base >= 0 && base + width <= nodes);
+                shares.at(place[k] - static_cast<double>(base), weights[k - n] + base % kLanes);
+            }
         }
-        high = std::max(high, base + width);
+        const auto base = static_cast<std::int64_t>(place[n]), first = base / kLanes, last = (base + width - 1) / kLanes;
+        check(base >= past);
+        for (; past < base; ++past) fed[past] = n - 1;
         while (low < base && n - fed[low] > lasting[low]) ++low;
+        const double w = omega[n];
         double sums[kLanes], squares[kLanes];
-        turn(four.data() + low / kLanes, four.data() + (high + kLanes - 1) / kLanes, sums, squares);
+        turn(four.data() + low / kLanes, four.data() + last + 1, four.data() + first, static_cast<int>(last - first) + 1,
+             weights[step], noise[n] * w, w * w, sums, squares);
         total[n + 1] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
         variance[n + 1] = (squares[0] + squares[1]) + (squares[2] + squares[3]);
     }

@@ -6,6 +6,7 @@ SI units, ``integral of a(t) exp(-2 pi i f t) dt`` [m/s].
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -104,12 +105,12 @@ class PointSource:
         for exponent in exponents:
             checks.within("spreading exponent", exponent, -5.0, 5.0)
 
-    @property
+    @cached_property
     def moment(self) -> float:
         """Seismic moment, ``10^(1.5 M + 16.05)`` dyn cm [N m]."""
         return float(_power(np.array(10.0), 1.5 * self.magnitude + 16.05 - 7.0))
 
-    @property
+    @cached_property
     def corner_frequency(self) -> float:
         """Corner frequency, ``4.9e6 beta (stress / M0)^(1/3)`` in km/s, bar and dyn cm [Hz]."""
         return float(0.49 * self.shear_velocity * _power(np.array(self.stress_drop / self.moment), 1.0 / 3.0))

@@ -1,8 +1,9 @@
 """What all generators share: the seed, the grid of times and the description of the parameters."""
 
 import math
+import operator
 from dataclasses import fields
-from typing import Any, SupportsIndex
+from typing import Any
 
 import numpy as np
 
@@ -40,10 +41,17 @@ def normals(seed: object, *shape: int) -> FloatArray:
     InvalidValueError
         If the seed is not a whole number of at least zero.
     """
-    if isinstance(seed, bool) or not isinstance(seed, SupportsIndex) or int(seed) < 0:
+    try:
+        whole = -1 if isinstance(seed, bool) else operator.index(seed)  # type: ignore[arg-type]
+    except TypeError:
+        whole = -1
+    if whole < 0:
         raise InvalidValueError(f"seed must be a whole number of at least 0, got {seed!r}")
-    numbers = np.random.default_rng(int(seed)).standard_normal(shape)
-    return np.rint(numbers * _GRID) / _GRID
+    numbers = np.random.default_rng(whole).standard_normal(shape)
+    numbers *= _GRID
+    np.rint(numbers, out=numbers)
+    numbers *= 1.0 / _GRID
+    return numbers
 
 
 def times(time_step: float, duration: float) -> FloatArray:
