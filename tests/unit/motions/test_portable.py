@@ -8,9 +8,9 @@ import sys
 import mpmath
 import numpy as np
 import pytest
-
 from benchmarks.synthetic import models
 from benchmarks.timing import cpu_seconds
+
 from rocking.motions import portable
 
 RANDOM = np.random.default_rng(3)
