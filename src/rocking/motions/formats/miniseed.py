@@ -7,7 +7,6 @@ sensitivity is no longer true. Checked on one channel of the 2019 Ridgecrest ear
 """
 
 import re
-import warnings
 from io import BytesIO
 from pathlib import Path
 from typing import Any, ClassVar
@@ -19,7 +18,7 @@ from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats import units_and_steps
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.sac import need_obspy, read_traces, trace_of
+from rocking.motions.formats.sac import Trace, need_obspy, read_traces, trace_of
 from rocking.motions.formats.source import Source
 
 _ACCELERATION = frozenset({"M/S**2", "M/S/S", "M/(S**2)", "M/S^2"})
@@ -103,16 +102,14 @@ class MiniSeed(RecordFormat):
         """
         if not self.recognises(source):
             raise source.error(None, "no miniSEED file of version 2")
-        traces = read_traces(source, "MSEED")
+        traces = read_traces(source, "MSEED", self._stations)
         names = [trace.id for trace in traces]
         if len(set(names)) != len(names):
             twice = next(name for name in names if names.count(name) > 1)
             raise source.error(None, f"channel {twice} has a gap, an overlap or a change of rate; cut it out first")
-        stations = None if self._stations is None else _inventory(self._stations)
-        components = tuple(_component(source, trace, stations, units, time_step) for trace in traces)
-        stats = traces[0].stats
-        metadata = {key: str(stats[key]) for key in ("network", "station", "starttime")}
-        header = "\n".join(str(trace) for trace in traces)
+        components = tuple(_component(source, trace, units, time_step) for trace in traces)
+        metadata = {key: traces[0].about[key] for key in ("network", "station", "starttime")}
+        header = "\n".join(trace.text for trace in traces)
         return Record(self.name, components, header, {key: text for key, text in metadata.items() if text})
 
     def write(self, record: Record) -> bytes:
@@ -145,20 +142,20 @@ class MiniSeed(RecordFormat):
         return content.getvalue()
 
 
-def _component(source: Source, trace: Any, stations: Any, units: str | None, asked: float | None) -> Component:
-    values: FloatArray = np.asarray(trace.data, dtype=np.float64)
+def _component(source: Source, trace: Trace, units: str | None, asked: float | None) -> Component:
+    values: FloatArray = trace.samples.astype(np.float64)
     if values.size < 2 or not np.isfinite(values).all():
         raise source.error(None, f"{trace.id}: at least 2 finite samples are needed, found {values.size}")
-    step = units_and_steps.step_between_samples(source, float(trace.stats.delta), asked)
-    name = trace.stats.channel or "unnamed"
-    if stations is None:
-        if trace.data.dtype.kind in "iu":
+    step = units_and_steps.step_between_samples(source, trace.step, asked)
+    name = trace.about["channel"] or "unnamed"
+    if trace.channels is None:
+        if trace.samples.dtype.kind in "iu":
             raise source.error(
                 None, f"{trace.id} holds counts, no accelerations: use MiniSeed.with_response(stationxml_path)"
             )
         return Component(name, values, units_and_steps.acceleration_unit(source, None, units), step)
     unit = units_and_steps.acceleration_unit(source, "m/s2", units)
-    sensitivity = _sensitivity(source, trace, stations)
+    sensitivity = _sensitivity(source, trace, trace.channels)
     offset = float(values.mean())
     about = {
         "sensitivity": f"{sensitivity:.9g} counts/(m/s2)",
@@ -168,38 +165,19 @@ def _component(source: Source, trace: Any, stations: Any, units: str | None, ask
     return Component(name, (values - offset) / sensitivity, unit, step, None, about)
 
 
-def _inventory(stations: Source) -> Any:
-    obspy = need_obspy("StationXML")
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        try:
-            return obspy.read_inventory(BytesIO(stations.content), format="STATIONXML")
-        except Exception as error:  # its layers raise nearly any class
-            raise stations.error(None, f"ObsPy cannot read it as StationXML: {str(error)[:120]}") from error
-
-
-def _sensitivity(source: Source, trace: Any, stations: Any) -> float:
-    stats = trace.stats
-    found = stations.select(
-        network=stats.network,
-        station=stats.station,
-        location=stats.location,
-        channel=stats.channel,
-        time=stats.starttime,
-    )
-    channels = [channel for network in found for station in network for channel in station]
+def _sensitivity(source: Source, trace: Trace, channels: list[dict[str, Any]]) -> float:
     if len(channels) != 1:
-        raise source.error(None, f"{trace.id} at {stats.starttime}: the StationXML has {len(channels)} such channels")
-    total = channels[0].response and channels[0].response.instrument_sensitivity
+        when = trace.about["starttime"]
+        raise source.error(None, f"{trace.id} at {when}: the StationXML has {len(channels)} such channels")
+    rate, total = channels[0]["rate"], channels[0]["sensitivity"]
     if not total:
         raise source.error(None, f"{trace.id}: the StationXML states no overall sensitivity; ask for level=response")
-    before, after = ((unit or "").upper().strip() for unit in (total.input_units, total.output_units))
+    before, after = (str(unit).upper().strip() for unit in total[1:])
     if before not in _ACCELERATION or after not in _COUNTS:
         raise source.error(None, f"{trace.id}: sensitivity from M/S**2 to counts needed, found {before} to {after}")
-    rate = channels[0].sample_rate
-    if rate and abs(float(rate) * stats.delta - 1.0) > 1e-4:
-        raise source.error(None, f"{trace.id}: {1 / stats.delta:g} samples/s, the StationXML states {float(rate):g}")
-    value = float(total.value)
+    if abs(rate * trace.step - 1.0) > 1e-4:
+        raise source.error(None, f"{trace.id}: {1 / trace.step:g} samples/s, the StationXML states {rate:g}")
+    value = float(total[0])
     if not 1e-12 < abs(value) < 1e15:
         raise InvalidValueError(f"{trace.id}: sensitivity must be within 1e-12 to 1e15 counts/(m/s2), got {value:g}")
     return value

@@ -6,14 +6,18 @@ SAC says nothing of its unit, so the user must. Checked on one file of the 2019 
 import math
 import struct
 import warnings
+from dataclasses import dataclass
 from importlib import import_module
+from importlib.util import find_spec
 from io import BytesIO
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 
 from rocking.errors import MissingExtraError, RecordError
 from rocking.motions.formats import agreement, units_and_steps
+from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.source import Source
@@ -78,12 +82,12 @@ class Sac(RecordFormat):
         _check_places(source, order)
         unit = units_and_steps.acceleration_unit(source, None, units)
         trace = read_traces(source, "SAC", checksize=True)[0]
-        said = trace.stats.sac
+        said = trace.sac
         if said.get("iftype") != _TIME_SERIES or not said.get("leven"):
             raise source.error(None, "an evenly spaced time series is needed")
         if said.get("idep") in _OTHER:
             raise source.error(None, f"accelerations are needed, the file holds {_OTHER[said['idep']]}")
-        values = np.asarray(trace.data, dtype=np.float64)
+        values = trace.samples.astype(np.float64)
         agreement.check_count(source, int(said["npts"]), values.size)
         if values.size < 2 or not np.isfinite(values).all():
             raise source.error(None, f"at least 2 finite samples are needed, found {values.size}")
@@ -99,10 +103,8 @@ class Sac(RecordFormat):
                 agreement.check_stated(source, known[key], found, 1e-6 * abs(found), key)
         peak = max(abs(known["depmax"]), abs(known["depmin"]))
         stated = None if _UNDEFINED in {known["depmax"], known["depmin"]} else peak
-        metadata = {key: str(trace.stats[key]) for key in ("network", "station", "channel", "starttime")}
-        header = "\n".join(f"{key} = {said[key]}" for key in sorted(said))
-        name = trace.stats.channel or "unnamed"
-        return Record(self.name, (Component(name, values, unit, step, stated),), header, metadata)
+        name = trace.about["channel"] or "unnamed"
+        return Record(self.name, (Component(name, values, unit, step, stated),), trace.header, trace.about)
 
     def write(self, record: Record) -> bytes:
         """Return a SAC file, in the unit of the component, which the file cannot state.
@@ -151,8 +153,43 @@ def _check_places(source: Source, order: str) -> None:
             raise source.error(None, f"the header's {name} must be within {most:g} degrees of 0, found {value:g}")
 
 
-def read_traces(source: Source, form: str, **options: Any) -> list[Any]:
-    """Return the traces that ObsPy finds in a file.
+@dataclass(frozen=True)
+class Trace:
+    """What ObsPy finds in a file.
+
+    Parameters
+    ----------
+    id, text : str
+        Network, station, location and channel in one word, and all in a line.
+    step : float
+        Step between samples [s].
+    about : dict of str to str
+        Network, station, channel and time of the first sample.
+    sac : dict
+        Header of a SAC file.
+    header : str
+        The same as text.
+    channels : list of dict, optional
+        Rates and sensitivities of the channels of a StationXML file that are its own.
+    samples : ndarray
+        As they stand in the file.
+    """
+
+    id: str
+    text: str
+    step: float
+    about: dict[str, str]
+    sac: dict[str, Any]
+    header: str
+    channels: list[dict[str, Any]] | None
+    samples: Any
+
+
+_OBSPY = ForeignReader(Path(__file__).with_name("obspy_reader.py"), "ObsPy", "pip install rocking[obspy]")
+
+
+def read_traces(source: Source, form: str, stations: Source | None = None, **options: Any) -> list[Trace]:
+    """Return the traces that ObsPy finds in a file, in a process of its own.
 
     Parameters
     ----------
@@ -160,12 +197,14 @@ def read_traces(source: Source, form: str, **options: Any) -> list[Any]:
         The file.
     form : str
         ObsPy's name of the format.
+    stations : Source, optional
+        A StationXML file.
     **options
         More for ObsPy's reader.
 
     Returns
     -------
-    list of obspy.Trace
+    list of Trace
         At least one.
 
     Raises
@@ -173,18 +212,20 @@ def read_traces(source: Source, form: str, **options: Any) -> list[Any]:
     MissingExtraError
         If ObsPy is not installed.
     RecordError
-        If ObsPy refuses the file, warns of damage, or finds nothing.
+        If ObsPy refuses the file, crashes or hangs on it, warns of damage, or finds nothing.
     """
-    obspy = need_obspy(form)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        try:
-            traces = list(obspy.read(BytesIO(source.content), format=form, **options))
-        except Exception as error:  # ObsPy raises nearly any class on damaged files
-            raise source.error(None, f"ObsPy cannot read it as {form}: {str(error)[:120]}") from error
-    if not traces:
+    if find_spec("obspy") is None:
+        need_obspy(form)
+    files = [source.content] if stations is None else [source.content, stations.content]
+    found, arrays = _OBSPY.answer(source, {"format": form, "options": options}, *files)
+    if "stations" in found and stations is not None:
+        raise stations.error(None, f"ObsPy cannot read it as StationXML: {found['stations']}")
+    if not found["traces"]:
         raise source.error(None, f"no trace in this {form} file")
-    return traces
+    for said, samples in zip(found["traces"], arrays, strict=True):
+        if samples.dtype.kind not in "iuf":
+            raise source.error(None, f"{said['id']} holds text, no samples")
+    return [Trace(**said, samples=samples) for said, samples in zip(found["traces"], arrays, strict=True)]
 
 
 def need_obspy(form: str) -> Any:

@@ -1,0 +1,158 @@
+"""Readers of foreign code in a program of their own: what crashes, hangs or eats memory there is a refusal here."""
+
+import atexit
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.errors import MissingExtraError, RecordError
+from rocking.motions.formats import foreign_worker
+from rocking.motions.formats.source import Source
+
+TO_START = 60.0
+"""Time to start and to load the reader, on a busy machine [s]."""
+
+_MOST_IDLE = 2
+
+
+class ForeignReader:
+    """A reader in another process, which is kept for the next file.
+
+    Parameters
+    ----------
+    script : Path
+        File with the function ``answer`` of `foreign_worker.main`.
+    needs : str
+        Name of the library, for messages.
+    extra : str
+        How to install it.
+    seconds : float
+        Time for one file [s].
+    memory : int
+        Memory for one file, beyond that of the loaded reader; kept on Linux alone [bytes].
+    """
+
+    def __init__(self, script: Path, needs: str, extra: str, *, seconds: float = 30.0, memory: int = 4 * 2**30) -> None:
+        self.script, self.needs, self.extra = script, needs, extra
+        self.seconds, self.memory = seconds, memory
+        # by process: one that was forked must not talk to its parent's reader
+        self._idle: dict[int, list[subprocess.Popen[bytes]]] = {}
+        self._lock = threading.Lock()
+        atexit.register(self.close)
+
+    def answer(self, source: Source, request: dict[str, Any], *files: bytes) -> tuple[dict[str, Any], list[Any]]:
+        """Return what the reader says of a file.
+
+        Parameters
+        ----------
+        source : Source
+            The file, for messages.
+        request : dict
+            What is asked.
+        *files : bytes
+            Contents.
+
+        Returns
+        -------
+        tuple of dict and list of ndarray
+            A description, and arrays.
+
+        Raises
+        ------
+        RecordError
+            If the reader refuses the file, crashes, takes too long or too much memory.
+        MissingExtraError
+            If the library is not installed.
+        """
+        parts = [json.dumps(request).encode(), *files]
+        while True:
+            worker, fresh = self._taken()
+            slow = threading.Event()
+
+            def stop(worker: subprocess.Popen[bytes] = worker, slow: threading.Event = slow) -> None:
+                slow.set()
+                worker.kill()
+
+            timer = threading.Timer(self.seconds + TO_START, stop)
+            timer.daemon = True
+            timer.start()
+            try:
+                foreign_worker.send(worker.stdin, parts)  # type: ignore[arg-type]
+                said, *arrays = foreign_worker.receive(worker.stdout)  # type: ignore[arg-type]
+            except (OSError, EOFError) as error:
+                _end(worker)
+                # one that has read other files before may have been damaged by these
+                if fresh or slow.is_set():
+                    raise self._error(source, {"slow": True} if slow.is_set() else {"died": 0}) from error
+            except BaseException:
+                _end(worker)
+                raise
+            else:
+                self._give_back(worker)
+                found = json.loads(said)
+                if trouble := self._error(source, found):
+                    raise trouble
+                return found, [np.load(BytesIO(part), allow_pickle=False) for part in arrays]
+            finally:
+                timer.cancel()
+
+    def close(self) -> None:
+        """End the processes that wait for files."""
+        with self._lock:
+            waiting = self._idle.pop(os.getpid(), [])
+        for worker in waiting:
+            _end(worker)
+
+    def _taken(self) -> tuple[subprocess.Popen[bytes], bool]:
+        with self._lock:
+            waiting = self._idle.setdefault(os.getpid(), [])
+            if waiting:
+                return waiting.pop(), False
+        # -P: the folder of the worker holds modules of the names of Python's own
+        command = [sys.executable, "-P", foreign_worker.__file__, self.script, str(self.seconds), str(self.memory)]
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OPENBLAS_NUM_THREADS": "1"}
+        quiet = getattr(subprocess, "CREATE_NO_WINDOW", 0)
+        try:
+            made = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment,
+                creationflags=quiet,
+            )  # fmt: skip
+        except OSError as error:
+            raise RecordError(f"no process for {self.needs} can be started: {error}") from error
+        return made, True
+
+    def _give_back(self, worker: subprocess.Popen[bytes]) -> None:
+        with self._lock:
+            waiting = self._idle.setdefault(os.getpid(), [])
+            if len(waiting) < _MOST_IDLE and worker.poll() is None:
+                waiting.append(worker)
+                return
+        _end(worker)
+
+    def _error(self, source: Source, said: dict[str, Any]) -> Exception | None:
+        if "missing" in said:
+            return MissingExtraError(f"{source.name} needs {self.needs}: {self.extra} ({said['missing']})")
+        if "error" in said:
+            return source.error(None, f"{self.needs} cannot read it: {said['message'] or said['error']}"[:200])
+        if "memory" in said:
+            return source.error(None, f"{self.needs} needs more than {self.memory / 2**30:g} GiB for it; damaged?")
+        died = said.get("died")
+        if "slow" in said or died == getattr(signal, "SIGALRM", None):
+            return source.error(None, f"{self.needs} takes more than {self.seconds:g} s for it; damaged?")
+        if died is not None:
+            name = signal.Signals(died).name if died in set(signal.Signals) else "its process ended"
+            return source.error(None, f"{self.needs} crashes on it ({name}): the file is damaged")
+        return None
+
+
+def _end(worker: subprocess.Popen[bytes]) -> None:
+    worker.kill()
+    worker.communicate()

@@ -1,0 +1,86 @@
+"""What ObsPy does with a file, in a process of its own (see `foreign_worker`, which runs this file)."""
+
+import io
+import math
+import warnings
+from typing import Any
+
+import numpy as np
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")
+    import obspy
+
+    # one file of each kind, so that the plugins are loaded before there is a process for each file
+    for _form in ("MSEED", "SAC"):
+        obspy.Trace(np.zeros(8, np.float32)).write(_file := io.BytesIO(), format=_form)
+        _file.seek(0)
+        obspy.read(_file, format=_form)
+    import obspy.io.stationxml.core
+
+
+def answer(request: dict[str, Any], content: bytes, stations: bytes | None = None) -> tuple[dict[str, Any], list[Any]]:
+    """Return the traces of a file, each with the channels of a StationXML file that are its own.
+
+    Parameters
+    ----------
+    request : dict
+        ``format`` by ObsPy's name, and ``options`` of its reader.
+    content : bytes
+        The file.
+    stations : bytes, optional
+        A StationXML file.
+
+    Returns
+    -------
+    tuple of dict and list of ndarray
+        Descriptions of the traces, and their samples.
+    """
+    warnings.simplefilter("error")
+    traces = list(obspy.read(io.BytesIO(content), format=request["format"], **request["options"]))
+    inventory = None
+    if stations is not None:
+        try:
+            inventory = obspy.read_inventory(io.BytesIO(stations), format="STATIONXML")
+        except Exception as error:  # noqa: BLE001 - its layers raise nearly any class
+            return {"stations": str(error)[:120]}, []
+    described = [_described(trace, inventory) for trace in traces]
+    return {"traces": described}, [np.asarray(trace.data) for trace in traces]
+
+
+def _described(trace: Any, inventory: Any) -> dict[str, Any]:
+    stats = trace.stats
+    said = dict(stats.get("sac", {}))
+    return {
+        "id": trace.id,
+        "text": str(trace),
+        "step": float(stats.delta),
+        "about": {key: str(stats[key]) for key in ("network", "station", "channel", "starttime")},
+        "sac": {key: _plain(value) for key, value in said.items()},
+        "header": "\n".join(f"{key} = {said[key]}" for key in sorted(said)),
+        "channels": None if inventory is None else [_channel(one) for one in _channels(trace, inventory)],
+    }
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value if isinstance(value, (int, float)) else str(value)
+
+
+def _channels(trace: Any, inventory: Any) -> list[Any]:
+    stats = trace.stats
+    found = inventory.select(
+        network=stats.network,
+        station=stats.station,
+        location=stats.location,
+        channel=stats.channel,
+        time=stats.starttime,
+    )
+    return [channel for network in found for station in network for channel in station]
+
+
+def _channel(channel: Any) -> dict[str, Any]:
+    total = channel.response and channel.response.instrument_sensitivity
+    return {
+        "rate": float(channel.sample_rate or math.nan),
+        "sensitivity": None if not total else [float(total.value), str(total.input_units), str(total.output_units)],
+    }
