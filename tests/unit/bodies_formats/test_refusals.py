@@ -13,6 +13,7 @@ from rocking.bodies.formats import (
     body_schema,
     geojson,
     read_body,
+    read_solid,
     section_from_geojson,
     section_from_wkt,
     source,
@@ -268,3 +269,25 @@ def test_schema_agrees_with_the_package():
     assert body_schema.UnitName.__args__ == tuple(LENGTH_UNITS)
     assert set(FORMATS) == {".toml", ".wkt", ".geojson", ".json", ".dxf"}
     assert "not interpreted" in geojson.__doc__
+
+
+def test_whatever_a_reader_raises_is_a_refusal(monkeypatch, tmp_path):
+    """Of sections, of meshes and of solids in TOML; the error itself stays chained, so that a bug is seen."""
+    cause = IndexError("list index out of range")
+
+    def broken(*_, **__):
+        raise cause
+
+    monkeypatch.setitem(FORMATS, ".wkt", broken)
+    for name in ("solid_from_mesh", "_toml"):
+        monkeypatch.setattr(f"rocking.bodies.formats.solid_reader.{name}", broken)
+    for reader, name, units in ((read_body, "a.wkt", "m"), (read_solid, "a.stl", "m"), (read_solid, "a.toml", None)):
+        with pytest.raises(BodyFileError, match=rf"{name}: cannot be read \(IndexError: list index") as caught:
+            reader(tmp_path / name, units=units)
+        assert caught.value.__cause__ is cause
+
+
+def test_a_keyword_that_does_not_exist_is_no_damage(tmp_path):
+    """It stays the TypeError of a wrong call."""
+    with pytest.raises(TypeError, match="read_body\\(\\) has no foot"):
+        read_body(tmp_path / "a.wkt", foot=(0.0, 1.0))

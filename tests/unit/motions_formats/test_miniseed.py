@@ -133,6 +133,40 @@ def test_real_numbers_need_a_unit_and_come_back() -> None:
         MiniSeed().write(Record("", given.components[:1] * 2))
 
 
+def test_records_that_state_more_samples_than_they_hold_are_refused() -> None:
+    """A damaged count would make ObsPy read on behind the record: 32537 samples of 300, or a crash."""
+    content = bytearray(recorded(np.sin(np.arange(300.0))).content)
+    assert MiniSeed().read(Source("a", bytes(content)), units="g").components[0].acceleration.size == 300
+    content[30] = 127
+    with pytest.raises(RecordError, match="states 32556 samples, it has room for 505"):
+        MiniSeed().read(Source("a", bytes(content)), units="g")
+
+
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("encoding", ["STEIM1", "STEIM2", "INT32", "INT16", "FLOAT32", "FLOAT64"])
+def test_every_encoding_has_room(encoding: str, order: str) -> None:
+    """The control: what ObsPy writes is read, also where zeros are packed as closely as they can be."""
+    obspy = pytest.importorskip("obspy")
+    kind = {"INT16": np.int16, "FLOAT32": np.float32, "FLOAT64": np.float64}.get(encoding, np.int32)
+    content = BytesIO()
+    obspy.Trace(np.zeros(5000, kind)).write(content, format="MSEED", encoding=encoding, byteorder=order)
+    source = Source("a", content.getvalue())
+    if kind in {np.float32, np.float64}:
+        assert MiniSeed().read(source, units="g").components[0].acceleration.size == 5000
+    else:
+        with pytest.raises(RecordError, match="holds counts"):
+            MiniSeed().read(source)
+
+
+def test_text_is_refused() -> None:
+    """A log in a miniSEED file holds no samples."""
+    obspy = pytest.importorskip("obspy")
+    content = BytesIO()
+    obspy.Trace(np.frombuffer(b"clock locked", dtype="S1")).write(content, format="MSEED", encoding="ASCII")
+    with pytest.raises(RecordError, match="holds text"):
+        MiniSeed().read(Source("a", content.getvalue()), units="g")
+
+
 def test_damaged_files_give_no_other_error() -> None:
     """Files with flipped bits or cut short are refused, or hold finite samples."""
     whole = recorded(np.sin(np.arange(300.0))).content

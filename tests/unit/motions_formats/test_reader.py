@@ -352,3 +352,33 @@ def test_damage_of_any_kind(name: str, data: st.DataObject) -> None:
     if part.stated_peak is not None:
         # half a unit of the last digit of peak (0.001 g) and sample (0.001 g/10), the coarsest of them
         assert abs(part.stated_peak - part.peak) <= {"g/10": 6.1e-3}.get(part.unit, 1.1e-3)
+
+
+@pytest.mark.parametrize("where", ["recognises", "read"])
+def test_whatever_a_reader_raises_is_a_refusal(where: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """File, format and cause are named; the error itself stays chained, so that a bug is seen."""
+    path = _write(tmp_path, COLUMNS)
+    home = type(formats()["columns"])
+    cause = IndexError("list index out of range")
+
+    def broken(*_: object) -> None:
+        raise cause
+
+    monkeypatch.setattr(home, where, broken)
+    words = "while its format was looked for" if where == "recognises" else "as columns"
+    with pytest.raises(RecordError, match=rf"hand\.txt: it cannot be read {words} \(IndexError: list index") as caught:
+        read_record(path, units="g")
+    assert caught.value.__cause__ is cause
+
+
+def test_rows_of_separators_alone_are_no_columns(tmp_path: Path) -> None:
+    """A sheet of another kind, which begins with empty rows: refused by the reader itself, not by the last door."""
+    path = _write(tmp_path, ";;;\n;;;\nGround water:;0.94;m below ground level;\n;;;\n0.01;0.02;0.01;0\n")
+    with pytest.raises(RecordError, match=r"hand\.txt, line 1: 1 to \d columns expected, found 0"):
+        read_record(path, format="columns", units="g")
+
+
+def test_the_sheet_that_is_no_record(shared_records: Path) -> None:
+    """A cone penetration test is refused."""
+    with pytest.raises(RecordError, match="columns expected, found 0"):
+        read_record(shared_records / "refused" / "columns" / "standard_1_pre_v0p5p4.csv", units="g")

@@ -10,7 +10,7 @@ from rocking.bodies.body import DEFAULT_DENSITY, Body
 from rocking.bodies.formats.body_file import LARGEST_TOML, body_from_toml
 from rocking.bodies.formats.dxf import regions_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson
-from rocking.bodies.formats.source import Placement, blamed, read_text
+from rocking.bodies.formats.source import Placement, blamed, read_text, readable
 from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
@@ -95,6 +95,8 @@ def read_body(
         If one of its numbers, or the unit, is outside its range.
     MissingExtraError
         If it is a DXF drawing and ezdxf is not installed.
+    TypeError
+        If there is no such keyword.
 
     Examples
     --------
@@ -112,7 +114,10 @@ def read_body(
     reader = FORMATS.get(path.suffix.lower())
     if reader is None:
         raise BodyFileError(f"{path.name}: the name must end in {', '.join(FORMATS)}")
-    return reader(Request(path, units, density, placement))
+    if unknown := placement.keys() - Placement.__annotations__.keys():
+        raise TypeError(f"read_body() has no {', '.join(sorted(unknown))}")
+    with readable(path):
+        return reader(Request(path, units, density, placement))
 
 
 def _toml(request: Request) -> Body:

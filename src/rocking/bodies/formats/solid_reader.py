@@ -8,7 +8,7 @@ from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.formats.body_file import LARGEST_TOML, parsed_toml
 from rocking.bodies.formats.mesh import MESH_FORMATS, solid_from_mesh
 from rocking.bodies.formats.solid_file import SolidFile, solid_from_toml
-from rocking.bodies.formats.source import blamed, read_text
+from rocking.bodies.formats.source import blamed, read_text, readable
 from rocking.conventions import LENGTH_UNITS
 from rocking.errors import BodyFileError, RockingError
 
@@ -99,24 +99,28 @@ def read_solid(
         given = Path(path)
     except TypeError as error:
         raise BodyFileError(f"a body file is given by its path, got {path!r:.60}") from error
-    kind = given.suffix[1:].lower()
-    if kind == "toml":
-        _refuse(
-            given, {"density": density, "up": up, "fill_holes": fill_holes or None, "base_tolerance": base_tolerance}
+    with readable(given):
+        kind = given.suffix[1:].lower()
+        if kind == "toml":
+            _refuse(
+                given,
+                {"density": density, "up": up, "fill_holes": fill_holes or None, "base_tolerance": base_tolerance},
+            )
+            return _toml(given, units)
+        if kind not in MESH_FORMATS:
+            raise BodyFileError(
+                f"{given.name}: the name of a body in space must end in .toml, .{', .'.join(MESH_FORMATS)}"
+            )
+        said = _by_specification(kind, units, up)
+        solid, repairs = solid_from_mesh(
+            given,
+            DEFAULT_DENSITY if density is None else checks.density("density", density),
+            units=_unit(given, units),
+            up=up or ("y" if kind == "glb" else "z"),
+            fill_holes=fill_holes,
+            base_tolerance=base_tolerance,
         )
-        return _toml(given, units)
-    if kind not in MESH_FORMATS:
-        raise BodyFileError(f"{given.name}: the name of a body in space must end in .toml, .{', .'.join(MESH_FORMATS)}")
-    said = _by_specification(kind, units, up)
-    solid, repairs = solid_from_mesh(
-        given,
-        DEFAULT_DENSITY if density is None else checks.density("density", density),
-        units=_unit(given, units),
-        up=up or ("y" if kind == "glb" else "z"),
-        fill_holes=fill_holes,
-        base_tolerance=base_tolerance,
-    )
-    return SolidFile(solid, (*said, *repairs), given.name)
+        return SolidFile(solid, (*said, *repairs), given.name)
 
 
 def _toml(path: Path, units: str | None) -> SolidFile:

@@ -56,6 +56,43 @@ def blamed(where: str) -> Iterator[None]:
         raise type(error)(f"{where}: {error}") from error
 
 
+@contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """Make a refusal of whatever else a body file provokes; where it came from stays chained.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Yields
+    ------
+    None
+        Nothing.
+
+    Raises
+    ------
+    BodyFileError
+        In place of any error that is not this package's own.
+    RockingError
+        This package's own, as it is.
+
+    Examples
+    --------
+    >>> with readable(Path("drum.ply")):
+    ...     raise IndexError("list index out of range")
+    Traceback (most recent call last):
+    rocking.errors.BodyFileError: drum.ply: cannot be read (IndexError: list index out of range); damaged?
+    """
+    try:
+        yield
+    except RockingError:
+        raise
+    except Exception as error:
+        what = f"{path.name}: cannot be read ({type(error).__name__}: {str(error)[:120]}); damaged?"
+        raise BodyFileError(what) from error
+
+
 def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:
     """Return the path of a regular file of acceptable size.
 

@@ -209,7 +209,7 @@ def _comments(source: Source, most: int | None = None) -> list[str]:
 def _by_place(source: Source, text: ColumnText) -> NamedColumns:
     """Return what columns without names are: a lone acceleration, or a time and one to three of them."""
     line, cells = text.rows[0]
-    if len(cells) > _MOST_COLUMNS:
+    if not 1 <= len(cells) <= _MOST_COLUMNS:
         raise source.error(line, f"1 to {_MOST_COLUMNS} columns expected, found {len(cells)}; which format is it?")
     if len(cells) == 1:
         return NamedColumns(None, (ColumnName(0, "", "acceleration"),), ())

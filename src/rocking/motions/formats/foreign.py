@@ -21,6 +21,7 @@ TO_START = 60.0
 """Time to start and to load the reader, on a busy machine [s]."""
 
 _MOST_IDLE = 2
+_TROUBLE = {"missing", "error", "memory", "died"}
 
 
 class ForeignReader:
@@ -91,15 +92,15 @@ class ForeignReader:
                 _end(worker)
                 # one that has read other files before may have been damaged by these
                 if fresh or slow.is_set():
-                    raise self._error(source, {"slow": True} if slow.is_set() else {"died": 0}) from error
+                    raise self._refusal(source, {"slow": True} if slow.is_set() else {"died": 0}) from error
             except BaseException:
                 _end(worker)
                 raise
             else:
                 self._give_back(worker)
                 found = json.loads(said)
-                if trouble := self._error(source, found):
-                    raise trouble
+                if found.keys() & _TROUBLE:
+                    raise self._refusal(source, found)
                 return found, [np.load(BytesIO(part), allow_pickle=False) for part in arrays]
             finally:
                 timer.cancel()
@@ -117,7 +118,8 @@ class ForeignReader:
             if waiting:
                 return waiting.pop(), False
         # -P: the folder of the worker holds modules of the names of Python's own
-        command = [sys.executable, "-P", foreign_worker.__file__, self.script, str(self.seconds), str(self.memory)]
+        command = [sys.executable, "-P", foreign_worker.__file__, str(self.script)]
+        command += [str(self.seconds), str(self.memory)]
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OPENBLAS_NUM_THREADS": "1"}
         quiet = getattr(subprocess, "CREATE_NO_WINDOW", 0)
         try:
@@ -137,7 +139,7 @@ class ForeignReader:
                 return
         _end(worker)
 
-    def _error(self, source: Source, said: dict[str, Any]) -> Exception | None:
+    def _refusal(self, source: Source, said: dict[str, Any]) -> Exception:
         if "missing" in said:
             return MissingExtraError(f"{source.name} needs {self.needs}: {self.extra} ({said['missing']})")
         if "error" in said:
@@ -147,10 +149,8 @@ class ForeignReader:
         died = said.get("died")
         if "slow" in said or died == getattr(signal, "SIGALRM", None):
             return source.error(None, f"{self.needs} takes more than {self.seconds:g} s for it; damaged?")
-        if died is not None:
-            name = signal.Signals(died).name if died in set(signal.Signals) else "its process ended"
-            return source.error(None, f"{self.needs} crashes on it ({name}): the file is damaged")
-        return None
+        name = signal.Signals(died).name if died in set(signal.Signals) else "its process ended"
+        return source.error(None, f"{self.needs} crashes on it ({name}): the file is damaged")
 
 
 def _end(worker: subprocess.Popen[bytes]) -> None:

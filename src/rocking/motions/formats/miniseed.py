@@ -7,6 +7,7 @@ sensitivity is no longer true. Checked on one channel of the 2019 Ridgecrest ear
 """
 
 import re
+import struct
 from io import BytesIO
 from pathlib import Path
 from typing import Any, ClassVar
@@ -23,6 +24,10 @@ from rocking.motions.formats.source import Source
 
 _ACCELERATION = frozenset({"M/S**2", "M/S/S", "M/(S**2)", "M/S^2"})
 _COUNTS = frozenset({"COUNTS", "COUNT"})
+_ENCODING = 1000
+"""Blockette that says how samples are encoded, and how long a record is (SEED Reference Manual, version 2.4)."""
+_LEAST_BITS = {0: 8.0, 1: 16.0, 2: 24.0, 3: 32.0, 4: 32.0, 5: 64.0, 10: 8.0, 11: 32.0 / 7.0, 19: 8.0}
+"""Least number of bits that a sample takes, by encoding: text, whole numbers, real numbers, Steim 1, 2 and 3."""
 
 
 class MiniSeed(RecordFormat):
@@ -102,6 +107,7 @@ class MiniSeed(RecordFormat):
         """
         if not self.recognises(source):
             raise source.error(None, "no miniSEED file of version 2")
+        _check_room(source)
         traces = read_traces(source, "MSEED", self._stations)
         names = [trace.id for trace in traces]
         if len(set(names)) != len(names):
@@ -140,6 +146,25 @@ class MiniSeed(RecordFormat):
         content = BytesIO()
         stream.write(content, format="MSEED", encoding="FLOAT64")
         return content.getvalue()
+
+
+def _check_room(source: Source) -> None:
+    """Refuse records that state more samples than they have room for: ObsPy reads on in whatever lies behind them."""
+    content, at = source.content, 0
+    while at + 48 <= len(content):
+        order = ">" if 1900 <= struct.unpack_from(">H", content, at + 20)[0] <= 2100 else "<"
+        count, start, blockette = struct.unpack_from(f"{order}H12xHH", content, at + 30)
+        kind = 0
+        while kind != _ENCODING and 48 <= blockette <= len(content) - at - 8:
+            where = at + blockette
+            kind, blockette, encoding, length = struct.unpack_from(f"{order}HHBxB", content, where)
+        if kind != _ENCODING or not 7 <= length <= 20:
+            return
+        bits = _LEAST_BITS.get(encoding, 16.0)
+        most = int(max((1 << length) - start, 0) * 8 / bits)
+        if count > most:
+            raise source.error(None, f"the record at byte {at} states {count} samples, it has room for {most}; damaged")
+        at += 1 << length
 
 
 def _component(source: Source, trace: Trace, units: str | None, asked: float | None) -> Component:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS
-from rocking.errors import InvalidValueError, RecordError
+from rocking.errors import InvalidValueError, RecordError, RockingError
 from rocking.motions.formats.record import Component, Record
 from rocking.motions.formats.record_format import RecordFormat
 from rocking.motions.formats.registry import LAST_RESORT, format_named, formats
@@ -187,8 +187,16 @@ def _read(source: Source, format: str | None, units: str | None, time_step: floa
         raise InvalidValueError(f"units must be one of {', '.join(ACCELERATION_UNITS)}, got {units!r:.60}")
     if time_step is not None:
         time_step = checks.positive("time_step", time_step, "s")
-    chosen = _recognised(source) if format is None else format_named(format)
-    return chosen.read(source, units, time_step)
+    chosen: RecordFormat | None = None
+    try:
+        chosen = _recognised(source) if format is None else format_named(format)
+        return chosen.read(source, units, time_step)
+    except RockingError:
+        raise
+    except Exception as error:  # whatever a file provokes in a reader is a refusal; where it came from stays chained
+        where = "while its format was looked for" if chosen is None else f"as {chosen.name}"
+        what = f"it cannot be read {where} ({type(error).__name__}: {str(error)[:120]}); damaged, or another format?"
+        raise source.error(None, what) from error
 
 
 def _motion(source: Source, record: Record, part: Component) -> GroundMotion:
