@@ -121,7 +121,8 @@ def main(script: str, seconds: float, memory: int) -> None:
     Parameters
     ----------
     script : str
-        File with a function ``answer(request, *files)``, which returns a description and arrays.
+        File with a function ``answer(request, *files)``, which returns a description and arrays, and perhaps one
+        without arguments, ``prepare``, which loads what all files need.
     seconds : float
         Time for a file [s].
     memory : int
@@ -135,7 +136,9 @@ def main(script: str, seconds: float, memory: int) -> None:
         os.dup2(nothing, number)
     missing, answer = "", None
     try:
-        answer = runpy.run_path(script)["answer"]
+        reader = runpy.run_path(script)
+        reader.get("prepare", lambda: None)()
+        answer = reader["answer"]
     except ImportError as error:
         missing = str(error)
     while True:

@@ -3,20 +3,22 @@
 import io
 import math
 import warnings
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")
-    import obspy
 
-    # one file of each kind, so that the plugins are loaded before there is a process for each file
-    for _form in ("MSEED", "SAC"):
-        obspy.Trace(np.zeros(8, np.float32)).write(_file := io.BytesIO(), format=_form)
-        _file.seek(0)
-        obspy.read(_file, format=_form)
-    import obspy.io.stationxml.core
+def prepare() -> None:
+    """Load ObsPy with its plugins, by one file of each kind, before there is a process for each file."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        obspy = import_module("obspy")
+        for form in ("MSEED", "SAC"):
+            obspy.Trace(np.zeros(8, np.float32)).write(file := io.BytesIO(), format=form)
+            file.seek(0)
+            obspy.read(file, format=form)
+        import_module("obspy.io.stationxml.core")
 
 
 def answer(request: dict[str, Any], content: bytes, stations: bytes | None = None) -> tuple[dict[str, Any], list[Any]]:
@@ -36,6 +38,7 @@ def answer(request: dict[str, Any], content: bytes, stations: bytes | None = Non
     tuple of dict and list of ndarray
         Descriptions of the traces, and their samples.
     """
+    obspy = import_module("obspy")
     warnings.simplefilter("error")
     traces = list(obspy.read(io.BytesIO(content), format=request["format"], **request["options"]))
     inventory = None
