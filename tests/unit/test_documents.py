@@ -37,6 +37,18 @@ def test_links_lead_somewhere(page):
         assert (ROOT / target).exists(), target
 
 
+@pytest.mark.parametrize("folder", ["src", "engine", "examples", "benchmarks"])
+def test_cited_documents_are_shipped(folder):
+    """A document that code cites is in the repository, and where it names a section of one, the section is there."""
+    sections = re.findall(r"^## (\d+)\.", (ROOT / "docs/theory.md").read_text(encoding="utf-8"), flags=re.M)
+    for path in [p for p in (ROOT / folder).rglob("*") if p.suffix in {".py", ".hpp", ".cpp"}]:
+        text = path.read_text(encoding="utf-8")
+        for cited in re.findall(r"[\w./-]+\.md\b", text):
+            assert any((place / cited).exists() for place in (ROOT, ROOT / "benchmarks")), (path, cited)
+        for listed in re.findall(r"theory\.md, Sections? ([\d, and]+)", text):
+            assert set(re.findall(r"\d+", listed)) <= set(sections), (path, listed)
+
+
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
 def test_examples_run(path, tmp_path, monkeypatch, capsys):
     """Every example of the gallery runs and its assertions hold."""

@@ -111,7 +111,7 @@ def slices_picture(result: SpatialRestitution, heights: FloatArray, *, divisions
     top = max(float(np.nanmax(field)) for _, field, _ in fields)
     for panel, (height, field, extent) in zip(axes, fields, strict=True):
         image = panel.imshow(field.T, origin="lower", extent=extent, cmap=_COLOURS, vmin=0.0, vmax=top)
-        panel.set_title(f"z = {height:.3g} m", loc="left")
+        panel.set_title(f"{height:.3g} m over the ground", loc="left")
         panel.set_xlabel("x [m]")
     axes[0].set_ylabel("y [m]")
     figure.colorbar(image, ax=axes, label="energy lost [J/m$^3$]", shrink=0.8)
@@ -187,13 +187,17 @@ def _slice(axes: "Axes", impact: SpatialImpact, count: int) -> Any:
     along = impact.onto.direction if isinstance(impact.onto, Edge) else impact.velocity / impact.speed
     across = np.array([along[1], -along[0], 0.0])
     across /= max(float(np.linalg.norm(across)), 1e-300)
-    centre, (low, high) = impact.solid.local_moments.centre, impact.solid.box - impact.solid.origin
+    solid = impact.solid
+    low, high = solid.box
+    top = float(high[2]) - solid.ground
     reach = 0.5 * float(np.linalg.norm((high - low)[:2]))
     share = (np.arange(count) + 0.5) / count
-    s, z = np.meshgrid(reach * (2.0 * share - 1.0), high[2] * share, indexing="ij")
-    points = np.array([centre[0], centre[1], 0.0]) + s[..., None] * across + z[..., None] * np.array([0.0, 0.0, 1.0])
+    s, z = np.meshgrid(reach * (2.0 * share - 1.0), top * share, indexing="ij")
+    points = (
+        np.array([*solid.centre[:2], solid.ground]) + s[..., None] * across + z[..., None] * np.array([0.0, 0.0, 1.0])
+    )
     field = _field(impact, points.reshape(-1, 3)).reshape(count, count)
-    image = axes.imshow(field.T, origin="lower", extent=(-reach, reach, 0.0, float(high[2])), cmap=_COLOURS, vmin=0.0)
+    image = axes.imshow(field.T, origin="lower", extent=(-reach, reach, 0.0, top), cmap=_COLOURS, vmin=0.0)
     axes.set_xlabel("across the axis [m]")
     axes.set_ylabel("height [m]")
     axes.set_title("upright slice through the centre", loc="left")
@@ -201,7 +205,7 @@ def _slice(axes: "Axes", impact: SpatialImpact, count: int) -> Any:
 
 
 def _profile(axes: "Axes", result: SpatialRestitution, count: int) -> None:
-    top = float((result.impact.solid.box - result.impact.solid.origin)[1, 2])
+    top = float(result.impact.solid.box[1, 2]) - result.impact.solid.ground
     heights = top * (np.arange(count) + 0.5) / count
     lost = []
     for height in heights.tolist():
@@ -216,16 +220,16 @@ def _profile(axes: "Axes", result: SpatialRestitution, count: int) -> None:
 
 def _field(impact: SpatialImpact, points: FloatArray) -> FloatArray:
     field = np.full(len(points), np.nan)
-    for part in impact.solid.local_parts:
+    for part in impact.solid.parts:
         held = part.contains(points)
         field[held] = lost_density(impact, part, points[held])
     return field
 
 
 def _level(impact: SpatialImpact, height: float, count: int) -> tuple[FloatArray, tuple[float, float, float, float]]:
-    low, high = impact.solid.box - impact.solid.origin
+    low, high = impact.solid.box
     share = (np.arange(count) + 0.5) / count
     x, y = (low[i] + (high[i] - low[i]) * share for i in range(2))
-    points = np.stack(np.meshgrid(x, y, [height], indexing="ij"), axis=-1).reshape(-1, 3)
+    points = np.stack(np.meshgrid(x, y, [impact.solid.ground + height], indexing="ij"), axis=-1).reshape(-1, 3)
     field = _field(impact, points)
     return field.reshape(count, count), (float(low[0]), float(high[0]), float(low[1]), float(high[1]))

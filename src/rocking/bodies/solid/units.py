@@ -25,7 +25,7 @@ class Units:
     mass : ndarray, shape (n,)
         Mass of each [kg].
     centre : ndarray, shape (n, 3)
-        Where it is lumped, in the body's frame [m].
+        Where it is lumped, in the user's coordinates as `Solid.centre` and `Solid.base` [m].
     part : ndarray of int, shape (n,)
         Part that it belongs to.
     declared_order : int
@@ -77,7 +77,7 @@ def divided(solid: Solid, divisions: int) -> Units:
     numbers = [np.full(len(mass), i) for i, (mass, _, _) in enumerate(pieces)]
     return Units(
         np.concatenate([mass for mass, _, _ in pieces]),
-        np.concatenate([centre for _, centre, _ in pieces]),
+        np.concatenate([centre for _, centre, _ in pieces]) + solid.origin,
         np.concatenate(numbers),
         min(order for _, _, order in pieces),
     )
@@ -106,7 +106,7 @@ def voxels(solid: Solid, divisions: int) -> Units:
     numbers = [np.full(len(mass), i) for i, (mass, _) in enumerate(pieces)]
     return Units(
         np.concatenate([mass for mass, _ in pieces]),
-        np.concatenate([centre for _, centre in pieces]),
+        np.concatenate([centre for _, centre in pieces]) + solid.origin,
         np.concatenate(numbers),
         1,
     )

@@ -34,8 +34,8 @@ class ContactBed:
     friction : BaseFriction, optional
         By default the base cannot slide.
     kinematics : {"exact", "small"}
-        Points of a rigid body at any rotation, or the small-base kinematics of physics.md 3.4, which lets the base
-        line tilt without moving sideways and is meant for a base that sticks.
+        Points of a rigid body at any rotation, or the small-base kinematics of Psycharis and Jennings (1983), which
+        lets the base line tilt without moving sideways and is meant for a base that sticks.
 
     Raises
     ------
@@ -100,7 +100,7 @@ class ContactBed:
         onto : {"left", "right"}
             The new foot.
         rule : {"trapezoid", "ends"}
-            Half a share for the ends of a stretch, as in the table of physics.md 3.4, or equal shares for all points;
+            Half a share for the ends of a stretch, as the trapezoidal rule gives, or equal shares for all points;
             the first converges with the square of the spacing to the continuous bed, the second linearly.
         friction : BaseFriction, optional
             By default the base cannot slide.

@@ -31,7 +31,7 @@ class BaseFriction(ABC):
 
 @dataclass(frozen=True)
 class Sticking(BaseFriction):
-    """The base cannot slide (u = 0 always): the setting of physics.md 1.5 and 3.4."""
+    """The base cannot slide (u = 0 always): the setting of docs/theory.md, Sections 5, 6 and 13."""
 
     @property
     def numbers(self) -> tuple[FrictionKind, float, float]:

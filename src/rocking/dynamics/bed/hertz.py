@@ -8,7 +8,7 @@ from rocking.dynamics.bed.law import ContactLaw, LawKind, LawNumbers
 
 @dataclass(frozen=True)
 class Hertz(ContactLaw):
-    """Hertz contact: F = (4/3) E* sqrt(R) d^1.5 (physics.md 3.4).
+    """Hertz contact: F = (4/3) E* sqrt(R) d^1.5 (Hertz 1882; Johnson, Contact Mechanics, 1985).
 
     Parameters
     ----------

@@ -8,7 +8,9 @@ from rocking.dynamics.bed.law import ContactLaw, LawKind, LawNumbers
 
 @dataclass(frozen=True)
 class HuntCrossley(ContactLaw):
-    """Power-law spring with a damping proportional to its force: F = k d^n (1 + chi d') (physics.md 3.4).
+    """Power-law spring with a damping proportional to its force: F = k d^n (1 + chi d').
+
+    Hunt and Crossley 1975, J. Appl. Mech. 42:440.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from rocking.errors import InvalidValueError
 
 @dataclass(frozen=True)
 class KelvinVoigt(ContactLaw):
-    """Linear spring and dashpot: F = k d + c d' while that is above zero and d > 0 (physics.md 3.4).
+    """Linear spring and dashpot: F = k d + c d' while that is above zero and d > 0.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class KelvinVoigt(ContactLaw):
     def from_layer(
         cls, modulus: float, area: float, thickness: float, *, damping_ratio: float = 0.0, confinement: float = 1.0
     ) -> Self:
-        """Return the law of an elastic layer under the whole base: k = E_eff A / t (physics.md 3.4).
+        """Return the law of an elastic layer under the whole base: k = E_eff A / t (docs/theory.md, Section 13).
 
         Parameters
         ----------

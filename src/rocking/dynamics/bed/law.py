@@ -77,7 +77,7 @@ def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatA
 
     Kelvin-Voigt ``F = max(0, k d + c d')``, Hunt-Crossley ``F = k d^n max(0, 1 + chi d')``, plastic unloading
     ``F = max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0.
-    physics.md 3.4; Walton and Braun (1986) for the unloading branch.
+    docs/theory.md, Section 13; Walton and Braun (1986) for the unloading branch.
 
     Parameters
     ----------

@@ -11,8 +11,8 @@ class PlasticUnloading(ContactLaw):
     """Linear loading, steeper unloading: k while new ground is pressed, k / e^2 on the way back and in again.
 
     A point that drops alone comes back with the velocity ratio e; each point keeps its own greatest depth. With
-    e = 0 nothing comes back (the plastic Winkler bed of physics.md 1.5), which only an impulsive impact can use: a
-    load that stays would make the contact chatter.
+    e = 0 nothing comes back (the plastic Winkler bed of docs/theory.md, Section 6), which only an impulsive impact can
+    use: a load that stays would make the contact chatter.
 
     Parameters
     ----------

@@ -24,12 +24,15 @@ class UnitEnergies:
         The units.
     before, level, left : ndarray, shape (n,)
         Energy before the impact, after stage 1 and after stage 2 [J].
+    ground : float
+        Height of the ground [m].
     """
 
     units: Units
     before: FloatArray
     level: FloatArray
     left: FloatArray
+    ground: float
 
     @property
     def lost(self) -> FloatArray:
@@ -65,7 +68,7 @@ class UnitEnergies:
         InvalidValueError
             If there is no layer.
         """
-        heights = self.units.centre[:, 2]
+        heights = self.units.centre[:, 2] - self.ground
         top = float(heights.max()) * (1.0 + 1e-12) if height is None else checks.positive("height", height, "m")
         if count < 1:
             raise InvalidValueError(f"count must be at least 1, got {count!r}")
@@ -101,10 +104,9 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
     """
     impact = result.impact if isinstance(result, SpatialRestitution) else result
     pieces = divided(impact.solid, units) if isinstance(units, int) else units
-    before, level, left = (
-        0.5 * pieces.mass * np.einsum("nd,nd->n", field, field) for field in stage_velocities(impact, pieces.centre)
-    )
-    return UnitEnergies(pieces, before, level, left)
+    fields = stage_velocities(impact, pieces.centre - impact.solid.origin)
+    before, level, left = (0.5 * pieces.mass * np.einsum("nd,nd->n", field, field) for field in fields)
+    return UnitEnergies(pieces, before, level, left, impact.solid.ground)
 
 
 def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> FloatArray:
@@ -117,14 +119,14 @@ def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> Float
     part : Part
         Gives the density of mass.
     points : ndarray, shape (n, 3)
-        Points in the body's frame [m].
+        Points in the user's coordinates [m].
 
     Returns
     -------
     ndarray, shape (n,)
         Energy lost [J/m3].
     """
-    before, _, left = stage_velocities(impact, checks.real_array("points", points, "m"))
+    before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - impact.solid.origin)
     density: FloatArray = (
         0.5 * part.density * (np.einsum("nd,nd->n", before, before) - np.einsum("nd,nd->n", left, left))
     )
