@@ -15,7 +15,7 @@ flat = rk.Block(width=2.0, height=1.0)
 print(outside_evidence(flat))
 assert "extrapolation" in outside_evidence(flat)
 
-rows = rk.evidence.coefficient_table(statue)
+tables = {foot: rk.evidence.coefficient_table(statue, onto=foot) for foot in ("left", "right")}
 folder = Path("gallery-output")
 folder.mkdir(exist_ok=True)
-write(coefficient_picture(statue, rows), folder / "statue.png")
+write(coefficient_picture(statue, tables), folder / "statue.png")

@@ -98,8 +98,7 @@ def draw(answer: ImpactAnswer, path: Path) -> None:
     """
     from rocking.plots import coefficient_picture, write
 
-    foot, rows = next(reversed(answer.tables.items()))
-    write(coefficient_picture(answer.body, rows, onto=foot), path)
+    write(coefficient_picture(answer.body, answer.tables), path)
 
 
 def draw_stages(answer: ImpactAnswer, path: Path) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rocking.bodies import Body
-from rocking.conventions import Foot, opposite
+from rocking.conventions import Foot
 from rocking.evidence.calibration import CALIBRATED_RANGE, calibrate, interval_for
 from rocking.restitution import Implication, RestitutionModel, implied, model, models
 
@@ -134,7 +134,7 @@ def outside_evidence(body: Body, onto: Foot = "right") -> str:
         A sentence, or nothing if the body lies inside.
     """
     low, high = CALIBRATED_RANGE
-    ratio = body.side(opposite(onto)).slenderness_ratio
+    ratio = body.side(onto).slenderness_ratio
     if low <= ratio <= high:
         return ""
     return f"h/b = {ratio:.3g} is outside the measured range {low:g} to {high:g}: the interval is an extrapolation"

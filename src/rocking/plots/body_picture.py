@@ -1,12 +1,12 @@
 """A body, and its coefficient against the published measurements: the picture of `rocking cor`."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rocking.bodies import Body
-from rocking.conventions import Foot, opposite
+from rocking.conventions import Foot
 from rocking.evidence.calibration import calibrate
 from rocking.evidence.coefficient_table import CALIBRATED, CoefficientRow
 from rocking.evidence.measurements import GROUPS, datasets
@@ -40,54 +40,69 @@ def body_picture(body: Body) -> "Figure":
 
 
 @in_journal_style
-def coefficient_picture(body: Body, rows: Sequence[CoefficientRow], *, onto: Foot = "right") -> "Figure":
-    """Draw a body, its coefficient under every model, and where it lies among the measurements.
+def coefficient_picture(body: Body, tables: Mapping[Foot, Sequence[CoefficientRow]]) -> "Figure":
+    """Draw a body, its coefficient under every model, and where each foot's slenderness lies among the measurements.
 
     Parameters
     ----------
     body : Body
         The body.
-    rows : sequence of CoefficientRow
-        Its coefficients.
-    onto : {"left", "right"}
-        The foot on which it lands.
+    tables : dict of {"left", "right"} to sequence of CoefficientRow
+        Its coefficients by the foot on which it lands: one table of a symmetric body, two of another.
 
     Returns
     -------
     matplotlib.figure.Figure
         Three panels.
     """
-    figure, axes = new_figure(DOUBLE, 2.9, columns=3, width_ratios=[0.75, 1.0, 1.15])
+    figure, axes = new_figure(DOUBLE, 2.9 if len(tables) == 1 else 3.4, columns=3, width_ratios=[0.75, 1.0, 1.15])
     _body(axes[0], body)
-    _rows(axes[1], rows, onto)
-    ratio = body.side(opposite(onto)).slenderness_ratio
-    low, high = min(1.2, 0.9 * ratio), max(10.5, 1.08 * ratio)
+    _rows(axes[1], tables)
+    ratios = {foot: body.side(foot).slenderness_ratio for foot in tables}
+    low, high = min(1.2, 0.9 * min(ratios.values())), max(10.5, 1.08 * max(ratios.values()))
     band(axes[2], calibrate(), low, high)
     for group in GROUPS:
         points(axes[2], datasets()[group], group)
-    for row in rows:
-        axes[2].plot([ratio], [row.coefficient], marker="D", markersize=4, linestyle="none", color=_color(row))
+    markers = _markers(tables)
+    for foot, rows in tables.items():
+        for row in rows:
+            axes[2].plot([ratios[foot]], [row.coefficient], markers[foot], markersize=4, color=_color(row))
     slenderness_axis(axes[2])
     axes[2].set_ylabel("coefficient of restitution r [-]")
-    axes[2].set_title("diamonds: this body", loc="left")
+    axes[2].set_title("diamonds: this body" if len(tables) == 1 else "triangles: this body's feet", loc="left")
     axes[2].legend(loc="lower right")
     return figure
 
 
-def _rows(axes: "Axes", rows: Sequence[CoefficientRow], onto: Foot) -> None:
-    place = np.arange(len(rows))[::-1]
-    for y, row in zip(place.tolist(), rows, strict=True):
-        axes.plot([row.low, row.high], [y, y], color=_color(row), linewidth=1.2)
-        axes.plot([row.coefficient], [y], marker="D", markersize=4, color=_color(row))
-        axes.annotate(
-            f"{row.coefficient:.3f}", (row.coefficient, y), (0, 4), textcoords="offset points", ha="center", fontsize=6
-        )
+def _markers(tables: Mapping[Foot, Sequence[CoefficientRow]]) -> dict[Foot, str]:
+    return {"left": "<", "right": ">"} if len(tables) > 1 else dict.fromkeys(tables, "D")
+
+
+def _rows(axes: "Axes", tables: Mapping[Foot, Sequence[CoefficientRow]]) -> None:
+    markers, rows = _markers(tables), next(iter(tables.values()))
+    place, apart = np.arange(len(rows))[::-1], 0.6 / len(tables)
+    for i, (foot, found) in enumerate(tables.items()):
+        for y, row in zip((place + apart * (0.5 * (len(tables) - 1) - i)).tolist(), found, strict=True):
+            axes.plot([row.low, row.high], [y, y], color=_color(row), linewidth=1.2)
+            axes.plot([row.coefficient], [y], marker=markers[foot], markersize=4, color=_color(row))
+            # over the marker where there is room, else behind the interval
+            place_of, shift, ha, va = (
+                (row.coefficient, (0, 4), "center", "bottom")
+                if len(tables) == 1
+                else (row.high, (3, 0), "left", "center")
+            )
+            axes.annotate(
+                f"{row.coefficient:.3f}", (place_of, y), shift, textcoords="offset points", ha=ha, va=va, fontsize=6
+            )
+    axes.margins(x=0.05 if len(tables) == 1 else 0.12)
     axes.set_yticks(place, [row.name.replace(":", "\n") for row in rows], fontsize=6)
     axes.set_ylim(-0.6, len(rows) - 0.3)
     axes.grid(axis="y", color=PALE, linewidth=0.5)
     axes.tick_params(axis="y", length=0)
     axes.set_xlabel("coefficient of restitution r [-]")
-    axes.set_title(f"onto the {onto} foot, 95 % interval", loc="left")
+    both = "onto the left foot (\N{BLACK LEFT-POINTING TRIANGLE}) and right foot (\N{BLACK RIGHT-POINTING TRIANGLE})"
+    alone = f"onto the {next(iter(tables))} foot, 95 % interval"
+    axes.set_title(alone if len(tables) == 1 else f"{both},\n95 % intervals", loc="left")
 
 
 def _color(row: CoefficientRow) -> str:

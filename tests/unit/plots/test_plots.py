@@ -79,8 +79,30 @@ def test_bodies_of_any_kind_are_drawn(body, tmp_path):
     low, high = figure.axes[0].get_xlim()
     assert low < body.feet[0] < body.feet[1] < high
     assert write(figure, tmp_path / "body.png").stat().st_size > 5000
-    table = coefficient_picture(body, coefficient_table(body, onto="left"), onto="left")
+    table = coefficient_picture(body, {"left": coefficient_table(body, onto="left")})
     assert write(table, tmp_path / "table.pdf").read_bytes().startswith(b"%PDF")
+
+
+def drawn_at(axes, rows, marker):
+    """Places of the markers of one kind whose height is a coefficient of these rows."""
+    values = [row.coefficient for row in rows]
+    lines = [line for line in axes.lines if line.get_marker() == marker and len(line.get_xdata()) == 1]
+    return [x for line in lines for x, y in zip(line.get_xdata(), line.get_ydata(), strict=True) if y in values]
+
+
+def test_each_foot_at_its_own_slenderness():
+    """Coefficients onto a foot stand over h/b of that foot, 3 and 1.5 for this triangle, and say which foot it is."""
+    body = Section.from_points([(0.0, 0.0), (1.0, 0.0), (0.0, 3.0)])
+    tables = {foot: coefficient_table(body, onto=foot) for foot in ("left", "right")}
+    figure = coefficient_picture(body, tables)
+    left, right = (drawn_at(figure.axes[2], tables[f], m) for f, m in (("left", "<"), ("right", ">")))
+    assert left == pytest.approx([3.0] * len(tables["left"]))
+    assert right == pytest.approx([1.5] * len(tables["right"]))
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert all(word in " ".join(titles[1:]) for word in ("left foot", "right foot"))
+    alone = coefficient_picture(body, {"right": tables["right"]})
+    assert drawn_at(alone.axes[2], tables["right"], "D") == pytest.approx([1.5] * len(tables["right"]))
+    assert "onto the right foot" in alone.axes[1].get_title(loc="left")
 
 
 def test_files_come_out_the_same(tmp_path):

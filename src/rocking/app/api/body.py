@@ -15,7 +15,7 @@ from rocking.app.schemas.inputs import BodyAsked
 from rocking.app.work import heavy
 from rocking.bodies import Body
 from rocking.bodies.formats.body_schema import UnitName
-from rocking.conventions import FEET, g, opposite
+from rocking.conventions import FEET, g
 from rocking.evidence.coefficient_table import outside_evidence
 from rocking.report.facts.body import body_facts, outline_facts
 
@@ -105,7 +105,7 @@ def described(body: Body, gravity: float, name: str | None) -> dict[str, Any]:
     dict
         Facts, outline and warnings.
     """
-    found = [outside_evidence(body, opposite(foot)) for foot in FEET]
+    found = [outside_evidence(body, foot) for foot in FEET]
     warnings = list(dict.fromkeys(sentence for sentence in found if sentence))
     return {"name": name, **body_facts(body, gravity), **outline_facts(body), "warnings": warnings}
 

@@ -92,8 +92,8 @@ def figure_of(what: str, asked: Asked, restitution: int | None = None) -> "Figur
     if what == "response":
         return _responses(asked, restitution)
     if what == "coefficients":
-        rows = asked.impact.tables[asked.foot]
-        return in_words(coefficient_picture(asked.body, rows, onto=asked.foot), [row.name for row in rows])
+        tables = asked.impact.tables
+        return in_words(coefficient_picture(asked.body, tables), [row.name for row in tables[asked.foot]])
     if what == "stages":
         return figure_2(asked.body, onto=asked.foot)
     return body_picture(asked.body)
