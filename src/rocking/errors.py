@@ -1,5 +1,18 @@
 """One family of errors: everything this package refuses is a `RockingError`."""
 
+_EXTRAS = {
+    "matplotlib": "plots",
+    "jinja2": "report",
+    "typst": "report",
+    "ezdxf": "dxf",
+    "obspy": "obspy",
+    "trimesh": "mesh",
+    "openpyxl": "excel",
+    "pyarrow": "parquet",
+    "distributed": "dask",
+    "fastapi": "web",
+}
+
 
 class RockingError(Exception):
     """Base of every error that this package raises on purpose."""
@@ -39,3 +52,30 @@ class PureRockingWarning(UserWarning):
 
 class SlowEngineWarning(UserWarning):
     """The fast engine was not built, and the reference engine serves in its place."""
+
+
+def how_to_install(what: str, module: str, error: ImportError) -> str:
+    """Say what is missing and how to install it, for a `MissingExtraError`.
+
+    Parameters
+    ----------
+    what : str
+        What was asked for.
+    module : str
+        The optional dependency that it takes.
+    error : ImportError
+        Why that cannot be imported; it may itself miss another package.
+
+    Returns
+    -------
+    str
+        One sentence.
+
+    Examples
+    --------
+    >>> how_to_install("a table", "xarray", ImportError(name="pandas"))
+    "a table needs pandas: pip install '.[data]' in the folder of rocking's source"
+    """
+    package = module.partition(".")[0]
+    missing = (error.name or package).partition(".")[0]
+    return f"{what} needs {missing}: pip install '.[{_EXTRAS.get(package, 'data')}]' in the folder of rocking's source"

@@ -168,7 +168,7 @@ class MapAnswer:
             return self.found
         from rocking.dynamics.export import extra
 
-        xarray = extra("xarray", "several maps")
+        xarray = extra("xarray", "a file of several maps")
         maps = self.compared.datasets
         over = xarray.DataArray(list(maps), dims="restitution", name="restitution")
         made: xr.Dataset = xarray.concat(list(maps.values()), over, combine_attrs="drop_conflicts")

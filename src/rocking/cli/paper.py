@@ -1,5 +1,6 @@
 """`rocking paper`: Mao et al. 2024, recomputed from the published measurements, with a verdict on each claim."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -26,7 +27,9 @@ def paper(
     from rocking.report.folder import write_folder
 
     with paper_output.progress(quiet=as_json) as step:
-        written = write_folder(result, out, step)
+        written, left_out = write_folder(result, out, step)
+    for sentence in left_out:
+        print(f"rocking: note: {sentence}", file=sys.stderr)
     if not as_json:
         paper_output.what_to_look_at(result, written, out)
         paper_output.show(result)

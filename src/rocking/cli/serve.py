@@ -36,7 +36,7 @@ def serve(
 
 
 def _serve(settings: "Settings", port: int | None, *, quiet: bool, as_json: bool) -> None:
-    from rocking.errors import MissingExtraError
+    from rocking.errors import MissingExtraError, how_to_install
 
     try:
         from rocking.app.folder import FolderInUseError
@@ -44,7 +44,7 @@ def _serve(settings: "Settings", port: int | None, *, quiet: bool, as_json: bool
     except ImportError as error:
         if isinstance(error, MissingExtraError) or (error.name or "rocking").startswith("rocking"):
             raise
-        raise MissingExtraError(f"the application needs {error.name}: pip install 'rocking[web]'") from error
+        raise MissingExtraError(how_to_install("the application", "fastapi", error)) from error
 
     def started(server: "Started") -> None:
         _show(server, as_json=as_json)

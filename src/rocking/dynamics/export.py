@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking.dynamics.exported import Exported, Quantity
 from rocking.dynamics.samples import columns, provenance
-from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.errors import InvalidValueError, MissingExtraError, how_to_install
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,8 +29,6 @@ __all__ = [
     "to_netcdf",
     "to_xarray",
 ]
-
-_EXTRAS = {"openpyxl": "excel", "pyarrow": "parquet", "distributed": "dask"}
 
 
 def extra(module: str, what: str) -> ModuleType:
@@ -56,8 +54,7 @@ def extra(module: str, what: str) -> ModuleType:
     try:
         return import_module(module)
     except ImportError as error:
-        name = _EXTRAS.get(module.partition(".")[0], "data")
-        raise MissingExtraError(f"{what} needs {module}: pip install rocking[{name}]") from error
+        raise MissingExtraError(how_to_install(what, module, error)) from error
 
 
 def software() -> str:

@@ -8,7 +8,7 @@ from rocking.evidence.agreement import rmse
 from rocking.evidence.claim import HOLDS, IN_PART, UNTESTABLE, Claim, truth
 from rocking.evidence.errata import closer_rows
 from rocking.restitution import HorizontalMomentum
-from rocking.studies.impact_laboratory.large_bodies import large_bodies_study
+from rocking.studies.impact_laboratory.large_bodies import large_bodies
 
 
 def _outperforms() -> Claim:
@@ -31,8 +31,8 @@ def _outperforms() -> Claim:
 
 
 def _large_bodies() -> Claim:
-    found = large_bodies_study([0.1, 10.0])
-    flat, hollow, ked = ([float(value) for value in found[name].values] for name in ("flat", "hollow", "ked"))
+    found = large_bodies([0.1, 10.0])
+    flat, hollow, ked = (found[name].tolist() for name in ("flat", "hollow", "ked"))
     return Claim(
         "3.2, 4",
         "the model adapts better to large components and can be applied to them in engineering",

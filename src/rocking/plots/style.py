@@ -6,7 +6,7 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
-from rocking.errors import MissingExtraError, RockingError
+from rocking.errors import MissingExtraError, RockingError, how_to_install
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -88,7 +88,7 @@ def _style() -> AbstractContextManager[None]:
     try:
         from matplotlib import rc_context
     except ImportError as error:
-        raise MissingExtraError("pictures need matplotlib: pip install 'rocking[plots]'") from error
+        raise MissingExtraError(how_to_install("drawing", "matplotlib", error)) from error
     return rc_context(_SETTINGS)
 
 

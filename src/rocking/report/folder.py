@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from rocking.errors import RockingError
+from rocking.errors import MissingExtraError, RockingError
 from rocking.report.document import Document, Table
 from rocking.report.html import render_html
 from rocking.report.paper_document import paper_document
@@ -17,7 +17,7 @@ from rocking.report.reproduction import Reproduction
 Step = Callable[[str], None]
 
 
-def write_folder(result: Reproduction, folder: Path, step: Step) -> list[Path]:
+def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[Path], list[str]]:
     """Write report, tables, figures and numbers.
 
     Parameters
@@ -31,8 +31,10 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> list[Path]:
 
     Returns
     -------
-    list of Path
+    written : list of Path
         The files to look at: report.html, report.pdf, results.json.
+    left_out : list of str
+        What was not written, because an optional package is missing, and how to install it.
 
     Raises
     ------
@@ -45,18 +47,27 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> list[Path]:
             each.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RockingError(f"cannot write to {folder}: {error.strerror}") from error
-    _draw(result, pictures, step)
+    written: list[Path] = []
+    left_out: list[str] = []
+    try:
+        _draw(result, pictures, step)
+    except MissingExtraError as error:
+        left_out.append(f"no figures, and no report.html and report.pdf, which show them: {error}")
     document = paper_document(result)
     step("tables")
     for table in document.tables:
         _write_table(table, tables / f"{table.stem}.csv")
-    html, pdf, numbers = (folder / name for name in ("report.html", "report.pdf", "results.json"))
-    step("HTML report")
-    html.write_text(render_html(document, pictures), encoding="utf-8")
-    step("PDF report")
-    render_pdf(document, pictures, pdf)
+    reports = {"report.html": _write_html, "report.pdf": render_pdf}
+    for name, write in reports.items() if not left_out else []:
+        step(name)
+        try:
+            write(document, pictures, folder / name)
+            written.append(folder / name)
+        except MissingExtraError as error:
+            left_out.append(f"no {name}: {error}")
+    numbers = folder / "results.json"
     numbers.write_text(json.dumps(as_plain(result, document), indent=2), encoding="utf-8")
-    return [html, pdf, numbers]
+    return [*written, numbers], left_out
 
 
 def steps() -> int:
@@ -125,6 +136,10 @@ def as_plain(result: Reproduction, document: Document | None = None) -> dict[str
         },
         "provenance": document.provenance if document else made_with(),
     }
+
+
+def _write_html(document: Document, pictures: Path, path: Path) -> None:
+    path.write_text(render_html(document, pictures), encoding="utf-8")
 
 
 def _draw(result: Reproduction, folder: Path, step: Step) -> None:

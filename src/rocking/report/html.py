@@ -3,7 +3,7 @@
 from importlib.resources import files
 from pathlib import Path
 
-from rocking.errors import MissingExtraError
+from rocking.errors import MissingExtraError, how_to_install
 from rocking.report import document
 from rocking.report.document import Document
 
@@ -31,7 +31,7 @@ def render_html(content: Document, pictures: Path) -> str:
     try:
         import jinja2
     except ImportError as error:
-        raise MissingExtraError("the HTML report needs jinja2: pip install 'rocking[report]'") from error
+        raise MissingExtraError(how_to_install("the HTML report", "jinja2", error)) from error
     template = files("rocking.report").joinpath("report.html.jinja").read_text(encoding="utf-8")
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True

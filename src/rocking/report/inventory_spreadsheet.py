@@ -4,7 +4,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from rocking.errors import MissingExtraError
+from rocking.errors import MissingExtraError, how_to_install
 from rocking.studies.inventory.table import HEADER, rows
 from rocking.studies.inventory.verdict import Assessment
 from rocking.studies.inventory.words import LIMITS
@@ -55,7 +55,7 @@ def _openpyxl() -> Any:
         import_module("openpyxl.styles")
         return import_module("openpyxl")
     except ImportError as error:
-        raise MissingExtraError("the spreadsheet needs openpyxl: pip install 'rocking[excel]'") from error
+        raise MissingExtraError(how_to_install("the spreadsheet", "openpyxl", error)) from error
 
 
 def _fill(sheet: Any, lines: list[list[Any]]) -> None:

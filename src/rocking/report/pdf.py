@@ -4,7 +4,7 @@ import json
 from importlib.resources import files
 from pathlib import Path
 
-from rocking.errors import MissingExtraError
+from rocking.errors import MissingExtraError, how_to_install
 from rocking.report.document import Document, Paragraph, Picture, Section, Table
 
 
@@ -28,7 +28,7 @@ def render_pdf(content: Document, pictures: Path, path: Path) -> None:
     try:
         import typst
     except ImportError as error:
-        raise MissingExtraError("the PDF report needs typst: pip install 'rocking[report]'") from error
+        raise MissingExtraError(how_to_install("the PDF report", "typst", error)) from error
     source = pictures / "report.typ"
     template = files("rocking.report").joinpath("report.typ").read_text(encoding="utf-8")
     source.write_text(template, encoding="utf-8")

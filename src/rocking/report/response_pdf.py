@@ -6,7 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from rocking.errors import MissingExtraError
+from rocking.errors import MissingExtraError, how_to_install
 from rocking.report.response_blocks import Pages
 
 
@@ -33,7 +33,7 @@ def response_pdf(pages: Pages, pictures: Mapping[str, bytes]) -> bytes:
     try:
         import typst
     except ImportError as error:
-        raise MissingExtraError("the PDF report needs typst: pip install 'rocking[report]'") from error
+        raise MissingExtraError(how_to_install("the PDF report", "typst", error)) from error
     with TemporaryDirectory(prefix="rocking-report-") as made:
         folder = Path(made)
         for stem, data in pictures.items():

@@ -157,4 +157,4 @@ def test_missing_extra_is_a_sentence(
     with pytest.raises(SystemExit) as left:
         main(["serve", "--data", str(tmp_path), "--no-browser"])
     assert left.value.code == 2
-    assert "pip install 'rocking[web]'" in capsys.readouterr().err
+    assert "pip install '.[web]'" in capsys.readouterr().err

@@ -206,7 +206,7 @@ def test_missing_extras(missing: str, write: str, what: str, tmp_path: Path, mon
     """Without the optional package the error names it and how to get it; files that do not need it are written."""
     monkeypatch.setitem(sys.modules, missing, None)
     arguments = [tmp_path / "out"] if write == "to_netcdf" else []
-    with pytest.raises(MissingExtraError, match=rf"{what} needs {missing}: pip install rocking\[data\]"):
+    with pytest.raises(MissingExtraError, match=rf"{what} needs {missing}: pip install '\.\[data\]'"):
         getattr(RESPONSES["free"], write)(*arguments)
     assert not list(tmp_path.iterdir())
     assert RESPONSES["free"].to_csv(tmp_path / "out.csv").stat().st_size > 1000

@@ -1,5 +1,12 @@
 """Reports: text is text, nothing is fetched, both renderers take any content."""
 
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from rocking.plots import figure_3
+from rocking.report import folder
 from rocking.report.document import Document, Paragraph, Picture, Section, Table, cell
 from rocking.report.html import render_html
 from rocking.report.pdf import render_pdf
@@ -47,3 +54,43 @@ def test_pdf_takes_any_words(tmp_path):
 def test_tables_of_a_document():
     """Tables with a file name are those that are written."""
     assert [table.stem for table in document().tables] == ["t"]
+
+
+@pytest.mark.parametrize(
+    ("missing", "kept", "said"),
+    [
+        ("typst", ["report.html", "results.json"], "no report.pdf: the PDF report needs typst"),
+        ("jinja2", ["report.pdf", "results.json"], "no report.html: the HTML report needs jinja2"),
+        ("matplotlib", ["results.json"], "no figures, and no report.html and report.pdf"),
+    ],
+)
+def test_a_missing_package_costs_its_part_alone(missing, kept, said, tmp_path, monkeypatch):
+    """Without an optional package the folder of `rocking paper` has everything else, and says what it has not."""
+    for stem in ("one", "two"):
+        (tmp_path / f"{stem}.svg").write_text(SVG, encoding="utf-8")
+    monkeypatch.setattr(folder, "paper_document", lambda _: document())
+    monkeypatch.setattr(folder, "as_plain", lambda *_: {})
+    monkeypatch.setattr(folder, "render_html", lambda content, _: render_html(content, tmp_path))
+    monkeypatch.setattr(folder, "render_pdf", lambda content, _, path: render_pdf(content, tmp_path, path))
+    figures = SimpleNamespace(paper_figures=dict)
+    monkeypatch.setitem(sys.modules, "rocking.plots.paper", figures)
+    monkeypatch.setitem(sys.modules, missing, None)
+    if missing == "matplotlib":
+        figures.paper_figures = lambda: {"three": lambda *_: figure_3()}
+    result = SimpleNamespace(league=None, calibration=None)
+    written, left_out = folder.write_folder(result, tmp_path / "out", lambda _: None)
+    assert [path.name for path in written] == kept
+    assert all(path.is_file() for path in written)
+    assert len(left_out) == 1
+    assert said in left_out[0]
+    assert "pip install '.[" in left_out[0]
+
+
+def test_claims_need_no_labelled_arrays(monkeypatch):
+    """Without xarray every claim is judged: `rocking paper` loses nothing, not even the claim on large bodies."""
+    from rocking.evidence.claims_of_conclusions import JUDGES
+
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "xarray", None)
+        judged = [judge() for judge in JUDGES]
+    assert any("adapts better to large components" in claim.quote for claim in judged)

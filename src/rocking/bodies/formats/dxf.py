@@ -18,7 +18,7 @@ from rocking.bodies.formats.words import suggestion
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.conventions import LENGTH_UNITS, FloatArray
-from rocking.errors import BodyFileError, MissingExtraError
+from rocking.errors import BodyFileError, MissingExtraError, how_to_install
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -154,7 +154,7 @@ def _opened(path: Path) -> "Drawing":
     try:
         from ezdxf.filemanagement import readfile
     except ImportError as error:
-        raise MissingExtraError("reading DXF needs ezdxf: pip install rocking[dxf]") from error
+        raise MissingExtraError(how_to_install("reading DXF", "ezdxf", error)) from error
     try:
         return readfile(str(checked_file(path)))
     except BodyFileError:

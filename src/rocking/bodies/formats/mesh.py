@@ -17,7 +17,7 @@ from rocking.bodies.solid.polyhedron import Polyhedron
 from rocking.bodies.solid.repair import repaired
 from rocking.bodies.solid.solid import Solid
 from rocking.conventions import FloatArray, IntArray
-from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError
+from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError, how_to_install
 
 MESH_FORMATS = ("stl", "obj", "ply", "glb")
 """Formats that are read, by the end of the file's name."""
@@ -195,7 +195,7 @@ def _loaded(content: bytes, kind: str) -> tuple[FloatArray, IntArray]:
     try:
         import trimesh
     except ImportError as error:
-        raise MissingExtraError("reading meshes needs trimesh: pip install 'rocking[mesh]'") from error
+        raise MissingExtraError(how_to_install("reading meshes", "trimesh", error)) from error
     _check_stated(content, kind)
     try:
         # from memory and without a resolver: no other file is opened, whatever this one names

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from rocking.errors import MissingExtraError, RecordError
+from rocking.errors import MissingExtraError, RecordError, how_to_install
 from rocking.motions.formats import agreement, units_and_steps
 from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.record import Component, Record
@@ -251,7 +251,7 @@ def need_obspy(form: str) -> Any:
             warnings.simplefilter("ignore")
             return import_module("obspy")
     except ImportError as error:
-        raise MissingExtraError(f"{form} files need ObsPy: pip install rocking[obspy]") from error
+        raise MissingExtraError(how_to_install(f"reading {form}", "obspy", error)) from error
 
 
 def trace_of(values: Any, part: Component, record: Record) -> Any:

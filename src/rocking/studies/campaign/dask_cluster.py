@@ -9,7 +9,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
-from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.errors import InvalidValueError, MissingExtraError, how_to_install
 from rocking.studies.campaign.chunks import Chunk
 from rocking.studies.campaign.errors import CampaignWorkerError
 from rocking.studies.campaign.executors import Done, Executor, Job, cannot_be_sent, whole
@@ -162,4 +162,4 @@ def _distributed() -> ModuleType:
     try:
         return import_module("distributed")
     except ImportError as error:
-        raise MissingExtraError("a campaign on a Dask cluster needs distributed: pip install rocking[dask]") from error
+        raise MissingExtraError(how_to_install("a campaign on a Dask cluster", "distributed", error)) from error

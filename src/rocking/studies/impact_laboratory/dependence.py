@@ -134,7 +134,7 @@ def mass_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryS
     LaboratoryStudy
         As `study`.
     """
-    return study("density", "kg/m3", values, lambda lab, x: lab.but(density=x), _layered(laboratory))
+    return study("density", "kg/m3", values, lambda lab, x: lab.but(density=x), layered(laboratory))
 
 
 def size_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
@@ -152,7 +152,7 @@ def size_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryS
     LaboratoryStudy
         As `study`.
     """
-    return study("width", "m", values, lambda lab, x: lab.but(width=x), _layered(laboratory))
+    return study("width", "m", values, lambda lab, x: lab.but(width=x), layered(laboratory))
 
 
 def velocity_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
@@ -262,6 +262,18 @@ def whole(name: str, value: Any, least: int) -> int:
     return int(result)
 
 
-def _layered(laboratory: Laboratory | None) -> Laboratory:
+def layered(laboratory: Laboratory | None) -> Laboratory:
+    """Return a laboratory whose bed is a layer.
+
+    Parameters
+    ----------
+    laboratory : Laboratory, optional
+        Without a layer of its own one of 1e9 Pa/m is taken.
+
+    Returns
+    -------
+    Laboratory
+        The laboratory.
+    """
     start = laboratory or Laboratory()
     return start if start.modulus_over_thickness is not None else start.but(modulus_over_thickness=1e9)

@@ -2,11 +2,16 @@
 
 from typing import Any
 
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.dynamics.export import extra
 from rocking.restitution import Ked
-from rocking.studies.impact_laboratory.beds import Laboratory
-from rocking.studies.impact_laboratory.dependence import size_study
+from rocking.studies.impact_laboratory.beds import Laboratory, coefficients
+from rocking.studies.impact_laboratory.dependence import layered
 from rocking.studies.impact_laboratory.profiles import profile
-from rocking.studies.impact_laboratory.result import LaboratoryStudy
+from rocking.studies.impact_laboratory.result import LaboratoryStudy, about, provenance
 
 
 def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> LaboratoryStudy:
@@ -35,13 +40,32 @@ def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laborat
     >>> bool((found.hollow.diff("width") > 0.0).all())
     True
     """
-    start = laboratory or Laboratory()
-    flat = size_study(widths, start.but(profile=()))
-    uneven = size_study(widths, start.but(profile=profile("concave", hollow, start.points)))
-    ked = flat.coefficient * 0.0 + Ked().coefficient(start.block)
-    data = {"flat": flat.coefficient, "hollow": uneven.coefficient, "ked": ked}
-    made = flat.dataset.drop_vars(list(flat.data_vars)).assign(data)
-    made = made.assign(hollow_minus_ked=made.hollow - made.ked)
-    for name in made.data_vars:
-        made[name].attrs["units"] = "1"
-    return LaboratoryStudy(made)
+    xarray = extra("xarray", "the impact laboratory")
+    found = large_bodies(widths, hollow=hollow, laboratory=laboratory)
+    found["hollow_minus_ked"] = found["hollow"] - found["ked"]
+    data = {name: ("width", values, {"units": "1"}) for name, values in found.items()}
+    coords = {"width": ("width", np.atleast_1d(np.asarray(widths, dtype=np.float64)), about("width", "m"))}
+    return LaboratoryStudy(xarray.Dataset(data, coords, provenance("width", layered(laboratory))))
+
+
+def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> dict[str, FloatArray]:
+    """Return the numbers of `large_bodies_study`, which need no labelled arrays.
+
+    Parameters
+    ----------
+    widths : array_like
+        Widths of the base [m].
+    hollow : float
+        Height of the hollow [m].
+    laboratory : Laboratory, optional
+        What stays as it is; without a layer of its own one of 1e9 Pa/m is taken.
+
+    Returns
+    -------
+    dict of str to ndarray
+        flat, hollow and ked, over the widths [-].
+    """
+    start, row = layered(laboratory), np.atleast_1d(checks.positive_array("width", widths, "m"))
+    beds = {"flat": start.but(profile=()), "hollow": start.but(profile=profile("concave", hollow, start.points))}
+    found = {name: coefficients(bed.but(width=w) for w in row.tolist()) for name, bed in beds.items()}
+    return {**found, "ked": np.full(row.shape, Ked().coefficient(start.block))}

@@ -13,5 +13,5 @@ from rocking.studies.campaign import Campaign, DaskExecutor
 def test_missing_dask_has_a_sentence(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
     """The extra is named."""
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(MissingExtraError, match=r"pip install rocking\[dask\]"):
+    with pytest.raises(MissingExtraError, match=r"needs distributed: pip install '\.\[dask\]'"):
         Campaign.create(tmp_path / "c", work).run(DaskExecutor("tcp://127.0.0.1:9"))

@@ -7,7 +7,7 @@ from typing import Any
 
 from rocking.app.takeaway.plain_text import LONGEST_CELL, plain_line
 from rocking.app.takeaway.sheets.sheet import Cell, Sheet
-from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.errors import InvalidValueError, MissingExtraError, how_to_install
 
 MOST_ROWS = 1_048_575
 """Rows of a sheet below its head."""
@@ -92,4 +92,4 @@ def _openpyxl() -> Any:
     try:
         return import_module("openpyxl")
     except ImportError as error:
-        raise MissingExtraError("the spreadsheet needs openpyxl: pip install 'rocking[excel]'") from error
+        raise MissingExtraError(how_to_install("the spreadsheet", "openpyxl", error)) from error
