@@ -1,6 +1,9 @@
 """What is refused at the door: one function per kind of value, one sentence per refusal."""
 
+import difflib
 import math
+import re
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -341,9 +344,112 @@ def length_unit(value: Any) -> float:
     >>> length_unit("cm")
     0.01
     """
-    if not isinstance(value, str) or value not in LENGTH_UNITS:
-        raise InvalidValueError(f"length unit must be one of {', '.join(LENGTH_UNITS)}, got {value!r}")
-    return LENGTH_UNITS[value]
+    return LENGTH_UNITS[one_of("length unit", value, LENGTH_UNITS)]
+
+
+def one_of(name: str, value: Any, known: Iterable[str]) -> str:
+    """Return the one of some words that was meant, upper or lower case alike.
+
+    Parameters
+    ----------
+    name : str
+        Name that the error shows.
+    value : Any
+        What the user gave.
+    known : iterable of str
+        The words that there are.
+
+    Returns
+    -------
+    str
+        One of `known`, as it is spelt there.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is none of them; the error names the nearest.
+
+    Examples
+    --------
+    >>> one_of("engine", "Fast", ["auto", "fast"])
+    'fast'
+    """
+    words = list(known)
+    found: str = spelling(value, words)
+    if found not in words:
+        raise InvalidValueError(f"{name} must be one of {', '.join(words)}, got {value!r:.60}{nearest(value, words)}")
+    return found
+
+
+def spelling(word: Any, known: Iterable[str]) -> Any:
+    """Return a word as it is spelt among some others, if it differs from one of them in capitals alone.
+
+    Parameters
+    ----------
+    word : Any
+        What the user gave.
+    known : iterable of str
+        The words that there are.
+
+    Returns
+    -------
+    Any
+        One of `known`, or what was given.
+    """
+    if not isinstance(word, str):
+        return word
+    words = list(known)
+    return word if word in words else next((each for each in words if each.casefold() == word.strip().casefold()), word)
+
+
+def nearest(word: Any, known: Iterable[str]) -> str:
+    """Return the end of an error about an unknown word: what was probably meant, if that can be told.
+
+    Parameters
+    ----------
+    word : Any
+        What the user gave.
+    known : iterable of str
+        The words that there are.
+
+    Returns
+    -------
+    str
+        Begins with a semicolon, or is empty.
+
+    Examples
+    --------
+    >>> nearest("housener", ["housner", "ked"]), nearest("0,9", ["housner", "ked"])
+    ("; did you mean 'housner'?", '; numbers have a decimal point: 0.9')
+    """
+    if not isinstance(word, str):
+        return ""
+    if comma := decimal_comma(word):
+        return comma
+    near = difflib.get_close_matches(word[:60].casefold(), list(known), n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def decimal_comma(words: str) -> str:
+    """Return the end of an error about words in which a number has a decimal comma.
+
+    Parameters
+    ----------
+    words : str
+        What the user gave.
+
+    Returns
+    -------
+    str
+        Begins with a semicolon; empty if there is no such number.
+
+    Examples
+    --------
+    >>> decimal_comma("sine:amplitude=0,5,period=1")
+    '; numbers have a decimal point: 0.5'
+    """
+    found = re.search(r"(?<![\d.,])([+-]?\d+),(\d+)(?!,?[\d.])", words)
+    return f"; numbers have a decimal point: {found[1]}.{found[2]}" if found else ""
 
 
 def _in(unit: str) -> str:

@@ -3,7 +3,6 @@
 import sys
 import warnings
 from collections.abc import Sequence
-from typing import TextIO
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -21,14 +20,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     from typer.exceptions import TyperException
 
+    from rocking.checks import decimal_comma
     from rocking.cli.application import application
-    from rocking.errors import RockingError, SlowEngineWarning
+    from rocking.errors import RockingError
 
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("once", SlowEngineWarning)
-            warnings.showwarning = _say
+            warnings.showwarning = _Said()
             # without arguments the help is the answer
             code = application()(args=words or ["--help"], prog_name="rocking", standalone_mode=False)
     except RockingError as error:
@@ -36,7 +35,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.exit(2)
     except TyperException as error:
         message = error.format_message() if hasattr(error, "format_message") else str(error)
-        print(f"rocking: {message}; see rocking --help", file=sys.stderr)
+        hints = [decimal_comma(word) for word in words if not word.partition("=")[2].strip("+-,0123456789")]
+        hint = next(filter(None, hints), "") if "valid number" in message else ""
+        print(f"rocking: {message}{hint}; see rocking --help", file=sys.stderr)
         sys.exit(2)
     except OSError as error:
         print(f"rocking: {error.strerror or error}: {error.filename or ''}".rstrip(": "), file=sys.stderr)
@@ -47,12 +48,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     sys.exit(code or 0)
 
 
-def _say(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: TextIO | None = None,
-    line: str | None = None,
-) -> None:
-    print(f"rocking: note: {message}", file=sys.stderr)
+class _Said:
+    """Print a warning as a note, each sentence once: Python's own "once" forgets whenever a filter changes."""
+
+    def __init__(self) -> None:
+        self.sentences: set[str] = set()
+
+    def __call__(self, message: Warning | str, *where: object, **more: object) -> None:
+        if str(message) not in self.sentences:
+            self.sentences.add(str(message))
+            print(f"rocking: note: {message}", file=sys.stderr)

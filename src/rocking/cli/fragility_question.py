@@ -93,9 +93,7 @@ class FragilityQuestion:
         InvalidValueError
             If a word cannot be read, or options contradict one another.
         """
-        kind, wanted = asked["analysis"], measure(asked["measure"])
-        if kind not in ANALYSES:
-            raise InvalidValueError(f"--analysis must be one of {', '.join(ANALYSES)}, got {kind!r:.60}")
+        kind, wanted = checks.one_of("--analysis", asked["analysis"], ANALYSES), measure(asked["measure"])
         words = list(restitution or ["ked"])
         twice = next((word for word in words if words.count(word) > 1), None)
         if twice is not None:

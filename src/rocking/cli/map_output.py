@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rocking import checks
 from rocking.bodies import Body
 from rocking.cli import study_output as shared
 from rocking.cli.files_output import write_csv, write_netcdf
@@ -204,13 +205,10 @@ def axis_from(option: str, word: str) -> Axis:
 
     name, equals, values = word.partition("=")
     known = axes()
-    if name.strip() not in known:
-        raise InvalidValueError(f"{option}: no axis named {name.strip()!r:.60}; there are {', '.join(sorted(known))}")
+    name = checks.one_of(option, name, sorted(known))
     if not equals or not values.strip():
-        raise InvalidValueError(
-            f"{option} must be {name.strip()}=FIRST:LAST:COUNT or {name.strip()}=A,B,C, got no values"
-        )
-    kind = known[name.strip()]
+        raise InvalidValueError(f"{option} must be {name}=FIRST:LAST:COUNT or {name}=A,B,C, got no values")
+    kind = known[name]
     return kind(shared.row(kind.name, values, kind.unit)[0])
 
 

@@ -12,14 +12,19 @@ def models(
     name: Annotated[str | None, typer.Argument(help="One model; all if left out.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """List the restitution models: reference, assumptions, domain, known defects."""
+    """List the restitution models, in the plane and in space: reference, assumptions, domain, known defects."""
+    from rocking import checks
+    from rocking.restitution import RestitutionModel
     from rocking.restitution import models as registered
+    from rocking.restitution.spatial import SpatialModel, spatial_models
 
-    found = registered()
+    found: dict[str, type[RestitutionModel] | type[SpatialModel]] = {**registered(), **spatial_models()}
+    name = checks.spelling(name, found)
     if name is not None and name not in found:
         from rocking.errors import UnknownModelError
 
-        raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(found)}")
+        near = checks.nearest(name, found)
+        raise UnknownModelError(f"no restitution model named {name!r}{near}; there are {', '.join(found)}")
     chosen = {key: kind for key, kind in found.items() if name in (None, key)}
     facts = {
         key: {

@@ -51,7 +51,8 @@ def periods_from(words: str) -> list[float]:
         numbers = [float(part) for part in parts]
     except ValueError as error:
         raise InvalidValueError(f"periods must be numbers such as 0.1,0.5,1 [s], got {words[:60]!r}") from error
-    return [checks.positive("periods", number, "s") for number in numbers]
+    hint = checks.decimal_comma(words).removeprefix("; ")
+    return [checks.positive("periods", number, "s", hint) for number in numbers]
 
 
 def show(answer: MotionAnswer) -> None:

@@ -1,5 +1,6 @@
 """What `rocking simulate` was asked: a body, a motion or a first rotation, and how to compute."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -7,6 +8,7 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.cli.model_options import models_from
 from rocking.cli.motion_options import motion_from
+from rocking.cli.solid_options import is_solid
 from rocking.conventions import g
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
@@ -60,10 +62,20 @@ def question_of(
         If `free`, `gravity` or `friction` is not allowed.
     """
     pull = g if gravity is None else checks.positive("--gravity", gravity, "m/s2")
-    share = None if free is None else checks.number("--free", free)
+    share = None if free is None else _share(body, checks.number("--free", free))
     settings = Settings(gravity=pull, linear=linear)
     mu = checks.positive("--friction", friction)
     return Question(body, motion, {}, settings, engine, friction=mu, free=share, scale=scale)
+
+
+def _share(body: Body, free: float) -> float:
+    alpha = body.side("right" if free > 0.0 else "left").slenderness_angle
+    if abs(free) * alpha >= 0.5 * math.pi:
+        raise InvalidValueError(
+            f"--free is a share of the slenderness angle, here {math.degrees(alpha):.3g} degrees, and 1 is where the "
+            f"body balances; got {free:g}. An angle of {free:g} degrees is --free {math.radians(free) / alpha:.3g}"
+        )
+    return free
 
 
 def body_and_motion(
@@ -96,6 +108,8 @@ def body_and_motion(
     """
     if sized and record is None:
         body, record = None, body
+    if body is not None and record is not None and _is_body(record) and not _is_body(body):
+        raise InvalidValueError(f"the body comes first, then the motion: {record[:100]} {body[:100]}, not the reverse")
     if record is not None and motion is not None:
         # a word that is a file beside dimensions is more likely a body
         raise InvalidValueError(f"one motion and one body, please: got {record[:100]!r} and --motion {motion[:100]!r}")
@@ -107,6 +121,12 @@ def body_and_motion(
             "what moves the ground? Give a record file, a pulse such as sine:amplitude=3,period=0.8, or --free 0.5"
         )
     return None if body is None else Path(body), word
+
+
+def _is_body(word: str) -> bool:
+    from rocking.bodies.formats.reader import FORMATS
+
+    return Path(word).suffix.lower() in FORMATS or is_solid(word)
 
 
 def motion_asked(word: str | None, told: dict[str, Any], scale: float) -> Motion | None:

@@ -64,7 +64,7 @@ def quantity(name: str, word: str, unit: str) -> tuple[float, str]:
     found, known = _NUMBER.fullmatch(word.strip()), UNITS[unit]
     if found is None or (found[2] and found[2] not in known):
         allowed = f", alone or with one of {', '.join(known)}" if known else " without a unit"
-        raise InvalidValueError(f"{name} must be a number{allowed}, got {word!r:.60}")
+        raise InvalidValueError(f"{name} must be a number{allowed}, got {word!r:.60}{checks.decimal_comma(word)}")
     value = float(found[1]) * (known[found[2]] if found[2] else 1.0)
     if not math.isfinite(value):
         raise InvalidValueError(f"{name} must be a finite number, got {word!r:.60}")
@@ -129,7 +129,8 @@ def _quantities(name: str, words: list[str], unit: str) -> tuple[list[float], st
     written = [one for _, one in found]
     if "" in written and any(written):
         # 0.1:1g could mean either
-        raise InvalidValueError(f"{name} must have a unit at every number or at none, got {':'.join(words)!r:.60}")
+        why = checks.decimal_comma(",".join(words))
+        raise InvalidValueError(f"{name} must have a unit at every number or at none, got {':'.join(words)!r:.60}{why}")
     return [value for value, _ in found], written[0]
 
 
@@ -253,8 +254,7 @@ def settings_from(gravity: float | None, engine: str, linear: bool, threads: int
         If a value is not allowed.
     """
     pull = g if gravity is None else checks.positive("--gravity", gravity, "m/s2")
-    if engine not in {"auto", "fast", "reference"}:
-        raise InvalidValueError(f"--engine must be auto, fast or reference, got {engine!r:.60}")
+    engine = checks.one_of("--engine", engine, ("auto", "fast", "reference"))
     if threads is not None and not 1 <= threads <= 4096:
         raise InvalidValueError(f"--threads must be in [1, 4096], got {threads}")
     return {"gravity": pull, "engine": engine, "linear": linear, "threads": threads}

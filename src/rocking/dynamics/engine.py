@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.settings import Settings
@@ -77,9 +78,7 @@ def chosen(asked: str, law: ImpactLaw | None = None) -> str:
     MissingExtraError
         If the fast one was asked for and not built.
     """
-    given: object = asked
-    if not isinstance(given, str) or asked not in ENGINES:
-        raise InvalidValueError(f"engine must be one of {', '.join(ENGINES)}, got {asked!r:.60}")
+    asked = checks.one_of("engine", asked, ENGINES)
     if asked != "reference" and law is not None and not law.tabulated:
         if asked == "fast":
             raise InvalidValueError(f"the fast engine knows tables, not {type(law).__name__}; engine must be reference")

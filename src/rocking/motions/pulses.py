@@ -352,13 +352,16 @@ def pulse(words: str) -> Pulse:
         raise InvalidValueError(f"a pulse is written as sine:amplitude=3,period=0.8, got {words!r:.60}")
     name, _, tail = words.partition(":")
     known = catalogue()
+    name = checks.spelling(name, known)
     if name not in known:
-        raise UnknownModelError(f"no pulse named {name!r}; there are {', '.join(sorted(known))}")
+        there, near = ", ".join(sorted(known)), checks.nearest(name, known)
+        raise UnknownModelError(f"no pulse named {name!r}{near}; there are {there}")
     given: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):
         key, equals, value = (part.strip() for part in item.partition("="))
         if not equals or key in given:
-            raise UnknownModelError(f"write a pulse as sine:amplitude=3,period=0.8, got {words!r}")
+            why = checks.decimal_comma(words)
+            raise UnknownModelError(f"write a pulse as sine:amplitude=3,period=0.8, got {words!r}{why}")
         try:
             given[key] = int(value) if key == "n" else float(value)
         except ValueError as error:

@@ -134,12 +134,14 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
     for item in filter(None, tail.split(",")):
         key, equals, value = item.partition("=")
         if not equals:
-            raise UnknownModelError(f"write parameters as name:k=0.6, got {words!r}")
+            raise UnknownModelError(f"write parameters as name:k=0.6, got {words!r}{checks.decimal_comma(words)}")
         if key.strip() in given:
             raise UnknownModelError(f"{key.strip()} is given twice for model {words!r}")
         given[key.strip()] = _value(key.strip(), value)
+    name = checks.spelling(name, _MODELS)
     if name not in _MODELS:
-        raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(_MODELS)}")
+        there, near = ", ".join(_MODELS), checks.nearest(name, _MODELS)
+        raise UnknownModelError(f"no restitution model named {name!r}{near}; there are {there}")
     kind = _kind(name)
     try:
         return kind(**given), eta

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.studies.axis import Axis
 from rocking.studies.body_axes import Height, Restitution, SemiDiagonal, SlendernessAngle, SlendernessRatio, Width
@@ -66,6 +67,4 @@ def axis_of(given: Any) -> Axis:
     if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != 2 or not isinstance(given[0], str):
         raise InvalidValueError(f'an axis is written as ("scale", values), got {given!r:.60}')
     known = axes()
-    if given[0] not in known:
-        raise InvalidValueError(f"no axis named {given[0]!r}; there are {', '.join(sorted(known))}")
-    return known[given[0]](given[1])
+    return known[checks.one_of("axis", given[0], sorted(known))](given[1])

@@ -5,6 +5,7 @@ import warnings
 from functools import cache
 from types import ModuleType
 
+from rocking import checks
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
 _NOT_BUILT = (
@@ -73,9 +74,7 @@ def chosen(asked: str) -> str:
     MissingExtraError
         If the fast one was asked for and not built.
     """
-    given: object = asked
-    if not isinstance(given, str) or given not in _ENGINES:
-        raise InvalidValueError(f"engine must be one of {', '.join(_ENGINES)}, got {asked!r:.60}")
+    asked = checks.one_of("engine", asked, _ENGINES)
     if asked == "fast":
         module()
     if asked == "auto" and not available():

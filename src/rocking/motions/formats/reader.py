@@ -171,8 +171,7 @@ def write_motion(motion: GroundMotion, path: str | PathLike[str], format: str, u
     RecordError
         If the format cannot hold the motion or the file cannot be written.
     """
-    if units not in ACCELERATION_UNITS:
-        raise InvalidValueError(f"units must be one of {', '.join(ACCELERATION_UNITS)}, got {units!r:.60}")
+    units = checks.one_of("units", units, ACCELERATION_UNITS)
     rows = {motion.metadata.get("component", "horizontal"): motion.acceleration}
     if motion.vertical is not None:
         rows[motion.metadata.get("vertical component", "vertical")] = motion.vertical
@@ -183,8 +182,7 @@ def write_motion(motion: GroundMotion, path: str | PathLike[str], format: str, u
 
 
 def _read(source: Source, format: str | None, units: str | None, time_step: float | None) -> Record:
-    if units is not None and units not in ACCELERATION_UNITS:
-        raise InvalidValueError(f"units must be one of {', '.join(ACCELERATION_UNITS)}, got {units!r:.60}")
+    units = None if units is None else checks.one_of("units", units, ACCELERATION_UNITS)
     if time_step is not None:
         time_step = checks.positive("time_step", time_step, "s")
     chosen: RecordFormat | None = None

@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from rocking.errors import InvalidValueError
+from rocking import checks
 from rocking.motions.formats.record_format import RecordFormat
 
 LAST_RESORT = "columns"
@@ -60,9 +60,7 @@ def format_named(name: str) -> RecordFormat:
     >>> format_named("peer").states_unit
     True
     """
-    if name not in _HOMES:
-        raise InvalidValueError(f"format must be one of {', '.join(_HOMES)}, got {name!r:.60}")
-    return _load(name)
+    return _load(checks.one_of("format", name, _HOMES))
 
 
 def _load(name: str) -> RecordFormat:

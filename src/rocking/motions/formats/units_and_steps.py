@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, FloatArray
-from rocking.errors import InvalidValueError, RecordError
+from rocking.errors import RecordError
 from rocking.motions.formats.record import Record
 from rocking.motions.formats.source import Source
 
@@ -32,8 +33,7 @@ def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> 
     RecordError
         If neither says, or both do and differ.
     """
-    if asked is not None and asked not in ACCELERATION_UNITS:
-        raise InvalidValueError(f"units must be one of {', '.join(ACCELERATION_UNITS)}, got {asked!r:.60}")
+    asked = None if asked is None else checks.one_of("units", asked, ACCELERATION_UNITS)
     if stated is None and asked is None:
         raise source.error(None, f"the file does not state its unit; say units= one of {', '.join(ACCELERATION_UNITS)}")
     if stated is not None and asked is not None and ACCELERATION_UNITS[stated] != ACCELERATION_UNITS[asked]:

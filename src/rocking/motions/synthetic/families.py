@@ -9,7 +9,7 @@ scale the motions to the level that a hazard model gives.
 import math
 from collections.abc import Mapping
 
-from rocking.errors import InvalidValueError
+from rocking import checks
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import mavroeidis_papageorgiou
 from rocking.motions.synthetic.distributions import Distribution, Lognormal, LogUniform, Uniform
@@ -58,10 +58,8 @@ def family(which: str | Family) -> Family:
     """
     if isinstance(which, Family):
         return which
-    known, word = families(), str(which)
-    if word not in known:
-        raise InvalidValueError(f"family must be one of {', '.join(known)}, got {which!r:.60}")
-    return known[word]
+    known = families()
+    return known[checks.one_of("family", which, known)]
 
 
 def _stochastic(drawn: Mapping[str, float], seed: int, step: float, corner: float) -> GroundMotion:

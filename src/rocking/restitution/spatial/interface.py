@@ -56,9 +56,11 @@ def spatial_model(model: str | SpatialModel) -> SpatialModel:
     """
     if isinstance(model, SpatialModel):
         return model
-    name = model if model in _MODELS else f"{model}-3d"
+    name = checks.spelling(model, _MODELS)
+    name = name if name in _MODELS else checks.spelling(f"{model}-3d", _MODELS)
     if name not in _MODELS:
-        raise UnknownModelError(f"no restitution model in space is called {model!r}; there are {', '.join(_MODELS)}")
+        there, near = ", ".join(_MODELS), checks.nearest(model, _MODELS)
+        raise UnknownModelError(f"no restitution model in space is called {model!r}{near}; there are {there}")
     return _MODELS[name]()
 
 

@@ -211,11 +211,12 @@ def measure(given: Any) -> IntensityMeasure:
         return given
     known = measures()
     if isinstance(given, str):
-        if given in known:
-            return known[given]
+        if (name := checks.spelling(given, known)) in known:
+            return known[name]
         if found := spectral_period(given):
             return spectral_measure(*found)
-    raise InvalidValueError(f"measure must be one of {', '.join(known)}, or sa(period in s), got {given!r:.60}")
+    why = checks.nearest(given, known)
+    raise InvalidValueError(f"measure must be one of {', '.join(known)}, or sa(period in s), got {given!r:.60}{why}")
 
 
 def spectral_period(name: str) -> tuple[float, float] | None:

@@ -1,0 +1,112 @@
+"""What a user mistypes gets a sentence that says what was probably meant; capitals do not matter."""
+
+import pytest
+
+from rocking.bodies.block import Block
+from rocking.checks import decimal_comma, nearest
+from rocking.cli import main
+from rocking.errors import RockingError, UnknownModelError
+from rocking.motions.formats.registry import format_named
+from rocking.motions.pulses import pulse
+from rocking.restitution import model
+from rocking.restitution.spatial import spatial_model, spatial_models
+from rocking.studies.axes import axis_of
+from rocking.studies.fragility.measures import measure
+
+SIZE = ("--width", "0.5", "--height", "2")
+PULSE = "sine:amplitude=3,period=0.8"
+
+
+def run(capsys, *words):
+    with pytest.raises(SystemExit) as end:
+        main(words)
+    done = capsys.readouterr()
+    return end.value.code, done.out, done.err
+
+
+@pytest.mark.parametrize(
+    "same",
+    [
+        lambda: model("Housner").name == "housner",
+        lambda: model("0.98*Shifted-Impulse:k=0.6").label == "0.98*shifted-impulse:k=0.6",
+        lambda: spatial_model("KED").name == spatial_model("Ked-3D").name == "ked-3d",
+        lambda: pulse("Sine:amplitude=3,period=0.8") == pulse(PULSE),
+        lambda: format_named("PEER") is not None,
+        lambda: axis_of(("PGA", [1.0])).name == "pga",
+        lambda: measure("PGV").name == "pgv",
+    ],
+)
+def test_capitals_do_not_matter(same):
+    """A name in other capitals is that name."""
+    assert same()
+
+
+@pytest.mark.parametrize(
+    ("ask", "meant"),
+    [
+        (lambda: model("housener"), "did you mean 'housner'?"),
+        (lambda: spatial_model("ked-3"), "did you mean 'ked-3d'?"),
+        (lambda: pulse("rickr:amplitude=3,period=1"), "did you mean 'ricker'?"),
+        (lambda: format_named("peeer"), "did you mean 'peer'?"),
+        (lambda: axis_of(("widht", [1.0])), "did you mean 'width'?"),
+        (lambda: measure("pgaa"), "did you mean 'pga'?"),
+        (lambda: model("0,9"), "numbers have a decimal point: 0.9"),
+        (lambda: pulse("sine:amplitude=0,5,period=1"), "numbers have a decimal point: 0.5"),
+        (lambda: model("fixed:r=0,93"), "numbers have a decimal point: 0.93"),
+    ],
+)
+def test_what_was_meant(ask, meant):
+    """An unknown word names the nearest known one; a decimal comma is called one."""
+    with pytest.raises(RockingError) as refused:
+        ask()
+    assert meant in str(refused.value)
+
+
+def test_nothing_is_guessed_from_far():
+    """Negative control: a word unlike all others, a list of numbers and a map's range get no suggestion."""
+    assert nearest("zzz", ["housner", "ked"]) == ""
+    assert decimal_comma("0.1,0.5,1") == decimal_comma("1,2,4") == decimal_comma("a=1,b=2") == ""
+    with pytest.raises(UnknownModelError) as refused:
+        model("zzz")
+    assert "did you mean" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("simulate", "--width", "0,5", "--height", "2", PULSE), "numbers have a decimal point: 0.5"),
+        (("simulate", *SIZE, PULSE, "--engine", "quick"), "engine must be one of auto, fast, reference"),
+        (("minimum", *SIZE, PULSE, "--lowest", "0,1g"), "numbers have a decimal point: 0.1"),
+        (("motion", PULSE, "--periods", "0,5"), "numbers have a decimal point: 0.5"),
+        (("simulat", *SIZE, PULSE), "Did you mean 'simulate'"),
+        (("models", "hausner"), "did you mean 'housner'"),
+        (("simulate", "quake.at2", "statue.toml"), "the body comes first, then the motion: statue.toml quake.at2"),
+        (("map", "quake.at2", "statue.stl"), "the body comes first, then the motion: statue.stl quake.at2"),
+    ],
+)
+def test_sentences_of_the_command_line(words, said, capsys):
+    """Decimal commas, mistyped commands and words in the wrong order get a sentence that helps."""
+    code, _, err = run(capsys, *words)
+    assert code == 2
+    assert said in err
+
+
+def test_share_of_the_slenderness_angle(capsys):
+    """`--free 10` says what the number is, and how an angle of 10 degrees is written; that one is taken."""
+    code, _, err = run(capsys, "simulate", *SIZE, "--free", "10")
+    alpha = Block(width=0.5, height=2.0).slenderness_angle
+    share = 10.0 * 3.141592653589793 / 180.0 / alpha
+    assert code == 2
+    assert f"An angle of 10 degrees is --free {share:.3g}" in err
+    assert run(capsys, "simulate", *SIZE, "--free", f"{share:.3g}")[0] == 0
+
+
+def test_models_in_space_are_listed_and_shown(capsys):
+    """Every model that `cor` prints for a solid is one of `rocking models`, with its facts; capitals do not matter."""
+    code, out, _ = run(capsys, "models")
+    assert code == 0
+    assert all(f"\n{name}: " in f"\n{out}" for name in spatial_models())
+    code, out, _ = run(capsys, "models", "KED-3D")
+    assert code == 0
+    assert out.startswith("ked-3d: ")
+    assert "known defects" in out
