@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.conventions import FEET, LENGTH_UNITS, FloatArray, Foot
+from rocking.conventions import FEET, LENGTH_UNITS, Assumed, FloatArray, Foot
 from rocking.errors import InvalidValueError
 
 SMALLEST, LARGEST = 1e-9, 1e9
@@ -124,7 +124,9 @@ def density(name: str, value: Any) -> float:
     InvalidValueError
         If it is not one finite number above zero and below 1e9 kg/m3.
     """
-    return within(name, positive(name, value, "kg/m3"), 0.0, LARGEST, unit="kg/m3", open_low=True, hint="wrong unit?")
+    result = positive(name, value, "kg/m3")
+    within(name, result, 0.0, LARGEST, unit="kg/m3", open_low=True, hint="wrong unit?")
+    return value if isinstance(value, Assumed) else result
 
 
 def within(

@@ -36,6 +36,10 @@ ACCELERATION_UNITS: Final[dict[str, float]] = {
 """One unit of acceleration in m/s2; `g/10` is what BHRC files hold, `mg` is a thousandth of g."""
 
 
+class Assumed(float):
+    """A value that nobody gave: a float that is told apart wherever it is printed."""
+
+
 def opposite(foot: Foot) -> Foot:
     """Return the other foot.
 

@@ -50,6 +50,10 @@ class PureRockingWarning(UserWarning):
     """Pure rocking is not credible for a response: the body would slide or fly, see `simulate_with_contact`."""
 
 
+class PlausibilityWarning(UserWarning):
+    """A value can be computed with but was hardly meant: a wrong unit, most likely."""
+
+
 class SlowEngineWarning(UserWarning):
     """The fast engine was not built, and the reference engine serves in its place."""
 

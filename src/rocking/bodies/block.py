@@ -97,6 +97,11 @@ class Block(Body):
         return cls(width=2.0 * size * math.sin(alpha), height=2.0 * size * math.cos(alpha), **options)
 
     @property
+    def densities(self) -> tuple[float, ...]:
+        """The density [kg/m3]."""
+        return (self.density,)
+
+    @property
     def half_width(self) -> float:
         """Half width b [m]."""
         return 0.5 * self.width
@@ -167,7 +172,7 @@ class Block(Body):
             width=self.width * size,
             height=self.height * size,
             depth=self.depth * size,
-            density=self.density * density,
+            density=self.density if density == 1.0 else self.density * density,
         )
 
     def with_feet(self, left: float, right: float) -> "Section":

@@ -2,17 +2,18 @@
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import Self
 
-from rocking import checks, conventions
+from rocking import checks, conventions, plausibility
 from rocking.bodies.moments import PlaneMoments
 from rocking.bodies.side import Side
-from rocking.conventions import Foot
+from rocking.conventions import Assumed, Foot
 from rocking.errors import AsymmetricBodyError, GeometryError
 
 Interval = tuple[float, float]
 
-DEFAULT_DENSITY = 2400.0
+DEFAULT_DENSITY = Assumed(2400.0)
 """Plain concrete [kg/m3]; no coefficient of a homogeneous body depends on it."""
 
 # Feet closer to the plumb line of the centre than this, relative to their distance, are no support.
@@ -138,6 +139,22 @@ class Body(ABC):
         return Side(foot, half_width, moments.y, moments.mass, inertia, gravity)
 
     @property
+    def densities(self) -> tuple[float, ...]:
+        """Densities of the parts; none of mass points [kg/m3]."""
+        return ()
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """What nobody gave and was assumed, in words."""
+        return assumed_density(self.densities)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What can be computed with but was hardly meant, in words."""
+        (left, right), height = self.local_feet, self.local_moments.y
+        return plausibility.of_body(height, 2.0 * height / (right - left), self.densities)
+
+    @property
     def is_symmetric(self) -> bool:
         """Whether both feet are equally far from the centre of mass (to 1e-12 of the base)."""
         left, right = self.local_feet
@@ -187,3 +204,29 @@ class Body(ABC):
                 f"the centre of mass (x = {x:.6g} m) must lie between the feet ({a:.6g} and {b:.6g} m); "
                 "a body like this falls over by itself"
             )
+        plausibility.warn(self.doubts)
+
+
+def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
+    """Return what was assumed about densities.
+
+    Parameters
+    ----------
+    densities : sequence of float
+        Of all parts of a body [kg/m3].
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none where every density was given.
+    """
+    count = sum(isinstance(value, Assumed) for value in densities)
+    if count == 0:
+        return ()
+    parts = "" if count == len(densities) else f" for {count} of {len(densities)} parts"
+    effect = (
+        "mass and forces depend on it, rotations do not"
+        if not parts
+        else "the centre of mass and rotations depend on it"
+    )
+    return (f"density {DEFAULT_DENSITY:g} kg/m3 assumed{parts}, that of plain concrete; {effect}",)

@@ -284,6 +284,11 @@ class Section(Body):
         """Positions of the feet in the local frame [m]."""
         return self._local_feet
 
+    @property
+    def densities(self) -> tuple[float, ...]:
+        """Densities of the regions [kg/m3]."""
+        return tuple(region.density for region in self.regions)
+
     @cached_property
     def local_moments(self) -> PlaneMoments:
         """Mass, centre and central second moments in the local frame, exact for polygons."""

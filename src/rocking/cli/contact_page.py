@@ -75,7 +75,12 @@ def contact_facts(response: PlanarResponse) -> dict[str, Any]:
     law, energy = response.law, response.energy
     imposed = None if law.restitution is None else dict(zip(("left", "right"), law.restitution, strict=True))
     return {
-        "body": {"kind": type(response.body).__name__, "mass_kg": response.body.mass},
+        "body": {
+            "kind": type(response.body).__name__,
+            "mass_kg": response.body.mass,
+            "assumed": list(response.body.assumed),
+            "warnings": list(response.body.doubts),
+        },
         "motion": moved_facts(response.motion, response.scale),
         "initial_rotation_rad": float(response.rotation[0]),
         "friction": law.friction,
@@ -153,6 +158,7 @@ def _facts(response: PlanarResponse) -> list[tuple[str, str]]:
         imposed = f"r = {right:.6f}" if left == right else f"left r = {left:.6f}, right r = {right:.6f}"
     return [
         ("body", f"{type(response.body).__name__}, {response.body.mass:.4g} kg"),
+        *(("density", sentence.removeprefix("density ")) for sentence in response.body.assumed),
         ("motion", let_go if motion is None else times + motion.name),
         ("contact", f"friction {law.friction:g}, bounce {law.bounce:g}"),
         ("restitution", imposed),

@@ -120,6 +120,7 @@ def _body_lines(answer: ImpactAnswer) -> list[str]:
     body = answer.body
     x, y = body.centre
     lines = [f"{type(body).__name__}: mass {body.mass:.4g} kg, centre of mass at x = {x:.4g} m, y = {y:.4g} m"]
+    lines += body.assumed
     feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
     for foot in feet:
         side = body.side(foot, answer.gravity)

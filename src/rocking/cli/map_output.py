@@ -205,7 +205,10 @@ def axis_from(option: str, word: str) -> Axis:
 
     name, equals, values = word.partition("=")
     known = axes()
-    name = checks.one_of(option, name, sorted(known))
+    name = checks.spelling(name.strip(), known)
+    if name not in known:
+        near = checks.nearest(name, known)
+        raise InvalidValueError(f"{option}: no axis named {name!r:.60}; there are {', '.join(sorted(known))}{near}")
     if not equals or not values.strip():
         raise InvalidValueError(f"{option} must be {name}=FIRST:LAST:COUNT or {name}=A,B,C, got no values")
     kind = known[name]

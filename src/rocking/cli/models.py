@@ -24,7 +24,7 @@ def models(
         from rocking.errors import UnknownModelError
 
         near = checks.nearest(name, found)
-        raise UnknownModelError(f"no restitution model named {name!r}{near}; there are {', '.join(found)}")
+        raise UnknownModelError(f"no restitution model named {name!r}; there are {', '.join(found)}{near}")
     chosen = {key: kind for key, kind in found.items() if name in (None, key)}
     facts = {
         key: {

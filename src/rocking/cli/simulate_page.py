@@ -78,6 +78,7 @@ def _facts(response: Response) -> list[tuple[str, str]]:
     equations = ", slender-linear equations" if response.settings.linear else ""
     return [
         ("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"),
+        *(("density", sentence.removeprefix("density ")) for sentence in body.assumed),
         ("motion", ground),
         ("restitution", f"{rocker.label}, {value}"),
         ("engine", f"{response.engine}{equations}"),

@@ -60,6 +60,8 @@ def show_body(file: SolidFile) -> None:
     )
     console.print(f"centre of mass at x = {_rounded(x)} m, y = {_rounded(y)} m, {z:.5g} m above the ground")
     console.print(_base(file), markup=False)
+    for sentence in solid.assumed:
+        console.print(sentence, markup=False)
     for sentence in file.repairs:
         console.print(f"! {sentence}", style="yellow", markup=False)
 

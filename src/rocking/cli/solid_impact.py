@@ -201,6 +201,8 @@ def body_facts(file: SolidFile) -> dict[str, Any]:
         "name": file.name,
         "parts": len(solid.local_parts),
         "mass_kg": solid.mass,
+        "assumed": list(solid.assumed),
+        "warnings": list(solid.doubts),
         "volume_m3": solid.volume,
         "size_m": (high - low).tolist(),
         "centre_m": solid.centre.tolist(),

@@ -191,13 +191,13 @@ def motion_facts(motion: Motion) -> dict[str, Any]:
     Returns
     -------
     dict
-        kind, name, duration_s, peak_acceleration_m_s2.
+        kind, name, duration_s, peak_acceleration_m_s2, warnings.
     """
     from rocking.motions.pulse import Pulse
 
     kind = "pulse" if isinstance(motion, Pulse) else "record"
     facts = {"duration_s": motion.duration, "peak_acceleration_m_s2": motion.peak}
-    return {"kind": kind, "name": motion.name, **facts}
+    return {"kind": kind, "name": motion.name, **facts, "warnings": list(motion.doubts)}
 
 
 @contextmanager

@@ -5,7 +5,7 @@ import warnings
 from dataclasses import fields
 from typing import Any
 
-from rocking import checks, conventions
+from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.rocker import Rocker
@@ -88,6 +88,7 @@ def simulate(  # noqa: PLR0913 - every one of them is a question that users ask
     if not isinstance(motion, (GroundMotion, Pulse)):
         raise InvalidValueError(f"motion must be a GroundMotion or a pulse, got {motion!r:.60}")
     scale = checks.within("scale", scale, -1e6, 1e6)
+    plausibility.warn(plausibility.of_acceleration(abs(scale) * motion.peak) if scale != 1.0 else ())
     settings = settings_of(gravity, options)
     rocker = Rocker.of_body(body, restitution, settings.gravity)
     rotation, velocity = initial_state(rocker, rotation, angular_velocity)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FEET
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
@@ -159,4 +159,6 @@ def coefficients_of(restitution: Any, body: Body) -> tuple[dict[str, float], str
 
 
 def _coefficient(name: str, value: Any) -> float:
-    return checks.within(name, value, 0.0, 10.0, hint="a ratio of velocities; a percentage?")
+    r = checks.within(name, value, 0.0, 10.0, hint="a ratio of velocities; a percentage?")
+    plausibility.warn(plausibility.of_coefficient(r))
+    return r

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -78,6 +78,14 @@ class GroundMotion:
             raise InvalidValueError(f"name must be a string, got {name!r:.60}")
         object.__setattr__(self, "metadata", _metadata(self.metadata))
         object.__setattr__(self, "provenance", _provenance(self.provenance))
+        plausibility.warn(self.doubts)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What can be computed with but was hardly meant, in words."""
+        return plausibility.of_acceleration(max(self.peak, self.peak_vertical)) + plausibility.of_time_step(
+            self.time_step
+        )
 
     def __len__(self) -> int:
         """Return the number of samples."""

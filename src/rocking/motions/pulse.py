@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import LARGEST_ACCELERATION, LONGEST_STEP, SHORTEST_STEP, GroundMotion
@@ -43,6 +43,11 @@ class Pulse(ABC):
     @abstractmethod
     def fastest(self) -> float:
         """Highest circular frequency in it, which says how fine it must be cut [rad/s]."""
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What can be computed with but was hardly meant, in words."""
+        return plausibility.of_acceleration(self.peak)
 
     @abstractmethod
     def scaled(self, factor: float) -> "Pulse":

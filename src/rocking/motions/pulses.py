@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.motions.motion import LARGEST_ACCELERATION
 from rocking.motions.pulse import Pulse
@@ -355,7 +355,7 @@ def pulse(words: str) -> Pulse:
     name = checks.spelling(name, known)
     if name not in known:
         there, near = ", ".join(sorted(known)), checks.nearest(name, known)
-        raise UnknownModelError(f"no pulse named {name!r}{near}; there are {there}")
+        raise UnknownModelError(f"no pulse named {name!r}; there are {there}{near}")
     given: dict[str, Any] = {}
     for item in filter(None, tail.split(",")):
         key, equals, value = (part.strip() for part in item.partition("="))
@@ -396,11 +396,15 @@ def _windowed(title: str, amplitude: float, period: float, phase: float, cycles:
 
 
 def _amplitude(value: Any) -> float:
-    return checks.within("amplitude", value, -LARGEST_ACCELERATION, LARGEST_ACCELERATION, unit="m/s2")
+    amplitude = checks.within("amplitude", value, -LARGEST_ACCELERATION, LARGEST_ACCELERATION, unit="m/s2")
+    plausibility.warn(plausibility.of_acceleration(abs(amplitude)))
+    return amplitude
 
 
 def _period(value: Any) -> float:
-    return checks.within("period", value, 1e-6, 1e6, unit="s")
+    period = checks.within("period", value, 1e-6, 1e6, unit="s")
+    plausibility.warn(plausibility.of_period(period))
+    return period
 
 
 def _closing_phase(n: int) -> float:

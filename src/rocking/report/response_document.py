@@ -140,6 +140,7 @@ def _body(found: Found) -> Table:
     x, y = body.centre
     rows = [
         ("mass", f"{body.mass:.5g} kg"),
+        *(("density", sentence.removeprefix("density ")) for sentence in body.assumed),
         ("centre of mass", f"x = {x:.4g} m, y = {y:.4g} m"),
         ("feet", f"x = {body.feet[0]:.4g} m and {body.feet[1]:.4g} m"),
         ("moment of inertia", f"{body.moment_of_inertia:.5g} kg m\N{SUPERSCRIPT TWO} about the centre"),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
 from rocking.restitution.model import RestitutionModel
@@ -44,6 +44,7 @@ class Fixed(RestitutionModel):
     def __post_init__(self) -> None:
         """Refuse what is no coefficient."""
         checks.within("r", self.r, 0.0, 1.0, hint="a velocity ratio; is it an energy ratio or a percentage?")
+        plausibility.warn(plausibility.of_coefficient(self.r))
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
         """Return the value.

@@ -141,7 +141,7 @@ def _parsed(words: str, parameters: dict[str, Any]) -> tuple[RestitutionModel, f
     name = checks.spelling(name, _MODELS)
     if name not in _MODELS:
         there, near = ", ".join(_MODELS), checks.nearest(name, _MODELS)
-        raise UnknownModelError(f"no restitution model named {name!r}{near}; there are {there}")
+        raise UnknownModelError(f"no restitution model named {name!r}; there are {there}{near}")
     kind = _kind(name)
     try:
         return kind(**given), eta

@@ -67,4 +67,8 @@ def axis_of(given: Any) -> Axis:
     if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != 2 or not isinstance(given[0], str):
         raise InvalidValueError(f'an axis is written as ("scale", values), got {given!r:.60}')
     known = axes()
-    return known[checks.one_of("axis", given[0], sorted(known))](given[1])
+    name = checks.spelling(given[0], known)
+    if name not in known:
+        there, near = ", ".join(sorted(known)), checks.nearest(name, known)
+        raise InvalidValueError(f"no axis named {name!r}; there are {there}{near}")
+    return known[name](given[1])

@@ -336,7 +336,7 @@ def test_nothing_to_export(capsys, tmp_path):
             "several --restitution",
         ),
         ((*SIZE, *FAMILY, "--restitution", "1.5"), "restitution"),
-        ((*SIZE, *FAMILY, "--engine", "slow"), "--engine must be auto"),
+        ((*SIZE, *FAMILY, "--engine", "slow"), "--engine must be one of auto"),
         ((*SIZE, *FAMILY, "--picture", "p.jpg"), "a picture is .png"),
         ((*SIZE, *FAMILY, "--csv", "nowhere/c.csv"), "no folder 'nowhere'"),
         ((*SIZE, *FAMILY, "--measure", "housner", "--levels", "1,2", "--nrml", "n.xml"), "OpenQuake knows pga"),

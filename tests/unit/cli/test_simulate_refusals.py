@@ -66,7 +66,7 @@ REFUSED = {
     "free and units": ([*SIZE, "--free", "0.5", "--units", "g"], "--free has no motion, so it takes no --units"),
     "free and scale": ([*SIZE, "--free", "0.5", "--scale", "2"], "takes no --scale"),
     "free nan": ([*SIZE, "--free", "nan"], "--free must be finite"),
-    "free far": ([*SIZE, "--free", "7"], "rotation must be in"),
+    "free far": ([*SIZE, "--free", "7"], "--free is a share of the slenderness angle"),
     "free word": ([*SIZE, "--free", "half"], "'--free'"),
     "no record": ([*SIZE, "none.at2"], "none.at2: no such file"),
     "pulse": ([*SIZE, "sinus:amplitude=1"], "no pulse named"),

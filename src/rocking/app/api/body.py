@@ -105,9 +105,10 @@ def described(body: Body, gravity: float, name: str | None) -> dict[str, Any]:
     dict
         Facts, outline and warnings.
     """
-    found = [outside_evidence(body, foot) for foot in FEET]
+    facts = body_facts(body, gravity)
+    found = facts["warnings"] + [outside_evidence(body, foot) for foot in FEET]
     warnings = list(dict.fromkeys(sentence for sentence in found if sentence))
-    return {"name": name, **body_facts(body, gravity), **outline_facts(body), "warnings": warnings}
+    return {"name": name, **facts, **outline_facts(body), "warnings": warnings}
 
 
 def _body(asked: BodyAsked) -> JsonAnswer:

@@ -112,7 +112,8 @@ class Part:
             The scaled part.
         """
         scaled = self._with(self.shape.scaled(size), self.rotation, self.translation * size)
-        return replace_density(scaled, self.density * checks.positive("density", density))
+        factor = checks.positive("density", density)
+        return scaled if factor == 1.0 else replace_density(scaled, self.density * factor)
 
     def mirrored(self) -> "Part":
         """Return the part seen in the mirror x -> -x.

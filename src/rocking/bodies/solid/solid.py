@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rocking import checks
+from rocking import checks, plausibility
+from rocking.bodies.body import assumed_density
 from rocking.bodies.section import Section
 from rocking.bodies.solid.hull import SupportPolygon, hull
 from rocking.bodies.solid.moments import SolidMoments, combined
@@ -159,6 +160,18 @@ class Solid:
         return tuple(part.moved(*self.origin.tolist()) for part in self.local_parts)
 
     @property
+    def assumed(self) -> tuple[str, ...]:
+        """What nobody gave and was assumed, in words."""
+        return assumed_density([part.density for part in self.local_parts])
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What can be computed with but was hardly meant, in words."""
+        centre = self.local_moments.centre
+        slenderness = float(centre[2]) / self.local_base.margin(centre[:2])
+        return plausibility.of_body(float(centre[2]), slenderness, [part.density for part in self.local_parts])
+
+    @property
     def box(self) -> FloatArray:
         """Lowest and highest corner of the bounding box in the user's coordinates, shape (2, 3) [m]."""
         boxes = np.array([part.box() for part in self.local_parts])
@@ -244,6 +257,7 @@ class Solid:
                 f"the centre of mass (x = {x:.6g}, y = {y:.6g} m) must lie above the base; "
                 "a body like this falls over by itself"
             )
+        plausibility.warn(self.doubts)
 
 
 def found_base(parts: Sequence[Part], tolerance: float) -> Base:

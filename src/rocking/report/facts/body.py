@@ -33,6 +33,8 @@ def body_facts(body: Body, gravity: float) -> dict[str, Any]:
         "feet_m": body.feet,
         "moment_of_inertia_kg_m2": body.moment_of_inertia,
         "gravity_m_s2": gravity,
+        "assumed": list(body.assumed),
+        "warnings": list(body.doubts),
         "sides": {foot: side_facts(body, foot, gravity) for foot in FEET},
     }
 

@@ -121,6 +121,7 @@ def motion_facts(motion: GroundMotion | Pulse, samples: GroundMotion, measures: 
         "samples": len(samples) if record else None,
         "time_step_s": samples.time_step if record else None,
         "duration_s": motion.duration,
+        "warnings": list(motion.doubts),
         "provenance": list(motion.provenance) if isinstance(motion, GroundMotion) else [repr(motion)],
         "peak_vertical_acceleration_m_s2": None if samples.vertical is None else samples.peak_vertical,
         "intensity": {f"{key}_{one.unit.replace('/', '_')}": one.value for key, one in measures.items()},

@@ -20,6 +20,7 @@ What the keys mean:
 import math
 from typing import Any
 
+from rocking import plausibility
 from rocking.conventions import FEET
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.rocker import Rocker
@@ -106,6 +107,8 @@ def rocker_facts(response: Response) -> dict[str, Any]:
     return {
         "kind": type(body).__name__,
         "mass_kg": body.mass,
+        "assumed": list(body.assumed),
+        "warnings": list(body.doubts),
         "sides": {
             foot: {
                 "slenderness_angle_rad": side.slenderness_angle,
@@ -141,6 +144,7 @@ def moved_facts(motion: Motion | None, scale: float) -> dict[str, Any] | None:
         "scale": scale,
         "duration_s": motion.duration,
         "peak_acceleration_m_s2": abs(scale) * motion.peak,
+        "warnings": list(plausibility.of_acceleration(abs(scale) * motion.peak)),
     }
 
 

@@ -48,6 +48,8 @@ class BodyFacts(Answer):
     feet_m: Point = Field(description="x of the left and of the right foot [m]")
     moment_of_inertia_kg_m2: float = Field(description="about the centre of mass [kg m2]")
     gravity_m_s2: float = Field(description="acceleration of gravity [m/s2]")
+    assumed: list[str] = Field(description="what nobody gave and was assumed, in sentences")
+    warnings: list[str] = Field(description="what was hardly meant, in sentences; none if all is well")
     sides: Sides
 
 

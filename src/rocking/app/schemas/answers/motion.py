@@ -53,6 +53,7 @@ class MotionAnswered(Answer):
     samples: int | None = Field(description="of a record")
     time_step_s: float | None = Field(description="of a record [s]")
     duration_s: float = Field(description="[s]")
+    warnings: list[str] = Field(description="what was hardly meant, in sentences; none if all is well")
     provenance: list[str] = Field(description="what was done to it, in order")
     peak_vertical_acceleration_m_s2: float | None = Field(description="[m/s2]")
     intensity: dict[str, float] = Field(description="measures, with their units in the names")

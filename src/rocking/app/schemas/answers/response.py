@@ -29,6 +29,8 @@ class RockingBody(Answer):
 
     kind: str = Field(description="class of the body in Python")
     mass_kg: float = Field(description="[kg]")
+    assumed: list[str] = Field(description="what nobody gave and was assumed, in sentences")
+    warnings: list[str] = Field(description="what was hardly meant, in sentences; none if all is well")
     sides: RockingSides
 
 
@@ -40,6 +42,7 @@ class MovedFacts(Answer):
     scale: float = Field(description="factor on the motion [-]")
     duration_s: float = Field(description="[s]")
     peak_acceleration_m_s2: float = Field(description="scaled [m/s2]")
+    warnings: list[str] = Field(description="what was hardly meant, in sentences; none if all is well")
 
 
 class ImpactFacts(Answer):

@@ -43,7 +43,9 @@ const settled = (length, { sides }) =>
 /** Warnings in plain words, or what stands in their place. */
 export const warningsOf = (body) => {
   const given = (body.warnings ?? []).map((each) => note(each, "warning"));
-  return given.length ? given : [note(`It uplifts at ${upliftWords(body)} of ground acceleration.`, "good")];
+  const assumed = (body.assumed ?? []).map((each) => note(each));
+  const well = [note(`It uplifts at ${upliftWords(body)} of ground acceleration.`, "good")];
+  return [...(given.length ? given : well), ...assumed];
 };
 
 const upliftWords = ({ sides, gravity_m_s2: gravity }) => {

@@ -1,0 +1,176 @@
+"""What can be computed with but was hardly meant: doubts that are said aloud and refuse nothing.
+
+Each doubt is a `PlausibilityWarning` whose sentence begins with "check the input"; Python's warnings filter silences
+it, for studies without dimensions: ``warnings.simplefilter("ignore", rocking.errors.PlausibilityWarning)``.
+"""
+
+import sys
+import warnings
+from collections.abc import Iterable
+
+from rocking.errors import PlausibilityWarning
+
+CENTRE_HEIGHTS = 0.025, 50.0
+"""Half the heights of the smallest and largest things that are studied [m]: specimens 5 cm high; towers of 100 m."""
+
+SLENDERNESS = 0.05, 200.0
+"""h/b of a slab of 1 x 0.05 m and of a sheet of glass 2 m high and 1 cm thick [-]."""
+
+DENSITIES = 10.0, 23000.0
+"""Polystyrene foam; osmium, the densest element, has 22590 [kg/m3]."""
+
+LARGEST_PGA = 41.0
+"""No record has more: 40.2 m/s2, all components, Iwate-Miyagi 2008 (Aoi et al. 2008, Science 322:727) [m/s2]."""
+
+PERIODS = 0.01, 60.0
+"""Of a pulse: shorter than records resolve; longer than the slowest pulses near a fault, of about 14 s [s]."""
+
+LONGEST_STEP = 0.2
+"""Between samples of a record: at 5 Hz nothing of a strong motion is left [s]."""
+
+LEAST_COEFFICIENT = 0.25
+"""Housner's coefficient of a block as wide as it is high; the least that was measured is 0.67, at h/b = 1.5 [-]."""
+
+
+def of_body(centre_height: float, slenderness: float, densities: Iterable[float]) -> tuple[str, ...]:
+    """Return the doubts about a body.
+
+    Parameters
+    ----------
+    centre_height : float
+        Height of the centre of mass above the ground [m].
+    slenderness : float
+        Height of the centre over half the width of the base [-].
+    densities : iterable of float
+        Densities of its parts [kg/m3].
+
+    Returns
+    -------
+    tuple of str
+        Sentences; none if all is well.
+    """
+    low, high = CENTRE_HEIGHTS
+    found = []
+    if centre_height > high:
+        found.append(
+            f"the centre of mass is {centre_height:.4g} m above the ground, more than the {high:g} m of the tallest "
+            "towers; were lengths in mm or cm taken for m?"
+        )
+    if centre_height < low:
+        found.append(
+            f"the centre of mass is {centre_height:.4g} m above the ground, less than the {low:g} m of the smallest "
+            "specimens; were lengths in m taken for mm or cm?"
+        )
+    if not SLENDERNESS[0] <= slenderness <= SLENDERNESS[1]:
+        found.append(
+            f"h/b = {slenderness:.4g} is outside {SLENDERNESS[0]:g} to {SLENDERNESS[1]:g}; is one length in another "
+            "unit, or width taken for height?"
+        )
+    if wrong := next((value for value in densities if not DENSITIES[0] <= value <= DENSITIES[1]), None):
+        found.append(
+            f"a density of {wrong:.4g} kg/m3 is outside {DENSITIES[0]:g} (foam) to {DENSITIES[1]:g} (osmium); is it in "
+            "g/cm3 or t/m3?"
+        )
+    return tuple(found)
+
+
+def of_acceleration(peak: float) -> tuple[str, ...]:
+    """Return the doubt about a peak ground acceleration.
+
+    Parameters
+    ----------
+    peak : float
+        Its modulus [m/s2].
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none.
+    """
+    if peak <= LARGEST_PGA:
+        return ()
+    return (
+        f"a ground acceleration of {peak:.4g} m/s2 ({peak / 9.80665:.3g} g) is more than any recorded, {LARGEST_PGA:g} "
+        "m/s2; is its unit or its scale another?",
+    )
+
+
+def of_period(period: float) -> tuple[str, ...]:
+    """Return the doubt about the period of a pulse.
+
+    Parameters
+    ----------
+    period : float
+        The period [s].
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none.
+    """
+    low, high = PERIODS
+    if low <= period <= high:
+        return ()
+    return (f"a pulse with a period of {period:.4g} s is outside {low:g} to {high:g} s; is it in ms, or a frequency?",)
+
+
+def of_time_step(step: float) -> tuple[str, ...]:
+    """Return the doubt about the step between samples.
+
+    Parameters
+    ----------
+    step : float
+        The step [s].
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none.
+    """
+    if step <= LONGEST_STEP:
+        return ()
+    return (f"a step of {step:.4g} s between samples is more than {LONGEST_STEP:g} s; is it in ms, or in samples/s?",)
+
+
+def of_coefficient(value: float) -> tuple[str, ...]:
+    """Return the doubt about a coefficient of restitution given by hand.
+
+    Parameters
+    ----------
+    value : float
+        Ratio of velocities; zero means that the body stops, and is no doubt [-].
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none.
+    """
+    if value == 0.0 or value >= LEAST_COEFFICIENT:
+        return ()
+    return (
+        f"a coefficient of restitution of {value:.4g} is less than {LEAST_COEFFICIENT:g}, that of a block as wide as "
+        "high; is it what is lost, or a ratio of energies?",
+    )
+
+
+def warn(sentences: Iterable[str]) -> None:
+    """Say doubts as warnings, at the line outside this package that gave the value.
+
+    Parameters
+    ----------
+    sentences : iterable of str
+        The doubts.
+    """
+    for sentence in sentences:
+        warnings.warn(f"check the input: {sentence}", PlausibilityWarning, stacklevel=_outside())
+
+
+def _outside() -> int:
+    level, frame = 1, sys._getframe(1)
+    # constructors are called by `dataclasses.replace` too
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in {
+        "rocking",
+        "dataclasses",
+    }:
+        level, frame = level + 1, frame.f_back
+    return level

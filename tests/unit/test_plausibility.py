@@ -1,0 +1,145 @@
+"""What was hardly meant is doubted aloud with its likely cause, never refused; what was assumed is said as assumed."""
+
+import json
+import math
+import warnings
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.bodies.formats import read_solid
+from rocking.bodies.solid import Part, Solid, box
+from rocking.cli import main
+from rocking.errors import PlausibilityWarning
+from rocking.evidence.measurements import all_measurements
+from rocking.report.facts.body import body_facts
+from rocking.restitution import model
+
+pytestmark = pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWarning")
+BLOCK = rk.Block(width=0.5, height=2.0, density=500.0)
+PULSE = rk.pulses.sine(amplitude=3.0, period=0.8)
+STATUE_2_CM = [(0.0, 0.0), (0.008, 0.0), (0.005, 0.02)]
+
+DOUBTFUL = {
+    "mm for m": (lambda: rk.Block(width=500.0, height=2000.0), "1000 m above the ground.*mm or cm taken for m"),
+    "cm for m": (lambda: rk.Block(width=50.0, height=200.0), "100 m above the ground.*mm or cm taken for m"),
+    "statue of 2 cm": (lambda: rk.Section.from_points(STATUE_2_CM), "less than the 0.025 m.*m taken for mm or cm"),
+    "solid of 2 cm": (lambda: Solid(box(0.005, 0.006, 0.02)), "less than the 0.025 m"),
+    "mass points": (lambda: rk.MassPoints([(0.1, 900.0)], [5.0], feet=(-90.0, 80.0)), "900 m above the ground"),
+    "one length in mm": (lambda: rk.Block(width=500.0, height=2.0), "h/b = 0.004.*one length in another unit"),
+    "density in t/m3": (lambda: rk.Block(width=0.5, height=2.0, density=2.4), "2.4 kg/m3.*g/cm3 or t/m3"),
+    "density of a solid": (lambda: Solid(Part(box(1.0, 1.0, 2.0), 2400e3)), "osmium"),
+    "amplitude in mm/s2": (lambda: rk.pulses.sine(amplitude=3000.0, period=0.8), r"3000 m/s2 \(306 g\).*unit or"),
+    "record in gal": (lambda: rk.GroundMotion(np.array([0.0, 300.0, -210.0]), 0.01), "300 m/s2"),
+    "scaled record": (lambda: rk.GroundMotion(np.array([0.0, 3.0]), 0.01).scaled(-9000.0), "2.7e[+]04 m/s2.*scale"),
+    "period in ms": (lambda: rk.pulses.sine(amplitude=3.0, period=800.0), "period of 800 s.*in ms"),
+    "step in ms": (lambda: rk.GroundMotion(np.array([0.0, 3.0]), 5.0), "step of 5 s.*in ms"),
+    "scale": (lambda: rk.simulate(BLOCK, PULSE, scale=-9000.0), "2.7e[+]04 m/s2"),
+    "loss for coefficient": (lambda: rk.simulate(BLOCK, PULSE, 0.07), "restitution of 0.07.*what is lost"),
+    "loss for a model": (lambda: model("fixed", r=0.05), "restitution of 0.05"),
+}
+
+
+@pytest.mark.parametrize("name", DOUBTFUL)
+def test_doubts(name):
+    """One warning of our class, at the user's own line, with the value, the limit and the likely cause."""
+    make, words = DOUBTFUL[name]
+    with pytest.warns(PlausibilityWarning, match=f"check the input: .*{words}") as caught:
+        make()
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+
+
+MEANT = {
+    "a specimen 6 cm high": lambda: rk.Block(width=0.02, height=0.06, density=7850.0),
+    "an obelisk": lambda: rk.Block(width=2.5, height=30.0, density=2700.0),
+    "a tower": lambda: rk.Block(width=12.0, height=95.0, density=1800.0),
+    "a sheet of glass": lambda: rk.Block(width=0.012, height=2.0, density=2500.0),
+    "foam": lambda: rk.Block(width=0.3, height=1.0, density=15.0),
+    "the strongest records": lambda: rk.pulses.ricker(amplitude=35.0, period=0.3),
+    "a slow pulse": lambda: rk.pulses.sine(amplitude=1.0, period=12.0),
+    "a squat block": lambda: rk.coefficient_of_restitution(rk.Block(width=4.0, height=2.0, density=2400.0), "ked"),
+    "stops at once": lambda: rk.simulate(BLOCK, PULSE, 0.0),
+    "everyday": lambda: rk.simulate(BLOCK, PULSE, 0.9, scale=-1.5),
+    "dimensionless map": lambda: rk.simulate_many(BLOCK, PULSE, "ked", scale=[0.5, 2.0]),
+}
+
+
+@pytest.mark.parametrize("name", MEANT)
+def test_what_people_study_is_not_doubted(name):
+    """Negative control: small specimens, towers, glass, foam and the strongest records pass without a word."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        MEANT[name]()
+
+
+def test_bodies_of_the_measurements_are_not_doubted():
+    """Every published specimen, at the smallest width that was measured, 2 cm, raises no doubt."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for ratio in all_measurements().slenderness.tolist():
+            rk.Block(width=0.02 if ratio >= 3.0 else 0.06, height=(0.02 if ratio >= 3.0 else 0.06) * ratio)
+
+
+def test_the_filter_silences():
+    """A study without dimensions is silent with one line of Python's own, and computes the same."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.simplefilter("ignore", PlausibilityWarning)
+        huge = rk.Block(width=500.0, height=2000.0)
+    assert huge.slenderness_angle == pytest.approx(math.atan(0.25), rel=1e-14)
+
+
+def test_assumed_density_is_said(tmp_path):
+    """A density that nobody gave is told apart: in Python, in facts, of parts, from files, and after scaling."""
+    said = "density 2400 kg/m3 assumed"
+    plain = rk.Block(width=0.8, height=1.8)
+    assert plain.assumed[0].startswith(said)
+    assert "rotations do not" in plain.assumed[0]
+    assert rk.Block(width=0.8, height=1.8, density=2400.0).assumed == ()
+    assert plain.scaled(size=2.0).assumed == plain.assumed
+    assert plain.scaled(density=0.1).assumed == ()
+    assert body_facts(plain, 9.81)["assumed"] == list(plain.assumed)
+    mixed = rk.Section(
+        [rk.Region([(0, 0), (1, 0), (1, 1), (0, 1)], 7850.0), rk.Region([(0, 1), (1, 1), (1, 2), (0, 2)])]
+    )
+    assert "for 1 of 2 parts" in mixed.assumed[0]
+    assert "rotations depend on it" in mixed.assumed[0]
+    file = tmp_path / "cabinet.wkt"
+    file.write_text("POLYGON ((0 0, 800 0, 800 1800, 0 1800, 0 0))")
+    assert rk.read_body(file, units="mm").assumed == plain.assumed
+    assert rk.read_body(file, units="mm", density=300.0).assumed == ()
+    assert Solid(box(0.8, 0.8, 1.8)).turned(0.3).assumed == plain.assumed
+    assert Solid(Part(box(0.8, 0.8, 1.8), 300.0)).assumed == ()
+    solid = tmp_path / "solid.toml"
+    solid.write_text('units = "m"\n[solid]\n[[solid.part]]\nbox = { width = 0.8, depth = 0.8, height = 1.8 }\n')
+    assert read_solid(solid).solid.assumed == plain.assumed
+
+
+def run(capsys, *words):
+    with pytest.raises(SystemExit) as end:
+        main(words)
+    done = capsys.readouterr()
+    assert end.value.code == 0, done.err
+    return done.out, done.err
+
+
+def test_command_line_says_it(capsys):
+    """`cor` and `simulate` print doubts and what was assumed; the same stands in the JSON."""
+    out, err = run(capsys, "cor", "--width", "500", "--height", "2000")
+    assert "rocking: note: check the input: the centre of mass is 1000 m" in err
+    assert "density 2400 kg/m3 assumed" in out
+    facts = json.loads(run(capsys, "cor", "--width", "500", "--height", "2000", "--json")[0])["body"]
+    assert "1000 m" in facts["warnings"][0]
+    assert "assumed" in facts["assumed"][0]
+    command = ("simulate", "--width", "0.5", "--height", "2", "sine:amplitude=3000,period=0.8")
+    out, err = run(capsys, *command)
+    assert "3000 m/s2 (306 g)" in err
+    assert "2400 kg/m3 assumed" in out
+    facts = json.loads(run(capsys, *command, "--json")[0])
+    assert facts["body"]["warnings"] == []
+    assert "3000 m/s2" in facts["motion"]["warnings"][0]
+    told, err = run(capsys, "cor", "--width", "0.5", "--height", "2", "--density", "500")
+    assert err == ""
+    assert "assumed" not in told
