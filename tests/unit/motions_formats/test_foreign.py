@@ -48,7 +48,7 @@ def reader(tmp_path: Path) -> Any:
     """A reader that misbehaves on request."""
     script = tmp_path / "script.py"
     script.write_text(SCRIPT, encoding="utf-8")
-    made = ForeignReader(script, "the library", "pip install it", seconds=2.0, memory=2**28)
+    made = ForeignReader(script, "the library", "library", seconds=2.0, memory=2**28)
     yield made
     made.close()
 
@@ -104,8 +104,8 @@ def test_a_missing_library_is_named(tmp_path: Path) -> None:
     """The error says what to install."""
     script = tmp_path / "script.py"
     script.write_text("import no_such_library_anywhere", encoding="utf-8")
-    made = ForeignReader(script, "the library", "pip install it")
-    with pytest.raises(MissingExtraError, match="needs the library: pip install it"):
+    made = ForeignReader(script, "the library", "library")
+    with pytest.raises(MissingExtraError, match="needs no_such_library_anywhere: pip install"):
         made.answer(FILE, {})
     made.close()
 

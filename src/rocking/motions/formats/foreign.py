@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.errors import MissingExtraError, RecordError
+from rocking.errors import MissingExtraError, RecordError, how_to_install
 from rocking.motions.formats import foreign_worker
 from rocking.motions.formats.source import Source
 
@@ -33,16 +33,16 @@ class ForeignReader:
         File with the function ``answer`` of `foreign_worker.main`.
     needs : str
         Name of the library, for messages.
-    extra : str
-        How to install it.
+    module : str
+        The name that it is imported by.
     seconds : float
         Time for one file [s].
     memory : int
         Memory for one file, beyond that of the loaded reader; kept on Linux alone [bytes].
     """
 
-    def __init__(self, script: Path, needs: str, extra: str, *, seconds: float = 30.0, memory: int = 4 * 2**30) -> None:
-        self.script, self.needs, self.extra = script, needs, extra
+    def __init__(self, script: Path, needs: str, module: str, *, seconds: float = 30.0, memory: int = 4 * 2**30) -> None:
+        self.script, self.needs, self.module = script, needs, module
         self.seconds, self.memory = seconds, memory
         # by process: one that was forked must not talk to its parent's reader
         self._idle: dict[int, list[subprocess.Popen[bytes]]] = {}
@@ -141,7 +141,7 @@ class ForeignReader:
 
     def _refusal(self, source: Source, said: dict[str, Any]) -> Exception:
         if "missing" in said:
-            return MissingExtraError(f"{source.name} needs {self.needs}: {self.extra} ({said['missing']})")
+            return MissingExtraError(how_to_install(source.name, self.module, ImportError(name=said["missing"])))
         if "error" in said:
             return source.error(None, f"{self.needs} cannot read it: {said['message'] or said['error']}"[:200])
         if "memory" in said:

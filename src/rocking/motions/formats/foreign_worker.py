@@ -140,7 +140,7 @@ def main(script: str, seconds: float, memory: int) -> None:
         reader.get("prepare", lambda: None)()
         answer = reader["answer"]
     except ImportError as error:
-        missing = str(error)
+        missing = error.name or str(error)
     while True:
         try:
             parts = receive(channels[0])

@@ -185,7 +185,7 @@ class Trace:
     samples: Any
 
 
-_OBSPY = ForeignReader(Path(__file__).with_name("obspy_reader.py"), "ObsPy", "pip install rocking[obspy]")
+_OBSPY = ForeignReader(Path(__file__).with_name("obspy_reader.py"), "ObsPy", "obspy")
 
 
 def read_traces(source: Source, form: str, stations: Source | None = None, **options: Any) -> list[Trace]:
