@@ -5,6 +5,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +99,13 @@ def test_a_reader_that_was_ended_meanwhile_is_started_again(reader: ForeignReade
     idle.kill()
     idle.wait()
     assert reader.answer(FILE, {"kind": "read"}, b"")[0]["worker"] != first
+
+
+def test_threads_do_not_hear_each_other(reader: ForeignReader) -> None:
+    """Each gets the answer to its own file."""
+    with ThreadPoolExecutor(4) as crew:
+        found = list(crew.map(lambda n: reader.answer(FILE, {"kind": "read"}, b"x" * n)[0]["length"], range(40)))
+    assert found == list(range(40))
 
 
 def test_a_missing_library_is_named(tmp_path: Path) -> None:
