@@ -123,8 +123,7 @@ def test_a_spin_draws_a_rim_that_is_nearly_flat(turning, spin, pulls):
     q = attitude.turn([1.0, 0.0, 0.0], tilt)
     velocity = np.array([rate, turning * math.sin(tilt), spin])  # node line, e2, axis
     length, field = 1e-5, np.array([[0.0], [0.0], [-G]])
-    _, w, squares, _ = RollingFlow(CYLINDER).series((q, velocity, np.zeros(2)), length, field, 12)
-    up = events.up_series(squares)
+    _, w, up, _ = RollingFlow(CYLINDER).series((q, velocity, np.zeros(2)), length, field, 12)
     stance = stances.rolling(stances.rim(CYLINDER, -up[0, :2]))
     normal = release._normal(CYLINDER, stance, Step(length, w, up, field, np.zeros(3)))[0]
     expected = _normal_by_angles(tilt, rate, turning, spin)

@@ -1,27 +1,36 @@
 """Attitudes as unit quaternions (s, x, y, z): body axes to axes of the ground, x and y horizontal, z up."""
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.portable import applied, dot, each, norm
+
+Rows = list[list[Any]]
 
 
-def _rotation_map() -> FloatArray:
-    """R[a, b] = sum of map[a, b, i, j] q_i q_j, homogeneous of degree two."""
-    made = np.zeros((3, 3, 4, 4))
-    for a in range(3):
-        for i in range(4):
-            made[a, a, i, i] = 1.0 if i in {0, a + 1} else -1.0
-        b, c = (a + 1) % 3, (a + 2) % 3
-        for row, column, other, sign in ((a, b, c, -1.0), (a, c, b, 1.0)):
-            made[row, column, row + 1, column + 1] = 2.0
-            made[row, column, 0, other + 1] = 2.0 * sign
-    return made.reshape(3, 3, 16)
+def rows_of(products: Sequence[Sequence[Any]]) -> Rows:
+    """Return the rotation matrix that belongs to the products of the components of a quaternion.
 
+    Parameters
+    ----------
+    products : sequence of sequences
+        The products s s, s x, and so on, of numbers, arrays, or terms of a series; only the upper half is used.
 
-ROTATION_MAP = _rotation_map()
-"""The rotation matrix as a linear map of the sixteen products of two components of a quaternion."""
+    Returns
+    -------
+    list of list
+        R, homogeneous of degree two.
+    """
+    (ss, sx, sy, sz), (_, xx, xy, xz), (_, _, yy, yz), (_, _, _, zz) = products
+    return [
+        [ss + xx - yy - zz, 2.0 * (xy - sz), 2.0 * (xz + sy)],
+        [2.0 * (xy + sz), ss - xx + yy - zz, 2.0 * (yz - sx)],
+        [2.0 * (xz - sy), 2.0 * (yz + sx), ss - xx - yy + zz],
+    ]
 
 
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
@@ -61,8 +70,9 @@ def matrix(quaternion: FloatArray) -> FloatArray:
     >>> matrix(turn([0.0, 0.0, 1.0], 0.5 * math.pi)).round(12)[:, 0].tolist()  # a quarter turn takes x to y
     [0.0, 1.0, 0.0]
     """
-    products = np.einsum("...i,...j->...ij", quaternion, quaternion).reshape(*quaternion.shape[:-1], 16)
-    return np.asarray(np.einsum("abm,...m->...ab", ROTATION_MAP, products))
+    q = quaternion.tolist() if quaternion.ndim == 1 else list(np.moveaxis(quaternion, -1, 0))
+    made = np.array(rows_of([[a * b for b in q] for a in q]))
+    return made if quaternion.ndim == 1 else np.moveaxis(made, (0, 1), (-2, -1))
 
 
 def turn(axis: FloatArray | list[float], angle: float) -> FloatArray:
@@ -80,7 +90,8 @@ def turn(axis: FloatArray | list[float], angle: float) -> FloatArray:
     ndarray, shape (4,)
         Unit quaternion [-].
     """
-    unit = np.asarray(axis, dtype=np.float64) / np.linalg.norm(axis)
+    unit = np.asarray(axis, dtype=np.float64)
+    unit = unit / norm(unit)
     return np.concatenate([[math.cos(0.5 * angle)], math.sin(0.5 * angle) * unit])
 
 
@@ -97,7 +108,7 @@ def product(left: FloatArray, right: FloatArray) -> FloatArray:
     ndarray, shape (4,)
         Their Hamilton product [-].
     """
-    scalar = left[0] * right[0] - left[1:] @ right[1:]
+    scalar = left[0] * right[0] - dot(left[1:], right[1:])
     return np.concatenate([[scalar], left[0] * right[1:] + right[0] * left[1:] + cross(left[1:], right[1:])])
 
 
@@ -114,7 +125,7 @@ def normalised(quaternion: FloatArray) -> FloatArray:
     ndarray, shape (4,)
         Of unit length [-].
     """
-    return np.asarray(quaternion / math.sqrt(float(quaternion @ quaternion)))
+    return np.asarray(quaternion / norm(quaternion))
 
 
 def flat(quaternion: FloatArray) -> FloatArray:
@@ -148,12 +159,14 @@ def levelled(quaternion: FloatArray, axis: FloatArray) -> FloatArray:
     ndarray, shape (4,)
         Attitude [-].
     """
-    direction = matrix(quaternion) @ axis
+    direction = applied(matrix(quaternion), axis)
     rise = float(direction[2])
     if rise == 0.0:
         return quaternion
-    upwards = np.array([direction[1], -direction[0], 0.0])  # turns the axis towards the vertical
-    return normalised(product(turn(upwards, -math.asin(rise)), quaternion))
+    level = math.sqrt(1.0 - rise * rise)
+    half = math.sqrt(0.5 * (1.0 + level))  # cosine of half the angle, the sine of which is rise / (2 half)
+    back = -rise / (2.0 * half * level) * np.array([direction[1], -direction[0], 0.0])
+    return normalised(product(np.concatenate([[half], back]), quaternion))
 
 
 def tilt(quaternion: FloatArray) -> FloatArray:
@@ -175,7 +188,7 @@ def tilt(quaternion: FloatArray) -> FloatArray:
     0.3
     """
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
-    return np.asarray(2.0 * np.arctan2(np.hypot(x, y), np.hypot(s, z)))
+    return 2.0 * each(math.atan2, np.sqrt(x * x + y * y), np.sqrt(s * s + z * z))
 
 
 def azimuth(quaternion: FloatArray) -> FloatArray:
@@ -192,4 +205,4 @@ def azimuth(quaternion: FloatArray) -> FloatArray:
         From x towards y, in (-pi, pi]; zero for a body that does not lean [rad].
     """
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
-    return np.asarray(np.arctan2(y * z - s * x, x * z + s * y))
+    return each(math.atan2, y * z - s * x, x * z + s * y)

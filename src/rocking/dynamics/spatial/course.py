@@ -14,6 +14,7 @@ from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.spatial.trajectory import Piece, SpatialEvent, SpatialEventKind, SpatialTrajectory
 from rocking.dynamics.taylor import slope, turning_points
+from rocking.portable import dot
 
 _HALVINGS = 60
 
@@ -123,8 +124,7 @@ class Course:
         if final is False:
             return None
         body, settings = self.body, self.settings
-        energy = 0.5 * velocity @ body.inertia_about(pivot) @ velocity
-        energy += body.mass * settings.gravity * stances.rise(body, pivot, up)
+        energy = body.kinetic(pivot, velocity) + body.mass * settings.gravity * stances.rise(body, pivot, up)
         inside = not _leaning_over(body, up, pivot) > 0.0
         if final is None or (inside and energy < body.mass * settings.gravity * body.lift):
             return Outcome.ROCKED, SpatialStatus.GOOD
@@ -210,4 +210,4 @@ def _leaning_over(body: SpatialBody, up: FloatArray, pivot: FloatArray) -> float
     """Above zero where the centre of mass is beyond the contact, in the direction in which the body leans."""
     arm = body.centre - pivot
     # horizontal parts of arm and axis: a . b - (a . Z)(b . Z)
-    return float(arm[2] - (up @ arm) * up[2])
+    return float(arm[2] - dot(up, arm) * up[2])

@@ -8,6 +8,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.ledger import ResponseEnergy
 from rocking.dynamics.spatial.states import States, pivots
 from rocking.dynamics.spatial.trajectory import Piece
+from rocking.portable import applied
 
 if TYPE_CHECKING:
     from rocking.dynamics.spatial.response import SpatialResponse
@@ -69,4 +70,4 @@ def _of_piece(response: "SpatialResponse", piece: Piece, stops: FloatArray) -> F
     body = response.body
     states = States(body, q, w, pivots(body, piece, q), place, np.zeros(len(q), dtype=np.int64))
     power = -body.mass * (response.ground.at(times.ravel()) * states.centre_velocity).sum(axis=1)
-    return np.asarray((power.reshape(times.shape) @ _WEIGHTS) * half)
+    return applied(power.reshape(times.shape), _WEIGHTS) * half

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.spatial.attitude import ROTATION_MAP
 from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.polynomials import NOTHING, first_zero
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.stance import Stance
+from rocking.portable import applied, norm
 
-_UP = ROTATION_MAP[2]
 SLOW_OPENING = 1e-9
 """Accelerations of a gap below this share of gravity count as none, as in the choice of what stays."""
 
@@ -47,22 +46,6 @@ class Step:
     heading: FloatArray
 
 
-def up_series(squares: FloatArray) -> FloatArray:
-    """Return the series of the vertical in body axes.
-
-    Parameters
-    ----------
-    squares : ndarray, shape (order + 1, 16)
-        Series of the products of the quaternion with itself.
-
-    Returns
-    -------
-    ndarray, shape (order + 1, 3)
-        Coefficients by power [-].
-    """
-    return np.asarray(squares @ _UP.T)
-
-
 def watched(body: SpatialBody, stance: Stance) -> tuple[int, ...]:
     """Return the vertices whose gaps must be watched: the base is convex, so no other one closes before them.
 
@@ -82,7 +65,7 @@ def watched(body: SpatialBody, stance: Stance) -> tuple[int, ...]:
     if stance.contact is Contact.VERTEX and stance.points:
         return ((stance.points[0] - 1) % count, (stance.points[0] + 1) % count)
     if stance.contact is Contact.EDGE:
-        distance = (body.vertices[:, :2] - stance.pivot[:2]) @ body.inward[stance.points[0]]
+        distance = applied(body.vertices[:, :2] - stance.pivot[:2], body.inward[stance.points[0]])
         return (int(np.argmax(distance)),)
     return ()
 
@@ -109,9 +92,9 @@ def first_contact(body: SpatialBody, stance: Stance, step: Step, touching: tuple
         Which; None instead of both if no gap closes.
     """
     found: list[tuple[float, int]] = []
-    floor = 0.5 * SLOW_OPENING * float(np.linalg.norm(step.field[:, 0])) * step.length**2
+    floor = 0.5 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2
     for number in watched(body, stance):
-        gap = step.up @ (body.vertices[number] - stance.pivot)
+        gap = applied(step.up, body.vertices[number] - stance.pivot)
         closes = first_zero(gap, started=number in touching, floor=floor)
         if closes is not None:
             found.append((closes, number))
@@ -165,13 +148,13 @@ def rim_events(body: SpatialBody, stance: Stance, step: Step) -> float | None:
     """
     if stance.contact is Contact.ROLLING:
         first = step.up[0, :2]
-        sine = step.up[:, :2] @ first / math.hypot(first[0], first[1])
+        sine = applied(step.up[:, :2], first) / norm(first)
         sine[0] -= STOP_ROLLING
         return first_zero(sine, started=False)
-    lean = step.up[:, :2] @ stance.pivot[:2] / -body.radius  # sine of the tilt away from the point
+    lean = applied(step.up[:, :2], stance.pivot[:2]) / -body.radius  # sine of the tilt away from the point
     flat, steep = lean.copy(), -lean
     steep[0] += START_ROLLING
     # lifted from rest it leans with the cube of time: what rounding leaves of lower powers decides nothing
-    floor = 0.25 * SLOW_OPENING * float(np.linalg.norm(step.field[:, 0])) * step.length**2 / body.radius
+    floor = 0.25 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2 / body.radius
     found = [first_zero(flat, started=abs(lean[0]) < NOTHING, floor=floor), first_zero(steep, started=False)]
     return min((at for at in found if at is not None), default=None)

@@ -5,35 +5,79 @@ acceleration of the ground in axes of the ground,
 
     q' = q (0, w) / 2,      I_A w' + w x I_A w = rho x m R(q)^T G(t)
 
-(Euler's equations about a fixed point); about an edge e the same projected on e. R is quadratic in q, so every term
-is a product of series, and the coefficients follow from one another by sums of products alone (Cauchy). A step is
-three small matrix products and three linear maps an order, which is all that another engine has to copy.
+(Euler's equations about a fixed point); about an edge e the same projected on e. In body axes the vertical and G turn
+backwards, Z' = Z x w and F' = F x w + R^T G', so every term is a product of series with w, and the coefficients follow
+from one another by sums of products alone (Cauchy): added in their own order, not by BLAS, so that a history is the
+same on every processor.
 """
+
+from collections.abc import Sequence
+from operator import mul
 
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.spatial.attitude import ROTATION_MAP
+from rocking.dynamics.spatial.attitude import matrix
 from rocking.dynamics.spatial.rocker import SpatialBody
-
-CROSS = np.zeros((3, 3, 3))
-"""(a x b)_i = CROSS[i, j, k] a_j b_k."""
-for _i in range(3):
-    CROSS[_i, (_i + 1) % 3, (_i + 2) % 3] = 1.0
-    CROSS[_i, (_i + 2) % 3, (_i + 1) % 3] = -1.0
+from rocking.portable import applied, dot, inverse, powers
 
 
-def _rate_map() -> FloatArray:
-    """Return the map from the products q_i w_j to q'."""
-    made = np.zeros((4, 4, 3))
-    made[0, 1:, :] = -0.5 * np.eye(3)
-    made[1:, 0, :] = 0.5 * np.eye(3)
-    made[1:, 1:, :] = 0.5 * CROSS
-    return made.reshape(4, 12)
+def cross_of(products: Sequence[Sequence[float]]) -> list[float]:
+    """Return the vector product of two vectors, or a term of its series, from the products of their components.
+
+    Parameters
+    ----------
+    products : sequence of sequences of float
+        Every component of the first times every one of the second, 3 by 3.
+
+    Returns
+    -------
+    list of float
+        Their vector product.
+    """
+    (_, xy, xz), (yx, _, yz), (zx, zy, _) = products
+    return [yz - zy, zx - xz, xy - yx]
 
 
-RATE_MAP = _rate_map()
-"""The rate of a quaternion as a linear map of the twelve products with the angular velocity in body axes."""
+def turned(products: Sequence[Sequence[float]], share: float) -> list[float]:
+    """Return a term of q (0, w) / 2, the rate of a quaternion.
+
+    Parameters
+    ----------
+    products : sequence of sequences of float
+        Every component of q times every one of the angular velocity in body axes, 4 by 3.
+    share : float
+        Factor.
+
+    Returns
+    -------
+    list of float
+        The four components.
+    """
+    (sx, sy, sz), (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = products
+    half = 0.5 * share
+    return [-half * (xx + yy + zz), half * (sx + yz - zy), half * (sy + zx - xz), half * (sz + xy - yx)]
+
+
+def carried(quaternion: FloatArray, field: FloatArray) -> list[float]:
+    """Return vectors of the ground in body axes at the start of a step.
+
+    They turn backwards, ``v' = v x w``, and each derivative of G(t) is what the one before changes by as well.
+
+    Parameters
+    ----------
+    quaternion : ndarray, shape (4,)
+        Attitude [-].
+    field : ndarray, shape (3, degree + 1)
+        G over the step, coefficients by power.
+
+    Returns
+    -------
+    list of float
+        The components of the vertical, of G, and of its derivatives.
+    """
+    back, factorials = matrix(quaternion).T, np.multiply.accumulate([1.0, *range(1, field.shape[1])])
+    return np.concatenate([back[:, 2], *[applied(back, g) for g in (field * factorials).T]]).tolist()
 
 
 class PivotFlow:
@@ -51,11 +95,10 @@ class PivotFlow:
 
     def __init__(self, body: SpatialBody, pivot: FloatArray, axis: FloatArray | None = None) -> None:
         inertia = body.inertia_about(pivot)
-        mobility = np.linalg.inv(inertia) if axis is None else np.outer(axis, axis) / (axis @ inertia @ axis)
-        arm = body.mass * (body.centre - pivot)
-        # products of w with w, and of q with q, to w'
-        self.gyroscopic = -np.einsum("oi,ijk,kl->ojl", mobility, CROSS, inertia).reshape(3, 9)
-        self.weight = np.einsum("oi,ijk,j,akm->oam", mobility, CROSS, arm, ROTATION_MAP)
+        about = None if axis is None else np.outer(axis, axis) / dot(axis, applied(inertia, axis))
+        self.mobility = inverse(inertia) if about is None else about
+        self.gyroscopic = inertia  # the angular momentum of w x I w
+        self.arm = body.mass * (body.centre - pivot)
 
     def series(
         self, quaternion: FloatArray, velocity: FloatArray, length: float, field: FloatArray, order: int
@@ -79,25 +122,26 @@ class PivotFlow:
         -------
         quaternions, velocities : ndarray, shape (order + 1, 4) and (order + 1, 3)
             Coefficients by power.
-        squares : ndarray, shape (order + 1, 16)
-            Coefficients of the products of the quaternion with itself.
+        up : ndarray, shape (order + 1, 3)
+            Coefficients of the vertical in body axes [-].
         """
-        maps = length * np.einsum("oam,aj->jom", self.weight, field)
-        gyroscopic, rate = length * self.gyroscopic, length * RATE_MAP
-        q, w, squares = np.zeros((order + 1, 4)), np.zeros((order + 1, 3)), np.zeros((order + 1, 16))
-        q[0], w[0] = quaternion, velocity
-        degree = field.shape[1] - 1
+        inertia, mobility, (x, y, z) = self.gyroscopic.tolist(), self.mobility.tolist(), self.arm.tolist()
+        w, state = velocity.tolist(), [*quaternion.tolist(), *carried(quaternion, field)]
+        rows = np.zeros((order + 1, 6 + len(state)))
         for k in range(order + 1):
-            before, back = slice(k + 1), slice(k, None, -1)
-            squares[k] = (q[before].T @ q[back]).ravel()
+            rows[k] = [*w, *[sum(map(mul, row, w)) for row in inertia], *state]
             if k == order:
                 break
-            spin = gyroscopic @ (w[before].T @ w[back]).ravel()
-            for j in range(min(k, degree) + 1):
-                spin += maps[j] @ squares[k - j]
-            q[k + 1] = rate @ (q[before].T @ w[back]).ravel() / (k + 1)
-            w[k + 1] = spin / (k + 1)
-        return q, w, squares
+            # term k of the products with w of I w, q, the vertical, G and its derivatives
+            made = np.add.reduce(rows[: k + 1, 3:, None] * rows[k::-1, None, :3], axis=0).tolist()
+            (gx, gy, gz), (fx, fy, fz), share = cross_of(made[:3]), state[7:10], length / (k + 1)
+            torque = [gx + y * fz - z * fy, gy + z * fx - x * fz, gz + x * fy - y * fx]
+            w = [share * sum(map(mul, row, torque)) for row in mobility]
+            across = [part for i in range(7, len(made), 3) for part in cross_of(made[i : i + 3])]
+            follows = [0.0, 0.0, 0.0, *state[10:], 0.0, 0.0, 0.0]
+            state = turned(made[3:7], share)
+            state += [share * part + more / (k + 1) for part, more in zip(across, follows, strict=True)]
+        return rows[:, 6:10], rows[:, :3], rows[:, 10:13]
 
 
 def terms_needed(rate: float, most: int) -> int:
@@ -172,7 +216,7 @@ def value(series: FloatArray, at: float) -> FloatArray:
     """
     if at == 1.0:
         return np.asarray(series[::-1].sum(axis=0))
-    return np.asarray(at ** np.arange(len(series)) @ series)
+    return np.asarray((powers(at, len(series))[:, None] * series)[::-1].sum(axis=0))
 
 
 def stretched(series: FloatArray, part: float) -> FloatArray:
@@ -190,4 +234,4 @@ def stretched(series: FloatArray, part: float) -> FloatArray:
     ndarray
         Coefficients by power.
     """
-    return series if part == 1.0 else series * (part ** np.arange(len(series)))[:, None]
+    return series if part == 1.0 else series * powers(part, len(series))[:, None]

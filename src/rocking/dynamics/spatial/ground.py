@@ -9,6 +9,7 @@ from rocking.dynamics.taylor import shifted
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
+from rocking.portable import applied, powers
 
 Component = GroundMotion | Pulse | None
 
@@ -81,8 +82,8 @@ class SpatialGround:
         if not self.count:
             return np.zeros((time.size, 3))
         tau = (time - self.times[k]) / (self.times[k + 1] - self.times[k])
-        powers = tau[:, None] ** np.arange(self.coefficients.shape[2])
-        return np.where(inside[:, None], np.einsum("nd,ncd->nc", powers, self.coefficients[k]), 0.0)
+        found = applied(self.coefficients[k], powers(tau, self.coefficients.shape[2]))
+        return np.where(inside[:, None], found, 0.0)
 
 
 def ground_of(

@@ -18,6 +18,7 @@ from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
+from rocking.portable import applied
 
 _FINE, _AFTER, _LONG = 0.05, 15.0, 300.0
 _MOST_SAMPLES = 2_000_000
@@ -184,7 +185,7 @@ def _initial(
         )
     leaning = attitude.turn([-math.sin(azimuth), math.cos(azimuth), 0.0], tilt)
     quaternion = attitude.product(leaning, attitude.turn([0.0, 0.0, 1.0], yaw))
-    return quaternion, attitude.matrix(quaternion).T @ spin
+    return quaternion, applied(attitude.matrix(quaternion).T, spin)
 
 
 def _settings(gravity: float, options: dict[str, Any]) -> SpatialSettings:

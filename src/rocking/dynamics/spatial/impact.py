@@ -1,5 +1,6 @@
 """What an impact leaves of an angular velocity: the interface, and the models of restitution behind it."""
 
+import math
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
@@ -184,10 +185,10 @@ class FixedSpatial:
             Angular velocity after, in body axes [rad/s].
         """
         made = projected(body, before, after, axis, velocity)
-        left = float(made @ body.inertia_about(after) @ made)
+        left = body.kinetic(after, made)
         if not left > 0.0:
             return made
-        return np.asarray(self.coefficient * np.sqrt(velocity @ body.inertia_about(before) @ velocity / left) * made)
+        return np.asarray(self.coefficient * math.sqrt(body.kinetic(before, velocity) / left) * made)
 
 
 def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLaw:

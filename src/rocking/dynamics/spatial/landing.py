@@ -11,6 +11,7 @@ from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.selection import Choice, State, candidates, forces, impulses, of_forces, of_impact
 from rocking.dynamics.spatial.stance import Stance
+from rocking.portable import applied, dot, norm
 
 CLOSED = 1e-12
 """Gaps below this share of the size of a body are closed."""
@@ -48,7 +49,7 @@ def _least_pull(body: SpatialBody, state: State, touching: tuple[int, ...]) -> C
         velocity = np.zeros(3)
         if stance.contact is not Contact.REST:
             velocity = projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
-        opening = cross(velocity, body.vertices[list(touching)] - stance.pivot) @ state.up
+        opening = applied(cross(velocity, body.vertices[list(touching)] - stance.pivot), state.up)
         if opening.min() < -1e-9 * float(np.abs(velocity).max()) * body.size:
             continue
         push = impulses(body, state, stance, velocity)
@@ -126,7 +127,7 @@ def rim_landed(body: SpatialBody, state: State, law: SpatialImpactLaw) -> Choice
     plastic = projected(body, state.pivot, far.pivot, None, state.velocity)
     push = impulses(body, state, far, plastic)
     velocity = law.velocity_after(body, state.pivot, far.pivot, None, state.up, state.velocity)
-    opens = float(cross(velocity, state.pivot - far.pivot) @ state.up) > 0.0
+    opens = dot(cross(velocity, state.pivot - far.pivot), state.up) > 0.0
     if opens and push.min() >= 0.0:
         return Choice(far, velocity, push)
     flat = stances.face(body)
@@ -162,7 +163,7 @@ def settled(
         push = forces(body, stances.face(body), np.zeros(3), state.up, state.field)[1]
         rests = (weak or choice.stance.contact is Contact.REST) and push.min() >= 0.0
         return Choice(stances.face(body), np.zeros(3), choice.supports) if rests else choice
-    opening = cross(choice.velocity, body.vertices - choice.stance.pivot) @ state.up
+    opening = applied(cross(choice.velocity, body.vertices - choice.stance.pivot), state.up)
     every = range(len(body.vertices)) if weak else touching
     near = tuple(i for i in every if weak or i in choice.stance.points or opening[i] <= slow)
     found = of_forces(body, state, near, choice.stance)
@@ -190,23 +191,23 @@ def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[St
     """
     if body.round:
         return _started_round(body, velocity, up), ()
-    height = body.vertices @ up
+    height = applied(body.vertices, up)
     touching = tuple(np.flatnonzero(height - height.min() <= CLOSED * body.size).tolist())
     size = float(np.abs(velocity).max())
     if size == 0.0 and len(touching) == len(body.vertices):
         return stances.face(body), touching
-    rates = cross(velocity, body.vertices) @ up
+    rates = applied(cross(velocity, body.vertices), up)
     low = [i for i in touching if rates[i] <= min(rates[list(touching)]) + CLOSED * size * body.size]
     for number in low:
         along = body.edges[number]
-        alone = float(np.abs(velocity - along * (along @ velocity)).max()) <= CLOSED * size
+        alone = float(np.abs(velocity - along * dot(along, velocity)).max()) <= CLOSED * size
         if (number + 1) % len(body.vertices) in low and alone:
             return stances.edge(body, number), touching
     return stances.vertex(body, low[0]), touching
 
 
 def _started_round(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> Stance:
-    sine = float(np.hypot(up[0], up[1]))
+    sine = norm(up[:2])
     lean = up[:2] if sine > STOP_ROLLING else np.array([-velocity[1], velocity[0]])
     if not np.any(lean):
         return stances.face(body)

@@ -1,11 +1,13 @@
 """Series of one step as polynomials: products, roots, and where they first fall below zero."""
 
 import math
+from operator import mul
 
 import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.taylor import first_fall
+from rocking.portable import convolved
 
 NOTHING = 1e-13
 """Coefficients below this share of the largest one are rounding."""
@@ -58,7 +60,7 @@ def cauchy(left: FloatArray, right: FloatArray) -> FloatArray:
     ndarray, shape (order + 1,)
         Coefficients by power.
     """
-    return np.convolve(left, right)[: len(left)]
+    return convolved(left, right[: len(left)])[: len(left)]
 
 
 def dot(left: FloatArray, right: FloatArray) -> FloatArray:
@@ -90,11 +92,10 @@ def square_root(square: FloatArray) -> FloatArray:
     ndarray, shape (order + 1,)
         Coefficients by power.
     """
-    root = np.zeros_like(square)
-    root[0] = math.sqrt(square[0])
-    for k in range(1, len(square)):
-        root[k] = (square[k] - root[1:k] @ root[k - 1 : 0 : -1]) / (2.0 * root[0])
-    return root
+    root = [math.sqrt(square[0])]
+    for k, term in enumerate(square.tolist()[1:], 1):
+        root.append((term - sum(map(mul, root[1:k], root[k - 1 : 0 : -1]))) / (2.0 * root[0]))
+    return np.array(root)
 
 
 def padded(series: FloatArray, count: int) -> FloatArray:

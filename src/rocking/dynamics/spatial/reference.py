@@ -21,6 +21,7 @@ from rocking.dynamics.spatial.selection import Choice, State, of_forces
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.spatial.trajectory import Piece, SpatialEventKind, SpatialTrajectory
+from rocking.portable import applied, norm
 
 _PULL = 1e-9
 _STUCK, _PILED = 100, 60
@@ -89,7 +90,7 @@ class SpatialReference:
         stance, touching = started(self.body, self.velocity, self._up)
         self.stance = stance
         # the base lies with its origin at the origin of the ground, and the body leans from there
-        self.place = (attitude.matrix(attitude.flat(self.quaternion)) @ stance.pivot)[:2]
+        self.place = applied(attitude.matrix(attitude.flat(self.quaternion)), stance.pivot)[:2]
         if stance.contact is Contact.REST or len(touching) == len(self.body.vertices) > 0:
             self.quaternion = attitude.flat(self.quaternion)
         self.touching = tuple(i for i in touching if i not in stance.points)
@@ -160,11 +161,11 @@ class SpatialReference:
     # ---- a step -----------------------------------------------------------------------------------------------------
 
     def _step(self) -> tuple[Step | None, Piece | None, bool]:
-        rate = self.p + float(np.linalg.norm(self.velocity))
+        rate = self.p + norm(self.velocity)
         if self.stance.contact is Contact.ROLLING:
             up = self._up
             # at most half of the way to lying flat: there the contact runs round
-            rate += 2.0 * float(np.linalg.norm(cross(up, self.velocity)[:2])) / math.hypot(up[0], up[1])
+            rate += 2.0 * norm(cross(up, self.velocity)[:2]) / norm(up[:2])
         length, last = self.settings.longest_step / rate, False
         if self.stretch < self.ground.count:
             left = float(self.ground.times[self.stretch + 1]) - self.time
@@ -175,15 +176,17 @@ class SpatialReference:
         places = self.place[None, :]
         if self.stance.contact is Contact.ROLLING:
             state = self.quaternion, self.velocity, self.place
-            q, w, squares, places = self.rolling.series(state, length, field, order)
+            q, w, up, places = self.rolling.series(state, length, field, order)
         else:
-            q, w, squares = self._flow().series(self.quaternion, self.velocity, length, field, order)
+            q, w, up = self._flow().series(self.quaternion, self.velocity, length, field, order)
         part = flow.trusted_part(q, w, length, self.settings.tolerance)
         if not part > 0.0:
             return None, None, False
-        q, w, up, places = (flow.stretched(c, part) for c in (q, w, events.up_series(squares), places))
+        q, w, up, places = (flow.stretched(c, part) for c in (q, w, up, places))
         field = flow.stretched(field.T, part).T
-        heading = np.zeros(3) if self.stance.axis is None else attitude.matrix(self.quaternion) @ self.stance.axis
+        heading = (
+            np.zeros(3) if self.stance.axis is None else applied(attitude.matrix(self.quaternion), self.stance.axis)
+        )
         step = Step(length * part, w, up, field, heading)
         return step, Piece(self.time, length * part, 1.0, q, w, places, self.stance), last and part == 1.0
 
@@ -214,7 +217,7 @@ class SpatialReference:
 
     def _impact(self, vertex: int) -> tuple[Outcome, SpatialStatus] | None:
         body = self.body
-        gaps = (body.vertices - self.stance.pivot) @ self._up
+        gaps = applied(body.vertices - self.stance.pivot, self._up)
         closed = {vertex, *self.stance.points, *np.flatnonzero(gaps <= CLOSED * body.size).tolist()}
         if self.stance.contact is Contact.EDGE or len(closed) > 2:
             closed = set(range(len(body.vertices)))
@@ -296,7 +299,7 @@ class SpatialReference:
     def _stand(self, stance: Stance) -> None:
         """Move the pivot, and take rounding out of the attitude."""
         rotation = attitude.matrix(self.quaternion)
-        self.place = self.place + (rotation @ (stance.pivot - self._pivot))[:2]
+        self.place = self.place + applied(rotation, stance.pivot - self._pivot)[:2]
         if stance.contact is Contact.REST:
             self.quaternion = attitude.flat(self.quaternion)
         elif stance.axis is not None:
@@ -322,13 +325,13 @@ class SpatialReference:
     def _field_now(self) -> FloatArray:
         field = -self.ground.part(self.stretch, self.time, 1.0)[:, 0]
         field[2] -= self.settings.gravity
-        return np.asarray(attitude.matrix(self.quaternion).T @ field)
+        return applied(attitude.matrix(self.quaternion).T, field)
 
     def _state(self) -> State:
         return State(self._pivot, self.velocity, self._up, self._field_now())
 
     def _kinetic(self) -> float:
-        return float(0.5 * self.velocity @ self.body.inertia_about(self._pivot) @ self.velocity)
+        return self.body.kinetic(self._pivot, self.velocity)
 
     def _potential(self) -> float:
         return self.body.mass * self.settings.gravity * stances.rise(self.body, self._pivot, self._up)

@@ -10,6 +10,8 @@ from rocking.dynamics.spatial.polynomials import cauchy, dot, first_zero, padded
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.taylor import value
+from rocking.portable import applied, inverse, times
+from rocking.portable import dot as dot_of
 
 
 def first_release(body: SpatialBody, stance: Stance, step: Step) -> tuple[float, int] | None:
@@ -88,9 +90,9 @@ def _normal(body: SpatialBody, stance: Stance, step: Step) -> FloatArray:
     if stance.contact is Contact.ROLLING:
         # height of the centre over the ground: Z . C + b sin(tilt)
         level = step.up[:, :2]
-        height = step.up @ body.centre + body.radius * square_root(dot(level, level))
+        height = applied(step.up, body.centre) + body.radius * square_root(dot(level, level))
     else:
-        height = step.up @ (body.centre - stance.pivot)
+        height = applied(step.up, body.centre - stance.pivot)
     k = np.arange(len(height))
     rise = (k * (k - 1) * height)[2:] / step.length**2
     return rise - padded(step.field[2], len(rise))
@@ -99,14 +101,14 @@ def _normal(body: SpatialBody, stance: Stance, step: Step) -> FloatArray:
 def _second(body: SpatialBody, stance: Stance, step: Step) -> FloatArray:
     """Vertical force per unit mass at the second end of an edge."""
     axis, arm, n = _axis(stance), body.centre - stance.pivot, len(step.up)
-    about = body.inertia_about(stance.pivot) @ axis / body.mass
-    spin = step.velocities @ axis
+    about = applied(body.inertia_about(stance.pivot), axis) / body.mass
+    spin = applied(step.velocities, axis)
     rate = np.append((np.arange(n) * spin)[1:], 0.0) / step.length
     # Z . (Z x M) along the edge, with M = I w' + w x I w - rho x m g
-    made = -cauchy(step.up @ cross(axis, about), rate)
-    made -= cauchy(step.up @ cross(axis, cross(axis, about)), cauchy(spin, spin))
-    made += cauchy(step.up @ arm, padded(step.heading @ step.field, n))
-    made -= padded(step.field[2], n) * (axis @ arm)
+    made = -cauchy(applied(step.up, cross(axis, about)), rate)
+    made -= cauchy(applied(step.up, cross(axis, cross(axis, about))), cauchy(spin, spin))
+    made += cauchy(applied(step.up, arm), padded(applied(step.field.T, step.heading), n))
+    made -= padded(step.field[2], n) * dot_of(axis, arm)
     return made[: n - 2] / stance.length
 
 
@@ -117,13 +119,13 @@ def _opening(body: SpatialBody, stance: Stance, step: Step, which: int) -> Float
     leaves = axis * (stance.length if which else -stance.length)
     inertia, arm = body.inertia_about(stays), body.centre - stays
     across = np.array([-step.heading[1], step.heading[0], 0.0])  # Z x e on the ground
-    field = np.outer(padded(step.heading @ step.field, n), axis)
-    for direction, series in ((step.up, step.field[2]), (cross(step.up, axis), across @ step.field)):
+    field = np.outer(padded(applied(step.field.T, step.heading), n), axis)
+    for direction, series in ((step.up, step.field[2]), (cross(step.up, axis), applied(step.field.T, across))):
         strength = padded(series, n)
         field += np.column_stack([cauchy(direction[:, i], strength) for i in range(3)])
-    spin = step.velocities @ axis
-    torque = body.mass * cross(arm, field) - np.outer(cauchy(spin, spin), cross(axis, inertia @ axis))
-    return dot(cross(leaves, step.up) @ np.linalg.inv(inertia), torque)[: n - 2]
+    spin = applied(step.velocities, axis)
+    torque = body.mass * cross(arm, field) - np.outer(cauchy(spin, spin), cross(axis, applied(inertia, axis)))
+    return dot(times(cross(leaves, step.up), inverse(inertia)), torque)[: n - 2]
 
 
 def _axis(stance: Stance) -> FloatArray:

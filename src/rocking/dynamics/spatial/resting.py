@@ -9,6 +9,7 @@ from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.selection import State, of_forces
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.taylor import first_fall, shifted, value
+from rocking.portable import convolved, times
 
 _SAME = 1e-11
 _WHOLE = 1.0 - 1e-12
@@ -90,20 +91,20 @@ def lifted(body: SpatialBody, state: State, edges: tuple[int, ...]) -> Stance | 
 
 def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, gravity: float) -> FloatArray:
     """Return what must stay above zero, by stretch, edge and power."""
-    level = np.einsum("ab,nad->nbd", rotation[:2, :2], accelerations[:, :2])
+    level = times(rotation[:2, :2].T, accelerations[:, :2])
     weight = accelerations[:, 2].copy()
     weight[:, 0] += gravity
     if not body.round:
         inside = ((body.centre[:2] - body.vertices[:, :2]) * body.inward).sum(axis=1)
-        tipping = np.einsum("eb,nbd->ned", body.inward, level)
+        tipping = times(body.inward, level)
         return np.asarray(inside[None, :, None] * weight[:, None, :] - body.centre[2] * tipping)
     made = np.zeros((len(weight), 2, 2 * weight.shape[1] - 1))
     made[:, 1, : weight.shape[1]] = weight * body.size  # the ground must push
     for k, w in enumerate(weight):
-        made[k, 0] = body.radius**2 * np.convolve(w, w)
+        made[k, 0] = body.radius**2 * convolved(w, w)
         for axis in range(2):
             arm = body.centre[axis] * w - body.centre[2] * level[k, axis]
-            made[k, 0] -= np.convolve(arm, arm)
+            made[k, 0] -= convolved(arm, arm)
     return made
 
 

@@ -12,6 +12,7 @@ from rocking.bodies.solid import Solid, SolidMoments
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial.matter import Matter
 from rocking.errors import GeometryError, InvalidValueError
+from rocking.portable import applied, dot, norm
 
 _ROUNDING = 1e-9
 _NAMES = {
@@ -226,7 +227,24 @@ class SpatialBody:
             In body axes [kg m2].
         """
         arm = self.centre - point
-        return np.asarray(self.inertia + self.mass * ((arm @ arm) * np.eye(3) - np.outer(arm, arm)))
+        return np.asarray(self.inertia + self.mass * (dot(arm, arm) * np.eye(3) - np.outer(arm, arm)))
+
+    def kinetic(self, point: FloatArray, velocity: FloatArray) -> float:
+        """Return the kinetic energy of the body that turns about a point at rest.
+
+        Parameters
+        ----------
+        point : ndarray, shape (3,)
+            In body axes [m].
+        velocity : ndarray, shape (3,)
+            Angular velocity in body axes [rad/s].
+
+        Returns
+        -------
+        float
+            Energy [J].
+        """
+        return 0.5 * dot(velocity, applied(self.inertia_about(point), velocity))
 
     def frequency(self, gravity: float) -> float:
         """Return the frequency parameter of the body about its nearest edge, p = sqrt(m g R / I) there.
@@ -247,8 +265,8 @@ class SpatialBody:
             points, axes = self.vertices, self.edges
         found = []
         for point, axis in zip(points, axes, strict=True):
-            arm = np.linalg.norm(np.cross(self.centre - point, axis))
-            found.append(math.sqrt(self.mass * gravity * arm / (axis @ self.inertia_about(point) @ axis)))
+            arm = norm(np.cross(self.centre - point, axis))
+            found.append(math.sqrt(self.mass * gravity * arm / (2.0 * self.kinetic(point, axis))))
         return min(found)
 
 

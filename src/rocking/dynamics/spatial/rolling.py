@@ -11,40 +11,63 @@ equations of Srinivasan and Ruina 2008). Everything is a product of series again
 The place of the contact on the ground follows from P' = -b R n'.
 """
 
+from collections.abc import Iterable
+from itertools import zip_longest
+from operator import mul
+
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.spatial.attitude import ROTATION_MAP
-from rocking.dynamics.spatial.flow import CROSS, RATE_MAP
+from rocking.dynamics.spatial.attitude import matrix
+from rocking.dynamics.spatial.flow import carried, turned
 from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.portable import inverse, norm
 
-_CROSS = CROSS.reshape(3, 9)
-_UP = ROTATION_MAP[2]
-_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
-
-
-def _sum(left: FloatArray, right: FloatArray, k: int) -> FloatArray:
-    """Coefficient k of the product of two series of vectors: every component with every other."""
-    return np.asarray(left[: k + 1].T @ right[k::-1])
+Terms = list[float]
 
 
-def _crossed(left: FloatArray, right: FloatArray, k: int) -> FloatArray:
-    return np.asarray(_CROSS @ _sum(left, right, k).ravel())
+def _term(left: Terms, right: Terms, k: int) -> float:
+    """Coefficient k of the product of two series."""
+    return sum(map(mul, left, right[k::-1]))
+
+
+def _back(vector: list[Terms], k: int) -> list[Terms]:
+    """Components from the power k downwards."""
+    return [series[k::-1] for series in vector]
+
+
+def _crossed(left: list[Terms], right: list[Terms], k: int) -> list[float]:
+    """Coefficient k of the vector product of two series."""
+    (a, b, c), (x, y, z) = left, _back(right, k)
+    return [
+        sum(map(mul, b, z)) - sum(map(mul, c, y)),
+        sum(map(mul, c, x)) - sum(map(mul, a, z)),
+        sum(map(mul, a, y)) - sum(map(mul, b, x)),
+    ]
+
+
+def _add(series: list[Terms], terms: Iterable[float]) -> None:
+    for component, term in zip(series, terms, strict=True):
+        component.append(term)
 
 
 class _Series:
-    """The series of one step, filled in order by order."""
+    """The series of one step, a list for every component, filled in order by order."""
 
-    def __init__(self, order: int) -> None:
-        def rows(*shape: int) -> FloatArray:
-            return np.zeros((order + 1, *shape))
+    def __init__(self, state: tuple[FloatArray, FloatArray, FloatArray], field: FloatArray) -> None:
+        def empty(count: int) -> list[Terms]:
+            return [[] for _ in range(count)]
 
-        self.q, self.w, self.squares, self.up = rows(4), rows(3), rows(16), rows(3)
-        self.n, self.h, self.place = rows(2), rows(1), rows(2)
-        self.rate_up, self.slip, self.bend = rows(3), rows(1), rows(2)
-        self.arm, self.arm_rate, self.speed, self.momentum = rows(3), rows(3), rows(3), rows(3)
-        self.drift, self.weight, self.rotation = rows(3), rows(3), rows(3, 3)
-        self.inertia, self.spin = rows(3, 3), rows(3)
+        self.q, self.w, self.place = ([[x] for x in part.tolist()] for part in state)
+        self.level = [[[x] for x in row] for row in matrix(state[0])[:2].tolist()]
+        first = [[x] for x in carried(state[0], field)]
+        self.up, self.field = first[:3], [first[i : i + 3] for i in range(3, len(first), 3)]
+        sine = norm(np.array(self.up[:2]).ravel())
+        self.n, self.h = [[x[0] / sine] for x in self.up[:2]], [1.0 / sine]
+        self.rate_up, self.bend = empty(3), empty(2)
+        self.slip, self.drift, self.falling, self.h2 = empty(4)
+        self.arm, self.arm_rate, self.speed, self.momentum, self.weight = (empty(3) for _ in range(5))
+        self.inertia, self.spin = [empty(3) for _ in range(3)], empty(3)
 
 
 class RollingFlow:
@@ -81,72 +104,78 @@ class RollingFlow:
 
         Returns
         -------
-        quaternions, velocities, squares, places : ndarray
-            Coefficients by power; shapes (order + 1, 4), (order + 1, 3), (order + 1, 16), (order + 1, 2).
+        quaternions, velocities, up, places : ndarray
+            Coefficients by power; shapes (order + 1, 4), (order + 1, 3), (order + 1, 3), (order + 1, 2).
         """
-        s = _Series(order)
-        s.q[0], s.w[0], s.place[0] = state
-        level = (_UP @ np.outer(s.q[0], s.q[0]).ravel())[:2]
-        sine = float(np.hypot(*level))
-        s.n[0], s.h[0] = level / sine, 1.0 / sine
-        for k in range(order + 1):
-            s.squares[k] = _sum(s.q, s.q, k).ravel()
-            s.up[k], s.rotation[k] = _UP @ s.squares[k], (ROTATION_MAP @ s.squares[k])
-            if k == order:
-                break
+        s = _Series(state, field)
+        for k in range(order):
             self._contact(s, k)
-            self._dynamics(s, k, field)
-            step = length / (k + 1)
-            s.q[k + 1] = step * (RATE_MAP @ _sum(s.q, s.w, k).ravel())
-            s.w[k + 1] = step * s.spin[k]
-            s.n[k + 1], s.h[k + 1] = step * s.bend[k], step * -self._flattening(s, k)
-            s.place[k + 1] = -step * self.body.radius * self._traced(s, k)
-        return s.q, s.w, s.squares, s.place
+            self._dynamics(s, k)
+            self._advance(s, k, length / (k + 1))
+        return np.array(s.q).T, np.array(s.w).T, np.array(s.up).T, np.array(s.place).T
+
+    def _advance(self, s: _Series, k: int, share: float) -> None:
+        """Add the next power of everything that has a rate."""
+        fall, traced = self._flattening(s, k), self._traced(s, k)
+        back = _back(s.w, k)
+        _add(s.q, turned([[sum(map(mul, series, part)) for part in back] for series in s.q], share))
+        for row in s.level:
+            _add(row, [share * part for part in _crossed(row, s.w, k)])
+        _add(s.up, [share * rate[k] for rate in s.rate_up])
+        for vector, more in zip_longest(s.field, s.field[1:]):
+            follows = [series[k] / (k + 1) for series in more] if more else (0.0, 0.0, 0.0)
+            _add(vector, [share * part + by for part, by in zip(_crossed(vector, s.w, k), follows, strict=True)])
+        _add(s.w, [share * spin[k] for spin in s.spin])
+        _add([*s.n, s.h], [share * s.bend[0][k], share * s.bend[1][k], -share * fall])
+        _add(s.place, [-share * self.body.radius * part for part in traced])
 
     def _contact(self, s: _Series, k: int) -> None:
         """How fast the lowest point moves along the rim."""
-        s.rate_up[k] = _crossed(s.up, s.w, k)
-        sideways = _sum(s.n, s.rate_up[:, :2], k)
-        s.slip[k] = sideways[0, 1] - sideways[1, 0]  # t . Z'
-        s.bend[k] = _TURN @ _sum(s.n, self._scaled(s, k), k)[:, 0]
-        s.arm[k, :2] = self.body.radius * s.n[k]
-        if k == 0:
-            s.arm[0] += self.body.centre
-        s.arm_rate[k, :2] = self.body.radius * s.bend[k]
+        radius, centre = self.body.radius, self.body.centre.tolist() if k == 0 else (0.0, 0.0, 0.0)
+        _add(s.rate_up, _crossed(s.up, s.w, k))
+        (nx, ny), (x, y) = s.n, _back(s.rate_up[:2], k)
+        s.slip.append(sum(map(mul, nx, y)) - sum(map(mul, ny, x)))  # t . Z'
+        s.falling.append(sum(map(mul, nx, x)) + sum(map(mul, ny, y)))  # n . Z'
+        s.drift.append(_term(s.slip, s.h, k))
+        _add(s.bend, [-_term(s.n[1], s.drift, k), _term(s.n[0], s.drift, k)])
+        _add(s.arm, [radius * s.n[0][k] + centre[0], radius * s.n[1][k] + centre[1], centre[2]])
+        _add(s.arm_rate, [radius * s.bend[0][k], radius * s.bend[1][k], 0.0])
 
     @staticmethod
-    def _scaled(s: _Series, k: int) -> FloatArray:
-        """Series of h (t . Z') up to order k."""
-        s.drift[k, 0] = _sum(s.slip, s.h, k)[0, 0]
-        return np.asarray(s.drift[:, :1])
-
-    @staticmethod
-    def _flattening(s: _Series, k: int) -> FloatArray:
+    def _flattening(s: _Series, k: int) -> float:
         """Coefficient k of h^2 (n . Z')."""
-        s.drift[k, 1] = _sum(s.h, s.h, k)[0, 0]
-        s.drift[k, 2] = np.trace(_sum(s.n, s.rate_up[:, :2], k))
-        return np.asarray(_sum(s.drift[:, 1:2], s.drift[:, 2:3], k)[0])
+        s.h2.append(_term(s.h, s.h, k))
+        return _term(s.h2, s.falling, k)
 
     @staticmethod
-    def _traced(s: _Series, k: int) -> FloatArray:
+    def _traced(s: _Series, k: int) -> list[float]:
         """Coefficient k of the horizontal part of R n'."""
-        return np.asarray(sum(s.rotation[j, :2, :2] @ s.bend[k - j] for j in range(k + 1)))
+        return [_term(row[0], s.bend[0], k) + _term(row[1], s.bend[1], k) for row in s.level]
 
-    def _dynamics(self, s: _Series, k: int, field: FloatArray) -> None:
+    def _dynamics(self, s: _Series, k: int) -> None:
         """Angular acceleration."""
-        body = self.body
-        s.speed[k] = _crossed(s.w, s.arm, k)
-        s.momentum[k] = body.inertia @ s.w[k] + body.mass * _crossed(s.arm, s.speed, k)
-        for j in range(min(k, field.shape[1] - 1) + 1):
-            s.weight[k] += s.rotation[k - j].T @ field[:, j]
+        mass, inertia = self.body.mass, self.body.inertia.tolist()
+        w, own = [series[k] for series in s.w], inertia if k == 0 else [[0.0] * 3] * 3
+        _add(s.speed, _crossed(s.w, s.arm, k))
+        swept = _crossed(s.arm, s.speed, k)
+        _add(s.momentum, [sum(map(mul, row, w)) + mass * part for row, part in zip(inertia, swept, strict=True)])
         # m rho x (R^T G - w x rho')
-        s.weight[k] -= _crossed(s.w, s.arm_rate, k)
-        outer = _sum(s.arm, s.arm, k)
-        s.inertia[k] = body.mass * (np.trace(outer) * np.eye(3) - outer)
-        torque = body.mass * _crossed(s.arm, s.weight, k) - _crossed(s.w, s.momentum, k)
+        shed = _crossed(s.w, s.arm_rate, k)
+        _add(s.weight, [force[k] - part for force, part in zip(s.field[0], shed, strict=True)])
+        x, y, z = s.arm
+        xx, yy, zz, yz, xz, xy = (_term(a, b, k) for a, b in ((x, x), (y, y), (z, z), (y, z), (x, z), (x, y)))
+        for row, base, steiner in zip(
+            s.inertia, own, ((yy + zz, -xy, -xz), (-xy, xx + zz, -yz), (-xz, -yz, xx + yy)), strict=True
+        ):
+            _add(row, [a + mass * b for a, b in zip(base, steiner, strict=True)])
         if k == 0:
-            s.inertia[0] += body.inertia
-            self.solve = np.linalg.inv(s.inertia[0])
-        for j in range(1, k + 1):
-            torque -= s.inertia[j] @ s.spin[k - j]
-        s.spin[k] = self.solve @ torque
+            self.solve = inverse(np.array(s.inertia)[:, :, 0]).tolist()
+        # what earlier accelerations take of the inertia that changes
+        earlier = _back(s.spin, k)
+        taken = [
+            sum(map(mul, a[1:], u)) + sum(map(mul, b[1:], v)) + sum(map(mul, c[1:], w))
+            for (a, b, c), (u, v, w) in ((row, earlier) for row in s.inertia)
+        ]
+        pull, turn = _crossed(s.arm, s.weight, k), _crossed(s.w, s.momentum, k)
+        torque = [mass * a - b - c for a, b, c in zip(pull, turn, taken, strict=True)]
+        _add(s.spin, [sum(map(mul, row, torque)) for row in self.solve])

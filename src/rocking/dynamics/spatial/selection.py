@@ -19,6 +19,7 @@ from rocking.dynamics.spatial.impact import SpatialImpactLaw, projected
 from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.stance import Stance
+from rocking.portable import applied, dot, norm, solution
 
 _ROUNDING = 1e-9
 
@@ -143,7 +144,7 @@ def of_forces(body: SpatialBody, state: State, touching: tuple[int, ...], first:
         Empty if the ground would have to pull.
     """
     found: list[Choice] = []
-    scale = float(np.linalg.norm(state.field))
+    scale = norm(state.field)
     for stance in [] if first is None else [first]:
         _try_forces(body, state, stance, touching, scale, found)
     for stance in candidates(body, touching):
@@ -160,7 +161,7 @@ def _try_forces(
     if push.min() < -_ROUNDING * body.mass * scale:
         return
     spin = cross(velocity, cross(velocity, body.vertices - stance.pivot))
-    opening = (cross(rate, body.vertices - stance.pivot) + spin) @ state.up
+    opening = applied(cross(rate, body.vertices - stance.pivot) + spin, state.up)
     others = [i for i in touching if i not in stance.points]
     if not others or opening[others].min() >= -_ROUNDING * scale:
         found.append(Choice(stance, velocity, push))
@@ -187,7 +188,7 @@ def impulses(body: SpatialBody, state: State, stance: Stance, velocity: FloatArr
     """
     new = body.centre - stance.pivot
     push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))
-    moment = body.inertia @ (velocity - state.velocity) + cross(new, push)
+    moment = applied(body.inertia, velocity - state.velocity) + cross(new, push)
     return stances.supports(body, stance, push, moment, state.up)
 
 
@@ -218,14 +219,14 @@ def forces(
     """
     arm, inertia = body.centre - stance.pivot, body.inertia_about(stance.pivot)
     rate: FloatArray
-    gyroscopic, weight = cross(velocity, inertia @ velocity), body.mass * cross(arm, field)
+    gyroscopic, weight = cross(velocity, applied(inertia, velocity)), body.mass * cross(arm, field)
     if stance.contact is Contact.REST:
         rate = np.zeros(3)
     elif stance.axis is not None:
-        rate = stance.axis * (stance.axis @ (weight - gyroscopic)) / (stance.axis @ inertia @ stance.axis)
+        rate = stance.axis * (dot(stance.axis, weight - gyroscopic) / dot(stance.axis, applied(inertia, stance.axis)))
     else:
-        rate = np.asarray(np.linalg.solve(inertia, weight - gyroscopic), dtype=np.float64)
-    moment = inertia @ rate + gyroscopic - weight
+        rate = solution(inertia, weight - gyroscopic)
+    moment = applied(inertia, rate) + gyroscopic - weight
     force = body.mass * (cross(rate, arm) + cross(velocity, cross(velocity, arm)) - field)
     return rate, stances.supports(body, stance, force, moment, up)
 
@@ -243,4 +244,4 @@ def _opening(
     others = [i for i in touching if i not in stance.points]
     if not others:
         return 0.0
-    return float((cross(velocity, body.vertices[others] - stance.pivot) @ up).min())
+    return float(applied(cross(velocity, body.vertices[others] - stance.pivot), up).min())

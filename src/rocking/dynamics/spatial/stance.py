@@ -8,6 +8,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.spatial.attitude import cross
 from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.portable import dot, norm
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -70,7 +71,7 @@ def edge(body: SpatialBody, number: int) -> Stance:
         Turning about the edge.
     """
     after = (number + 1) % len(body.vertices)
-    length = float(np.linalg.norm(body.vertices[after] - body.vertices[number]))
+    length = norm(body.vertices[after] - body.vertices[number])
     return Stance(Contact.EDGE, (number, after), body.vertices[number], body.edges[number], length)
 
 
@@ -107,7 +108,7 @@ def rim(body: SpatialBody, direction: FloatArray) -> Stance:
     Stance
         Turning about that point: what rolling starts with while the base is nearly flat.
     """
-    unit = direction / np.linalg.norm(direction)
+    unit = direction / norm(direction)
     return Stance(Contact.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
 
 
@@ -151,15 +152,15 @@ def supports(body: SpatialBody, stance: Stance, force: FloatArray, moment: Float
         Vertical force at a vertex; at both ends of an edge; for a face N times the distance of its centre of pressure
         from each edge over the size of the body [N].
     """
-    normal = float(force @ up)
+    normal = dot(force, up)
     if stance.axis is not None:
-        second = float(cross(up, moment) @ stance.axis) / stance.length
+        second = dot(cross(up, moment), stance.axis) / stance.length
         return np.array([normal - second, second])
     if stance.contact is not Contact.REST:
         return np.array([normal])
     pressure = cross(up, moment)[:2] + normal * stance.pivot[:2]
     if body.round:
-        return np.array([normal * body.radius - float(np.hypot(*pressure))]) / body.size
+        return np.array([normal * body.radius - norm(pressure)]) / body.size
     inside = ((pressure - normal * body.vertices[:, :2]) * body.inward).sum(axis=1)
     return np.append(inside / body.size, normal)
 
@@ -183,7 +184,7 @@ def touching_point(body: SpatialBody, stance: Stance, up: FloatArray) -> FloatAr
     """
     if stance.contact is not Contact.ROLLING:
         return stance.pivot
-    level = up[:2] / np.hypot(up[0], up[1])
+    level = up[:2] / norm(up[:2])
     return np.array([-body.radius * level[0], -body.radius * level[1], 0.0])
 
 
@@ -208,4 +209,4 @@ def rise(body: SpatialBody, pivot: FloatArray, up: FloatArray) -> float:
     level2 = float(up[0] ** 2 + up[1] ** 2)
     # 1 - cos(tilt) without the loss of digits
     sunk = level2 / (1.0 + up[2]) if up[2] > 0.0 else 1.0 - float(up[2])
-    return float(up[:2] @ arm[:2] - sunk * arm[2])
+    return float(dot(up[:2], arm[:2]) - sunk * arm[2])

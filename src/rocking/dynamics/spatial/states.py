@@ -10,6 +10,7 @@ from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.trajectory import Piece, SpatialTrajectory
+from rocking.portable import applied, times
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +48,7 @@ class States:
     @cached_property
     def angular_velocity(self) -> FloatArray:
         """Angular velocity in axes of the ground, shape (n, 3) [rad/s]."""
-        return np.asarray(np.einsum("nab,nb->na", self.rotation, self.body_velocity))
+        return applied(self.rotation, self.body_velocity)
 
     def point(self, point: FloatArray) -> FloatArray:
         """Return where a point of the body is.
@@ -62,7 +63,7 @@ class States:
         ndarray, shape (n, 3)
             Relative to the ground, which carries the origin along [m].
         """
-        moved = np.einsum("nab,nb->na", self.rotation, point - self.pivot)
+        moved = applied(self.rotation, point - self.pivot)
         moved[:, :2] += self.place
         return np.asarray(moved)
 
@@ -71,21 +72,21 @@ class States:
         """Height of the lowest vertex or point of the rim over the ground; below zero it would be inside [m]."""
         up = self.rotation[:, 2]
         if self.body.round:
-            lowest = -self.body.radius * np.hypot(up[:, 0], up[:, 1])
+            lowest = -self.body.radius * np.sqrt(np.square(up[:, :2]).sum(axis=1))
         else:
-            lowest = (up @ self.body.vertices.T).min(axis=1)
+            lowest = times(up, self.body.vertices.T).min(axis=1)
         return np.asarray(lowest - (up * self.pivot).sum(axis=1))
 
     @property
     def centre_velocity(self) -> FloatArray:
         """Velocity of the centre of mass relative to the ground, shape (n, 3) [m/s]."""
         local = attitude.cross(self.body_velocity, self.body.centre - self.pivot)
-        return np.asarray(np.einsum("nab,nb->na", self.rotation, local))
+        return applied(self.rotation, local)
 
     @property
     def kinetic(self) -> FloatArray:
         """Kinetic energy relative to the ground [J]."""
-        spin = np.einsum("na,ab,nb->n", self.body_velocity, self.body.inertia, self.body_velocity)
+        spin = (self.body_velocity * times(self.body_velocity, self.body.inertia)).sum(axis=1)
         return np.asarray(0.5 * spin + 0.5 * self.body.mass * np.square(self.centre_velocity).sum(axis=1))
 
     @property

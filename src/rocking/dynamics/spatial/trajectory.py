@@ -9,6 +9,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial.outcome import Contact, SpatialStatus
 from rocking.dynamics.spatial.stance import Stance
+from rocking.portable import powers, times
 
 
 class SpatialEventKind(Enum):
@@ -90,8 +91,8 @@ class Piece:
         quaternions, velocities, places : ndarray, shape (n, 4), (n, 3), (n, 2)
             At these times.
         """
-        powers = share[:, None] ** np.arange(max(len(self.quaternions), len(self.places)))
-        made = [powers[:, : len(c)] @ c for c in (self.quaternions, self.velocities, self.places)]
+        by_power = powers(share, max(len(self.quaternions), len(self.places)))
+        made = [times(by_power[:, : len(c)], c) for c in (self.quaternions, self.velocities, self.places)]
         made[0] /= np.linalg.norm(made[0], axis=1)[:, None]
         return made[0], made[1], made[2]
 

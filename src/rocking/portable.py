@@ -1,0 +1,209 @@
+"""Arithmetic that gives the same bits on every processor.
+
+Sums, products, quotients and square roots are rounded by IEEE 754 everywhere alike, and numpy takes the terms of a sum
+in one order. BLAS and LAPACK choose a kernel by the processor, and each rounds in its own order; numpy's exp, log, tan,
+arctan2 and powers have a version of their own for AVX-512, one unit in the last place away. What decides an event, and
+what is handed out as a result, does without them: vectors of three need no library, and functions of one number are
+those of the C library.
+"""
+
+import math
+from collections.abc import Callable
+from operator import mul
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+
+_FEW = 16
+
+
+def dot(left: FloatArray, right: FloatArray) -> float:
+    """Return the scalar product of two vectors.
+
+    Parameters
+    ----------
+    left, right : ndarray, shape (n,)
+        Vectors.
+
+    Returns
+    -------
+    float
+        Their product, first terms first.
+    """
+    return float(sum(map(mul, left.tolist(), right.tolist())))
+
+
+def norm(vector: FloatArray) -> float:
+    """Return the length of a vector.
+
+    Parameters
+    ----------
+    vector : ndarray, shape (n,)
+        The vector.
+
+    Returns
+    -------
+    float
+        Its length.
+    """
+    return math.sqrt(dot(vector, vector))
+
+
+def applied(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return matrices times vectors; of points, their products with one vector.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (..., m, n)
+        Matrices.
+    vector : ndarray, shape (..., n)
+        Vectors.
+
+    Returns
+    -------
+    ndarray, shape (..., m)
+        The products.
+
+    Examples
+    --------
+    >>> applied(np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([1.0, -1.0])).tolist()
+    [-1.0, -1.0]
+    """
+    if matrix.ndim == 2 and vector.ndim == 1 and len(matrix) <= _FEW:
+        other = vector.tolist()
+        return np.array([sum(map(mul, row, other)) for row in matrix.tolist()], dtype=np.float64)
+    return np.asarray((matrix * vector[..., None, :]).sum(axis=-1))
+
+
+def times(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Return the product of two small matrices.
+
+    Parameters
+    ----------
+    left : ndarray, shape (..., l, m)
+        Matrices.
+    right : ndarray, shape (..., m, n)
+        Matrices.
+
+    Returns
+    -------
+    ndarray, shape (..., l, n)
+        The products.
+    """
+    return np.asarray((left[..., :, :, None] * right[..., None, :, :]).sum(axis=-2))
+
+
+def convolved(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Return the coefficients of the product of two polynomials.
+
+    Parameters
+    ----------
+    left, right : ndarray, shape (m,) and (n,)
+        Coefficients by power.
+
+    Returns
+    -------
+    ndarray, shape (m + n - 1,)
+        Coefficients by power.
+
+    Examples
+    --------
+    >>> convolved(np.array([1.0, 2.0]), np.array([1.0, 0.0, 3.0])).tolist()
+    [1.0, 2.0, 3.0, 6.0]
+    """
+    terms, other = left.tolist(), [*right.tolist(), *[0.0] * (len(left) - 1)]
+    return np.array([sum(map(mul, terms, other[k::-1])) for k in range(len(other))])
+
+
+def solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return x of ``A x = b`` by elimination, for a symmetric positive definite A of three rows.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (3, 3)
+        A; symmetric, such as a tensor of inertia, so that elimination needs no other order of the rows.
+    vector : ndarray, shape (3,)
+        b.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        x.
+
+    Examples
+    --------
+    >>> solution(np.array([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 4.0]]), np.array([3.0, 3.0, 2.0])).tolist()
+    [1.0, 1.0, 0.5]
+    """
+    (a, b, c), (_, d, e), (_, _, f) = matrix.tolist()
+    x, y, z = vector.tolist()
+    first, second = b / a, c / a
+    d, e = d - first * b, e - first * c
+    third = e / d
+    y = y - first * x
+    z = (z - second * x - third * y) / (f - second * c - third * e)
+    y = (y - e * z) / d
+    return np.array([(x - b * y - c * z) / a, y, z])
+
+
+def inverse(matrix: FloatArray) -> FloatArray:
+    """Return the inverse of a symmetric positive definite matrix of three rows.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (3, 3)
+        The matrix.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Its inverse.
+    """
+    return np.array([solution(matrix, column) for column in np.eye(3)])
+
+
+def powers(x: Any, count: int) -> FloatArray:
+    """Return 1, x, x^2 and so on, each the one before times x.
+
+    Parameters
+    ----------
+    x : array_like
+        Numbers.
+    count : int
+        How many powers.
+
+    Returns
+    -------
+    ndarray, shape (..., count)
+        The powers.
+    """
+    base = np.repeat(np.asarray(x, dtype=np.float64)[..., None], count, axis=-1)
+    base[..., :1] = 1.0
+    return np.asarray(np.multiply.accumulate(base, axis=-1))
+
+
+def each(function: Callable[..., float], *values: Any) -> FloatArray:
+    """Return a function of `math` of every number.
+
+    Parameters
+    ----------
+    function : callable
+        Takes and returns plain numbers.
+    *values : array_like
+        Its arguments; they broadcast.
+
+    Returns
+    -------
+    ndarray
+        What it returns.
+
+    Examples
+    --------
+    >>> each(math.atan2, [0.0, 0.0], 1.0).tolist()
+    [0.0, 0.0]
+    """
+    arrays = np.broadcast_arrays(*[np.asarray(v, dtype=np.float64) for v in values])
+    made = list(map(function, *[array.ravel().tolist() for array in arrays]))
+    return np.array(made, dtype=np.float64).reshape(arrays[0].shape)
