@@ -16,7 +16,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 
-_FEW = 16
+_FEW, _SHORT = 16, 4
 
 
 def dot(left: FloatArray, right: FloatArray) -> float:
@@ -92,7 +92,31 @@ def times(left: FloatArray, right: FloatArray) -> FloatArray:
     ndarray, shape (..., l, n)
         The products.
     """
-    return np.asarray((left[..., :, :, None] * right[..., None, :, :]).sum(axis=-2))
+    count = right.shape[-2]
+    if count > _SHORT:
+        return np.asarray((left[..., :, :, None] * right[..., None, :, :]).sum(axis=-2))
+    return np.asarray(sum(left[..., j, None] * right[..., None, j, :] for j in range(count)))
+
+
+def gram(rows: FloatArray, weights: FloatArray) -> FloatArray:
+    """Return the sum of the weighted outer products of vectors with themselves.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (n, m)
+        Vectors.
+    weights : ndarray, shape (n,)
+        Their weights.
+
+    Returns
+    -------
+    ndarray, shape (m, m)
+        The sum, symmetric.
+    """
+    weighted, made = (rows * weights[:, None]).T.copy(), np.empty((rows.shape[1], rows.shape[1]))
+    for i, row in enumerate(rows.T):
+        made[i, i:] = made[i:, i] = (weighted[i:] * row).sum(axis=1)
+    return made
 
 
 def convolved(left: FloatArray, right: FloatArray) -> FloatArray:
@@ -207,3 +231,62 @@ def each(function: Callable[..., float], *values: Any) -> FloatArray:
     arrays = np.broadcast_arrays(*[np.asarray(v, dtype=np.float64) for v in values])
     made = list(map(function, *[array.ravel().tolist() for array in arrays]))
     return np.array(made, dtype=np.float64).reshape(arrays[0].shape)
+
+
+def gauss_rule(diagonal: FloatArray, side: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return Gauss's rule of a measure of mass one, given by the recurrence of its orthogonal polynomials.
+
+    Golub and Welsch's eigenvalues tell where the nodes are to eight digits; from there Newton's method goes on alike
+    everywhere, whatever LAPACK left in the last digits.
+
+    Parameters
+    ----------
+    diagonal : ndarray, shape (n,)
+        Diagonal of Jacobi's matrix.
+    side : ndarray, shape (n - 1,)
+        The diagonals beside it.
+
+    Returns
+    -------
+    nodes, weights : ndarray, shape (n,)
+        Exact for polynomials of degree ``2 n - 1``.
+    """
+    x = np.round(np.linalg.eigvalsh(np.diag(diagonal) + np.diag(side, 1) + np.diag(side, -1)), 8)
+    ahead = [*side.tolist(), 1.0]  # the last polynomial may have any scale
+    for _ in range(4):
+        before, p, slope_before, slope, size = 0.0 * x, 1.0 + 0.0 * x, 0.0 * x, 0.0 * x, 0.0 * x
+        for k, (a, b) in enumerate(zip(diagonal.tolist(), ahead, strict=True)):
+            size = size + p * p
+            back = ahead[k - 1] if k else 0.0
+            before, p, slope_before, slope = (
+                p,
+                ((x - a) * p - back * before) / b,
+                slope,
+                (p + (x - a) * slope - back * slope_before) / b,
+            )
+        weights, x = 1.0 / size, x - p / slope
+    return x, weights
+
+
+def gauss_legendre(count: int) -> tuple[FloatArray, FloatArray]:
+    """Return Gauss's rule on [-1, 1].
+
+    Parameters
+    ----------
+    count : int
+        Points.
+
+    Returns
+    -------
+    nodes, weights : ndarray, shape (count,)
+        Exact for polynomials of degree ``2 count - 1``.
+
+    Examples
+    --------
+    >>> nodes, weights = gauss_legendre(3)
+    >>> (nodes**2).round(12).tolist(), (9.0 * weights).round(12).tolist()
+    ([0.6, 0.0, 0.6], [5.0, 8.0, 5.0])
+    """
+    k = np.arange(1.0, count)
+    nodes, weights = gauss_rule(np.zeros(count), k / np.sqrt(4.0 * k * k - 1.0))
+    return nodes, 2.0 * weights

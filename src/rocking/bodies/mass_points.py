@@ -88,8 +88,8 @@ class MassPoints(Body):
     def local_moments(self) -> PlaneMoments:
         """Sums over the points."""
         mass = float(self.masses.sum())
-        x, y = (self.masses @ self.points) / mass
-        xx, yy = self.masses @ (self.points - (x, y)) ** 2
+        x, y = (self.masses[:, None] * self.points).sum(axis=0) / mass
+        xx, yy = (self.masses[:, None] * (self.points - (x, y)) ** 2).sum(axis=0)
         return PlaneMoments(mass, float(x), float(y), float(xx), float(yy))
 
     @property

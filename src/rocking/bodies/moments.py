@@ -91,5 +91,5 @@ def combined(parts: Iterable[PlaneMoments]) -> PlaneMoments:
     """
     m, x, y, xx, yy = np.array([(p.mass, p.x, p.y, p.xx, p.yy) for p in parts]).T
     mass = float(m.sum())
-    cx, cy = float(m @ x) / mass, float(m @ y) / mass
+    cx, cy = float((m * x).sum()) / mass, float((m * y).sum()) / mass
     return PlaneMoments(mass, cx, cy, float((xx + m * (x - cx) ** 2).sum()), float((yy + m * (y - cy) ** 2).sum()))

@@ -15,9 +15,10 @@ from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
+from rocking.portable import gauss_legendre
 
 # Gauss-Legendre points and weights on [0, 1], exact to degree 9
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_POINTS, _WEIGHTS = gauss_legendre(5)
 _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
 
 

@@ -1,12 +1,13 @@
 """Taylor series of the equation of motion, by recursion, and the zeros of polynomials that locate events."""
 
+import math
 from collections.abc import Sequence
+from itertools import pairwise
 from operator import mul
-
-import numpy as np
 
 _SMALLEST = 1e-22
 _NEAR = 1e-9
+_HALVINGS = 80
 
 
 def series(
@@ -38,7 +39,7 @@ def series(
     if linear:
         sines, cosines = coefficients, [1.0]
     else:
-        sines, cosines = [float(np.sin(u))], [float(np.cos(u))]
+        sines, cosines = [math.sin(u)], [math.cos(u)]
     floor = _SMALLEST * (abs(u) + abs(rate))
     small = 0
     for k in range(order - 1):
@@ -138,11 +139,7 @@ def first_fall(polynomial: Sequence[float]) -> float | None:
     """
     if polynomial[0] + sum(min(c, 0.0) for c in polynomial[1:]) > 0.0:
         return None
-    for guess in _guesses(polynomial):
-        x = _polished(polynomial, guess)
-        if x is not None and 0.0 < x <= 1.0 and slope(polynomial, x) < 0.0:
-            return x
-    return None
+    return next((x for x in _zeros(polynomial) if 0.0 < x <= 1.0 and slope(polynomial, x) < 0.0), None)
 
 
 def last_fall(polynomial: Sequence[float]) -> float | None:
@@ -185,34 +182,34 @@ def turning_points(polynomial: Sequence[float], until: float) -> list[float]:
     >>> [round(x, 12) for x in turning_points([0.0, 0.5, -1.5, 1.0], 1.0)]
     [0.211324865405, 0.788675134595]
     """
-    slopes = [k * c for k, c in enumerate(polynomial)][1:]
-    rises = slopes[0] + sum(min(c, 0.0) for c in slopes[1:]) > 0.0
-    if rises or slopes[0] + sum(max(c, 0.0) for c in slopes[1:]) < 0.0:
+    return [min(x, until) for x in _zeros(_slopes(polynomial)) if 0.0 < x <= until + _NEAR]
+
+
+def _slopes(polynomial: Sequence[float]) -> list[float]:
+    return [k * c for k, c in enumerate(polynomial)][1:]
+
+
+def _zeros(polynomial: Sequence[float]) -> list[float]:
+    """Where on [0, 1], and a little beyond, the sign changes: at most once between two zeros of the slope (Rolle)."""
+    start, rest = polynomial[0], polynomial[1:]
+    if not rest or start + sum(min(c, 0.0) for c in rest) > 0.0 or start + sum(max(c, 0.0) for c in rest) < 0.0:
         return []
-    found = [_polished(slopes, guess) for guess in _guesses(slopes)]
-    return [min(x, until) for x in found if x is not None and 0.0 < x <= until + _NEAR]
+    stops = [0.0, *_zeros(_slopes(polynomial)), 1.0 + _NEAR]
+    below = [value(polynomial, x) < 0.0 for x in stops]
+    pairs = zip(pairwise(stops), pairwise(below), strict=True)
+    return [_zero_between(polynomial, *ends) for ends, (first, last) in pairs if first is not last]
 
 
-def _guesses(polynomial: Sequence[float]) -> list[float]:
-    """Zeros on [0, 1], and those that may be there but for rounding, by eigenvalues."""
-    rest = sum(map(abs, polynomial[1:]))
-    # highest powers first cut away: they are below rounding and would spoil the eigenvalues
-    kept = len(polynomial)
-    while kept > 2 and abs(polynomial[kept - 1]) <= 1e-20 * rest:
-        kept -= 1
-    roots = np.roots(polynomial[kept - 1 :: -1])
-    return sorted(float(x.real) for x in roots if abs(x.imag) < 1e-6 and -_NEAR < x.real < 1.0 + _NEAR)
-
-
-def _polished(polynomial: Sequence[float], guess: float) -> float | None:
-    """Improve a zero by Newton's method; None where that leads away."""
-    x = guess
-    for _ in range(50):
-        rate = slope(polynomial, x)
-        if rate == 0.0:
+def _zero_between(polynomial: Sequence[float], low: float, high: float) -> float:
+    """Newton's method, kept between two points at which the signs differ."""
+    rises = value(polynomial, low) < 0.0
+    x = 0.5 * (low + high)
+    for _ in range(_HALVINGS):
+        height, rate = value(polynomial, x), slope(polynomial, x)
+        low, high = (x, high) if (height < 0.0) is rises else (low, x)
+        after = x - height / rate if rate else low
+        after = after if low < after < high else 0.5 * (low + high)
+        if abs(after - x) <= 2e-16 * abs(x):
             break
-        step = value(polynomial, x) / rate
-        x -= step
-        if abs(step) <= 2e-16 * abs(x):
-            break
-    return x if abs(x - guess) < 1e-3 else None
+        x = after
+    return x

@@ -7,11 +7,12 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
+from rocking.portable import gauss_legendre
 from rocking.restitution.contact import contact_of, is_whole_base
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.model import InertiaModel
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(60)
+_NODES, _WEIGHTS = gauss_legendre(60)
 
 
 @dataclass(frozen=True)

@@ -134,4 +134,4 @@ def _(body: MassPoints, onto: Foot) -> float:
     squared = x * x + y * y
     # a mass on the new foot itself has no velocity after the impact and contributes nothing
     ratio = np.divide(y**4, squared, out=np.zeros_like(y), where=squared > 0.0)
-    return float(body.masses @ ratio)
+    return float((body.masses * ratio).sum())

@@ -3,12 +3,13 @@
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray
+from rocking.portable import gauss_legendre
 
 # Below this slenderness the closed form loses more than two digits and the series is summed instead.
 _SERIES_BELOW = 0.3
 _SERIES = np.array([(-1.0) ** j / ((2 * j - 1) * (2 * j + 3)) for j in range(14, 0, -1)])
 # Edges whose end angles differ little are summed by Gauss-Legendre: the closed form would cancel.
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
+_NODES, _WEIGHTS = gauss_legendre(12)
 _GAUSS_BEYOND = 5.0
 
 

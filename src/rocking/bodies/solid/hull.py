@@ -10,6 +10,7 @@ from rocking import checks
 from rocking.bodies.solid.support import Base, Corner, Edge
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
+from rocking.portable import dot, norm, times
 
 _INSIDE = 1e-12
 
@@ -66,7 +67,7 @@ class SupportPolygon(Base):
         if number != int(number) or not 0 <= number < len(self.vertices):
             raise GeometryError(f"edge must be a whole number from 0 to {len(self.vertices) - 1}, got {which!r}")
         start, end = self.vertices[int(number)], self.vertices[(int(number) + 1) % len(self.vertices)]
-        along = (end - start) / np.linalg.norm(end - start)
+        along = (end - start) / norm(end - start)
         return Edge(np.array([*start, self.height]), np.array([*along, 0.0]))
 
     def opposite(self, which: int) -> Edge:
@@ -90,7 +91,7 @@ class SupportPolygon(Base):
         edges = self.edges
         along = self.edge(which).direction
         for edge in edges:
-            if float(edge.direction @ along) < -1.0 + 1e-12:
+            if dot(edge.direction, along) < -1.0 + 1e-12:
                 return edge
         raise GeometryError(f"no edge of the base is parallel to edge {which}: the body lands on a corner there")
 
@@ -126,9 +127,10 @@ class SupportPolygon(Base):
         SupportPolygon
             In its new place, still counter-clockwise.
         """
-        moved = self.vertices @ matrix.T + shift[:2]
-        scale = math.sqrt(abs(float(np.linalg.det(matrix))))
-        return SupportPolygon(moved if np.linalg.det(matrix) > 0.0 else moved[::-1], self.height * scale + shift[2])
+        moved = times(self.vertices, matrix.T) + shift[:2]
+        area = float(matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0])
+        scale = math.sqrt(abs(area))
+        return SupportPolygon(moved if area > 0.0 else moved[::-1], self.height * scale + shift[2])
 
 
 def hull(points: ArrayLike, height: float = 0.0) -> SupportPolygon:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.portable import applied, gram, times
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,7 +63,9 @@ class SolidMoments:
         SolidMoments
             Of the distribution in its new place.
         """
-        return SolidMoments(self.mass, rotation @ self.centre + translation, rotation @ self.second @ rotation.T)
+        return SolidMoments(
+            self.mass, applied(rotation, self.centre) + translation, times(times(rotation, self.second), rotation.T)
+        )
 
     def second_about(self, point: FloatArray) -> FloatArray:
         """Return the integral of ``(S - point)(S - point)^T dm`` (parallel axes).
@@ -115,7 +118,7 @@ def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
     masses = np.array([part.mass for part in listed])
     centres = np.array([part.centre for part in listed])
     mass = float(masses.sum())
-    centre = masses @ centres / mass
+    centre = (masses[:, None] * centres).sum(axis=0) / mass
     second = np.sum([part.second_about(centre) for part in listed], axis=0)
     return SolidMoments(mass, centre, second)
 
@@ -146,11 +149,11 @@ def polyhedron_moments(triangles: FloatArray) -> SolidMoments:
     """
     middle = 0.5 * (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1)))
     a, b, c = np.moveaxis(triangles - middle, 1, 0)
-    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+    volumes = (a * np.cross(b, c)).sum(axis=1) / 6.0
     volume = float(volumes.sum())
     total = a + b + c
     if volume == 0.0:
         return SolidMoments(0.0, middle, np.zeros((3, 3)))
-    centre = volumes @ total / (4.0 * volume)
-    second = sum(np.einsum("n,ni,nj->ij", volumes / 20.0, v, v) for v in (a, b, c, total))
+    centre = (volumes[:, None] * total).sum(axis=0) / (4.0 * volume)
+    second = sum(gram(v, volumes / 20.0) for v in (a, b, c, total))
     return SolidMoments(volume, middle + centre, second - volume * np.outer(centre, centre))

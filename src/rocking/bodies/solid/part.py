@@ -13,6 +13,7 @@ from rocking.bodies.solid.shape import Shape, placed_points, vector
 from rocking.bodies.solid.surfaces import Surface
 from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import GeometryError
+from rocking.portable import applied, times
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -96,7 +97,7 @@ class Part:
             The same shape, turned with its place.
         """
         turn = rotation_about(axis, angle)
-        return self._with(self.shape, turn @ self.rotation, turn @ self.translation)
+        return self._with(self.shape, times(turn, self.rotation), applied(turn, self.translation))
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Part":
         """Return the part with all lengths times `size`, about the origin, and its density times `density`.
@@ -170,7 +171,7 @@ class Part:
         ndarray of bool, shape (n,)
             True inside.
         """
-        return self.shape.contains((points - self.translation) @ self.rotation)
+        return self.shape.contains(times(points - self.translation, self.rotation))
 
     def footprint(self, ground: float, tolerance: float) -> tuple[FloatArray, list[tuple[FloatArray, float]]]:
         """Return what of the part stands on a level ground.

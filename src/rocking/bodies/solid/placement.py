@@ -7,6 +7,7 @@ from rocking import checks
 from rocking.bodies.solid.shape import vector
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError
+from rocking.portable import norm, times
 
 _ORTHOGONAL = 1e-9
 
@@ -37,12 +38,12 @@ def rotation_about(axis: ArrayLike, angle: float) -> FloatArray:
     [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
     """
     direction = vector("axis", axis, "-")
-    size = float(np.linalg.norm(direction))
+    size = norm(np.asarray(direction))
     if size == 0.0:
         raise GeometryError("axis must have a direction, got (0, 0, 0)")
     turn = checks.number("angle", angle, "rad")
     cross = np.cross(direction / size, np.eye(3)).T
-    result: FloatArray = np.eye(3) + np.sin(turn) * cross + (1.0 - np.cos(turn)) * cross @ cross
+    result: FloatArray = np.eye(3) + np.sin(turn) * cross + (1.0 - np.cos(turn)) * times(cross, cross)
     return result
 
 

@@ -14,6 +14,7 @@ from rocking.bodies.solid.surfaces import Surface
 from rocking.bodies.solid.triangle_surface import TriangleSurface
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.errors import GeometryError
+from rocking.portable import times
 
 
 class Polyhedron(Shape):
@@ -106,7 +107,7 @@ class Polyhedron(Shape):
         ndarray, shape (2, 3)
             Lowest and highest coordinates [m].
         """
-        turned = self.vertices @ rotation.T
+        turned = times(self.vertices, rotation.T)
         return np.array([turned.min(axis=0), turned.max(axis=0)])
 
     def footprint(self) -> Footprint:
@@ -174,11 +175,11 @@ class Polyhedron(Shape):
         """
         apex = self._moments.centre
         corners = self.corners - apex
-        cones = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+        cones = (corners[:, 0] * np.cross(corners[:, 1], corners[:, 2])).sum(axis=1) / 6.0
         if (cones <= 0.0).any():
             return None
         pieces = TriangleSurface(corners).triangles(divisions)
-        cones = np.einsum("ij,ij->i", pieces[:, 0], np.cross(pieces[:, 1], pieces[:, 2])) / 6.0
+        cones = (pieces[:, 0] * np.cross(pieces[:, 1], pieces[:, 2])).sum(axis=1) / 6.0
         ends = np.linspace(0.0, 1.0, divisions + 1)
         shares, fourths = np.diff(ends**3), 0.75 * np.diff(ends**4) / np.diff(ends**3)
         volumes = np.outer(cones, shares).ravel()

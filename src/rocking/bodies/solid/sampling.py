@@ -95,7 +95,7 @@ def _measured(
     radius = 1.02 * np.linalg.norm(points - middle[:, None], axis=2).max(axis=1)
     room = np.maximum(distance(middle) - radius, 0.0)
     ratio = np.divide(2.0 * radius, room, out=np.full(len(cells), np.inf), where=room > 0.0)
-    cone = np.abs(np.einsum("nmd,nmd->nm", points, areas)).max(axis=1)
+    cone = np.abs((points * areas).sum(axis=2)).max(axis=1)
     if bound is not None:
         cone = cone * bound(points.reshape(-1, 3)).reshape(points.shape[:2]).max(axis=1)
     return ratio, cone

@@ -11,6 +11,7 @@ from rocking.bodies.solid.moments import SolidMoments
 from rocking.bodies.solid.surfaces import Surface
 from rocking.conventions import BoolArray, FloatArray
 from rocking.errors import GeometryError
+from rocking.portable import applied
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -185,5 +186,5 @@ def placed_points(points: FloatArray, rotation: FloatArray | None, translation: 
     ndarray, shape (..., 3)
         The placed points [m].
     """
-    turned = points if rotation is None else points @ rotation.T
+    turned = points if rotation is None else applied(rotation, points)
     return turned if translation is None else turned + translation

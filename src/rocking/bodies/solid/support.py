@@ -8,6 +8,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
+from rocking.portable import applied, norm
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -152,7 +153,7 @@ class RoundBase(Base):
         float
             Distance [m].
         """
-        return self.radius - float(np.linalg.norm(point - self.centre))
+        return self.radius - norm(point - self.centre)
 
     def changed(self, matrix: FloatArray, shift: FloatArray) -> "RoundBase":
         """Return the circle under a similarity of the plane.
@@ -169,5 +170,5 @@ class RoundBase(Base):
         RoundBase
             In its new place.
         """
-        scale = math.sqrt(abs(float(np.linalg.det(matrix))))
-        return RoundBase(matrix @ self.centre + shift[:2], self.radius * scale, self.height * scale + shift[2])
+        scale = math.sqrt(abs(float(matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0])))
+        return RoundBase(applied(matrix, self.centre) + shift[:2], self.radius * scale, self.height * scale + shift[2])

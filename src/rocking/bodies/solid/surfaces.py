@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.portable import gauss_legendre, gauss_rule
 
 
 class Surface(ABC):
@@ -103,7 +104,7 @@ def gauss(order: int) -> tuple[FloatArray, FloatArray]:
     nodes, weights : ndarray
         Exact for polynomials of degree ``2 order - 1``.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(order)
+    nodes, weights = gauss_legendre(order)
     return 0.5 * (1.0 + nodes), 0.5 * weights
 
 
@@ -129,12 +130,11 @@ def gauss_triangle(order: int) -> tuple[FloatArray, FloatArray]:
     k = np.arange(1.0, order)
     side = np.sqrt(k * (k + 1.0)) / (2.0 * k + 1.0)
     i = np.arange(order)
-    matrix = np.diag(1.0 / ((2.0 * i + 1.0) * (2.0 * i + 3.0))) + np.diag(side, 1) + np.diag(side, -1)
-    roots, vectors = np.linalg.eigh(matrix)
+    roots, shares_of_roots = gauss_rule(1.0 / ((2.0 * i + 1.0) * (2.0 * i + 3.0)), side)
     nodes, weights = gauss(order)
     u, v = (grid.ravel() for grid in np.meshgrid(0.5 * (1.0 + roots), nodes, indexing="ij"))
     shares = np.stack([1.0 - u, u * (1.0 - v), u * v], axis=1)
-    return shares, np.outer(vectors[0] ** 2, weights).ravel()
+    return shares, np.outer(shares_of_roots, weights).ravel()
 
 
 @cache

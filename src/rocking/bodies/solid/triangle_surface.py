@@ -6,6 +6,7 @@ import numpy as np
 
 from rocking.bodies.solid.surfaces import Surface, area_vectors, gauss_triangle
 from rocking.conventions import FloatArray
+from rocking.portable import times
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +81,8 @@ class TriangleSurface(Surface):
             Points [m] and weighted area vectors [m2].
         """
         shares, weights = gauss_triangle(order)
-        points = np.einsum("qk,nkd->nqd", shares, cells)
-        areas = np.einsum("q,nd->nqd", weights, area_vectors(cells))
+        points = times(shares, cells)
+        areas = weights[:, None] * area_vectors(cells)[:, None]
         return points.reshape(-1, 3), areas.reshape(-1, 3)
 
     def triangles(self, divisions: int) -> FloatArray:

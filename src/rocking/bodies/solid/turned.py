@@ -263,7 +263,7 @@ class Turned(Shape):
         radius, total = flat[..., 0], flat.sum(axis=1)
         mean = total[:, 0] / 3.0
         # Int r^2 and Int r z over a triangle, from its corners
-        second = (np.einsum("tk,tkd->td", radius, flat) + total[:, :1] * total) / 12.0
+        second = ((radius[..., None] * flat).sum(axis=1) + total[:, :1] * total) / 12.0
         sector = 0.5 * math.pi / divisions
         phi = sector * (np.arange(4 * divisions) + 0.5)
         chord = math.sin(0.5 * sector) / (0.5 * sector)

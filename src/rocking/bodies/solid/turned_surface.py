@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking.bodies.solid.surfaces import Surface, area_vectors, gauss_square
 from rocking.conventions import FloatArray
+from rocking.portable import times
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +138,7 @@ class TurnedSurface(Surface):
         along = np.stack([a * dr * cos, b * dr * sin, dz], axis=-1)
         around = np.stack([-a * r * sin, b * r * cos, np.zeros_like(r)], axis=-1)
         areas = np.cross(around, along) * ((u1 - u0) * (p1 - p0))[..., None]
-        return local @ self.rotation.T + self.translation, areas @ self.rotation.T
+        return times(local, self.rotation.T) + self.translation, times(areas, self.rotation.T)
 
     def _meridian(self, u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         first, second = self.meridian

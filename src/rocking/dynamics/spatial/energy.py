@@ -8,12 +8,12 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.ledger import ResponseEnergy
 from rocking.dynamics.spatial.states import States, pivots
 from rocking.dynamics.spatial.trajectory import Piece
-from rocking.portable import applied
+from rocking.portable import applied, gauss_legendre
 
 if TYPE_CHECKING:
     from rocking.dynamics.spatial.response import SpatialResponse
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+_NODES, _WEIGHTS = gauss_legendre(20)
 
 
 def energy_of(response: "SpatialResponse") -> ResponseEnergy:

@@ -105,7 +105,7 @@ def unit_energies(result: SpatialRestitution | SpatialImpact, units: Units | int
     impact = result.impact if isinstance(result, SpatialRestitution) else result
     pieces = divided(impact.solid, units) if isinstance(units, int) else units
     fields = stage_velocities(impact, pieces.centre - impact.solid.origin)
-    before, level, left = (0.5 * pieces.mass * np.einsum("nd,nd->n", field, field) for field in fields)
+    before, level, left = (0.5 * pieces.mass * np.square(field).sum(axis=1) for field in fields)
     return UnitEnergies(pieces, before, level, left, impact.solid.ground)
 
 
@@ -127,7 +127,5 @@ def lost_density(impact: SpatialImpact, part: Part, points: FloatArray) -> Float
         Energy lost [J/m3].
     """
     before, _, left = stage_velocities(impact, checks.real_array("points", points, "m") - impact.solid.origin)
-    density: FloatArray = (
-        0.5 * part.density * (np.einsum("nd,nd->n", before, before) - np.einsum("nd,nd->n", left, left))
-    )
+    density: FloatArray = 0.5 * part.density * (np.square(before).sum(axis=1) - np.square(left).sum(axis=1))
     return density

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from rocking.conventions import FloatArray
+from rocking.portable import applied, dot
 from rocking.restitution.spatial.model import SpatialModel
 from rocking.restitution.spatial.rigid import RigidImpact, solved
 
@@ -58,4 +59,4 @@ class SpatialHorizontalMomentum(SpatialModel):
         float
             Angular velocity [rad/s].
         """
-        return float(direction @ impact.level_momentum / (direction @ impact.inertia @ direction))
+        return dot(direction, impact.level_momentum) / dot(direction, applied(impact.inertia, direction))

@@ -13,6 +13,7 @@ import numpy as np
 from rocking.bodies.solid import Edge, Part, Polyhedron, Prism, Solid
 from rocking.bodies.solid.sampling import Distance, samples
 from rocking.conventions import FloatArray
+from rocking.portable import applied, gram, times
 from rocking.restitution.ked_integrals import ring_integral
 
 Features = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
@@ -60,9 +61,9 @@ def _line_moment(solid: Solid, x: float, y: float, z: float, *direction: float) 
 def _extruded(part: Part, prism: Prism, point: FloatArray, edge: FloatArray) -> float:
     across = np.array([-edge[1], edge[0], 0.0])
     frame = np.stack([across, np.array([0.0, 0.0, 1.0])])
-    plane, shift = frame @ part.rotation[:, :2], frame @ (part.translation - point)
-    turned = float(np.sign(np.linalg.det(plane)))
-    return prism.length * turned * sum(ring_integral(ring @ plane.T + shift) for ring in prism.region.rings)
+    plane, shift = times(frame, part.rotation[:, :2]), applied(frame, part.translation - point)
+    turned = float(np.sign(plane[0, 0] * plane[1, 1] - plane[0, 1] * plane[1, 0]))
+    return prism.length * turned * sum(ring_integral(times(ring, plane.T) + shift) for ring in prism.region.rings)
 
 
 def _line_moment_part(part: Part, point: FloatArray, edge: FloatArray) -> float:
@@ -134,9 +135,9 @@ def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Dis
     total: FloatArray = np.zeros(())
     degrees: FloatArray = np.zeros(())
     for points, areas in samples(shape.surfaces(part.rotation, shift), distance, negligible, bound):
-        cone = np.einsum("nd,nd->n", points, areas)
+        cone = (points * areas).sum(axis=1)
         scaled, degrees = features(points)
-        total = total + (scaled * cone[:, None]).T @ scaled
+        total = total + gram(scaled, cone)
     return part.density * total / (degrees[:, None] + degrees[None, :] + 3.0)
 
 

@@ -9,6 +9,7 @@ from rocking.bodies.solid import Base, Corner, Edge, RoundBase, Solid, SupportPo
 from rocking.bodies.solid.shape import vector
 from rocking.conventions import FloatArray
 from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
+from rocking.portable import norm
 from rocking.restitution.spatial.geometry import SpatialImpact
 from rocking.restitution.spatial.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.spatial.housner import SpatialHousner
@@ -165,7 +166,7 @@ def edge_coefficient(solid: Solid, model: Any = "ked-3d", *, start: float = 0, o
 def _local(solid: Solid, name: str, value: Any) -> Corner | Edge:
     if isinstance(value, Edge):
         along = vector(f"direction of {name}", value.direction, "-")
-        if abs(float(np.linalg.norm(along)) - 1.0) > 1e-9 or along[2] != 0.0:
+        if abs(norm(along) - 1.0) > 1e-9 or along[2] != 0.0:
             raise GeometryError(f"{name}: the direction of an edge must be a level unit vector, got {along.tolist()}")
         edge = Edge(_grounded(solid, name, value.point), along)
         _check_on_base(solid, name, edge.point, _gap_of_line(solid.local_base, edge))

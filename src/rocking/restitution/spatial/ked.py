@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking.bodies.solid import Edge
 from rocking.conventions import FloatArray
+from rocking.portable import applied, dot, times
 from rocking.restitution.spatial.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.spatial.integrals import line_moment
 from rocking.restitution.spatial.model import SpatialModel
@@ -62,7 +63,7 @@ class SpatialKed(SpatialModel):
             Angular velocity [rad/s].
         """
         direction = SpatialHorizontalMomentum().on_corner(impact)
-        twice = float(direction @ impact.inertia @ direction)
+        twice = dot(direction, applied(impact.inertia, direction))
         if twice == 0.0:
             return direction
         return direction * math.sqrt(2.0 * energy_left(impact) / twice)
@@ -83,7 +84,7 @@ class SpatialKed(SpatialModel):
             Angular velocity [rad/s].
         """
         sign = float(np.sign(SpatialHorizontalMomentum().on_edge(impact, direction)))
-        return sign * math.sqrt(2.0 * energy_left(impact) / float(direction @ impact.inertia @ direction))
+        return sign * math.sqrt(2.0 * energy_left(impact) / dot(direction, applied(impact.inertia, direction)))
 
 
 def energy_left(impact: RigidImpact) -> float:
@@ -105,9 +106,9 @@ def energy_left(impact: RigidImpact) -> float:
         If the body is known by its mass, centre and inertia alone.
     """
     solid, onto = impact.placed_solid
-    drift, gradient = impact.level @ impact.landing_velocity, impact.level @ impact.spin
+    drift, gradient = applied(impact.level, impact.landing_velocity), times(impact.level, impact.spin)
     if isinstance(onto, Edge) and _is_plane(impact, onto, solid.size):
-        return 0.5 * float(impact.velocity @ onto.direction) ** 2 * line_moment(solid, onto)
+        return 0.5 * dot(impact.velocity, onto.direction) ** 2 * line_moment(solid, onto)
     return kept_moments(solid, onto).energy_left(drift, gradient)
 
 
@@ -115,8 +116,8 @@ def _is_plane(impact: RigidImpact, edge: Edge, size: float) -> bool:
     """Whether the velocities across an edge are those of the plane: Eq. 17's one integral, exact for extrusions."""
     slow, across = _PLANE * impact.speed, np.cross(impact.up, edge.direction)
     upright = abs(impact.up[0]) + abs(impact.up[1]) <= _PLANE
-    still = abs(float(impact.landing_velocity @ across)) <= slow * size
-    return bool(upright and still and abs(float(impact.velocity @ impact.up)) <= slow)
+    still = abs(dot(impact.landing_velocity, across)) <= slow * size
+    return bool(upright and still and abs(dot(impact.velocity, impact.up)) <= slow)
 
 
 def stage_velocities(impact: RigidImpact, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -136,12 +137,12 @@ def stage_velocities(impact: RigidImpact, points: FloatArray) -> tuple[FloatArra
     """
     arms = points - impact.onto.point
     before = impact.velocities(arms)
-    level = before @ impact.level
+    level = times(before, impact.level)
     if isinstance(impact.onto, Edge):
         allowed = _unit(np.cross(impact.onto.direction, arms))
-        return before, level, allowed * np.einsum("nd,nd->n", allowed, level)[:, None]
+        return before, level, allowed * (allowed * level).sum(axis=1)[:, None]
     outward = _unit(arms)
-    return before, level, level - outward * np.einsum("nd,nd->n", outward, level)[:, None]
+    return before, level, level - outward * (outward * level).sum(axis=1)[:, None]
 
 
 def _unit(vectors: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ from functools import cached_property
 from rocking.bodies.solid import Corner, Edge, Solid, SolidMoments
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.portable import dot
 from rocking.restitution.spatial.geometry import UP
 from rocking.restitution.spatial.rigid import RigidImpact
 
@@ -62,7 +63,7 @@ class LeaningImpact(RigidImpact):
 
     def __post_init__(self) -> None:
         """Check the normal of the ground."""
-        if not abs(float(self.up @ self.up) - 1.0) <= _UNIT:
+        if not abs(dot(self.up, self.up) - 1.0) <= _UNIT:
             raise InvalidValueError(f"up must be a unit vector, got {self.up.tolist()}: is it the vertical?")
 
     @cached_property

@@ -10,6 +10,7 @@ import numpy as np
 from rocking.bodies.solid import Edge
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.portable import applied, dot, norm
 from rocking.restitution.spatial.geometry import SpatialImpact
 from rocking.restitution.spatial.rigid import RigidImpact
 
@@ -53,7 +54,7 @@ class SpatialRestitution:
     @property
     def coefficient(self) -> float:
         """Magnitude of the angular velocity after the impact over that before [-]."""
-        return float(np.linalg.norm(self.velocity)) / self.impact.speed
+        return norm(self.velocity) / self.impact.speed
 
     @property
     def energy_before(self) -> float:
@@ -63,7 +64,7 @@ class SpatialRestitution:
     @property
     def energy_after(self) -> float:
         """Kinetic energy after the impact [J]."""
-        return 0.5 * float(self.velocity @ self.impact.inertia @ self.velocity)
+        return 0.5 * dot(self.velocity, applied(self.impact.inertia, self.velocity))
 
     @property
     def energy_ratio(self) -> float:

@@ -10,6 +10,7 @@ Kept are not the tensors but what they consist of: v along the direction that st
 ``(linear . A u + quadratic . B W)/length``, with the components of s and their products; one symmetric matrix of those.
 """
 
+import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -17,6 +18,7 @@ import numpy as np
 
 from rocking.bodies.solid import Corner, Edge, Part, Solid
 from rocking.conventions import FloatArray
+from rocking.portable import applied, dot, times
 from rocking.restitution.spatial.integrals import distance_to, norm, of_part
 
 _UP = np.array([0.0, 0.0, 1.0])
@@ -50,14 +52,14 @@ class KeptMoments:
     def second(self) -> FloatArray:
         """``Int Q_ij dm``, shape (3, 3) [kg]."""
         count = len(self.directions)
-        tensor: FloatArray = self.directions.T @ self.form[-count:, -count:] @ self.directions
+        tensor = times(times(self.directions.T, self.form[-count:, -count:]), self.directions)
         return tensor if self.whole is None else self.whole[0] * np.eye(3) - tensor
 
     @property
     def third(self) -> FloatArray:
         """``Int Q_ij s_k dm``, shape (3, 3, 3) [kg m]."""
         count = len(self.directions)
-        mixed = self.form[-count:, :-count] @ self._factors.reshape(-1, 9)
+        mixed = times(self.form[-count:, :-count], self._factors.reshape(-1, 9))
         tensor: FloatArray = np.einsum("pi,pjk->ijk", self.directions, mixed.reshape(-1, 3, 3))
         return tensor if self.whole is None else np.einsum("ij,k->ijk", np.eye(3), self.whole[1]) - tensor
 
@@ -91,8 +93,8 @@ class KeptMoments:
         ndarray, shape (n + m,)
             Quadratic coefficients [1/s], then linear ones [m/s].
         """
-        quadratic = self._factors.reshape(-1, 9) @ gradient.ravel()
-        return np.concatenate([quadratic, self.directions @ drift])
+        quadratic = applied(self._factors.reshape(-1, 9), gradient.ravel())
+        return np.concatenate([quadratic, applied(self.directions, drift)])
 
     def energy_left(self, drift: FloatArray, gradient: FloatArray) -> float:
         """Return the kinetic energy of what stage 2 keeps of the velocities ``u + W s``.
@@ -110,12 +112,12 @@ class KeptMoments:
             T'' [J].
         """
         state = self.coefficients(drift, gradient)
-        along = float(state @ self.form @ state)
+        along = dot(state, applied(self.form, state))
         if self.whole is None:
             return 0.5 * max(along, 0.0)
         mass, first, second = self.whole
-        crossed = 2.0 * float(drift @ gradient @ first)
-        every = mass * float(drift @ drift) + crossed + float(np.trace(gradient @ second @ gradient.T))
+        crossed = 2.0 * dot(drift, applied(gradient, first))
+        every = mass * dot(drift, drift) + crossed + float((times(gradient, second) * gradient).sum())
         return 0.5 * max(every - along, 0.0)
 
 
@@ -186,13 +188,13 @@ def edge_frame(direction: FloatArray) -> FloatArray:
         Rows e, f = n x e and g = e x f [-].
     """
     across = np.cross(_UP, direction)
-    across /= np.linalg.norm(across)
+    across /= math.sqrt(dot(across, across))
     return np.stack([direction, across, np.cross(direction, across)])
 
 
 def _line_part(part: Part, point: FloatArray, frame: FloatArray) -> FloatArray:
     def features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        return _edge_features(s @ frame.T)
+        return _edge_features(times(s, frame.T))
 
     return of_part(part, point, features, (distance_to(frame[0]), None))
 
@@ -206,6 +208,6 @@ def _corner_features(s: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _edge_features(local: FloatArray) -> tuple[FloatArray, FloatArray]:
     sigma, t, z = local.T
-    inverse = 1.0 / np.maximum(np.hypot(t, z), 1e-300)
+    inverse = 1.0 / np.maximum(np.sqrt(t * t + z * z), 1e-300)
     features = np.stack([z * z, z * sigma, t * z, t * t, t * sigma, z, t], axis=1)
     return features * inverse[:, None], np.repeat([1.0, 0.0], [5, 2])

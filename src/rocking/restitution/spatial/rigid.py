@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking.bodies.solid import Corner, Edge, Solid, SolidMoments
 from rocking.conventions import FloatArray
+from rocking.portable import applied, dot, norm, solution, times
 
 
 class RigidImpact(ABC):
@@ -56,13 +57,12 @@ class RigidImpact(ABC):
     @property
     def speed(self) -> float:
         """Magnitude of the angular velocity before the impact [rad/s]."""
-        return float(np.linalg.norm(self.velocity))
+        return norm(self.velocity)
 
     @cached_property
     def landing_velocity(self) -> FloatArray:
         """Velocity of the landing point before the impact, ``omega x (B - A)`` [m/s]."""
-        drift: FloatArray = self.spin @ (self.onto.point - self.pivot)
-        return drift
+        return applied(self.spin, self.onto.point - self.pivot)
 
     @property
     def inertia(self) -> FloatArray:
@@ -104,8 +104,7 @@ class RigidImpact(ABC):
         ndarray, shape (n, 3)
             Velocities [m/s].
         """
-        field: FloatArray = points @ self.spin.T + self.landing_velocity
-        return field
+        return times(points, self.spin.T) + self.landing_velocity
 
     @cached_property
     def _second(self) -> FloatArray:
@@ -113,16 +112,20 @@ class RigidImpact(ABC):
 
     def _momentum(self, projection: FloatArray) -> FloatArray:
         # s x (G s) summed over the body needs the second moments alone
-        spread = self._second @ (projection @ self.spin).T
+        spread = times(self._second, times(projection, self.spin).T)
         turning = np.array([spread[1, 2] - spread[2, 1], spread[2, 0] - spread[0, 2], spread[0, 1] - spread[1, 0]])
-        shift: FloatArray = self.moments.mass * skew(self.moments.centre) @ (projection @ self.landing_velocity)
+        shift = self.moments.mass * applied(skew(self.moments.centre), applied(projection, self.landing_velocity))
         return turning + shift
 
     def _energy(self, projection: FloatArray) -> float:
-        gradient, drift, moments = projection @ self.spin, projection @ self.landing_velocity, self.moments
-        spread = float(np.trace(gradient @ self._second @ gradient.T))
-        crossed = 2.0 * moments.mass * float(drift @ gradient @ moments.centre)
-        return 0.5 * (spread + crossed + moments.mass * float(drift @ drift))
+        gradient, drift, moments = (
+            times(projection, self.spin),
+            applied(projection, self.landing_velocity),
+            self.moments,
+        )
+        spread = float((times(gradient, self._second) * gradient).sum())
+        crossed = 2.0 * moments.mass * dot(drift, applied(gradient, moments.centre))
+        return 0.5 * (spread + crossed + moments.mass * dot(drift, drift))
 
 
 def skew(vector: FloatArray) -> FloatArray:
@@ -140,7 +143,7 @@ def skew(vector: FloatArray) -> FloatArray:
 
     Examples
     --------
-    >>> (skew(np.array([0.0, 0.0, 2.0])) @ [1.0, 0.0, 0.0]).tolist()
+    >>> applied(skew(np.array([0.0, 0.0, 2.0])), np.array([1.0, 0.0, 0.0])).tolist()
     [0.0, 2.0, 0.0]
     """
     x, y, z = vector.tolist()
@@ -162,4 +165,4 @@ def solved(inertia: FloatArray, momentum: FloatArray) -> FloatArray:
     ndarray, shape (3,)
         Angular velocity [rad/s].
     """
-    return np.asarray(np.linalg.solve(inertia, momentum), dtype=np.float64)
+    return solution(inertia, momentum)
