@@ -36,7 +36,7 @@ def _record(rng):
     made = []
     for strength in (1.0, 1.0, 0.5):
         waves = np.sin(2.0 * np.pi * frequency[:, None] * time + rng.uniform(0.0, 2.0 * np.pi, (40, 1)))
-        made.append(rk.GroundMotion(strength * envelope * ((1.0 / (1.0 + frequency)) @ waves), STEP))
+        made.append(rk.GroundMotion(strength * envelope * (waves / (1.0 + frequency)[:, None]).sum(axis=0), STEP))
     return tuple(made)
 
 
@@ -81,11 +81,33 @@ def test_round_bodies_end_with_a_result(components, count):
         assert (found == other.code).mean() > 0.05
 
 
-def test_a_lift_from_rest_is_no_fall(monkeypatch):
-    """Lifted with the cube of time: it goes on; without the floor under rounding it drops and lifts a hundred times."""
-    assert _reference(96).status is SpatialStatus.GOOD
+def _lifted(first, second):
+    """When a rim that leans with the cube of time begins to roll, given what rounding leaves of the lower powers."""
+    direction, cube = np.array([0.6, 0.8]), 1e-6
+    lean = np.array([0.0, first, second, cube, 0.0])
+    up = np.column_stack([lean[:, None] * direction, [1.0, 0.0, 0.0, 0.0, 0.0]])
+    step = Step(0.01, np.zeros((5, 3)), up, np.array([[0.0], [0.0], [-G]]), np.zeros(3))
+    return events.rim_events(CYLINDER, stances.rim(CYLINDER, -direction), step)
+
+
+@pytest.mark.parametrize("first", [0.0, 4e-13, -4e-13, -1e-20])
+@pytest.mark.parametrize("second", [0.0, 4e-13, -4e-13])
+def test_a_lift_from_rest_is_no_fall(first, second):
+    """Lifted with the cube of time it goes on to roll at (1e-11 / cube)^(1/3), whatever sign rounding gives the rest."""
+    # powers below 1e-12, as much as a push of 1e-9 g would leave, move the instant by less than 1 / 1000
+    assert _lifted(first, second) == pytest.approx(1e-5 ** (1.0 / 3.0), rel=2e-3)
+
+
+def test_a_fall_is_a_fall_and_rounding_must_have_a_floor(monkeypatch):
+    """A rim pushed down falls at once; negative control: without the floor it does so by a rounding of 4e-13."""
+    assert _lifted(-1e-9, 0.0) == 0.0
     monkeypatch.setattr(events, "SLOW_OPENING", 0.0)
-    assert _reference(96).status is SpatialStatus.TOO_MANY_EVENTS
+    assert _lifted(-4e-13, 0.0) == 0.0
+
+
+def test_a_history_lifted_from_rest_has_a_result():
+    """The record under which a floor that was missing made a body drop and lift a hundred times at one instant."""
+    assert _reference(96).status is SpatialStatus.GOOD
 
 
 def test_a_rim_nearly_flat_is_held_down(monkeypatch):
