@@ -1,15 +1,18 @@
 # One environment in .venv serves everything; it is set up when first needed and again when a lock changes.
 PYTHON ?= python3
 OUT ?= demo-output
+PORTABLE := src/rocking/restitution/spatial src/rocking/dynamics/spatial tests/unit/dynamics/test_reference.py \
+	tests/verification/test_spatial_round_shaken.py tests/verification/test_planar_regimes.py
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test lint engine campaign fuzz fuzz-web durability bench mutants gallery lock clean
+.PHONY: help demo test portable portable-quick lint engine campaign fuzz fuzz-web durability bench mutants gallery lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
 	@echo "make test     set up, run linters, type checker, docstring and import checks, tests with coverage"
+	@echo "make portable the tests once under each of seven settings that stand for other processors"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make gallery  run every example         make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
@@ -77,6 +80,13 @@ test: lint
 	$(BIN)/python -m pytest tests -m timed --ignore=tests/browser --cov --cov-append --cov-report=
 	$(BIN)/python -m pytest tests/browser -m timed --cov --cov-append --cov-report=
 	$(BIN)/python -m pytest tests/browser -n 2 --dist loadfile -m "not timed" --cov --cov-append --cov-report=term
+
+portable: $(VENV)/dev $(ENGINE)
+	$(BIN)/python tests/portable.py -n 2 --dist loadfile -q -m "not timed"
+
+# What decides events, under the same settings.
+portable-quick: $(VENV)/dev $(ENGINE)
+	$(BIN)/python tests/portable.py -q -x --no-header $(PORTABLE)
 
 fuzz: $(VENV)/dev
 	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py tests/unit/motions_formats/test_miniseed.py \

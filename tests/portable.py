@@ -1,7 +1,7 @@
 """Settings under which one machine computes as others do, and the tests under each of them.
 
-OpenBLAS picks its kernels by the processor, numpy some of its functions, the compiled engines their instruction set, and
-the C library its versions with fused multiply-add; each can be told to do as on another processor. Run as a program:
+OpenBLAS picks its kernels by the processor, numpy some of its functions, the compiled engines their instruction set,
+and the C library its versions with fused multiply-add; each can be told to do as on another processor.
 ``python tests/portable.py [arguments of pytest]`` runs the tests once under each.
 """
 

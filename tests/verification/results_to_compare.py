@@ -1,6 +1,6 @@
 """Results of every kind for asymmetric bodies, as hashes of their bytes: run under settings that stand for processors.
 
-``python results_to_compare.py [NAME ...]`` prints a table of names and hashes as JSON; it says nothing of what is right.
+``python results_to_compare.py [NAME ...]`` prints names and hashes as JSON; it says nothing of what is right.
 """
 
 import dataclasses

@@ -93,7 +93,7 @@ def _lifted(first, second):
 @pytest.mark.parametrize("first", [0.0, 4e-13, -4e-13, -1e-20])
 @pytest.mark.parametrize("second", [0.0, 4e-13, -4e-13])
 def test_a_lift_from_rest_is_no_fall(first, second):
-    """Lifted with the cube of time it goes on to roll at (1e-11 / cube)^(1/3), whatever sign rounding gives the rest."""
+    """Lifted with the cube of time it rolls at (1e-11 / cube)^(1/3), whatever sign rounding gives the rest."""
     # powers below 1e-12, as much as a push of 1e-9 g would leave, move the instant by less than 1 / 1000
     assert _lifted(first, second) == pytest.approx(1e-5 ** (1.0 / 3.0), rel=2e-3)
 

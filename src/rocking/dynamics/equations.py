@@ -9,11 +9,13 @@ and for slender bodies at small angles ``theta'' = p^2 { (1 + a_z / g) (theta - 
 BSSA 53:403; with the vertical acceleration as an effective gravity). All functions take numbers or arrays.
 """
 
+import math
 from typing import Any
 
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.portable import each
 
 
 def angular_acceleration(
@@ -156,7 +158,7 @@ def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) 
     """
     angle = np.asarray(alpha)
     left = np.maximum(energy_at_top(angle, linear=linear) - energy_over_mgr, 0.0)
-    return np.asarray(angle - (np.sqrt(2.0 * left) if linear else 2.0 * np.arcsin(np.sqrt(0.5 * left))))
+    return np.asarray(angle - (np.sqrt(2.0 * left) if linear else 2.0 * each(math.asin, np.sqrt(0.5 * left))))
 
 
 def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of the equations

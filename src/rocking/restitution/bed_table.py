@@ -1,5 +1,6 @@
 """Where the impulse of a contact bed acts: a table of resolved impacts, read between its nodes by straight lines."""
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -8,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.portable import each
 
 POINTS: Final = (2, 3, 5, 11, 41)
 """Numbers of contact points that were tabulated."""
@@ -99,8 +101,8 @@ class BedTable:
             By flatness and offset [-].
         """
         found = self.positions[POINTS.index(points)]
-        for nodes, value in ((np.log(self.hardness), hardness), (np.log(self.damping), damping)):
-            low, share = _between(nodes, np.log(np.asarray(value)))
+        for nodes, value in ((self.hardness, hardness), (self.damping, damping)):
+            low, share = _between(each(math.log, nodes), each(math.log, value))
             found = (1.0 - share) * found[..., int(low)] + share * found[..., int(low) + 1]
         return np.asarray(found)
 

@@ -1,5 +1,6 @@
 """Distributed impulse: contact pressure follows the downward speed to the power q, over the base."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
-from rocking.portable import gauss_legendre
+from rocking.portable import dot, each, gauss_legendre
 from rocking.restitution.contact import contact_of, is_whole_base
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.model import InertiaModel
@@ -110,14 +111,14 @@ class DistributedImpulse(InertiaModel):
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
             # a quintic change of variable takes out the fractional powers at the ends of a patch
             t = 0.5 * (1.0 + _NODES)
-            sigma = a + (b - a) * t**3 * (10.0 - 15.0 * t + 6.0 * t * t)
+            sigma = a + (b - a) * t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
             slope = 0.5 * (b - a) * 30.0 * t * t * (1.0 - t) ** 2
             arm = kappa * _centre_ahead(sigma, patches, end, self.q)
             behind = 1.0 + arm * sigma
             if behind.min() <= 0.0:
                 return 0.0
-            exponent += float(_WEIGHTS @ (slope * arm / behind))
-        return float(np.exp(-exponent))
+            exponent += dot(_WEIGHTS, slope * arm / behind)
+        return math.exp(-exponent)
 
 
 def _centre_ahead(sigma: FloatArray, patches: FloatArray, end: float, q: float) -> FloatArray:
@@ -152,7 +153,7 @@ def _inverse_quadratic(c: FloatArray, e: FloatArray, start: FloatArray, end: Flo
     near = np.abs(tangent) < 1e-3
     z = np.where(near, np.sign(delta) * tangent * tangent, 0.0)
     series = 2.0 * (x1 - x0) / below * (1.0 - z / 3.0 + z * z / 5.0)
-    trigonometric = np.arctan2(root * (x1 - x0), below)
+    trigonometric = each(math.atan2, root * (x1 - x0), below)
     hyperbolic = np.arctanh(np.clip(tangent, -1.0, 1.0))
     far = 2.0 / np.where(root > 0.0, root, 1.0) * np.where(delta > 0.0, trigonometric, hyperbolic)
     return np.where(near & (below > 0.0), series, far)

@@ -1,9 +1,11 @@
 """The integral of KED, Int y^4 / |S - O'|^2 dm: closed form for rectangles, boundary sum for polygons."""
 
+import math
+
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray
-from rocking.portable import gauss_legendre
+from rocking.portable import each, gauss_legendre
 
 # Below this slenderness the closed form loses more than two digits and the series is summed instead.
 _SERIES_BELOW = 0.3
@@ -11,6 +13,7 @@ _SERIES = np.array([(-1.0) ** j / ((2 * j - 1) * (2 * j + 3)) for j in range(14,
 # Edges whose end angles differ little are summed by Gauss-Legendre: the closed form would cancel.
 _NODES, _WEIGHTS = gauss_legendre(12)
 _GAUSS_BEYOND = 5.0
+_FEW = 256
 
 
 def fill_rectangles(ratio: FloatArray, least: float, out: FloatArray) -> None:
@@ -30,7 +33,8 @@ def fill_rectangles(ratio: FloatArray, least: float, out: FloatArray) -> None:
     # N/D in partial fractions, t = 1/l: r^2 = 1/4 + (3 pi t/8 - 1) / (1 + l^2) + 3/4 atan(t) (l - t)
     t = np.divide(1.0, ratio, out=np.empty(ratio.shape))
     np.subtract(ratio, t, out=out)
-    room = np.arctan(t, out=np.empty(ratio.shape))
+    # numpy's own arctan is quick; the last digit of many at once hangs on the processor
+    room = each(math.atan, t) if t.size <= _FEW else np.arctan(t, out=np.empty(ratio.shape))
     with np.errstate(over="ignore", invalid="ignore"):
         out *= room
         out *= 0.75
@@ -70,7 +74,7 @@ def ring_integral(ring: FloatArray) -> float:
         The integral [m4].
     """
     start, end = ring, np.roll(ring, -1, axis=0)
-    length = np.hypot(*(end - start).T)
+    length = np.sqrt(np.square(end - start).sum(axis=1))
     tau = (end - start) / length[:, None]
     offset = tau[:, 1] * start[:, 0] - tau[:, 0] * start[:, 1]
     u0, u1 = (tau * start).sum(axis=1), (tau * end).sum(axis=1)
@@ -93,19 +97,19 @@ def _by_gauss(y0: FloatArray, y1: FloatArray, offset: FloatArray, u0: FloatArray
     share = 0.5 * (1.0 + _NODES)[:, None]
     y = y0 + (y1 - y0) * share
     u = u0 + (u1 - u0) * share
-    integrand = y**4 * offset / (offset**2 + u**2)
-    return float((0.5 * (u1 - u0) * (_WEIGHTS @ integrand)).sum())
+    integrand = (y * y) ** 2 * offset / (offset**2 + u**2)
+    return float((0.5 * (u1 - u0) * (_WEIGHTS[:, None] * integrand).sum(axis=0)).sum())
 
 
 def _by_formula(c_x: FloatArray, c: FloatArray, p: FloatArray, u0: FloatArray, u1: FloatArray) -> float:
     # y = s p + c u along the edge, with s = -tau_x and c = tau_y
-    s = -c_x
+    s, c2, s2, p2 = -c_x, c * c, c_x * c_x, p * p
     powers = (
-        c**4 * p * (u1 - u0) * (u0 * u0 + u0 * u1 + u1 * u1) / 3.0
-        + 2.0 * c**3 * s * p * p * (u1 - u0) * (u1 + u0)
-        + (6.0 * c * c * s * s - c**4) * p**3 * (u1 - u0)
+        c2 * c2 * p * (u1 - u0) * (u0 * u0 + u0 * u1 + u1 * u1) / 3.0
+        + 2.0 * c2 * c * s * p2 * (u1 - u0) * (u1 + u0)
+        + (6.0 * c2 * s2 - c2 * c2) * p2 * p * (u1 - u0)
     )
-    logs = 2.0 * c * s * (s * s - c * c) * p**4 * np.log((p * p + u1 * u1) / (p * p + u0 * u0))
-    turn = np.arctan2(p * (u1 - u0), p * p + u0 * u1)
-    angles = (s**4 - 6.0 * c * c * s * s + c**4) * p**4 * turn
+    logs = 2.0 * c * s * (s2 - c2) * p2 * p2 * each(math.log, (p2 + u1 * u1) / (p2 + u0 * u0))
+    turn = each(math.atan2, p * (u1 - u0), p2 + u0 * u1)
+    angles = (s2 * s2 - 6.0 * c2 * s2 + c2 * c2) * p2 * p2 * turn
     return float((powers + logs + angles).sum())

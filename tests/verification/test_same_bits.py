@@ -1,0 +1,73 @@
+"""The same bits on every processor: results under settings that stand for others, each in a process of its own.
+
+The settings are those of `portable.py`. What has the same bits under all of them, and what has not, says section 9
+of docs/theory.md; this test fails where that says too much.
+"""
+
+import importlib.util
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+HERE = Path(__file__).parent
+
+
+def _module(path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None
+    assert spec.loader is not None
+    made = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(made)
+    return made
+
+
+SETTINGS = _module(HERE.parent / "portable.py").settings()
+NO_FUSED = {"OpenBLAS of SSE3, plain engines", "C library without fused multiply-add"}
+"""Settings of processors without fused multiply-add, which are older than 2013."""
+FUSED = {
+    "plane, fast", "space, batch", "space, free rocking", "plane, reference", "plane, response", "plane, contact",
+    "plane, coefficients", "bed, fast", "evidence",
+}  # fmt: skip
+"""Results that are the same on every processor with fused multiply-add alone: their angles come from the C library."""
+QUICK = ["space, polygon, reference", "space, round base, reference", "space, batch", "plane, reference", "plane, fast",
+         "plane, contact", "plane, coefficients", "space, impacts and moments", "bed, fast"]  # fmt: skip
+NAMES = QUICK if os.environ.get("ROCKING_CAMPAIGN") != "1" else []
+
+
+def hashes(variables: dict[str, str]) -> dict[str, str]:
+    command = [sys.executable, "-W", "ignore", str(HERE / "results_to_compare.py"), *NAMES]
+    said = subprocess.run(command, env=os.environ | variables, capture_output=True, text=True, check=True).stdout
+    return dict(json.loads(said))
+
+
+@pytest.fixture(scope="module")
+def here() -> dict[str, str]:
+    return hashes({})
+
+
+@pytest.mark.parametrize("setting", SETTINGS)
+def test_results_have_the_same_bits(here: dict[str, str], setting: str) -> None:
+    """Every result whose bits are claimed to be the same is, and the setting does change what BLAS gives or libm."""
+    found = hashes(SETTINGS[setting])
+    print("".join(f"{name:32s}{'same' if found[name] == value else 'other'}\n" for name, value in here.items()))
+    claimed = set(here) - (FUSED if setting in NO_FUSED else set())
+    assert {name for name in claimed if found[name] != here[name]} == set()
+
+
+def test_blas_would_be_noticed() -> None:
+    """Negative control: a scalar product by BLAS has other bits under some setting, so that the hashes can differ."""
+    program = (
+        "import numpy as np; n = np.arange(1, 400) % 17 / 7.0;"
+        "print(*[float(n[k:k + 40] @ n[k + 3:k + 43] ** 2).hex() for k in range(300)])"
+    )
+    said = {
+        subprocess.run([sys.executable, "-c", program], env=os.environ | given, capture_output=True, check=True).stdout
+        for given in SETTINGS.values()
+    }
+    assert np.size(list(said)) > 1
