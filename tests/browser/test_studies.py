@@ -314,3 +314,42 @@ def test_a_spectrum_of_one_slenderness_wears_the_look_of_its_model(studies: Any)
 def test_each_step_has_a_heading(open_page: Callable[..., Any], view: str, words: str) -> None:
     """A screen reader finds the step by its first heading."""
     expect(open_page(view=view).get_by_role("heading", level=1)).to_have_text(words)
+
+
+LARGE_MAP = """async (count) => {
+  const [{ layersOf, cellWords }, { showMap }] = await Promise.all(
+    ["/views/studies-layers.js", "/views/studies-map.js"].map((each) => import(each)));
+  const grid = (value) => Array.from({ length: count }, (_, iy) => Array.from({ length: count }, (_, ix) => value(ix, iy)));
+  const axis = { values: Array.from({ length: count }, (_, k) => 1 + k), unit: "1", words: "a" };
+  const fell = (ix, iy) => ix > iy;
+  const found = {
+    x: axis, y: axis, restitutions: ["ked"], contours: [[]],
+    outcome: [grid((ix, iy) => (fell(ix, iy) ? 2 : 1))], impacts: [grid((ix, iy) => (ix === 3 && iy === 5 ? 41 : 2))],
+    peak: [grid((ix) => ix / count)],
+  };
+  const place = document.createElement("div");
+  document.querySelector("#view-studies").append(place);
+  const busy = () => performance.now(), started = busy();
+  showMap(place, { call: async () => ({}) }, { id: "x" }, found, { restitution: 0 });
+  const shown = busy() - started, canvas = place.querySelector("canvas"), box = canvas.getBoundingClientRect();
+  const again = busy();
+  for (let k = 0; k < 20; k += 1) canvas.dispatchEvent(new PointerEvent("pointermove",
+    { clientX: box.left + 100 + 10 * k, clientY: box.top + 100 }));
+  const moved = (busy() - again) / 20;
+  const paint = (x, y) => Array.from(canvas.getContext("2d").getImageData(
+    Math.round(x * canvas.width), Math.round(y * canvas.height), 1, 1).data);
+  return { legend: layersOf(found, 0, null)[2].legend.map((each) => each.words), words: cellWords(found, 0, { ix: 3, iy: 5 }),
+    shown, moved, upper: paint(0.3, 0.2), lower: paint(0.85, 0.6) };
+}"""
+
+
+@pytest.mark.parametrize("count", [400, 1000])
+def test_a_large_map_is_drawn_and_can_be_walked(studies: Any, count: int) -> None:
+    """A map of 1000 x 1000 cells appears, names its most impacts, and a pointer that moves over it redraws at once."""
+    found = studies.evaluate(LARGE_MAP, count)
+    assert "41" in found["legend"]
+    assert "rocks and stays standing" in found["words"]
+    assert (found["upper"], found["lower"]) == ([0x9C, 0xC9, 0xE8, 255], [0xF5, 0xDC, 0x57, 255])
+    print(f"{count} x {count}: drawn in {found['shown']:.0f} ms, again in {found['moved']:.1f} ms")
+    # the picture of the cells is kept: what a move draws again is the frame, however many cells there are
+    assert found["moved"] < found["shown"]

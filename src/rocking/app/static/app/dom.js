@@ -13,8 +13,8 @@ export const svg = (tag, attributes, ...children) =>
 
 /** Replace everything inside a node. */
 export const fill = (node, ...children) => {
-  node.replaceChildren(...children.flat(Infinity).filter(shown).map(asNode));
-  return node;
+  node.replaceChildren();
+  return within(node, children);
 };
 
 /** Set attributes, properties and listeners on a node. */
@@ -34,10 +34,14 @@ const shown = (child) => child !== null && child !== undefined && child !== fals
 
 const asNode = (child) => (child instanceof Node ? child : document.createTextNode(String(child)));
 
+const within = (node, children) => {
+  for (const child of children.flat(Infinity)) if (shown(child)) node.append(asNode(child));
+  return node;
+};
+
 const furnish = (node, attributes, children) => {
   set(node, attributes);
-  node.append(...children.flat(Infinity).filter(shown).map(asNode));
-  return node;
+  return within(node, children);
 };
 
 const setOne = (node, key, value) => {

@@ -6,6 +6,7 @@ import { chartFiles, savePng } from "/charts/save.js";
 import { axes, colour, onTheme } from "/charts/style.js";
 import { vectorOf } from "/charts/vector.js";
 import { el, fill, freshId } from "/app/dom.js";
+import { highest, lowest } from "/app/extremes.js";
 import { number, pretty } from "/app/format.js";
 import { dashKey } from "/app/palette.js";
 
@@ -126,21 +127,11 @@ const words = ({ x, y, series }, [at, ...values]) =>
 const summary = ({ title, x, y, series }, [xs, ...columns]) => {
   if (!xs.length) return `${title}: no data yet`;
   const ranges = columns.map((column, index) => {
-    const [low, high] = extremes(column);
+    const [low, high] = [lowest(column), highest(column)];
     return `${series[index].label} from ${number(low)} to ${number(high)} ${y.unit ?? ""}`;
   });
   const span = `${number(xs[0])} to ${number(xs.at(-1))} ${x.unit ?? ""}`;
   return `${title}, over ${x.label} from ${span}: ${ranges.join("; ")}`;
-};
-
-const extremes = (column) => {
-  let [low, high] = [Infinity, -Infinity];
-  for (const value of column) {
-    if (value === null || value === undefined) continue;
-    if (value < low) low = value;
-    if (value > high) high = value;
-  }
-  return [low, high];
 };
 
 const drawMarks = (self, { vertical = [], horizontal = [] }, aim) => {

@@ -1,6 +1,7 @@
 /** The body to scale: outline, centre of mass, feet, slenderness angle and semi-diagonal. */
 
 import { svg } from "/app/dom.js";
+import { highest } from "/app/extremes.js";
 import { number, quantity } from "/app/format.js";
 import { pointsOf, regionPaths } from "/drawing/outline.js";
 import { arc, centreMark, footMark, groundLine, words } from "/drawing/symbols.js";
@@ -60,7 +61,7 @@ const sideDrawing = (body, side, foot, sign, view) => {
 };
 
 const massDots = (points, view) => {
-  const heaviest = Math.max(...points.map((each) => each[2]));
+  const heaviest = highest(points.map((each) => each[2]));
   return points.map(([x, y, mass]) =>
     svg(
       "circle",

@@ -1,6 +1,7 @@
 /** The published measurements over slenderness, the models' curves, and where this body stands. */
 
 import { svg } from "/app/dom.js";
+import { highest, lowest } from "/app/extremes.js";
 import { number } from "/app/format.js";
 import { GROUPS, modelStyle, modelWords } from "/app/palette.js";
 import { axisOf, bottomAxis, leftAxis } from "/drawing/axis.js";
@@ -10,8 +11,8 @@ import { marker } from "/drawing/markers.js";
 export const measuredPicture = ({ measured, curves, rows, slenderness }, { width, height = 380 }) => {
   const all = [...measured.map((each) => each.slenderness_ratio), slenderness];
   const values = [...measured.map((each) => each.coefficient), ...rows.map((each) => each.value)];
-  const x = axisOf(0, Math.max(...all) * 1.06, 60, width - 14, width < 500 ? 5 : 8);
-  const y = axisOf(Math.max(0, Math.floor(Math.min(...values) * 10 - 0.3) / 10), 1.005, height - 48, 12, 6);
+  const x = axisOf(0, highest(all) * 1.06, 60, width - 14, width < 500 ? 5 : 8);
+  const y = axisOf(Math.max(0, Math.floor(lowest(values) * 10 - 0.3) / 10), 1.005, height - 48, 12, 6);
   const frame = { left: 60, right: width - 14, top: 12, bottom: height - 48 };
   return svg("svg", {
     class: "picture", viewBox: `0 0 ${width} ${height}`, width, height, role: "img",

@@ -1,6 +1,7 @@
 /** Regions of a body as SVG paths. */
 
 import { svg } from "/app/dom.js";
+import { highest } from "/app/extremes.js";
 
 /** The path text of rings of points. */
 export const pathOf = (rings, view) =>
@@ -10,7 +11,7 @@ export const pathOf = (rings, view) =>
 
 /** One path for each region; a lighter region is drawn fainter. */
 export const regionPaths = (regions, view, attributes = {}) => {
-  const densest = Math.max(...regions.map((each) => each.density ?? 1));
+  const densest = highest(regions.map((each) => each.density ?? 1));
   return regions.map(({ outline, holes = [], density }) =>
     svg("path", {
       class: "region", d: pathOf([outline, ...(holes ?? [])], view), "fill-rule": "evenodd",

@@ -1,5 +1,7 @@
 /** The body as the scene draws it: paths once, so that a frame only moves them. */
 
+import { highest } from "/app/extremes.js";
+
 const ringInto = (path, ring) => {
   ring.forEach(([x, y], k) => (k ? path.lineTo(x, y) : path.moveTo(x, y)));
   path.closePath();
@@ -20,8 +22,8 @@ export const shapeOf = ({ outline, base, ground = 0, points = [], centre }) => {
   const feet = Array.isArray(base[0]) ? base.map(([x]) => x) : base;
   const middle = 0.5 * (feet[0] + feet[1]);
   const moved = (ring) => ring.map(([x, y]) => [x - middle, y - ground]);
-  const densest = Math.max(...outline.map(({ density }) => density || 0), 0);
-  const heaviest = Math.max(...points.map(([, , mass]) => mass || 0), 0);
+  const densest = highest(outline.map(({ density }) => density || 0), 0);
+  const heaviest = highest(points.map(([, , mass]) => mass || 0), 0);
   const regions = outline.map(({ outline: ring, holes, density }) => ({
     outline: moved(ring),
     holes: (holes || []).map(moved),

@@ -1,4 +1,5 @@
 /** The stage: a canvas on which the bodies rock about their feet on a ground that moves. */
+import { highest } from "/app/extremes.js";
 import { fit, newCamera, pixelOf } from "/scene/camera.js";
 import { boxOf } from "/scene/geometry.js";
 import { drawBody, drawFlash, drawGhost, drawGround } from "/scene/pictures.js";
@@ -44,7 +45,7 @@ export class Stage {
   show(play, lead, groundMode) {
     this.play = play;
     this.lead = lead;
-    const size = Math.max(...boxSize(boxOf(play.shape, [])));
+    const size = highest(boxSize(boxOf(play.shape, [])));
     const travel = play.ground.peak();
     this.factor = groundMode === "magnified" ? visibleFactor(travel, size) : 1;
     this.rides = groundMode === "ride" || this.factor * travel > FAR * size;

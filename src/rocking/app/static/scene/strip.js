@@ -1,4 +1,5 @@
 /** The strip under the stage: every rotation over alpha, drawn once, with a line at the present instant. */
+import { highest } from "/app/extremes.js";
 import { readColours } from "/scene/theme.js";
 
 const LEFT = 40;
@@ -27,7 +28,7 @@ export class Strip {
   show(play, lead) {
     this.play = play;
     this.lead = lead;
-    const most = Math.max(...play.actors.map((actor) => actor.share.peak()));
+    const most = highest(play.actors.map((actor) => actor.share.peak()));
     const falls = play.actors.some((actor) => actor.falls);
     this.span = falls ? 1.5 : Math.max(1.15 * most, most > 0.15 ? 1.15 : 0, 1e-6);
     this.resize();

@@ -1,4 +1,6 @@
 /** Regions of a polygon body, changed one step at a time, with undo and redo. */
+
+import { lowest, spanOf } from "/app/extremes.js";
 // A place is {region, ring, vertex}: ring -1 is the outline, others are holes.
 
 /** The ring at a place. */
@@ -46,7 +48,7 @@ export const withDensity = (regions, region, density) =>
 
 /** Shifted so that the lowest point stands on y = 0. */
 export const onTheGround = (regions, exact = (value) => value) => {
-  const low = Math.min(...regions.flatMap((each) => each.outline).map((point) => point[1]));
+  const low = lowest(regions.flatMap((each) => each.outline).map((point) => point[1]));
   const shift = (ring) => ring.map(([x, y]) => [x, exact(y - low)]);
   return regions.map(
     (each) => tidied({ ...each, outline: shift(each.outline), holes: each.holes?.map(shift) })
@@ -57,7 +59,7 @@ export const onTheGround = (regions, exact = (value) => value) => {
 export const middleHole = (outline, exact = (value) => value) => {
   const [xs, ys] = [0, 1].map((axis) => outline.map((point) => point[axis]));
   const [x, y] = [xs, ys].map((each) => each.reduce((sum, value) => sum + value, 0) / each.length);
-  const [dx, dy] = [xs, ys].map((each) => (Math.max(...each) - Math.min(...each)) / 8);
+  const [dx, dy] = [xs, ys].map((each) => spanOf(each) / 8);
   return [
     [x - dx, y - dy], [x + dx, y - dy], [x + dx, y + dy], [x - dx, y + dy],
   ].map((point) => point.map(exact));

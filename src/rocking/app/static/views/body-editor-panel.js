@@ -1,5 +1,6 @@
 /** What stands around the board: undo, regions and holes, densities, the grid, the chosen vertex. */
 
+import { highest, lowest } from "/app/extremes.js";
 import { button, el, fill, numberField, switchField, tidy, toolbar } from "/views/body-parts.js";
 import * as model from "/views/body-editor-model.js";
 
@@ -86,11 +87,11 @@ const newRegion = (editor) => {
   const regions = editor.regions();
   const points = regions.flatMap((each) => each.outline);
   const [xs, ys] = [0, 1].map((axis) => points.map((each) => each[axis]));
-  const top = Math.max(...ys);
+  const top = highest(ys);
   const ridge = points.filter((each) => each[1] === top).map((each) => each[0]);
-  const whole = [Math.min(...xs), Math.max(...xs)];
-  const [left, right] = ridge.length > 1 ? [Math.min(...ridge), Math.max(...ridge)] : whole;
-  const high = tidy(top + (top - Math.min(...ys)) / 4, 6);
+  const whole = [lowest(xs), highest(xs)];
+  const [left, right] = ridge.length > 1 ? [lowest(ridge), highest(ridge)] : whole;
+  const high = tidy(top + (top - lowest(ys)) / 4, 6);
   const outline = [[left, top], [right, top], [right, high], [left, high]];
   editor.change(
     model.withRegion(regions, outline, regions.at(-1).density),

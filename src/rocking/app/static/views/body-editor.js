@@ -1,5 +1,6 @@
 /** The polygon editor: vertices that pointer and keyboard move alike, holes, densities, undo. */
 
+import { highest, spanOf } from "/app/extremes.js";
 import { createCanvas } from "/views/body-editor-canvas.js";
 import * as model from "/views/body-editor-model.js";
 import { createPanel } from "/views/body-editor-panel.js";
@@ -98,9 +99,9 @@ const firstStep = (regions) => {
   const points = regions.flatMap((each) => each.outline);
   if (!points.length) return 0.05;
   const spans = [0, 1].map(
-    (axis) => Math.max(...points.map((each) => each[axis])) - Math.min(...points.map((each) => each[axis]))
+    (axis) => spanOf(points.map((each) => each[axis]))
   );
-  return tidy(roundStep(Math.max(...spans), 80));
+  return tidy(roundStep(highest(spans), 80));
 };
 
 /** The nearest place that exists after a change. */

@@ -1,5 +1,6 @@
 /** The shapes that can be chosen: their fields, and a first size taken from the body before. */
 
+import { spanOf } from "/app/extremes.js";
 import { fromMetres } from "/views/body-units.js";
 
 /** Shapes with the fields of each; a field is a length unless it says otherwise. */
@@ -74,7 +75,7 @@ const spans = (facts, units) => {
   if (!points.length) return [0.5, 2].map((each) => fromMetres(each, units));
   return [0, 1].map((axis) => {
     const values = points.map((each) => each[axis]);
-    return round(fromMetres(Math.max(...values) - Math.min(...values), units));
+    return round(fromMetres(spanOf(values), units));
   });
 };
 

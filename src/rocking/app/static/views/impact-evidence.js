@@ -1,6 +1,7 @@
 /** Coefficients against measurements: a cloud over slenderness, and the intervals of this body. */
 
 import { el, fill, svg } from "/app/dom.js";
+import { highest, lowest } from "/app/extremes.js";
 import { dashKey, GROUPS, modelStyle, modelWords } from "/app/palette.js";
 import { marker } from "/drawing/markers.js";
 import { measuredPicture } from "/drawing/measured-picture.js";
@@ -39,8 +40,8 @@ const evidenceOf = (answer, foot) => ({
 });
 
 const intervalPicture = ({ rows }, width) => {
-  const low = Math.min(...rows.map((row) => row.low));
-  const high = Math.max(1, ...rows.map((row) => row.value));
+  const low = lowest(rows.map((row) => row.low));
+  const high = highest(rows.map((row) => row.value), 1);
   return rowPicture(rows, {
     width, domain: [Math.floor(low * 20) / 20, high + 0.002], label: "coefficient of restitution r",
     title: "Coefficient of restitution of this body", testid: "interval-picture",

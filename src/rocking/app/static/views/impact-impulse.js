@@ -1,6 +1,7 @@
 /** The implied impulse position of every model, drawn along the base. */
 
 import { svg } from "/app/dom.js";
+import { highest, lowest } from "/app/extremes.js";
 import { rowPicture } from "/drawing/row-picture.js";
 import { footMark } from "/drawing/symbols.js";
 
@@ -8,7 +9,7 @@ import { footMark } from "/drawing/symbols.js";
 export const impulseRows = (answer, foot, width) => {
   const rows = answer.coefficients[foot].map((row) => ({ model: row.model, value: row.impulse_ratio_k }));
   const values = rows.map((row) => row.value).filter((value) => value !== null);
-  const domain = [Math.min(0, ...values), Math.max(1.22, ...values)];
+  const domain = [lowest(values, 0), highest(values, 1.22)];
   return rowPicture(rows.filter((row) => row.value !== null), {
     width, domain, label: "impulse position k, over half the base", title: "Implied impulse position",
     testid: "impulse-picture",

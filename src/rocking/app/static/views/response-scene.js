@@ -1,5 +1,6 @@
 /** The animation of the answers: which body is solid, which are ghosts, and where the ground is. */
 import { el } from "/app/dom.js";
+import { highest } from "/app/extremes.js";
 import { chartFiles } from "/charts/save.js";
 import { Player } from "/scene/player.js";
 import { actorOf } from "/scene/sampled.js";
@@ -13,13 +14,13 @@ const SETTLE = 0.4;
 
 const groundOf = (answers) => {
   const ends = answers.map(({ series }) => series.time.at(-1));
-  const { time, ground_displacement: moved } = answers[ends.indexOf(Math.max(...ends))].series;
+  const { time, ground_displacement: moved } = answers[ends.indexOf(highest(ends))].series;
   return new Track(time, moved);
 };
 
 // after everything lies or rests nothing happens: the animation ends there
 const lastOf = ({ rotation, falls }) => (falls ? rotation.end + SETTLE : quietAfter(rotation));
-const endOf = (actors) => Math.max(...actors.map(lastOf));
+const endOf = (actors) => highest(actors.map(lastOf));
 
 const quietAfter = (track) => {
   let k = track.values.length - 1;

@@ -54,16 +54,34 @@ export const ticksOf = ({ low, high, log }) => {
   );
 };
 
+/** The cell under the middle of each of some dots along an axis. */
+const cellsOf = (edges, dots) => {
+  let k = 0;
+  return Array.from({ length: dots }, (_, dot) => {
+    while (k < edges.length - 2 && edges[k + 1] <= (dot + 0.5) / dots) k += 1;
+    return k;
+  });
+};
+
+/** A colour "#rrggbb" as a dot of an image has it, the least byte first. */
+const wordOf = (paint) => {
+  const rgb = parseInt(paint.slice(1), 16);
+  return (0xff000000 | ((rgb & 0xff) << 16) | (rgb & 0xff00) | (rgb >> 16)) >>> 0;
+};
+
 /** Painter of a map: draw(paintOf, [kept, aim], lines) and cellAt(event). */
 export const createGrid = (canvas, x, y) => {
   const across = axisOf(x);
   const up = axisOf(y);
   let size = { width: 300, height: 300 };
+  let dense = 1;
+  let painted = {};
 
   const fit = () => {
     const width = Math.max(240, canvas.parentElement.clientWidth);
     size = { width, height: Math.round(Math.min(0.78 * width, 520)) };
-    const dense = window.devicePixelRatio || 1;
+    dense = window.devicePixelRatio || 1;
+    painted = {};
     canvas.width = Math.round(size.width * dense);
     canvas.height = Math.round(size.height * dense);
     canvas.style.height = `${size.height}px`;
@@ -82,6 +100,20 @@ export const createGrid = (canvas, x, y) => {
       xAt(across.edges[ix + 1]) - left + 2 * grow,
       yAt(up.edges[iy]) - top + 2 * grow,
     );
+  };
+
+  // Every dot of the screen has the colour of its cell: a map of a million cells costs no more than a small one.
+  const imageOf = (pen, paintOf) => {
+    const dots = (from, length) => Math.floor((from + length) * dense) - Math.ceil(from * dense);
+    const [wide, high] = [dots(LEFT, inner().w), dots(TOP, inner().h)];
+    if (!(wide > 0 && high > 0)) return null;
+    const image = pen.createImageData(wide, high);
+    const dotsOf = new Uint32Array(image.data.buffer);
+    const [columns, rows] = [cellsOf(across.edges, wide), cellsOf(up.edges, high).reverse()];
+    rows.forEach((iy, row) => columns.forEach((ix, column) => {
+      dotsOf[row * wide + column] = wordOf(paintOf(ix, iy));
+    }));
+    return image;
   };
 
   const drawAxes = (pen) => {
@@ -114,14 +146,8 @@ export const createGrid = (canvas, x, y) => {
   const draw = (paintOf, [kept, aim], lines = []) => {
     const pen = canvas.getContext("2d");
     pen.clearRect(0, 0, size.width, size.height);
-    for (let iy = 0; iy < y.values.length; iy += 1) {
-      for (let ix = 0; ix < x.values.length; ix += 1) {
-        pen.beginPath();
-        cell(pen, ix, iy, 0.3);
-        pen.fillStyle = paintOf(ix, iy);
-        pen.fill();
-      }
-    }
+    if (painted.by !== paintOf) painted = { by: paintOf, image: imageOf(pen, paintOf) };
+    if (painted.image) pen.putImageData(painted.image, Math.ceil(LEFT * dense), Math.ceil(TOP * dense));
     drawLines(pen, lines);
     drawAxes(pen);
     if (aim && aim !== kept) frame(pen, aim, 1.25);

@@ -1,4 +1,5 @@
 /** What a map can show: the verdict, the peak rotation, the impacts, and where two models differ. */
+import { highest } from "/app/extremes.js";
 import { number, quantity } from "/app/format.js";
 import { modelWords } from "/app/palette.js";
 import { greek } from "/views/studies-words.js";
@@ -27,7 +28,7 @@ export const layersOf = (found, k, other) => {
   const outcome = found.outcome[k];
   const impacts = found.impacts[k];
   const peak = found.peak[k];
-  const most = Math.max(1, ...impacts.flat().filter(Number.isFinite));
+  const most = highest(impacts.map((row) => highest(row)), 1);
   const layers = [
     {
       value: "verdict",

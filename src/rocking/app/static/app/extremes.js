@@ -1,0 +1,16 @@
+/** Extremes of data: a call that takes all values as its arguments ends at some 100,000 of them. */
+
+/** The largest of some values, not below `most`; what is no number is passed over. */
+export const highest = (values, most = -Infinity) => {
+  for (const value of values) if (value !== null && value > most) most = value;
+  return most;
+};
+
+/** The smallest of some values, not above `least`. */
+export const lowest = (values, least = Infinity) => {
+  for (const value of values) if (value !== null && value < least) least = value;
+  return least;
+};
+
+/** From the smallest to the largest. */
+export const spanOf = (values) => highest(values) - lowest(values);
