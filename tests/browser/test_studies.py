@@ -353,3 +353,69 @@ def test_a_large_map_is_drawn_and_can_be_walked(studies: Any, count: int) -> Non
     print(f"{count} x {count}: drawn in {found['shown']:.0f} ms, again in {found['moved']:.1f} ms")
     # the picture of the cells is kept: what a move draws again is the frame, however many cells there are
     assert found["moved"] < found["shown"]
+
+
+DRAWN = {
+    "body": {
+        "units": "cm", "name": "leaning stele",
+        "section": {"depth": 21.5, "feet": [3.25, 47.5], "region": [
+            {"outline": [[0, 0], [50, 0], [61.125, 180.0625], [7, 201.3]], "density": 2345.6,
+             "holes": [[[20, 40], [30, 41], [27, 60]]]},
+        ]},
+    },
+    "motion": {"pulse": "sine:amplitude=3,period=0.6", "scale": 1.0625},
+    "restitution": {"models": ["housner", "ked"]},
+    "response": {"friction": 0.375},
+}  # fmt: skip
+
+
+def test_the_drawn_body_outlasts_a_cell(open_page: Callable[..., Any], shot: Any) -> None:
+    """A cell, then another one opened in Response: a button brings what was drawn back, to the last digit, and again.
+
+    Neither a reload nor a change of the cell's numbers comes between; what was dropped on purpose is gone.
+    """
+    page = open_page(fragment(DRAWN))
+    own = kept_inputs(page)
+    assert own == DRAWN
+    line, canvas = page.get_by_test_id("lent"), page.get_by_test_id("map-canvas")
+    launched_map(page, "lent", 6)
+    for place in (0.3, 0.6):
+        canvas.click(position={"x": place * canvas.bounding_box()["width"], "y": 100})
+        go = page.get_by_role("button", name="Open in Response")
+        expect(go).to_be_enabled()
+        go.click()
+        expect(page.get_by_test_id("verdict")).to_be_visible()
+        expect(line).to_contain_text("a cell of lent")
+        assert kept_inputs(page) != own
+        page.get_by_role("tab", name="Studies").click()
+    page.get_by_role("tab", name="Response").click()
+    shot(page, "response-lent", full_page=False)
+    page.get_by_label("Scale of the motion").focus()
+    page.keyboard.press("ArrowRight")
+    changed = kept_inputs(page)
+    page.reload()
+    page.get_by_role("button", name="Back to my inputs").click()
+    assert kept_inputs(page) == own
+    page.get_by_role("tab", name="Body").click()
+    expect(page.get_by_test_id("editor")).to_be_visible()
+    expect(page.get_by_label("Name")).to_have_value("leaning stele")
+    page.get_by_role("button", name="Show it again").click()
+    assert kept_inputs(page) == changed
+    page.get_by_role("button", name="Back to my inputs").click()
+    page.get_by_role("button", name="Drop it").click()
+    expect(line).to_be_hidden()
+    assert kept_inputs(page) == own
+
+
+def test_a_link_or_a_file_replaces_nothing_for_good(open_page: Callable[..., Any], tmp_path: Path) -> None:
+    """Inputs of a link pasted into the tab, and the body of a dropped file, stand in for one's own, which come back."""
+    page = open_page(fragment(DRAWN, "body"))
+    page.evaluate("(hash) => { location.hash = hash; }", fragment(PULSE, "body"))
+    expect(page.get_by_test_id("lent")).to_contain_text("what a link holds")
+    drawing = tmp_path / "wedge.wkt"
+    drawing.write_text("POLYGON ((0 0, 60 0, 10 200, 0 0))", encoding="utf-8")
+    page.get_by_label("Unit of the file").select_option("cm")
+    page.get_by_label("Body file").set_input_files(drawing)
+    expect(page.get_by_test_id("lent")).to_contain_text("the body of wedge.wkt")
+    page.get_by_role("button", name="Back to my inputs").click()
+    assert kept_inputs(page) == DRAWN

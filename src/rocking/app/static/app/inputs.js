@@ -3,6 +3,7 @@
 import { inputsOf } from "/app/shape.js";
 
 const KEPT = "rocking.inputs";
+const ASIDE = "rocking.aside";
 
 const FIRST = {
   body: { units: "m", width: 0.5, height: 2.0, depth: 0.5, density: 2400 },
@@ -10,15 +11,21 @@ const FIRST = {
   restitution: { models: ["ked", "housner"] },
 };
 
-/** The store of the inputs: get, set by path, subscribe, replace. */
+/** The store of the inputs: get, set by path, subscribe, lend. */
 export const createInputs = (start) => {
   let current = freeze(start ?? FIRST);
-  keep(current);
+  let aside = keptAside();
+  keep(KEPT, current);
   const watchers = new Set();
   const become = (next, changed) => {
     current = freeze(next);
-    keep(current);
+    keep(KEPT, current);
     for (const watcher of [...watchers]) watcher(current, changed);
+  };
+  const replace = (document) => become(document, new Set([...Object.keys(current), ...Object.keys(document)]));
+  const put = (next) => {
+    aside = next;
+    keep(ASIDE, next);
   };
   return {
     get: () => current,
@@ -27,7 +34,24 @@ export const createInputs = (start) => {
       const next = changedAt(current, path.split("."), value);
       if (JSON.stringify(next[top]) !== JSON.stringify(current[top])) become(next, new Set([top]));
     },
-    replace: (document) => become(document, new Set([...Object.keys(current), ...Object.keys(document)])),
+    /** Show inputs from elsewhere; the user's own go aside: {inputs, words, mine}, or null while there are none. */
+    lend: (document, words) => {
+      const own = aside?.mine ? aside.inputs : current;
+      const same = [FIRST, document].some((each) => JSON.stringify(each) === JSON.stringify(own));
+      put(same ? null : { inputs: own, words, mine: true });
+      replace(document);
+    },
+    aside: () => aside,
+    /** Change what is on the screen and what is aside over. */
+    swap: () => {
+      const next = aside.inputs;
+      put({ ...aside, inputs: current, mine: !aside.mine });
+      replace(next);
+    },
+    forget: () => {
+      put(null);
+      become(current, new Set());
+    },
     /** Let every watcher ask again for what it shows. */
     touch: () => become(current, new Set(Object.keys(current))),
     subscribe: (watcher) => {
@@ -55,17 +79,25 @@ export const decode = (text) => {
 };
 
 /** What this browser tab held before it was reloaded. */
-export const kept = () => {
+export const kept = () => inputsOf(stored(KEPT));
+
+const keptAside = () => {
+  const found = stored(ASIDE);
+  const inputs = inputsOf(found?.inputs);
+  return inputs && { inputs, words: String(found.words), mine: Boolean(found.mine) };
+};
+
+const stored = (key) => {
   try {
-    return inputsOf(JSON.parse(sessionStorage.getItem(KEPT)));
+    return JSON.parse(sessionStorage.getItem(key));
   } catch {
     return null;
   }
 };
 
-const keep = (inputs) => {
+const keep = (key, value) => {
   try {
-    sessionStorage.setItem(KEPT, JSON.stringify(inputs));
+    sessionStorage.setItem(key, JSON.stringify(value));
   } catch {
     // A browser that keeps nothing still works; only a reload forgets.
   }

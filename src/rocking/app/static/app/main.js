@@ -8,6 +8,7 @@ import { faults } from "/app/faults.js";
 import { createInputs, decode, encode, kept } from "/app/inputs.js";
 import { followAddress, UNREADABLE } from "/app/navigation.js";
 import { whenBack } from "/app/offline.js";
+import { mountLent } from "/app/lent.js";
 import { fieldOf, plainWords } from "/app/refusal.js";
 import { say } from "/app/say.js";
 import { showFailure } from "/app/failure.js";
@@ -26,7 +27,8 @@ const start = async () => {
   if (!info) return waitAtTheDoor(refusal);
   if (shared) address.write({ view });
   const fromLink = shared ? decode(shared) : null;
-  const app = createApp(fromLink ?? kept(), info);
+  const app = createApp(kept() ?? fromLink, info);
+  if (fromLink) app.inputs.lend(fromLink, "what a link holds");
   if (shared && !fromLink) say(`${UNREADABLE}; the usual start is shown.`, "warning");
   run(app, view);
 };
@@ -74,6 +76,7 @@ const run = (app, view) => {
   app.view = tabs.current;
   app.go = (name) => tabs.show(name, { focus: true });
   mountSummary(document.getElementById("summary"), app);
+  mountLent(document.querySelector(".views"), app.inputs);
   tabs.show(tabs.names.includes(view) ? view : "body");
   steps.inert = false; // until here a click would have been lost
   document.body.dataset.started = "true";

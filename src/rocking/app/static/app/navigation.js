@@ -25,7 +25,7 @@ export const UNREADABLE = "The link carries no readable inputs";
 
 const take = (app, shared) => {
   const inputs = decode(shared);
-  if (inputs) app.inputs.replace(inputs);
+  if (inputs) app.inputs.lend(inputs, "what a link holds");
   else app.say(`${UNREADABLE}; nothing was changed.`, "warning");
 };
 

@@ -47,7 +47,7 @@ export const dropZone = (app) => {
       const query = { name: file.name, units: units.value || undefined };
       const answer = await app.call("body/file", { body: content, query });
       if (file !== held) return;
-      app.inputs.set("body", answer.body);
+      app.inputs.lend({ ...app.inputs.get(), body: answer.body }, `the body of ${file.name}`);
       placed = JSON.stringify(app.inputs.get().body);
       app.say(`Read ${file.name}.`);
     } catch (error) {

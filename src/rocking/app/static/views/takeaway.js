@@ -224,7 +224,7 @@ export const mount = (section, app) => {
     if (!file) return;
     try {
       const found = await app.call("/api/inputs/read", { body: file, query: { name: file.name } });
-      app.inputs.replace(found.inputs ?? found);
+      app.inputs.lend(found.inputs ?? found, `what ${file.name} holds`);
       app.say(`The inputs of ${file.name} are loaded.`);
     } catch (error) {
       app.say(error.message, "error");
