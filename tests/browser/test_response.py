@@ -13,9 +13,12 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from rocking.bodies import Block
+from rocking.bodies import Block, Region, Section
+from rocking.bodies.shapes import trapezoid
 from rocking.dynamics.histories import free_rocking, simulate
+from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
+from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import pulse
 
 PHONE = {"width": 360, "height": 740}
@@ -461,3 +464,85 @@ def test_many_impacts_scroll_in_a_box(answered: Callable[..., Any]) -> None:
     box.evaluate("node => node.scrollTo(0, node.scrollHeight)")
     head = table.locator("thead th").first.bounding_box()
     assert abs(head["y"] - box.bounding_box()["y"]) < 3.0
+
+
+# white noise of 50 s: its friction demand, velocities and energies are spikes of one sample
+NOISE = [0.0, *np.random.default_rng(3).normal(scale=2.2, size=10_000)]
+RATTLED = "".join(f"{0.005 * k:.3f},{a:.9f}\n" for k, a in enumerate(NOISE)).encode()
+LEANING = {"units": "m", "trapezoid": {"base": 0.5, "top": 0.3, "height": 1.8, "lean": 0.1}}
+CURVE = """(svg) => {
+  const numbers = (node, ...keys) => keys.map((key) => Number(node.getAttribute(key)));
+  const [left, width] = numbers(svg.querySelector("clipPath rect"), "x", "width");
+  return { left, width,
+    marks: [...svg.querySelectorAll("g[clip-path] line")].map((each) => numbers(each, "x1", "x2", "y1", "y2")),
+    curves: [...svg.querySelectorAll("g[clip-path] path")].map((each) => each.getAttribute("d")) };
+}"""
+
+
+def rattle(page: Any, served: Any) -> Response:
+    """Shake a leaning body with noise, in the page and in Python."""
+    sent = page.request.post(
+        f"{served.url}/api/records", params={"name": "noise.csv"}, data=RATTLED,
+        headers={"Content-Type": "application/octet-stream", "Origin": served.url},
+    ).json()  # fmt: skip
+    motion = {"record": sent["record"], "units": "m/s2", "file_name": "noise.csv"}
+    inputs = {"body": LEANING, "motion": motion, "restitution": {"models": ["ked"]}}
+    text = base64.urlsafe_b64encode(json.dumps(inputs).encode()).decode().rstrip("=")
+    page.evaluate("(hash) => { location.hash = hash; }", f"in={text}&view=response")
+    expect(page.get_by_test_id("outcomes").locator(".outcome")).to_have_count(1)
+    time, values = np.loadtxt(RATTLED.decode().splitlines(), delimiter=",").T
+    return simulate(Section([Region(trapezoid(0.5, 0.3, 1.8, lean=0.1))]), GroundMotion(values, float(time[1])), "ked")
+
+
+def drawn(page: Any, title: str) -> tuple[dict[str, Any], np.ndarray]:
+    """Save a chart as SVG and return its frame and the points of its curve [dots]."""
+    with page.expect_download() as waiting:
+        page.get_by_role("button", name=f"SVG of the chart {title}", exact=True).click()
+    text = Path(waiting.value.path()).read_text(encoding="utf-8").split("\n", 1)[1]
+    script = f"(text) => ({CURVE})(new DOMParser().parseFromString(text, 'image/svg+xml').documentElement)"
+    found = page.evaluate(script, text)
+    pairs = re.findall(r"(-?[\d.]+) (-?[\d.]+)", "".join(found["curves"]))
+    return found, np.array(pairs, dtype=float)
+
+
+def test_curves_reach_their_peaks_to_the_dot(answered: Callable[..., Any], served: Any, shot: Any) -> None:
+    """The rotation is drawn to its largest and least value between all samples, within a dot, and so is a part of it.
+
+    Looked into, that part has every sample. A double click shows all of it again.
+    """
+    page = answered()
+    found = rattle(page, served)
+    assert found.outcome is Outcome.ROCKED
+    fine = np.linspace(0.0, found.time[-1], 20 * found.time.size)
+    alphas = found.rocker.left.slenderness_angle, found.rocker.right.slenderness_angle
+    share = found.at(fine) / np.where(found.at(fine) > 0.0, alphas[1], alphas[0])
+    title = "Rotation over slenderness angle"
+    frame, points = drawn(page, title)
+    upper, lower = (line[2] for line in frame["marks"] if line[0] == frame["left"] and line[2] == line[3])
+    if upper > lower:
+        upper, lower = lower, upper
+    of_dots = lambda y: 1.0 - 2.0 * (y - upper) / (lower - upper)  # noqa: E731 - marks stand at +1 and -1
+    dot = 2.0 / (lower - upper)
+    assert of_dots(points[:, 1].min()) == pytest.approx(share.max(), abs=0.5 * dot)
+    assert of_dots(points[:, 1].max()) == pytest.approx(share.min(), abs=0.5 * dot)
+    assert points.shape[0] < 0.7 * found.time.size
+    stage = page.get_by_test_id("chart-rotation").locator(".u-over")
+    box = stage.bounding_box()
+    page.mouse.move(box["x"] + 0.30 * box["width"], box["y"] + 50)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.34 * box["width"], box["y"] + 60, steps=4)
+    page.mouse.up()
+    charts = page.get_by_test_id("response-charts").locator("..")
+    expect(charts).to_have_attribute("data-window", re.compile(r"\d \d"))
+    first, last = map(float, charts.get_attribute("data-window").split())
+    shot(page, "response-looked-into")
+    frame, points = drawn(page, title)
+    inside = points[(points[:, 0] >= frame["left"] - 0.01) & (points[:, 0] <= frame["left"] + frame["width"] + 0.01)]
+    samples = np.count_nonzero((found.time >= first) & (found.time <= last))
+    assert 100 < samples <= inside.shape[0]
+    within = share[(fine >= first) & (fine <= last)]
+    upper, lower = sorted(line[2] for line in frame["marks"] if line[0] == frame["left"] and line[2] == line[3])
+    assert of_dots(inside[:, 1].min()) == pytest.approx(within.max(), abs=dot)
+    assert of_dots(inside[:, 1].max()) == pytest.approx(within.min(), abs=dot)
+    stage.dblclick()
+    expect(charts).to_have_attribute("data-window", "")

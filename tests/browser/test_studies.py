@@ -319,8 +319,9 @@ def test_each_step_has_a_heading(open_page: Callable[..., Any], view: str, words
 LARGE_MAP = """async (count) => {
   const [{ layersOf, cellWords }, { showMap }] = await Promise.all(
     ["/views/studies-layers.js", "/views/studies-map.js"].map((each) => import(each)));
-  const grid = (value) => Array.from({ length: count }, (_, iy) => Array.from({ length: count }, (_, ix) => value(ix, iy)));
-  const axis = { values: Array.from({ length: count }, (_, k) => 1 + k), unit: "1", words: "a" };
+  const many = (value) => Array.from({ length: count }, (_, k) => value(k));
+  const grid = (value) => many((iy) => many((ix) => value(ix, iy)));
+  const axis = { values: many((k) => 1 + k), unit: "1", words: "a" };
   const fell = (ix, iy) => ix > iy;
   const found = {
     x: axis, y: axis, restitutions: ["ked"], contours: [[]],
@@ -338,8 +339,9 @@ LARGE_MAP = """async (count) => {
   const moved = (busy() - again) / 20;
   const paint = (x, y) => Array.from(canvas.getContext("2d").getImageData(
     Math.round(x * canvas.width), Math.round(y * canvas.height), 1, 1).data);
-  return { legend: layersOf(found, 0, null)[2].legend.map((each) => each.words), words: cellWords(found, 0, { ix: 3, iy: 5 }),
-    shown, moved, upper: paint(0.3, 0.2), lower: paint(0.85, 0.6) };
+  const legend = layersOf(found, 0, null)[2].legend.map((each) => each.words);
+  const words = cellWords(found, 0, { ix: 3, iy: 5 });
+  return { legend, words, shown, moved, upper: paint(0.3, 0.2), lower: paint(0.85, 0.6) };
 }"""
 
 

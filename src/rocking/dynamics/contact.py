@@ -115,17 +115,7 @@ def contact_of(
     Contact
         Forces and friction demand.
     """
-    gravity = settings.gravity
-    side = intervals.side[:, None]
-    f_x, f_z = equations.reactions(
-        intervals.rotation, intervals.velocity, intervals.acceleration, np.where(side == 0.0, 1.0, side),
-        intervals.alpha[:, None], intervals.semi_diagonal[:, None], intervals.push, gravity + intervals.lift,
-    )  # fmt: skip
-    resting = side == 0.0
-    f_x = np.where(resting, intervals.push, f_x)
-    f_z = np.where(resting, gravity + intervals.lift, f_z)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        demand = np.where(f_z > 0.0, np.abs(f_x) / f_z, np.where(f_x == 0.0, 0.0, np.inf))
+    f_x, f_z, demand = forces(intervals, settings.gravity)
     # a body that falls is past all questions of friction; the start counts even for one that is let go beyond the top
     late = intervals.start >= trajectory.overturning_time - _ROUNDING * intervals.length
     standing = np.stack([~late, ~late], axis=1)
@@ -140,6 +130,36 @@ def contact_of(
         friction_of_motion=float(demand[standing].max()),
         friction_of_impacts=_friction_of_impacts(trajectory, body),
     )
+
+
+def forces(intervals: Intervals, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the forces of the ground at both ends of the intervals of a response.
+
+    Parameters
+    ----------
+    intervals : Intervals
+        The response between its samples and events.
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    horizontal, vertical : ndarray, shape (n, 2)
+        Over the mass [N/kg].
+    demand : ndarray, shape (n, 2)
+        Friction that rocking without slip takes; infinite where the ground would have to pull [-].
+    """
+    side = intervals.side[:, None]
+    f_x, f_z = equations.reactions(
+        intervals.rotation, intervals.velocity, intervals.acceleration, np.where(side == 0.0, 1.0, side),
+        intervals.alpha[:, None], intervals.semi_diagonal[:, None], intervals.push, gravity + intervals.lift,
+    )  # fmt: skip
+    resting = side == 0.0
+    f_x = np.where(resting, intervals.push, f_x)
+    f_z = np.where(resting, gravity + intervals.lift, f_z)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        demand = np.where(f_z > 0.0, np.abs(f_x) / f_z, np.where(f_x == 0.0, 0.0, np.inf))
+    return f_x, f_z, demand
 
 
 def _friction_of_impacts(trajectory: Trajectory, body: Body) -> float:

@@ -64,22 +64,45 @@ def energy_of(intervals: Intervals, time: FloatArray, mass: float, settings: Set
     ResponseEnergy
         At these times.
     """
+    kinetic, potential, work, lost = energies(intervals, mass, settings)
+    place = intervals.places(time[1:])
+
+    def at_samples(values: FloatArray) -> FloatArray:
+        return np.append(values[0, 0], values[place, 1])
+
+    return ResponseEnergy(
+        time=time,
+        kinetic=at_samples(kinetic),
+        potential=at_samples(potential),
+        work=at_samples(work),
+        lost=at_samples(lost),
+    )
+
+
+def energies(
+    intervals: Intervals, mass: float, settings: Settings
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return the energy of a response at both ends of its intervals.
+
+    Parameters
+    ----------
+    intervals : Intervals
+        The response between its samples and events.
+    mass : float
+        Mass of the body [kg].
+    settings : Settings
+        How it was integrated.
+
+    Returns
+    -------
+    kinetic, potential, work, lost : ndarray, shape (n, 2)
+        As `ResponseEnergy` has them [J].
+    """
     unit = (mass * settings.gravity * intervals.semi_diagonal)[:, None]
     alpha, p = intervals.alpha[:, None], intervals.p[:, None]
     stored = unit * equations.energy(intervals.rotation, intervals.velocity, alpha, p, linear=settings.linear)
     kinetic = unit * 0.5 * np.square(intervals.velocity / p)
     # what one interval ends with and the next one starts without was lost in between
     lost = np.concatenate([[0.0], np.cumsum(stored[:-1, 1] - stored[1:, 0])])
-    work = np.cumsum(mass * intervals.work(settings))
-    place = intervals.places(time[1:])
-
-    def at_samples(first: float, values: FloatArray) -> FloatArray:
-        return np.concatenate([[first], values[place]])
-
-    return ResponseEnergy(
-        time=time,
-        kinetic=at_samples(kinetic[0, 0], kinetic[:, 1]),
-        potential=at_samples(stored[0, 0] - kinetic[0, 0], stored[:, 1] - kinetic[:, 1]),
-        work=at_samples(0.0, work),
-        lost=at_samples(0.0, lost),
-    )
+    work = np.concatenate([[0.0], np.cumsum(mass * intervals.work(settings))])
+    return kinetic, stored - kinetic, np.stack([work[:-1], work[1:]], axis=1), np.stack([lost, lost], axis=1)

@@ -17,8 +17,7 @@ from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.plots.animation_film import film
-from rocking.plots.animation_scene import scene_of
-from rocking.plots.response_curves import shown_until
+from rocking.plots.animation_scene import scene_of, scene_until
 
 MOST_FRAMES = 500
 """Frames of a GIF: more would make a file that no page wants to carry."""
@@ -180,7 +179,7 @@ def animate_gif(
     target = _target(path, ".gif")
     lasts = round(100.0 / checks.within("fps", fps, 1.0, 50.0)) / 100.0
     speed = checks.within("speed", speed, 0.01, 100.0)
-    end = shown_until(response)
+    end = scene_until(response)
     count = int(np.ceil(end / (lasts * speed))) + 1
     if count > MOST_FRAMES:
         raise InvalidValueError(
@@ -210,7 +209,7 @@ def slowest_speed(response: Response, fps: float = 25.0) -> float:
         Seconds of the response in a second of playing, rounded up to two digits behind the point [-].
     """
     lasts = round(100.0 / fps) / 100.0
-    return max(1.0, float(np.ceil(100.0 * shown_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
+    return max(1.0, float(np.ceil(100.0 * scene_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)
 
 
 def _target(path: str | Path, suffix: str) -> Path:

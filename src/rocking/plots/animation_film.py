@@ -10,7 +10,7 @@ import numpy as np
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.plots.animation_scene import Scene, Shape, scene_of
-from rocking.plots.response_curves import motion_curves, over_slenderness, shown_until
+from rocking.plots.response_curves import motion_curves, over_slenderness
 from rocking.plots.style import GREY, INK, PALE, in_journal_style
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def _stage(response: Response, scene: Scene) -> _Stage:
     _ground(view, scene, ground, wide)
     _body(view, scene.shape, body)
     curve = figure.add_axes((0.11, 0.42 / whole, 0.86, (_CURVE - 0.55) / whole))
-    (mark,) = _curve(curve, response)
+    (mark,) = _curve(curve, response, scene)
     (flash,) = view.plot([], [], marker="o", markersize=16, markerfacecolor="none", markeredgewidth=2, color=_IMPACT)
     texts = [
         view.text(0.02, 0.98, "", transform=view.transAxes, va="top", fontsize=8, family="monospace"),
@@ -148,7 +148,7 @@ def _body(view: "Axes", shape: Shape, turned: "Affine2D") -> None:
     view.plot(*([value] for value in shape.centre), "+", color=_ROTATION, markersize=7, transform=place, zorder=4)
 
 
-def _curve(axes: "Axes", response: Response) -> "list[Line2D]":
+def _curve(axes: "Axes", response: Response, scene: Scene) -> "list[Line2D]":
     curves = motion_curves(response)
     values = over_slenderness(response, curves.rotation)
     axes.axhline(0.0, color=PALE, linewidth=0.6)
@@ -157,7 +157,7 @@ def _curve(axes: "Axes", response: Response) -> "list[Line2D]":
     axes.plot(curves.time, values, color=_ROTATION, linewidth=1.0)
     times = response.impacts["time"]
     axes.plot(times, np.zeros(times.size), ".", color=_IMPACT, markersize=3.5)
-    axes.set_xlim(0.0, shown_until(response))
+    axes.set_xlim(0.0, float(scene.time[-1]))
     most = 2.0 if response.outcome is Outcome.OVERTURNED else max(1.0, float(np.abs(values).max()))
     axes.set_ylim(-1.15 * most, 1.15 * most)
     axes.set_ylabel("rotation / alpha [-]", fontsize=6)

@@ -7,6 +7,7 @@ import numpy as np
 from rocking.bodies import Block, Body, MassPoints, Section
 from rocking.conventions import FloatArray
 from rocking.dynamics.response import Response
+from rocking.plots.lying import Fall, fall_of
 from rocking.plots.response_curves import ground_place, shown_until, velocity_at
 
 FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000
@@ -15,6 +16,8 @@ FASTEST_RATE, MOST_SAMPLES = 120.0, 60_000
 _MARGIN = 0.10
 _FAR = 1.5
 _POSES = 400
+_LEVEL = 1e-9
+"""Height of a corner that stands on the ground, over its distance from the foot, to rounding."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,19 @@ class Shape:
         parts = [ring for _, rings in self.regions for ring in rings]
         feet = np.array([[foot, 0.0] for foot in self.feet])
         return np.vstack([*parts, self.points[:, :2], feet, [self.centre]])
+
+    @property
+    def lying(self) -> tuple[float, float]:
+        """Rotations, below and above zero, at which a corner meets the ground: it lies on its left or right side [rad].
+
+        Both are at most a quarter turn and the slenderness angle beyond it, since the centre of mass is no lower.
+        """
+        angles = []
+        for foot, side in zip(self.feet, (-1.0, 1.0), strict=True):
+            ahead, high = side * (self.corners[:, 0] - foot), self.corners[:, 1]
+            above = high > _LEVEL * np.hypot(ahead, high)
+            angles.append(side * float(np.arctan2(high[above], ahead[above]).min()))
+        return angles[0], angles[1]
 
     def turned(self, corners: FloatArray, rotation: float) -> FloatArray:
         """Return points of the body after it has turned about the foot that it stands on.
@@ -137,18 +153,44 @@ def scene_of(response: Response, step: float | None = None) -> Scene:
     Returns
     -------
     Scene
-        From its start to where nothing happens any more.
+        From its start to where nothing happens any more, or to where the body lies.
     """
-    end = shown_until(response)
+    shape = Shape.of(response.body)
+    fall = fall_of(response, shape.lying)
+    end = scene_until(response, fall)
     if step is None:
         time = np.linspace(0.0, end, max(2, min(int(end * FASTEST_RATE), MOST_SAMPLES)))
     else:
         time = np.append(np.arange(0.0, end, step), end)
-    shape = Shape.of(response.body)
-    rotation, ground = response.at(time), ground_place(response, time)
+    known, ends = float(response.intervals.end[-1]), response.segments.count * response.segments.step
+    rotation, velocity = response.at(np.minimum(time, known)), velocity_at(response, time)
+    if fall.time.size:
+        falls = time > known
+        rotation = np.clip(np.where(falls, np.interp(time, fall.time, fall.rotation), rotation), *shape.lying)
+        velocity = np.where(falls, np.interp(time, fall.time, fall.velocity), velocity)
+    ground = ground_place(response, np.minimum(time, ends))
     follows, window = _window(shape, rotation, ground)
-    acceleration = np.interp(time, response.time, response.ground_acceleration)
-    return Scene(shape, time, rotation, velocity_at(response, time), ground, acceleration, follows, window)
+    acceleration = np.where(time > ends, 0.0, np.interp(time, response.time, response.ground_acceleration))
+    return Scene(shape, time, rotation, velocity, ground, acceleration, follows, window)
+
+
+def scene_until(response: Response, fall: Fall | None = None) -> float:
+    """Return the time up to which a response is shown in motion: to where the body lies, if it falls.
+
+    Parameters
+    ----------
+    response : Response
+        The response.
+    fall : Fall, optional
+        Its fall, if that is known already.
+
+    Returns
+    -------
+    float
+        Time [s].
+    """
+    fall = fall_of(response, Shape.of(response.body).lying) if fall is None else fall
+    return float(fall.time[-1]) if fall.time.size else shown_until(response)
 
 
 def _window(shape: Shape, rotation: FloatArray, ground: FloatArray) -> tuple[bool, tuple[float, float, float, float]]:

@@ -69,7 +69,7 @@ def velocity_at(response: Response, time: Any) -> FloatArray:
         theta' [rad/s].
     """
     intervals = response.intervals
-    t = np.clip(np.asarray(time, dtype=np.float64), 0.0, response.time[-1])
+    t = np.clip(np.asarray(time, dtype=np.float64), 0.0, intervals.end[-1])
     k = np.clip(np.searchsorted(intervals.start, t, side="right") - 1, 0, intervals.start.size - 1)
     x = (t - intervals.start[k]) / intervals.length[k]
     slopes = intervals.quintics()[k][..., 1:] * np.arange(1, 6)

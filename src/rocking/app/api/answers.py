@@ -72,15 +72,17 @@ class ResponseAnswers:
         """The responses that are there, by label."""
         return {label: one for label, one in self.found.items() if isinstance(one, Response)}
 
-    def facts(self, points: int, name: str | None = None) -> dict[str, Any]:
+    def facts(self, points: int, name: str | None = None, window: tuple[float, float] | None = None) -> dict[str, Any]:
         """Return the answer of the API.
 
         Parameters
         ----------
         points : int
-            How many samples of a curve.
+            Over how many dots the curves are drawn.
         name : str, optional
             What the user calls the body.
+        window : tuple of float, optional
+            The part of the time that is drawn [s].
 
         Returns
         -------
@@ -90,7 +92,9 @@ class ResponseAnswers:
         asked, verdict = self.question, Verdict.of(self.responses)
         return {
             "answers": [
-                {"label": label, "error": one} if isinstance(one, str) else answer_facts(label, one, asked, points)
+                {"label": label, "error": one}
+                if isinstance(one, str)
+                else answer_facts(label, one, asked, points, window)
                 for label, one in self.found.items()
             ],
             "verdict": {"decides": verdict.decides, "sentence": verdict.sentence},
@@ -99,7 +103,9 @@ class ResponseAnswers:
         }
 
 
-def answer_facts(label: str, response: Response, question: Question, points: int) -> dict[str, Any]:
+def answer_facts(
+    label: str, response: Response, question: Question, points: int, window: tuple[float, float] | None = None
+) -> dict[str, Any]:
     """Return one response as the API tells it.
 
     Parameters
@@ -111,7 +117,9 @@ def answer_facts(label: str, response: Response, question: Question, points: int
     question : Question
         What was asked.
     points : int
-        How many samples of a curve.
+        Over how many dots the curves are drawn.
+    window : tuple of float, optional
+        The part of the time that is drawn [s].
 
     Returns
     -------
@@ -119,7 +127,7 @@ def answer_facts(label: str, response: Response, question: Question, points: int
         What `rocking.report.facts.response.response_facts` says, with ``label`` and ``series``.
     """
     facts = response_facts(response, question.friction)
-    return {"label": label, **facts, "series": response_series(response, points)}
+    return {"label": label, **facts, "series": response_series(response, points, window)}
 
 
 def _refuse_long(samples: int, done: int, asked: int) -> None:

@@ -1,19 +1,23 @@
-"""The curves of a response as they are drawn: samples that matter, and the state just before every impact."""
+"""The curves of a response as they are drawn: every state that matters, thinned to the dots of the picture."""
 
 from typing import Any
 
 import numpy as np
 
-from rocking.app.api.series import merged, thinned
+from rocking.app.api.series import thinned
 from rocking.conventions import FloatArray
-from rocking.dynamics import equations
+from rocking.dynamics.contact import forces
+from rocking.dynamics.intervals import Intervals
+from rocking.dynamics.ledger import energies
 from rocking.dynamics.response import Response
 from rocking.motions.kinematics import ground_displacement
 from rocking.motions.pulse import Pulse
 from rocking.report.facts.response import finite
 
+_NEWTON_STEPS = 8
 
-def response_series(response: Response, points: int) -> dict[str, Any]:
+
+def response_series(response: Response, points: int, window: tuple[float, float] | None = None) -> dict[str, Any]:
     """Return the curves of a response.
 
     Parameters
@@ -21,76 +25,81 @@ def response_series(response: Response, points: int) -> dict[str, Any]:
     response : Response
         The response.
     points : int
-        How many samples at most; the impacts come besides.
+        Over how many dots they are drawn; each keeps the extremes of every curve.
+    window : tuple of float, optional
+        The part of the time that is drawn [s].
 
     Returns
     -------
     dict
         ``time``, ``rotation``, ``velocity``, ``kinetic``, ``potential``, ``work``, ``lost``, ``friction_demand`` (None
         where it is infinite), ``vertical_force``, ``ground_acceleration``, ``ground_displacement``: SI units; and
-        ``shown`` of how many samples (``of``).
+        ``shown`` of how many states (``of``): samples, events with the states before and after them, and where the
+        body turns round.
     """
-    kept = thinned((response.rotation, response.angular_velocity, response.ground_acceleration), points)
-    time, at = merged(response.time[kept], response.impacts["time"])
-    samples_at, before = np.searchsorted(time, response.time[kept]), _before_impacts(response, time[at])
-    columns = {}
-    for name, values in _curves(response).items():
-        columns[name] = np.empty_like(time)
-        columns[name][samples_at], columns[name][at] = values[kept], before[name]
+    whole, curves = _states(response)
+    kept = thinned(whole, list(curves.values()), points, window)
+    time, columns = whole[kept], {name: values[kept].tolist() for name, values in curves.items()}
     return {
         "time": time.tolist(),
-        **{name: values.tolist() for name, values in columns.items() if name != "friction_demand"},
-        "friction_demand": [finite(value) for value in columns["friction_demand"].tolist()],
+        **columns,
+        "friction_demand": [finite(value) for value in columns["friction_demand"]],
         "ground_displacement": _moved(response, time).tolist(),
         "shown": int(time.size),
-        "of": int(response.time.size),
+        "of": int(whole.size),
     }
 
 
-def _curves(response: Response) -> dict[str, FloatArray]:
-    """Return every curve at every sample."""
-    size, energy, forces = response.time.size, response.energy, response.contact
-    return {
-        "rotation": response.rotation,
-        "velocity": response.angular_velocity,
-        "kinetic": energy.kinetic[:size],
-        "potential": energy.potential[:size],
-        "work": energy.work[:size],
-        "lost": energy.lost[:size],
-        "friction_demand": _demand(forces.horizontal[:size], forces.vertical[:size]),
-        "vertical_force": forces.vertical[:size],
-        "ground_acceleration": response.ground_acceleration,
+def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Return times and curves; what comes after a jump stands the smallest step of time after it."""
+    intervals = response.intervals
+    curves = _at_both_ends(response, intervals)
+    jumps = np.any([np.append(True, each[1:, 0] != each[:-1, 1]) for each in curves.values()], axis=0)
+    turns, x = _turns(intervals)
+    late = np.nextafter(intervals.start, np.inf)
+    late[0] = intervals.start[0]
+    # of those at one instant the first stays: the state before an event, at it
+    time = np.concatenate([intervals.end, late[jumps], intervals.start[turns] + x * intervals.length[turns]])
+    time, chosen = np.unique(time, return_index=True)
+    turned = {
+        "rotation": (intervals.quintics()[turns] * x[:, None] ** np.arange(6)).sum(axis=1),
+        "velocity": np.zeros(x.size),
     }
+    columns = {}
+    for name, each in curves.items():
+        between = turned.get(name, each[turns, 0] + x * (each[turns, 1] - each[turns, 0]))
+        columns[name] = np.concatenate([each[:, 1], each[jumps, 0], between])[chosen]
+    return time, columns
 
 
-def _before_impacts(response: Response, instants: FloatArray) -> dict[str, FloatArray]:
-    """Return the state just before impacts."""
-    intervals, mass, energy = response.intervals, response.body.mass, response.energy
-    k = intervals.places(instants)
-    speed, side = intervals.velocity[k, 1], intervals.side[k]
-    pull = response.settings.gravity + intervals.lift[k, 1]
-    f_x, f_z = equations.reactions(
-        intervals.rotation[k, 1], speed, intervals.acceleration[k, 1], side, intervals.alpha[k],
-        intervals.semi_diagonal[k], intervals.push[k, 1], pull,
-    )  # fmt: skip
-    kinetic = mass * response.settings.gravity * intervals.semi_diagonal[k] * 0.5 * np.square(speed / intervals.p[k])
-    lost = energy.lost[np.maximum(np.searchsorted(response.time, instants, side="right") - 1, 0)]
+def _at_both_ends(response: Response, intervals: Intervals) -> dict[str, FloatArray]:
+    """Return every curve at the start and at the end of every interval."""
+    mass, settings = response.body.mass, response.settings
+    kinetic, potential, work, lost = energies(intervals, mass, settings)
+    _, vertical, demand = forces(intervals, settings.gravity)
     return {
-        "rotation": np.zeros_like(instants),
-        "velocity": speed,
+        "rotation": intervals.rotation,
+        "velocity": intervals.velocity,
         "kinetic": kinetic,
-        "potential": np.zeros_like(instants),
+        "potential": potential,
+        "work": work,
         "lost": lost,
-        "work": kinetic + lost - energy.kinetic[0] - energy.potential[0],
-        "friction_demand": _demand(f_x, f_z),
-        "vertical_force": mass * f_z,
-        "ground_acceleration": intervals.push[k, 1],
+        "friction_demand": demand,
+        "vertical_force": mass * vertical,
+        "ground_acceleration": intervals.push,
     }
 
 
-def _demand(horizontal: FloatArray, vertical: FloatArray) -> FloatArray:
-    held = vertical > 0.0
-    return np.where(held, np.abs(horizontal) / np.where(held, vertical, 1.0), np.inf)
+def _turns(intervals: Intervals) -> tuple[np.ndarray, FloatArray]:
+    """Return in which intervals the body turns round, and where within them, from 0 to 1."""
+    at = np.flatnonzero(intervals.velocity[:, 0] * intervals.velocity[:, 1] < 0.0)
+    c, (start, end) = intervals.quintics()[at], intervals.velocity[at].T
+    x, power = start / (start - end), np.arange(6)
+    for _ in range(_NEWTON_STEPS):
+        slope = (c[:, 1:] * power[1:] * x[:, None] ** power[:5]).sum(axis=1)
+        bend = (c[:, 2:] * (power[2:] * power[1:5]) * x[:, None] ** power[:4]).sum(axis=1)
+        x = np.clip(x - np.divide(slope, bend, out=np.zeros_like(x), where=bend != 0.0), 0.0, 1.0)
+    return at, x
 
 
 def _moved(response: Response, time: FloatArray) -> FloatArray:

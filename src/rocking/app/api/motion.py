@@ -25,8 +25,9 @@ from rocking.report.facts.motion import measures_of, motion_facts
 router = APIRouter(prefix="/api", tags=["motion"])
 
 _ABOUT = """\
-The keys of `rocking motion --json` but its spectrum; `series` with `points` samples at most, the extremes among them;
-`spectrum` at 100 periods for 5 % damping; `measures` as a list."""
+The keys of `rocking motion --json` but its spectrum; `series` as drawn over `points` dots, each with the extremes of
+every curve, between the two times of `window` if given; `spectrum` at 100 periods for 5 % damping; `measures` as a
+list."""
 
 _HELD: Remembered[JsonAnswer] = Remembered(32)
 
@@ -74,17 +75,17 @@ def _facts(asked: MotionAsked, records: RecordStore) -> dict[str, Any]:
         **motion_facts(moved, samples, measures),
         "scale": asked.motion.scale,
         "peak_acceleration_m_s2": moved.peak,
-        "series": _series(curves, samples.vertical if isinstance(moved, GroundMotion) else None, moved, asked.points),
+        "series": _series(curves, samples.vertical if isinstance(moved, GroundMotion) else None, moved, asked),
         "spectrum": _spectrum(samples) if asked.spectrum else None,
         "measures": [_measure(key, one) for key, one in measures.items()],
     }
 
 
-def _series(curves: Traces, vertical: FloatArray | None, moved: Any, points: int) -> dict[str, Any]:
+def _series(curves: Traces, vertical: FloatArray | None, moved: Any, asked: MotionAsked) -> dict[str, Any]:
     columns = {name: getattr(curves, name) for name in ("acceleration", "velocity", "displacement")}
     if vertical is not None:
         columns["vertical"] = np.interp(curves.time, moved.time, vertical)
-    kept = thinned(list(columns.values()), points)
+    kept = thinned(curves.time, list(columns.values()), asked.points, asked.window)
     found: dict[str, Any] = {name: values[kept].tolist() for name, values in columns.items()}
     return {"time": curves.time[kept].tolist(), **found, "shown": int(kept.size), "of": int(curves.time.size)}
 

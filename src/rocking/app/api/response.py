@@ -18,7 +18,8 @@ router = APIRouter(prefix="/api", tags=["response"])
 
 _ABOUT = """\
 One answer for every restitution, in the order in which they were chosen: the keys of `rocking simulate --json`, and
-`series`, of which `time`, `rotation`, ... have `points` samples at most and one more at every impact. `verdict` says
+`series` as drawn over `points` dots, each with the extremes of every curve, between the two times of `window` if given;
+states just before and just after every impact, and where the body turns round, are among them. `verdict` says
 whether the choice of the model decides. A restitution that has no response for this body has `label` and `error`."""
 
 
@@ -48,4 +49,4 @@ async def response(request: Request, inputs: ResponseAsked) -> JsonAnswer:
 
 
 def _answer(inputs: ResponseAsked, records: RecordStore) -> dict[str, Any]:
-    return ResponseAnswers.of(question_of(inputs, records)).facts(inputs.points, inputs.body.name)
+    return ResponseAnswers.of(question_of(inputs, records)).facts(inputs.points, inputs.body.name, inputs.window)

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, FiniteFloat, model_validator
 
 from rocking.app.schemas.body import BodyInput
 from rocking.app.schemas.caps import MOST_RESTITUTIONS, refuse_more
@@ -20,12 +20,23 @@ __all__ = [
     "Points",
     "ResponseAsked",
     "ResponseInputs",
+    "Window",
 ]
 
 Hash = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of an uploaded record")]
 
-Points = Annotated[int, Field(ge=10, le=20_000)]
-"""How many samples of a curve are wanted."""
+Points = Annotated[int, Field(ge=10, le=2000)]
+"""Over how many dots curves are drawn; each keeps the lowest and the highest value of every curve."""
+
+
+def _forward(window: tuple[float, float]) -> tuple[float, float]:
+    if window[0] >= window[1]:
+        raise ValueError(f"window must be the times between which curves are drawn, got {list(window)}; in this order?")
+    return window
+
+
+Window = Annotated[tuple[FiniteFloat, FiniteFloat], Field(strict=False), AfterValidator(_forward)]
+"""The part of the time that is drawn [s]."""
 
 
 _BODY: dict[str, Any] = {"units": "cm", "width": 50, "height": 200}
@@ -76,11 +87,12 @@ class ResponseInputs(Inputs):
 
 
 class ResponseAsked(ResponseInputs):
-    """Inputs that have a response, and how many samples of its curves."""
+    """Inputs that have a response, and how its curves are drawn."""
 
     model_config = _shown(_INPUTS)
 
-    points: Points = 2000
+    points: Points = 1000
+    window: Window | None = None
 
 
 class BodyAsked(JobTable):
@@ -107,5 +119,6 @@ class MotionAsked(JobTable):
 
     motion: MotionInput
     settings: SettingsTable = SettingsTable()
-    points: Points = 2000
+    points: Points = 1000
+    window: Window | None = None
     spectrum: bool = True

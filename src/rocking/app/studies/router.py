@@ -58,7 +58,7 @@ class PointAsked(BaseModel):
     y: Whole = 0
     restitution: Whole = 0
     motion: Annotated[Whole, Field(description="where the motion is no axis of the picture")] = 0
-    points: Annotated[int, Field(ge=10, le=20_000, description="samples of the curves")] = 1000
+    points: Annotated[int, Field(ge=10, le=2000, description="dots over which curves are drawn")] = 1000
 
 
 @router.post(

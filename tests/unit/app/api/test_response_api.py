@@ -33,20 +33,86 @@ def test_each_restitution_has_an_answer_in_order(client):
     assert [answer["label"] for answer in found] == ["ked", "0.97*housner", "0.9"]
 
 
+# an asymmetric body: left and right differ in slenderness, in size and in what an impact costs
+LEANING = {"units": "m", "trapezoid": {"base": 0.5, "top": 0.3, "height": 1.8, "lean": 0.1}}
+
+
+def rattled(steps):
+    """Text of a record of white noise for 20 s, at rest afterwards."""
+    noise = np.random.default_rng(7).normal(scale=1.6, size=steps)
+    return "".join(f"{20.0 * k / steps:.5f},{a:.9f}\n" for k, a in enumerate([0.0, *noise, 0.0])).encode()
+
+
+def shaken(client):
+    """A record that the server has, and its answer for the leaning body under KED."""
+    sent = client.post(
+        "/api/records", params={"name": "noise.csv"}, content=rattled(1000),
+        headers={"Content-Type": "application/octet-stream"},
+    )  # fmt: skip
+    motion = {"record": sent.json()["record"], "units": "m/s2"}
+    return lambda **more: asked(client, body=LEANING, motion=motion, restitution={"models": ["ked"]}, **more)
+
+
 def test_curves_have_impacts_and_extremes(client):
-    """Every impact instant is a sample with rotation zero; peaks of the samples survive a hard thinning."""
+    """Every impact has the states before and after it; the peak that is drawn is the peak, between the samples too."""
     response = rk.simulate(BLOCK, MOTION, "ked")
-    series = asked(client, points=60)["answers"][0]["series"]
-    time, rotation = np.array(series["time"]), np.array(series["rotation"])
+    answer = asked(client, points=20)["answers"][0]
+    series = answer["series"]
+    time, rotation, velocity = (np.array(series[name]) for name in ("time", "rotation", "velocity"))
     assert np.all(np.diff(time) > 0.0)
-    assert time.size <= 60 + response.impacts.size
+    assert time.size <= 20 * (2 + 2 * 9)
     at = np.searchsorted(time, response.impacts["time"])
     assert np.array_equal(time[at], response.impacts["time"])
     assert not rotation[at].any()
-    assert np.array_equal(np.array(series["velocity"])[at], response.impacts["velocity_before"])
-    assert (rotation.max(), rotation.min()) == (response.rotation.max(), response.rotation.min())
-    assert (series["shown"], series["of"]) == (time.size, response.time.size)
+    assert np.array_equal(velocity[at], response.impacts["velocity_before"])
+    assert np.abs(rotation).max() == pytest.approx(response.peak_rotation, rel=1e-9)
+    assert np.abs(response.rotation).max() < response.peak_rotation * (1.0 - 1e-8)  # no sample stands there
+    whole = np.array(asked(client, points=2000)["answers"][0]["series"]["velocity"])
+    after = np.flatnonzero(np.isin(whole, response.impacts["velocity_after"]))
+    assert after.size >= response.impacts.size
     assert {len(values) for values in series.values() if isinstance(values, list)} == {time.size}
+
+
+@pytest.mark.parametrize("points", [30, 300])
+def test_every_dot_has_the_extremes_of_every_curve(client, points):
+    """Of a rattled leaning body each curve is drawn, in each dot, from its least to its largest value, gaps as gaps."""
+    ask = shaken(client)
+    whole, thin = (ask(points=k)["answers"][0]["series"] for k in (2000, points))
+    assert whole["shown"] == whole["of"] > 1.2 * thin["shown"]
+    dot, drawn_in = (np.array(one["time"]) / whole["time"][-1] * points // 1 for one in (whole, thin))
+    for name in set(whole) - {"time", "ground_displacement", "shown", "of"}:
+        full, drawn = (np.array(one[name], dtype=float) for one in (whole, thin))
+        assert np.isnan(full).any() <= np.isnan(drawn).any(), name
+        for k in range(points):
+            assert np.array_equal(extremes(full[dot == k]), extremes(drawn[drawn_in == k]), equal_nan=True), (name, k)
+
+
+def extremes(values):
+    """Least and largest of what is a number."""
+    return (np.nan, np.nan) if np.isnan(values).all() else (np.nanmin(values), np.nanmax(values))
+
+
+def test_a_part_of_the_time_is_drawn_with_all_its_detail(client):
+    """Between two times every sample is there, as the library has it; over more of them the dots are as fine again."""
+    ask = shaken(client)
+    window = [4.03, 5.21]
+    part = ask(points=100, window=window)["answers"][0]["series"]
+    time = np.array(part["time"])
+    step = 20.0 / 1000
+    inside = step * np.arange(math.ceil(window[0] / step), math.floor(window[1] / step) + 1)
+    assert np.abs(time[np.searchsorted(time, inside - 1e-9)] - inside).max() < 1e-9
+    assert (time[0], time[-1]) == (pytest.approx(window[0], abs=step), pytest.approx(window[1], abs=step))
+    coarse = ask(points=100)["answers"][0]["series"]
+    assert sum(window[0] <= t <= window[1] for t in coarse["time"]) < inside.size
+
+
+@pytest.mark.parametrize("window", [[2.0, 1.0], [1.0, 1.0], [1.0], "all", [0.0, 1e400], [None, 3.0]])
+def test_a_part_that_is_none_is_refused(client, window):
+    """A window backwards, empty or infinite is refused by its name."""
+    text = json.dumps({"body": BODY, "motion": PULSE, "window": window}).replace("Infinity", "1e400")
+    answer = client.post("/api/response", content=text, headers={"Content-Type": "application/json"})
+    assert answer.status_code == 422
+    assert "window" in answer.text or "float64" in answer.text
 
 
 def test_energy_adds_up_at_every_point(client):

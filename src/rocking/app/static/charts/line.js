@@ -22,6 +22,7 @@ export const lineChart = (container, options) => {
   let marks = {};
   let hook = null;
   let aim = null;
+  let zoomed = null;
   const table = chartTable(options, () => data);
   const vector = () => vectorOf(plot, options, data, marks);
   figure.append(el("div", { class: "chart-foot" }, table.element, chartFiles(title, vector)));
@@ -32,6 +33,11 @@ export const lineChart = (container, options) => {
     const at = self.cursor.idx;
     const values = at === null || at === undefined ? [] : data.map((column) => column[at]);
     fill(shown, values.length ? words(options, values) : "\u00a0");
+  };
+
+  const look = ({ scales: { x: { min, max } } }) => {
+    const now = min > data[0][0] || max < data[0].at(-1) ? [min, max] : null;
+    if (String(now) !== String(zoomed)) options.onZoom?.((zoomed = now));
   };
 
   const plot = new uPlot({
@@ -51,6 +57,7 @@ export const lineChart = (container, options) => {
           self.cursor.idx !== null && self.cursor.idx !== undefined
         ) hook?.(self.cursor.idx, data[0][self.cursor.idx]);
       }],
+      setScale: [(self, key) => key === "x" && data[0].length && look(self)],
       draw: [(self) => drawMarks(self, marks, aim)],
     },
   }, data, stage);
@@ -64,9 +71,15 @@ export const lineChart = (container, options) => {
   return {
     plot,
     element: figure,
-    setData: (next) => {
+    /** Takes columns; with a part of the abscissa [from, to] the chart goes on looking into that. */
+    setData: (next, part = null) => {
       data = next;
-      plot.setData(next);
+      zoomed = part;
+      if (part) plot.batch(() => {
+        plot.setData(next, false);
+        plot.setScale("x", { min: part[0], max: part[1] });
+      });
+      else plot.setData(next);
       stage.setAttribute("aria-label", summary(options, next));
       table.refresh();
     },

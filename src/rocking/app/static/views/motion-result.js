@@ -1,5 +1,6 @@
 /** What a motion is: facts, traces, spectrum and measures. */
 import { lineChart } from "/charts/line.js";
+import { detailed, dotsOf, zoomOf } from "/charts/zoom.js";
 import { el, fill } from "/app/dom.js";
 import { button, card, tableOf, toolbar } from "/app/fields.js";
 import { pretty, quantity } from "/app/format.js";
@@ -14,15 +15,17 @@ const TRACES = [
 const UP = { key: "vertical", label: "vertical acceleration", unit: "m/s2", colour: "#CC79A7" };
 const SYNC = "motion";
 const G = 9.80665;
+const LOOK = "Drag across a trace to look into it with every sample; a double click shows all of it again.";
 
 const titled = (text) => text[0].toUpperCase() + text.slice(1);
 
 /** Returns the part of the view that shows the answer of the server. */
-export const resultOf = (app) => new MotionResult(app);
+export const resultOf = (app, onZoom) => new MotionResult(app, onZoom);
 
 class MotionResult {
-  constructor(app) {
+  constructor(app, onZoom) {
     this.app = app;
+    this.zoom = zoomOf((window) => (window ? onZoom(window) : this.showTraces()));
     this.facts = el("dl", { class: "facts", "data-testid": "motion-facts" });
     this.name = el("p", { class: "motion-name", "data-testid": "motion-name" });
     this.note = el("p", { class: "field-help" });
@@ -76,13 +79,22 @@ class MotionResult {
     fill(this.name, plainWords(answer.name));
     fill(this.facts, ...factsOf(answer).flatMap(([word, text]) => [el("dt", {}, word), el("dd", {}, text)]));
     const { shown, of } = answer.series;
-    fill(this.note, of > shown ? `${shown} of ${of} samples are drawn, the extremes among them.` : "");
-    this.showTraces(answer.series);
+    fill(this.note, of > shown ? `${shown} of ${of} samples are drawn: the extremes of every dot. ${LOOK}` : "");
+    this.series = answer.series;
+    this.zoom.reset();
+    this.showTraces();
     this.spectrum.show(answer.spectrum);
     this.showMeasures(answer.measures);
   }
 
-  showTraces(series) {
+  /** Over how many dots a trace is drawn. */
+  get dots() {
+    return dotsOf(this.traces);
+  }
+
+  /** Draws a part of the time in detail, or all of it. */
+  showTraces(part = null, window = null) {
+    const series = part ? detailed(this.series, part) : this.series;
     const wanted = [...TRACES, UP].filter(({ key }) => Array.isArray(series[key]));
     const shape = wanted.map(({ key }) => key).join();
     if (shape !== this.shape) {
@@ -90,7 +102,8 @@ class MotionResult {
       this.charts = Object.fromEntries(wanted.map((one) => [one.key, this.trace(one)]));
       this.shape = shape;
     }
-    for (const { key } of wanted) this.charts[key].setData([series.time, series[key]]);
+    for (const { key } of wanted) this.charts[key].setData([series.time, series[key]], window);
+    this.traces.dataset.window = window?.join(" ") ?? "";
   }
 
   trace({ label, unit, colour }) {
@@ -101,6 +114,7 @@ class MotionResult {
       series: [{ label, colour, width: 1.4 }],
       height: 180,
       sync: SYNC,
+      onZoom: this.zoom.look,
     });
   }
 

@@ -46,7 +46,7 @@ class MotionView {
     this.scale = scaleEditor((scale) => this.setScale(scale));
     this.pending = el("div", { "aria-live": "polite", "data-testid": "motion-pending" });
     this.refusal = el("div", { "aria-live": "polite", "data-testid": "motion-refusal" });
-    this.result = resultOf(app);
+    this.result = resultOf(app, (window) => this.lookInto(window));
     this.parts = [this.head(), this.columns()];
   }
 
@@ -147,16 +147,29 @@ class MotionView {
       return;
     }
     try {
-      const json = settings ? { motion, settings } : { motion };
-      this.show(await this.app.latest("motion", "motion", json));
+      this.show(await this.app.latest("motion", "motion", { motion, settings, points: this.result.dots }));
     } catch (error) {
       if (!this.app.superseded(error)) this.refuse(error);
     }
   }
 
   show(answer) {
+    this.answer = answer;
     fill(this.refusal);
     this.result.show(answer);
+  }
+
+  /** Asks again for the part of the time that the traces show. */
+  async lookInto(window) {
+    const { answer } = this;
+    const { motion, settings } = this.app.inputs.get();
+    const asked = { motion, settings, points: this.result.dots, window, spectrum: false };
+    try {
+      const found = await this.app.latest("motion-part", "motion", asked);
+      if (answer === this.answer) this.result.showTraces(found.series, window);
+    } catch (error) {
+      if (!this.app.superseded(error)) this.app.say(error.message, "error");
+    }
   }
 
   refuse(error) {

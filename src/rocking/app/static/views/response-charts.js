@@ -1,5 +1,6 @@
 /** Rotation, angular velocity, energy and friction demand over time. */
 import { lineChart } from "/charts/line.js";
+import { detailed, dotsOf, zoomOf } from "/charts/zoom.js";
 import { el, fill } from "/app/dom.js";
 import { sharesOf } from "/scene/sampled.js";
 import { chosenOf } from "/views/response-chosen.js";
@@ -10,7 +11,7 @@ const SYNC = "response";
 const TIME = { label: "time", unit: "s" };
 const MOST_FRICTION = 3;
 const FALL_SHOWN = 1.5;
-
+const LOOK = "Drag across a chart to look into it with every sample; a double click shows all of it again.";
 
 // what follows the point of no return is a fall to the ground, beside which no rocking could be seen
 const untilFall = (answer, values) => {
@@ -56,12 +57,13 @@ const ENERGIES = [
   { key: "work", label: "work of the ground", colour: "#8A8A8A", dash: [2, 3] },
 ];
 
-/** Returns the charts of a response; a pointer on one of them shows that instant in the animation. */
-export const chartsOf = (onInstant) => new ResponseCharts(onInstant);
+/** Returns the charts of a response; a pointer on one shows that instant in the animation, a drag looks into them. */
+export const chartsOf = (onInstant, onZoom) => new ResponseCharts(onInstant, onZoom);
 
 class ResponseCharts {
-  constructor(onInstant) {
+  constructor(onInstant, onZoom) {
     this.onInstant = onInstant;
+    this.zoom = zoomOf((window) => (window ? onZoom(window) : this.draw()));
     this.places = Object.fromEntries(["rotation", "velocity", "energy", "friction"].map(placeOf));
     const places = Object.values(this.places);
     this.about = el("p", { class: "field-help" });
@@ -73,14 +75,28 @@ class ResponseCharts {
   /** Draws these answers; energy and impacts are those of the model that is followed. */
   show(answers, friction) {
     if (!answers.length) return;
-    this.answers = answers;
+    this.answers = this.whole = answers;
+    this.zoom.reset();
     this.friction = friction;
     const labels = answers.map(({ label }) => curveKey(label)).join("|");
     if (labels !== this.labels) this.rebuild(answers);
     this.labels = labels;
-    for (const { key, values } of CURVES) this.charts[key].setData(together(answers, values));
     this.charts.friction.setMarks({ horizontal: [friction] });
+    this.draw();
+  }
+
+  /** Draws a part of the time in detail, or all of it. */
+  draw(window = null, parts = []) {
+    this.answers = this.whole.map((answer, k) =>
+      (parts[k] ? { ...answer, series: detailed(answer.series, parts[k].series) } : answer));
+    for (const { key, values } of CURVES) this.charts[key].setData(together(this.answers, values), window);
     this.showFollowed();
+    this.element.dataset.window = window?.join(" ") ?? "";
+  }
+
+  /** Over how many dots one of them is drawn. */
+  get dots() {
+    return dotsOf(this.places.rotation);
   }
 
   /** Shows energy and impacts of the model that is looked at. */
@@ -89,11 +105,11 @@ class ResponseCharts {
     const chosen = chosenOf(this.answers.map(({ label }) => label));
     const answer = this.answers.find(({ label }) => label === chosen);
     if (curveKey(answer.label) !== this.followed) this.rebuildEnergy(answer.label);
-    this.charts.energy.setData(energyOf(answer));
+    this.charts.energy.setData(energyOf(answer), this.zoom.window());
     const vertical = answer.impacts.map(({ time_s: time }) => time);
     this.charts.rotation.setMarks({ vertical, horizontal: [-1, 1] });
     const marks = `Dotted: impacts of ${wordsOf(answer.label)}; dashed: the slenderness angles.`;
-    fill(this.about, marks, fallWords(this.answers));
+    fill(this.about, marks, fallWords(this.answers), ` ${LOOK}`);
   }
 
   rebuild(answers) {
@@ -116,7 +132,9 @@ class ResponseCharts {
   }
 
   place(key, look) {
-    this.charts[key] = lineChart(this.places[key], { x: TIME, height: 220, sync: SYNC, ...look });
+    this.charts[key] = lineChart(this.places[key], {
+      x: TIME, height: 220, sync: SYNC, onZoom: this.zoom.look, ...look,
+    });
     this.charts[key].setCursorHook((_, instant) => this.onInstant(instant));
   }
 }

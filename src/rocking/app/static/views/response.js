@@ -19,6 +19,8 @@ export const mount = (section, app) => {
   return { shown: () => view.shown(), hidden: () => view.hidden() };
 };
 
+const shownOf = ({ answers }) => answers.filter((one) => one.series);
+
 class ResponseView {
   constructor(app) {
     this.app = app;
@@ -27,7 +29,7 @@ class ResponseView {
     this.verdict = verdictOf();
     this.scene = sceneOf();
     this.controls = controlsOf(app);
-    this.charts = chartsOf((instant) => this.scene.glance(instant));
+    this.charts = chartsOf((instant) => this.scene.glance(instant), (window) => this.lookInto(window));
     this.impacts = impactsOf(app);
     this.refusal = el("div", { "aria-live": "polite", "data-testid": "response-refusal" });
     this.results = el("div", { class: "response-results" });
@@ -81,18 +83,35 @@ class ResponseView {
   }
 
   async refresh() {
-    const { body, motion, restitution, response, settings } = this.app.inputs.get();
+    const given = this.question();
     this.dirty = false;
-    const free = response?.free !== undefined && response?.free !== null;
-    if (!motion && !free) return this.nothingMoves();
-    const moved = free || !motion ? undefined : motion;
-    const given = { body, motion: moved, restitution, response, settings, points: 900 };
+    if (!given) return this.nothingMoves();
     try {
       this.show(await this.app.latest("response", "response", given));
     } catch (error) {
       if (!this.app.superseded(error)) this.refuse(error);
     }
     return undefined;
+  }
+
+  /** What is asked; null while nothing moves the body. */
+  question() {
+    const { body, motion, restitution, response, settings } = this.app.inputs.get();
+    const free = response?.free !== undefined && response?.free !== null;
+    if (!motion && !free) return null;
+    const moved = free ? undefined : motion;
+    return { body, motion: moved, restitution, response, settings, points: this.charts.dots };
+  }
+
+  /** Asks again for the part of the time that the charts show. */
+  async lookInto(window) {
+    const { answer } = this;
+    try {
+      const found = await this.app.latest("response-part", "response", { ...this.question(), window });
+      if (answer === this.answer) this.charts.draw(window, shownOf(found));
+    } catch (error) {
+      if (!this.app.superseded(error)) this.app.say(error.message, "error");
+    }
   }
 
   nothingMoves() {
@@ -118,7 +137,7 @@ class ResponseView {
     this.answer = answer;
     fill(this.refusal);
     this.hideResults(false);
-    const shown = answer.answers.filter((one) => one.series);
+    const shown = shownOf(answer);
     this.verdict.show(answer);
     this.scene.show(answer, shown);
     this.charts.show(shown, this.app.inputs.get().response?.friction ?? 0.5);

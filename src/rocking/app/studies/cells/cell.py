@@ -37,7 +37,7 @@ def cell_of(study: OpenStudy, place: Place, points: int = POINTS) -> dict[str, A
     place : Place
         The history.
     points : int
-        Samples of its curves.
+        Over how many dots its curves are drawn.
 
     Returns
     -------
