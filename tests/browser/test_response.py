@@ -379,18 +379,24 @@ def test_bodies_turn_as_in_python(page: Any) -> None:
         assert drawn != pytest.approx(shape.turned(corners, -rotation), abs=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("corners", "foot", "side", "degrees"),
-    [
-        ([[-0.25, 0], [0.25, 0], [0.25, 2], [-0.25, 2]], 0.25, 1, 90.0),
-        ([[-0.25, 0], [0.25, 0], [1.25, 1], [-1.25, 1]], 0.25, 1, 45.0),
-        ([[-0.25, 0], [0.25, 0], [1.25, 1], [-1.25, 1]], -0.25, -1, 45.0),
-    ],
-)
-def test_where_a_body_lies(page: Any, corners: list[list[float]], foot: float, side: int, degrees: float) -> None:
-    """A block lies after a quarter turn, a body that leans out by 45 degrees after an eighth."""
-    script = "async (given) => (await import('/scene/geometry.js')).lyingAngle(...given)"
-    assert page.evaluate(script, [corners, foot, side]) == pytest.approx(math.radians(degrees), abs=1e-12)
+def test_a_fall_is_shown_as_it_is_computed(open_page: Callable[..., Any], served: Any, shot: Any) -> None:
+    """At the end of the animation the leaning body lies on its side, and the page says how it got there."""
+    inputs = {"body": {**LEANING, "name": "leaning"}, "motion": {"pulse": "sine:amplitude=6,period=0.8"}}
+    answer = served.api("response", json={**inputs, "restitution": {"models": ["ked"]}})["answers"][0]
+    body = Section([Region(trapezoid(0.5, 0.3, 1.8, lean=0.1))])
+    found = simulate(body, pulse("sine:amplitude=6,period=0.8"), "ked")
+    assert answer["outcome"] == "overturned"
+    text = base64.urlsafe_b64encode(json.dumps({**inputs, "restitution": {"models": ["ked"]}}).encode()).decode()
+    page = open_page(f"in={text.rstrip('=')}&view=response")
+    page.locator(".response-results[data-drawn]").wait_for()
+    page.get_by_test_id("scene-time").focus()
+    page.keyboard.press("End")
+    lies = math.degrees(answer["fall"]["lying"][found.side > 0])
+    assert abs(lies) > 80.0
+    shown = page.get_by_test_id("scene-rotation")
+    expect(shown).to_contain_text(f"{abs(lies):.2f}\u00b0")
+    shot(page, "response-lying")
+    expect(page.get_by_test_id("response-charts").locator("..")).to_contain_text("by the same equation")
 
 
 def test_tracks_are_straight_between_samples(page: Any) -> None:

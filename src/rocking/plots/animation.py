@@ -13,6 +13,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
+from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
@@ -22,6 +23,11 @@ from rocking.plots.animation_scene import scene_of, scene_until
 MOST_FRAMES = 500
 """Frames of a GIF: more would make a file that no page wants to carry."""
 
+_LIFTED = "The vertical motion of the ground counts in the forces but is not drawn."
+_FALLS = (
+    "The fall is computed by the same equation until a corner meets the ground; there the body is left lying, since a "
+    "landing on a side is not computed."
+)
 _FOLDER = Path(__file__).parent
 
 
@@ -96,7 +102,9 @@ def page(response: Response) -> str:
         about=html.escape("; ".join(about)),
         picture=html.escape(f"Animation of a {type(response.body).__name__} on moving ground: {response.summary}."),
         count=response.impacts.size,
-        note="The vertical motion of the ground counts in the forces but is not drawn." if lifted else "",
+        note=" ".join(
+            [_LIFTED] * lifted + [_FALLS] * (response.outcome is Outcome.OVERTURNED)  # both, one, or nothing to add
+        ),
         style=style,
         script=script,
         data=data,

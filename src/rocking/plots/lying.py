@@ -100,7 +100,9 @@ class _Falling:
             beyond = side * tried[1] < 0.0 if lands else self.lies(tried, side)
             low, high = (low, middle) if beyond else (middle, high)
         time, rotation, speed = self._step(side, state, high)
-        return (-side, (time, 0.0, self._coefficient(-side, speed) * speed)) if lands else (side, (time, rotation, speed))
+        if not lands:
+            return side, (time, rotation, speed)
+        return -side, (time, 0.0, self._coefficient(-side, speed) * speed)
 
     def _coefficient(self, onto: float, speed: float) -> float:
         rocker, run = self.response.rocker, self.response.trajectory

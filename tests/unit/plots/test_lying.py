@@ -115,3 +115,10 @@ def test_what_stands_does_not_fall():
     response = simulate(Block(width=0.5, height=2.0), sine(3.2, 0.8), 0.9)
     assert fall_of(response, (-1.5, 1.5)).time.size == 0
     assert scene_of(response).time[-1] <= response.time[-1]
+
+
+def test_where_bodies_lie():
+    """A block lies after a quarter turn, a body that leans out by 45 degrees on one side after an eighth there."""
+    assert Shape.of(Block(width=0.5, height=2.0)).lying == pytest.approx((-0.5 * math.pi, 0.5 * math.pi), abs=1e-12)
+    leans = Section([Region([(-0.25, 0.0), (0.25, 0.0), (1.25, 1.0), (-0.75, 1.0)])])
+    assert Shape.of(leans).lying == pytest.approx((-math.atan(2.0), 0.25 * math.pi), abs=1e-12)

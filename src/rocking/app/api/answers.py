@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from rocking.app.api.curves import response_series
+from rocking.app.api.curves import fall_series, response_series
 from rocking.app.problems import TooLarge
 from rocking.app.question import Question
 from rocking.dynamics.outcome import Outcome
@@ -124,10 +124,11 @@ def answer_facts(
     Returns
     -------
     dict
-        What `rocking.report.facts.response.response_facts` says, with ``label`` and ``series``.
+        What `rocking.report.facts.response.response_facts` says, with ``label``, ``series`` and ``fall``.
     """
     facts = response_facts(response, question.friction)
-    return {"label": label, **facts, "series": response_series(response, points, window)}
+    series = response_series(response, points, window)
+    return {"label": label, **facts, "series": series, "fall": fall_series(response)}
 
 
 def _refuse_long(samples: int, done: int, asked: int) -> None:

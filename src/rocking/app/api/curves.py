@@ -12,6 +12,8 @@ from rocking.dynamics.ledger import energies
 from rocking.dynamics.response import Response
 from rocking.motions.kinematics import ground_displacement
 from rocking.motions.pulse import Pulse
+from rocking.plots.animation_scene import Shape
+from rocking.plots.lying import fall_of
 from rocking.report.facts.response import finite
 
 _NEWTON_STEPS = 8
@@ -48,6 +50,25 @@ def response_series(response: Response, points: int, window: tuple[float, float]
         "shown": int(time.size),
         "of": int(whole.size),
     }
+
+
+def fall_series(response: Response) -> dict[str, Any]:
+    """Return how the fall of a response goes on after its curves end.
+
+    Parameters
+    ----------
+    response : Response
+        The response.
+
+    Returns
+    -------
+    dict
+        ``time`` [s] and ``rotation`` [rad], empty if there is no more to fall; ``lying``: the rotations at which the
+        body lies on its left and on its right side [rad].
+    """
+    lying = Shape.of(response.body).lying
+    fall = fall_of(response, lying)
+    return {"time": fall.time[1:].tolist(), "rotation": fall.rotation[1:].tolist(), "lying": list(lying)}
 
 
 def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:

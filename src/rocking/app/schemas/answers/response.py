@@ -64,7 +64,7 @@ class FrictionFacts(Answer):
 
 
 class ResponseSeries(Answer):
-    """The curves of a response: one entry of each for every time, extremes and impacts among them."""
+    """The curves of a response: one entry of each for every time; every dot of a picture has its extremes."""
 
     time: list[float] = Field(description="[s]")
     rotation: list[float] = Field(description="theta [rad]")
@@ -78,7 +78,15 @@ class ResponseSeries(Answer):
     ground_acceleration: list[float] = Field(description="[m/s2]")
     ground_displacement: list[float] = Field(description="[m]")
     shown: int = Field(description="samples here")
-    of: int = Field(description="samples of the response")
+    of: int = Field(description="states of the response: samples, events, and where it turns round")
+
+
+class Fall(Answer):
+    """How a fall goes on after the curves end, by the same equation of motion, until a corner meets the ground."""
+
+    time: list[float] = Field(description="[s]")
+    rotation: list[float] = Field(description="theta [rad]")
+    lying: tuple[float, float] = Field(description="theta where it lies on its left and on its right side [rad]")
 
 
 class ResponseFacts(Answer):
@@ -106,6 +114,7 @@ class ResponseFacts(Answer):
     least_vertical_force: float = Field(alias="least_vertical_force_N", description="of the ground on the body [N]")
     warnings: list[str] = Field(description="sentences; none if pure rocking is credible")
     series: ResponseSeries
+    fall: Fall
 
 
 class NoResponse(Answer):

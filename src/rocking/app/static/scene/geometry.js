@@ -1,16 +1,5 @@
 /** Where the points of a rocking body are: positive rotation is clockwise, about the right foot. */
 
-/** Returns the turn [rad] after which a body that tips over its right (side 1) or left (-1) foot lies. */
-export const lyingAngle = (corners, foot, side) => {
-  let least = Math.PI;
-  for (const [x, y] of corners) {
-    const ahead = side * (x - foot);
-    const far = Math.hypot(ahead, y);
-    if (y > 1e-9 * far && far > 0) least = Math.min(least, Math.atan2(y, ahead));
-  }
-  return least;
-};
-
 /** Returns where a point of the body is once the body has turned about the foot that it stands on. */
 export const turned = (x, y, rotation, feet) => {
   const pivot = rotation > 0 ? feet[1] : feet[0];

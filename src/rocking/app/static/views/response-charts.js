@@ -143,7 +143,8 @@ const placeOf = (key) => [key, el("div", { class: "response-chart", "data-testid
 
 const fallWords = (answers) =>
   answers.some(({ outcome }) => outcome === "overturned")
-    ? ` Curves of a body that overturns end at ${FALL_SHOWN} \u03b1; the files have the whole fall.`
+    ? ` Curves of a body that overturns end at ${FALL_SHOWN} \u03b1. The animation follows the fall, by the same equation, `
+      + "until a corner meets the ground; there it stays, since a landing on a side is not computed."
     : "";
 
 const energyOf = (answer) => {

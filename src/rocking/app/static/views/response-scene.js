@@ -48,7 +48,7 @@ export const sceneOf = () => {
     element.hidden = !answers.length;
     if (!answers.length) return;
     const shape = shapeOf(answer.body);
-    actors = answers.map((one) => actorOf(one, shape, styleOf(one.label)));
+    actors = answers.map((one) => actorOf(one, styleOf(one.label)));
     const lead = leadOf();
     const end = endOf(actors);
     const about = { rest: restOf(actors[lead]), words: sceneWords(answers) };
