@@ -151,6 +151,31 @@ def page(open_page: Callable[..., Any]) -> Any:
 
 
 @pytest.fixture(scope="session")
+def until() -> Callable[..., None]:
+    """Wait for a state of the test itself: `until(page, condition)`; what never comes fails after half a minute."""
+
+    def waited(page: Any, condition: Callable[[], Any]) -> None:
+        for _ in range(1500):
+            if condition():
+                return
+            page.wait_for_timeout(20)
+        pytest.fail("the state that was waited for did not come")
+
+    return waited
+
+
+@pytest.fixture(scope="session")
+def calm() -> Callable[[Any], None]:
+    """Let a page do what it has begun: its tasks are run and two frames are drawn; for what must not happen."""
+
+    def drawn(page: Any) -> None:
+        page.evaluate("async () => { for (let k = 0; k < 2; k += 1) await new Promise(requestAnimationFrame); }")
+        page.wait_for_load_state("networkidle")
+
+    return drawn
+
+
+@pytest.fixture(scope="session")
 def shot(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
     """Save screenshots, to the folder given by ROCKING_SHOTS or a temporary one."""
     folder = Path(os.environ.get("ROCKING_SHOTS") or tmp_path_factory.mktemp("shots"))

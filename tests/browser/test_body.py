@@ -192,12 +192,12 @@ def _trapezoid_centre(base: float, top: float, height: float) -> float:
     return (rectangle * top / 2.0 + triangle * (top + (base - top) / 3.0)) / (rectangle + triangle)
 
 
-def test_the_board_by_pointer(page: Any, shot: Callable[..., Any]) -> None:
+def test_the_board_by_pointer(page: Any, shot: Callable[..., Any], calm: Callable[[Any], None]) -> None:
     """Dragging a vertex widens the body, clicking an edge adds a vertex, a hole takes mass away."""
     page.get_by_label("Shape").select_option("section")
     page.get_by_test_id("board").wait_for()
     settled(page, "Mass kg", 0.5 * 2.0 * 0.5 * 2400.0)
-    page.wait_for_timeout(500)  # the board is drawn anew when the answer comes
+    calm(page)  # the board is drawn anew when the answer comes
     for name in ("Vertex 2 of region 1", "Vertex 3 of region 1"):
         page.get_by_role("button", name=name).wait_for()
     handle = page.get_by_role("button", name="Vertex 2 of region 1").bounding_box()
@@ -439,7 +439,7 @@ def test_what_an_empty_field_means_is_said(page: Any) -> None:
     assert about("Height") == ""
 
 
-def test_the_unit_of_a_file_may_be_corrected(page: Any, tmp_path: Path) -> None:
+def test_the_unit_of_a_file_may_be_corrected(page: Any, tmp_path: Path, calm: Callable[[Any], None]) -> None:
     """A WKT read in mm and then told to be in cm is read again, without a second drop; an edit is not undone."""
     page.get_by_label("Unit of the file").select_option("mm")
     page.get_by_label("Body file").set_input_files(_written(tmp_path / "column.wkt"))
@@ -447,8 +447,11 @@ def test_the_unit_of_a_file_may_be_corrected(page: Any, tmp_path: Path) -> None:
     page.get_by_label("Unit of the file").select_option("cm")
     settled(page, "Semi-diagonal R m", math.hypot(2.0, 15.0))
     page.get_by_role("button", name="Add hole").click()
+    sent: list[str] = []
+    page.on("request", lambda request: sent.append(request.url))
     page.get_by_label("Unit of the file").select_option("m")
-    page.wait_for_timeout(300)
+    calm(page)
+    assert not [each for each in sent if "body/file" in each]
     settled(page, "Semi-diagonal R m", math.hypot(2.0, 15.0))
 
 

@@ -60,12 +60,14 @@ def turn_of(path: str) -> float:
 def test_a_still_of_the_scene_is_saved(open_page: Callable[..., Any], shot: Callable[..., Path]) -> None:
     """The still has the body of every model, named, the followed one filled and turned as the readout says."""
     page = open_page(view="response")
-    stage = page.get_by_test_id("scene-stage")
-    expect(stage).to_be_visible()
-    stage.focus()
+    # the stage is there before the answer, and keys that are pressed until then go nowhere
+    page.locator(".response-results[data-drawn]").wait_for()
+    page.get_by_test_id("scene-stage").focus()
     page.keyboard.press("Home")
-    for _ in range(3):
-        page.keyboard.press("Shift+ArrowRight")
+    for k in range(4):
+        expect(page.get_by_test_id("scene-now")).to_have_text(f"{0.5 * k:.3f} s")
+        if k < 3:
+            page.keyboard.press("Shift+ArrowRight")
     shot(page, "response-still")
     readout = page.get_by_test_id("scene-rotation").inner_text().replace("\u2212", "-")
     degrees = float(readout.split("\u00b0")[0].split("=")[1])

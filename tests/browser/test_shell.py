@@ -34,7 +34,9 @@ def test_every_step_opens_by_arrow_keys_without_a_fault(page: Any, record: Any, 
     assert all(url.startswith((served.url, "blob:", "data:")) for url in record.requests)
 
 
-def test_the_recorder_sees_what_it_must_refuse(browser: Any, served: Any, new_record: Callable[[], Any]) -> None:
+def test_the_recorder_sees_what_it_must_refuse(
+    browser: Any, served: Any, new_record: Callable[[], Any], until: Callable[..., None]
+) -> None:
     """Negative control: a foreign request, an inline style and an uncaught error are all recorded."""
     seen = new_record()
     page = browser.new_page()
@@ -43,7 +45,8 @@ def test_the_recorder_sees_what_it_must_refuse(browser: Any, served: Any, new_re
     page.evaluate("document.body.setAttribute('style', 'color: red')")
     page.evaluate("fetch('http://127.0.0.1:9/').catch(() => {})")
     page.evaluate("setTimeout(() => { throw new Error('on purpose') })")
-    page.wait_for_timeout(200)
+    told = ("style", "127.0.0.1:9", "on purpose")
+    until(page, lambda: all(any(words in each for each in seen.faults) for words in told))
     page.goto(served.url.replace("127.0.0.1", "localhost") + "/style/icon.svg")
     page.close()
     assert any(each.startswith("request to http://localhost:") for each in seen.faults)
@@ -255,14 +258,14 @@ def test_a_chart_is_words_and_table_too(page: Any, tmp_path: Path) -> None:
     assert page.locator(".chart").count() == 0
 
 
-def test_the_skip_link_stays_in_the_view(page: Any) -> None:
+def test_the_skip_link_stays_in_the_view(page: Any, calm: Callable[[Any], None]) -> None:
     """Skip to the content, pressed in Impact, moves the focus and nothing else."""
     page.locator("#tab-impact").click()
     page.get_by_test_id("ledger").wait_for()
     page.locator(".skip").focus()
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.id") == "main"
-    page.wait_for_timeout(150)
+    calm(page)
     assert page.locator("#view-impact").is_visible()
     assert page.locator("#view-body").is_hidden()
 

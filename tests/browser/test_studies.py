@@ -228,7 +228,7 @@ def test_rocking_spectra(studies: Any, shot: Any) -> None:
 
 
 @pytest.mark.timed
-def test_cancel_and_resume(open_page: Callable[..., Any], shot: Any) -> None:
+def test_cancel_and_resume(open_page: Callable[..., Any], shot: Any, until: Callable[..., None]) -> None:
     """A long study shows progress, stops within a second of Cancel, keeps what is finished, and goes on."""
     models = ["ked", "housner", "horizontal-momentum", "shifted-impulse", "distributed-impulse", "plastic-winkler"]
     studies = open_page(fragment({**PULSE, "restitution": {"models": models, "values": [0.8, 0.85, 0.9, 0.95]}}))
@@ -238,9 +238,7 @@ def test_cancel_and_resume(open_page: Callable[..., Any], shot: Any) -> None:
     row = studies.locator(".study", has_text="long study")
     row.locator("progress").wait_for(timeout=30_000)
     expect(row).to_have_attribute("data-state", "running", timeout=60_000)
-    until = time.perf_counter() + 60.0
-    while row.locator("progress").evaluate("bar => bar.value") == 0.0 and time.perf_counter() < until:
-        time.sleep(0.02)
+    until(studies, lambda: row.locator("progress").evaluate("bar => bar.value") > 0.0)
     shot(studies, "studies-running")
     start = time.perf_counter()
     row.get_by_role("button", name="Cancel").click()
