@@ -7,7 +7,8 @@ import typer
 
 _CODES = (
     "Exit codes: 0 done; 2 bad input, or nothing to export yet; 3 interrupted, what is finished is safe; "
-    "4 the disk is full or cannot be written; 5 another process runs this campaign."
+    "4 the disk is full or cannot be written; 5 another process runs this campaign; "
+    "6 verify found something damaged or missing."
 )
 
 campaign = typer.Typer(
@@ -83,11 +84,20 @@ def resume(
 
 @campaign.command(epilog=_CODES)
 def status(folder: Folder, as_json: AsJson = False) -> None:
-    """Say how far a campaign is, also while another process runs it."""
+    """Say how far a campaign is, also while another process runs it; what it calls safe was read and is whole."""
     from rocking.cli import campaign_output as output
 
     with output.codes(folder):
         output.show_status(folder, as_json)
+
+
+@campaign.command(epilog=_CODES)
+def verify(folder: Folder, as_json: AsJson = False) -> None:
+    """Read a campaign as a whole: every result is there once, and every bit is as it was written; resume mends it."""
+    from rocking.cli import campaign_output as output
+
+    with output.codes(folder):
+        output.show_verification(folder, as_json)
 
 
 @campaign.command(epilog=_CODES)

@@ -16,14 +16,15 @@ from rocking.studies.campaign import (
     CampaignInterrupted,
     CampaignStorageError,
     DaskExecutor,
+    Estimate,
     Executor,
     Progress,
 )
-from rocking.studies.job import Job, JobFolder, JobStatus, forecast, status_of
+from rocking.studies.job import Job, JobFolder, JobStatus, forecast, status_of, verified
 from rocking.studies.job.folder import JOB
 from rocking.studies.job.round_status import resume
 
-INTERRUPTED, STORAGE, BUSY = 3, 4, 5
+INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6
 """Exit codes beside 0 (done) and 2 (bad input)."""
 
 
@@ -145,8 +146,39 @@ def show_status(folder: Path, as_json: bool) -> None:
         print(json.dumps(_facts(found), indent=1))
         return
     print(_words(found))
-    for sentence in found.status.damaged if found.status else ():
+    for sentence in (*found.status.damaged, *found.status.broken) if found.status else ():
         print(f"note: {sentence}")
+
+
+def show_verification(folder: Path, as_json: bool) -> None:
+    """Print what was found when everything that a campaign has was read.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign.
+    as_json : bool
+        Whether to print JSON.
+
+    Raises
+    ------
+    typer.Exit
+        With `DAMAGED`, if not everything is there and whole.
+    """
+    found = verified(folder)
+    if as_json:
+        print(json.dumps({"folder": str(folder), "whole": found.whole, **vars(found)}, indent=1))
+    else:
+        share = f"{found.verified} of {found.histories} histories were read and are what was written"
+        print(f"{folder}: {share}, in {found.chunks} chunks{'' if found.whole else ' and pieces of others'}")
+        for sentence in found.damaged:
+            print(f"damaged: {sentence}")
+        for first, last in found.missing:
+            print(f"missing: histories {first} to {last - 1}")
+        if not found.whole:
+            print(f"go on with: {resume(folder)}")
+    if not found.whole:
+        raise typer.Exit(DAMAGED)
 
 
 def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> None:
@@ -212,6 +244,7 @@ def _facts(found: JobStatus) -> dict[str, Any]:
         "worker_seconds": 0.0 if status is None else status.seconds,
         "retried": 0 if status is None else status.retries,
         "damaged": [] if status is None else list(status.damaged),
+        "broken": [] if status is None else list(status.broken),
         "software": None if status is None else status.software,
     }
     return facts if found.rounds is None else facts | {"rounds_begun": found.rounds}
@@ -263,10 +296,27 @@ def bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], 
 
         def tell(progress: Progress) -> None:
             rate = f"{progress.rate:.0f} histories/s" if progress.rate else ""
-            left = "" if progress.seconds_left is None else f"{_span(progress.seconds_left)} left"
+            left = "measuring the time left" if progress.left is None else time_left(progress.left)
             shown.update(task, completed=progress.done_histories, total=progress.total, rate=rate, left=left)
 
         yield tell
+
+
+def time_left(left: Estimate) -> str:
+    """Return the time that is left, in words.
+
+    Parameters
+    ----------
+    left : Estimate
+        The time.
+
+    Returns
+    -------
+    str
+        With its bounds, where they differ.
+    """
+    low, high = _span(left.low), _span(left.high)
+    return f"about {_span(left.seconds)} left" + ("" if low == high else f" ({low} to {high})")
 
 
 def _span(seconds: float) -> str:

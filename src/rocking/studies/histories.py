@@ -17,13 +17,17 @@ from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
+from rocking.motions.segments import Segments
 from rocking.studies.motion_set import MotionSet
 
 __all__ = ["Histories", "Product", "Table", "described_law", "hash_of", "part"]
 
 _ROWS_AT_ONCE = 32768
 MOTIONS_AT_ONCE = 128
-"""Motions made from a seed that are held at a time."""
+"""Motions made from a seed that are laid out at a time."""
+
+MOTIONS_KEPT = 128 << 20
+"""Room for motions that are kept for the next piece, where histories of one motion do not stand together [bytes]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +58,11 @@ class Histories(ABC):
     @abstractmethod
     def count(self) -> int:
         """Number of histories."""
+
+    @property
+    def together(self) -> int:
+        """Histories of one motion that stand in a row, from a multiple of this number on: the best places to cut."""
+        return 1
 
     @abstractmethod
     def rows(self, first: int, last: int) -> Rows:
@@ -158,7 +167,28 @@ class Histories(ABC):
 
     def __getstate__(self) -> dict[str, Any]:
         """Leave the motions as the engine lays them out behind: they are made again where they are needed."""
-        return {name: value for name, value in self.__dict__.items() if name != "_batch"}
+        return {name: value for name, value in self.__dict__.items() if name not in {"_batch", "_kept"}}
+
+    @cached_property
+    def _kept(self) -> dict[int, Segments]:
+        """Motions that were made for an earlier piece, the oldest first."""
+        return {}
+
+    def _segments(self, number: int) -> Segments:
+        found = self._kept.pop(number, None) or self.motions[number].segments()
+        self._kept[number] = found
+        return found
+
+    def _forget(self) -> None:
+        """Forget the oldest motions: all but the last where those of the next piece are others, or there is no room."""
+        scattered = self.together == 1 and self.count > len(self.motions)
+        room = MOTIONS_KEPT if scattered else 0
+        for number in list(self._kept)[-2::-1]:
+            kept = self._kept.get(number)  # threads of a worker share them
+            if kept is not None:
+                room -= sum(part.nbytes for part in (kept.horizontal, kept.vertical) if part is not None)
+            if room < 0:
+                self._kept.pop(number, None)
 
     def _run_made(self, first: int, last: int, threads: int | None) -> Arrays:
         """Run with motions that are made for some histories and forgotten after them: never many at once."""
@@ -179,7 +209,8 @@ class Histories(ABC):
 
     def _made(self, wanted: np.ndarray, rows: Rows, threads: int | None) -> Arrays:
         """Run some histories with their motions, made here; the rows number these from nought."""
-        made = [self.motions[int(k)].segments() for k in wanted]
+        made = [self._segments(int(k)) for k in wanted]
+        self._forget()
         batch = Batch(made, self.law, self.settings, threads, self.engine)
         return batch.run(len(rows), lambda first, last: part(rows, first, last))[0]
 
@@ -305,6 +336,11 @@ class Product(Histories):
     def count(self) -> int:
         """Number of histories."""
         return int(np.prod(self.shape, dtype=np.int64))
+
+    @property
+    def together(self) -> int:
+        """Histories of each motion."""
+        return self.count // len(self.motions)
 
     def rows(self, first: int, last: int) -> Rows:
         """Return some of the rows.

@@ -104,7 +104,7 @@ def test_check_as_json(run, job):
 
 STATUS = [
     "campaign", "kind", "folder", "complete", "histories", "histories_done", "chunks", "chunks_done", "running",
-    "worker_seconds", "retried", "damaged", "software",
+    "worker_seconds", "retried", "damaged", "broken", "software",
 ]  # fmt: skip
 RUN = ["computed_chunks", "resumed_chunks", "adopted_chunks", "set_aside", "retries", "run_seconds"]
 
@@ -249,6 +249,60 @@ def test_damage_is_told(run, job, tmp_path):
     assert [line[:6] for line in out.splitlines()].count("note: ") == 1
     assert "note: " in run("status", folder)[1]
     assert json.loads(run("status", folder, "--json")[1])["damaged"]
+
+
+HARMS = {"flip": "has changed", "cut": "cut short", "lose": "is missing", "swap": "holds another chunk"}
+
+
+@pytest.mark.parametrize("harm", HARMS)
+def test_verify_names_what_is_damaged(run, job, tmp_path, harm):
+    """A flipped bit, a file cut short, lost, or of other histories: named, not counted, exit code 6; resume mends."""
+    folder = tmp_path / "c"
+    assert run("run", job(), "--out", folder)[0] == 0
+    code, out, _ = run("verify", folder)
+    assert (code, "600 of 600 histories were read and are what was written, in 6 chunks" in out) == (0, True)
+    one, other = sorted((folder / "histories" / "shards").glob("*.shard"))[:2]
+    data = bytearray(one.read_bytes())
+    if harm == "flip":
+        data[len(data) // 2] ^= 1
+    one.write_bytes({"cut": data[:-9], "swap": other.read_bytes()}.get(harm, data))
+    if harm == "lose":
+        one.unlink()
+    code, out, _ = run("verify", folder)
+    (damaged, missing) = (line for line in out.splitlines() if line.startswith(("damaged: ", "missing: ")))
+    assert (code, one.name in damaged, HARMS[harm] in damaged) == (6, True, True)
+    first = int(missing.split()[2])
+    assert missing == f"missing: histories {first} to {first + 99}"
+    told = json.loads(run("verify", folder, "--json")[1])
+    assert (told["whole"], told["verified"], told["missing"]) == (False, 500, [[first, first + 100]])
+    code, out, _ = run("status", folder)
+    assert (code, "500 of 600 histories (5 of 6 chunks) are safe" in out, one.name in out) == (0, True, True)
+    assert json.loads(run("status", folder, "--json")[1])["broken"]
+    assert run("resume", folder)[0] == 0
+    assert run("verify", folder)[0] == 0
+
+
+def test_verify_of_what_is_not_finished(run, job, tmp_path):
+    """What is missing is named; a folder that is none is bad input."""
+    folder = begun(tmp_path, job())
+    code, out, _ = run("verify", folder)
+    assert (code, "missing: histories 100 to 599" in out) == (6, True)
+    assert run("verify", tmp_path)[0] == 2
+
+
+def test_verify_reads_every_round(run, job, tmp_path):
+    """A refined map, whose rounds are campaigns of their own: one bit of the last one is noticed."""
+    folder = tmp_path / "c"
+    assert run("run", job(columns=8, more="refine = 1\n"), "--out", folder)[0] == 0
+    assert run("verify", folder)[0] == 0
+    shard = next(iter(sorted(folder.glob("round-*"))[-1].glob("shards/*.shard")))
+    data = bytearray(shard.read_bytes())
+    data[-50] ^= 8
+    shard.write_bytes(data)
+    code, out, _ = run("verify", folder, "--json")
+    assert (code, shard.name in json.loads(out)["damaged"][0]) == (6, True)
+    assert run("resume", folder)[0] == 0
+    assert run("verify", folder)[0] == 0
 
 
 def test_killed_before_it_began(run, job, tmp_path):

@@ -21,11 +21,13 @@ from pathlib import Path
 
 from workload import histories
 
-from rocking.studies.campaign import Campaign, disk, executors, ledger, shard
-from rocking.studies.campaign.chunks import Plan
+from rocking.studies.campaign import Campaign, disk, executors, ledger, pace, shard
+from rocking.studies.campaign.chunks import Chunk, Plan
 from rocking.studies.campaign.errors import CampaignDamagedError, CampaignWorkerError
 
 CHUNK = 500
+PIECE, CUT = 130, "KILL_DRIVER_CUTS"
+"""Histories of a piece, where chunks are computed in pieces: as if these took a second."""
 GAVE_UP = 3
 RUNS = {
     "serial": {"executor": "serial", "workers": 1},
@@ -46,7 +48,7 @@ def files(folder: Path) -> dict[str, str]:
 class Kills:
     """Campaigns that are killed, and what was found wrong."""
 
-    def __init__(self, folder: Path, how: str, variant: str, seed: int) -> None:
+    def __init__(self, folder: Path, how: str, variant: str, seed: int, pieces: bool) -> None:
         self.folder, self.how, self.variant = folder, how, variant
         self.random = random.Random(seed)
         self.work = histories()
@@ -56,6 +58,10 @@ class Kills:
         whole.run("serial", workers=1)
         self.plan: Plan = whole.plan
         self.digest, self.files = whole.sha256(), files(whole.folder)
+        self.known: dict[str, Chunk] = {}
+        if pieces:
+            os.environ[CUT] = "yes"  # for processes that do not inherit what this one does
+            cut_in_pieces()
         start = time.perf_counter()
         os.waitpid(self.start(folder / "timed", os.open(os.devnull, os.O_WRONLY)), 0)
         self.duration = time.perf_counter() - start
@@ -84,7 +90,7 @@ class Kills:
 
     def campaign(self, folder: Path, wanted: int) -> None:
         """Kill one campaign again and again until it is finished, or there are enough kills."""
-        acknowledged: dict[int, str] = {}
+        acknowledged: dict[str, str] = {}
         while self.counts["kills"] < wanted:
             reading, writing = os.pipe()
             process = self.start(folder, writing)
@@ -92,8 +98,10 @@ class Kills:
             killed = self.kill_later(process)
             with os.fdopen(reading) as told:
                 for line in told.read().split("\n")[:-1]:  # a line that was cut short was not said
-                    number, seal = line.split()
-                    acknowledged[int(number)] = seal
+                    number, first, last, seal = line.split()
+                    chunk = self.plan.chunk(int(number)).piece(int(first), int(last))
+                    self.known[chunk.name] = chunk
+                    acknowledged[chunk.name] = seal
             self.compare(folder, acknowledged)
             if not killed:
                 self.finish(folder)
@@ -119,30 +127,37 @@ class Kills:
         self.counts["kills"] += 1
         return True
 
-    def compare(self, folder: Path, acknowledged: dict[int, str]) -> None:
+    def compare(self, folder: Path, acknowledged: dict[str, str]) -> None:
         """What was acknowledged is in the ledger and on disk, and what is on disk under its name is whole."""
         recorded = self.recorded(folder)
-        for number, seal in (acknowledged | recorded).items():
-            path = folder / "shards" / f"{self.plan.chunk(number).name}.shard"
-            if recorded.get(number) != seal:
-                self.wrong.append(f"chunk {number} was acknowledged, and is not in the ledger")
-            if not path.exists():
-                self.wrong.append(f"chunk {number} is recorded, and has no shard")
-        names = {f"{self.plan.chunk(k).name}.shard": k for k in range(self.plan.chunks)}
-        there = files(folder)
-        for name in there:
+        whole = {chunk.name for chunk, _ in recorded.values() if not chunk.of}
+        kept = {name: seal for name, (_, seal) in recorded.items()}
+        for name, seal in (acknowledged | kept).items():
+            chunk = recorded[name][0] if name in recorded else self.known[name]
+            if chunk.of in whole:  # a piece, which has become part of its chunk
+                continue
+            what = f"histories {chunk.first} to {chunk.last - 1}"
+            if kept.get(name) != seal:
+                self.wrong.append(f"{what} were acknowledged, and are not in the ledger")
+            if not executors.path_of(folder / "shards", chunk).exists():
+                self.wrong.append(f"{what} are recorded, and have no shard")
+        there = [*(folder / "shards").glob("*.shard"), *(folder / "pieces").glob("*.shard")]
+        for path in there:
             try:
-                number = names[name]
-                shard.unpack((folder / "shards" / name).read_bytes(), self.plan.chunk(number), recorded.get(number))
-            except (KeyError, CampaignDamagedError) as error:
-                self.wrong.append(f"{name[:20]}: {error}")
+                data = path.read_bytes()
+                first, last = shard.range_of(data)
+                chunk = self.plan.chunk(first // CHUNK).piece(first, last)
+                shard.unpack(data, chunk, kept.get(chunk.name))
+            except CampaignDamagedError as error:
+                self.wrong.append(f"{path.name[:20]}: {error}")
+        done = sum(chunk.last - chunk.first for chunk, _ in recorded.values())
+        self.counts["killed within a chunk"] += done % CHUNK != 0
         self.counts["acknowledged, checked"] += len(acknowledged)
         self.counts["killed while writing"] += any((folder / "shards").glob(".*.part"))
         self.counts["killed between shard and record"] += len(there) > len(recorded)
         self.counts["killed before the first record"] += not recorded
 
-    @staticmethod
-    def recorded(folder: Path) -> dict[int, str]:
+    def recorded(self, folder: Path) -> dict[str, tuple[Chunk, str]]:
         """What the ledger has, read from a copy by plain SQL."""
         if not (folder / "ledger.sqlite").exists():
             return {}
@@ -150,10 +165,13 @@ class Kills:
             for path in folder.glob("ledger.sqlite*"):
                 shutil.copy(path, place)
             database = sqlite3.connect(Path(place) / "ledger.sqlite")
-            tables = [name for (name,) in database.execute("SELECT name FROM sqlite_schema")]
-            rows = database.execute("SELECT number, seal FROM chunks").fetchall() if "chunks" in tables else []
+            tables = {name for (name,) in database.execute("SELECT name FROM sqlite_schema")} & {"chunks", "pieces"}
+            rows = [
+                row for table in tables for row in database.execute(f"SELECT number, first, last, seal FROM {table}")
+            ]
             database.close()
-            return dict(rows)
+        found = [(self.plan.chunk(number).piece(first, last), seal) for number, first, last, seal in rows]
+        return {chunk.name: (chunk, seal) for chunk, seal in found}
 
     def finish(self, folder: Path) -> None:
         """A campaign that is through equals the one that nobody killed, byte by byte."""
@@ -192,15 +210,21 @@ class Kills:
         return os.waitstatus_to_exitcode(ended[1])
 
 
+def cut_in_pieces() -> None:
+    """Have pieces end after some histories, rather than after a second."""
+    pace.PIECE = 0.0
+    pace.Pace.until = lambda self, first, last: min(first + PIECE, last)
+
+
 def tell_records(told: int) -> None:
     """Have every record told right after its commit."""
-    commit = ledger.Ledger.record
+    for name in ("record", "record_piece"):
 
-    def record(self: ledger.Ledger, row: ledger.Record) -> None:
-        commit(self, row)
-        os.write(told, f"{row.number} {row.seal}\n".encode())
+        def record(self: ledger.Ledger, row: ledger.Record, commit: object = getattr(ledger.Ledger, name)) -> None:
+            commit(self, row)
+            os.write(told, f"{row.number} {row.first} {row.last} {row.seal}\n".encode())
 
-    ledger.Ledger.record = record
+        setattr(ledger.Ledger, name, record)
 
 
 def break_on_purpose(variant: str) -> None:
@@ -239,9 +263,10 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--how", choices=RUNS, default="serial")
     parser.add_argument("--variant", choices=("none", "in-place", "record-first"), default="none")
+    parser.add_argument("--pieces", action="store_true", help="compute chunks in pieces")
     parser.add_argument("--workers", action="store_true", help="kill single workers rather than the whole group")
     asked = parser.parse_args()
-    kills = Kills(asked.folder, asked.how, asked.variant, asked.seed)
+    kills = Kills(asked.folder, asked.how, asked.variant, asked.seed, asked.pieces)
     number = 0
     while kills.counts["kills"] < asked.kills and not (kills.wrong and asked.variant != "none"):
         (kills.kill_workers if asked.workers else kills.campaign)(asked.folder / str(number), asked.kills)
@@ -249,5 +274,7 @@ def main() -> None:
     print(json.dumps({"wrong": kills.wrong, "duration": kills.duration, **kills.counts}))
 
 
+if CUT in os.environ:
+    cut_in_pieces()
 if __name__ == "__main__":
     main()

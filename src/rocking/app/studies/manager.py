@@ -57,6 +57,8 @@ class StudyManager:
         there = studies_in(self._folder)
         self.opened = OpenStudies()
         self._line = Line(there, workers or processors(), at_once, limits.studies_waiting)
+        if any(study.meta.state == WAITING for study in there.values()):
+            self._line.changed()  # what an earlier server left goes on by itself
 
     def create(self, name: str | None, job: object) -> str:
         """Put a new study in line.

@@ -8,39 +8,50 @@ _LEAST = 0.15
 
 
 class Pace:
-    """How fast histories are finished, over the last seconds.
+    """How fast histories are finished, over the last seconds, and how much work is done in a second.
 
     Examples
     --------
     >>> pace = Pace()
-    >>> pace.look(0, now=10.0), pace.look(100, now=12.0)
-    (0.0, 50.0)
+    >>> pace.look(0, 0.0, now=10.0), pace.look(100, 1.5, now=11.0), pace.look(200, 3.5, now=12.0)
+    ((0.0, 0.0), (100.0, 0.0), (100.0, 2.0))
     """
 
     def __init__(self) -> None:
         self._looks: deque[tuple[float, int]] = deque()
+        self._work: list[tuple[float, float]] = []
 
-    def look(self, done: int, now: float | None = None) -> float:
+    def look(self, done: int, work: float, now: float | None = None) -> tuple[float, float]:
         """Note how many histories are finished, and return how fast they are.
 
         Parameters
         ----------
         done : int
             Finished histories [-].
+        work : float
+            What they have taken, of all workers together [s].
         now : float, optional
             Instant of a clock that never goes back; this one, if not given [s].
 
         Returns
         -------
-        float
-            Histories a second; 0 while nothing is known [1/s].
+        rate : float
+            Histories a second, over the last seconds; 0 while nothing is known [1/s].
+        speed : float
+            Work that was done in a second, since the first histories were finished; 0 while nothing is known [-].
         """
         instant = time.monotonic() if now is None else now
-        # a study finishes in jumps, a chunk at a time: only looks that found more say anything
+        # a study finishes in jumps, a piece at a time: only looks that found more say anything
         if not self._looks or done > self._looks[-1][1]:
+            if self._looks:
+                self._work = [*self._work[:1], (instant, work)]
             self._looks.append((instant, done))
         while len(self._looks) > 2 and instant - self._looks[0][0] > _WINDOW:
             self._looks.popleft()
         (first, before), (_, after) = self._looks[0], self._looks[-1]
         spent = max(self._looks[-1][0] - first, instant - first - _WINDOW)
-        return (after - before) / spent if spent > _LEAST else 0.0
+        rate = (after - before) / spent if spent > _LEAST else 0.0
+        if len(self._work) < 2:
+            return rate, 0.0
+        (begun, had), (ended, has) = self._work
+        return rate, (has - had) / (ended - begun) if ended - begun > _LEAST else 0.0

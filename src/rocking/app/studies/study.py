@@ -8,6 +8,7 @@ from rocking.app.studies.process import StudyProcess
 from rocking.app.studies.progress import Pace
 from rocking.app.studies.study_folder import CANCELLED, DONE, FAILED, INTERRUPTED, RUNNING, Meta, StudyFolder
 from rocking.errors import RockingError
+from rocking.studies.campaign import Estimate
 
 _LOG = logging.getLogger(__name__)
 
@@ -28,6 +29,8 @@ class Study:
         Histories of the rounds that have begun, and finished ones, at the last look [-].
     rate : float
         Histories a second, at the last look [1/s].
+    left : Estimate, optional
+        Time that is left, at the last look; None while that is not known.
     cancelled, left : bool
         Whether a user wants it to stop, and whether it is being deleted.
     unreadable : bool
@@ -42,6 +45,7 @@ class Study:
     begun: int = 0
     done: int = 0
     rate: float = 0.0
+    left: Estimate | None = None
     cancelled: bool = False
     left: bool = False
     unreadable: bool = False
@@ -56,7 +60,7 @@ class Study:
         workers : int
             Threads or processes.
         """
-        self._pace, self.rate, self.cancelled = Pace(), 0.0, False
+        self._pace, self.rate, self.left, self.cancelled = Pace(), 0.0, None, False
         self.process = StudyProcess(self.folder, workers)
         self.become(RUNNING)
 
@@ -95,10 +99,13 @@ class Study:
             Whether all of it is finished.
         """
         try:
-            self.begun, self.done, complete = self.folder.status()
+            status, complete = self.folder.status()
         except (RockingError, OSError):  # the ledger is being made, or is damaged or gone: its process will say so
             return False
-        self.rate = self._pace.look(self.done)
+        if status is not None:
+            self.begun, self.done = status.histories, status.histories_done
+            self.rate, speed = self._pace.look(self.done, status.seconds)
+            self.left = None if status.work is None or not speed else status.work.at(speed)
         return complete
 
     def end(self, *, closed: bool) -> None:
@@ -118,7 +125,7 @@ class Study:
         elif self.cancelled:
             self.become(CANCELLED, "cancelled; what was finished is safe, resume it")
         elif closed:
-            self.become(INTERRUPTED, "the server was closed; what was finished is safe, resume it")
+            self.become(INTERRUPTED, "the server was closed; what was finished is safe, and it goes on when the server starts again")
         else:
             self.become(FAILED, process.refusal())
 
@@ -127,7 +134,8 @@ class Study:
         """What the application answers."""
         running = self.meta.state == RUNNING
         total = max(self.meta.histories, self.begun)  # an adaptive study finds out on the way how many there are
-        left = (total - self.done) / self.rate if running and self.rate > 0.0 else None
+        left = self.left if running else None
         told: dict[str, Any] = {"histories": total, "histories_done": self.done}
-        told |= {"rate": self.rate if running else None, "seconds_left": left}
+        told |= {"rate": self.rate if running else None, "seconds_left": left and left.seconds}
+        told |= {"seconds_left_between": left and [left.low, left.high]}
         return self.folder.facts(self.meta) | told

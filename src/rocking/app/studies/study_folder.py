@@ -14,7 +14,7 @@ from rocking.app.problems import NotFound
 from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.names import file_name
 from rocking.errors import InvalidValueError, RockingError
-from rocking.studies.campaign import disk
+from rocking.studies.campaign import Status, disk
 from rocking.studies.job.folder import status_of
 
 META, JOB, CAMPAIGN, RECORDS, LOG = "meta.json", "job.toml", "campaign", "records", "log.txt"
@@ -166,25 +166,23 @@ class StudyFolder:
         sound = all(isinstance(word, str) for word in words) and isinstance(made.histories, int)
         return made if sound and made.state in STATES else None
 
-    def status(self) -> tuple[int, int, bool]:
+    def status(self) -> tuple[Status | None, bool]:
         """Return how far the campaign is.
 
         Returns
         -------
-        histories, done : int
-            Of an adaptive study those of the rounds that have begun; 0 where nothing has [-].
+        status : Status, optional
+            Of an adaptive study that of the rounds that have begun; None where nothing has.
         complete : bool
             Whether all is computed.
         """
         if not (self.campaign / JOB).is_file():
-            return 0, 0, False
-        found = status_of(self.campaign)
-        if found.status is None:
-            return 0, 0, False
-        return found.status.histories, found.status.histories_done, found.complete
+            return None, False
+        found = status_of(self.campaign, verify=False)
+        return found.status, found.complete
 
     def ended(self) -> Meta | None:
-        """Return what is known of a study that nobody runs: it cannot be waiting or running.
+        """Return what is known of a study when the server starts: what its end interrupted waits to go on by itself.
 
         Returns
         -------
@@ -192,14 +190,14 @@ class StudyFolder:
             As it is on disk now; None where there is no study.
         """
         meta = self.read()
-        if meta is None or meta.state not in {WAITING, RUNNING}:
+        if meta is None or meta.state not in {WAITING, RUNNING, INTERRUPTED}:
             return meta
         try:
-            complete = self.status()[2]
+            complete = self.status()[1]
         except (RockingError, OSError):
             complete = False
-        words = "" if complete else "the server ended before the study did; what was finished is safe, resume it"
-        meta = replace(meta, state=DONE if complete else INTERRUPTED, message=words)
+        words = "" if complete else "the server ended before the study did; what was finished is safe, and it goes on"
+        meta = replace(meta, state=DONE if complete else WAITING, message=words)
         with suppress(OSError):  # a full disk: the next start finds out again
             self.write(meta)
         return meta

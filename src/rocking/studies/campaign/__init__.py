@@ -12,9 +12,10 @@ from rocking.studies.campaign.errors import (
     CampaignStorageError,
     CampaignWorkerError,
 )
+from rocking.studies.campaign.estimate import Estimate
 from rocking.studies.campaign.executors import Executor
 from rocking.studies.campaign.forecast import Forecast
-from rocking.studies.campaign.reading import Piece
+from rocking.studies.campaign.reading import Piece, Verification
 from rocking.studies.campaign.serial import Serial
 from rocking.studies.campaign.status import Progress, Status, Summary
 
@@ -29,6 +30,7 @@ __all__ = [
     "CampaignStorageError",
     "CampaignWorkerError",
     "DaskExecutor",
+    "Estimate",
     "Executor",
     "Forecast",
     "Piece",
@@ -36,4 +38,5 @@ __all__ = [
     "Serial",
     "Status",
     "Summary",
+    "Verification",
 ]

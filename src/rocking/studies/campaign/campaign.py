@@ -59,7 +59,8 @@ class Campaign:
         histories : Histories
             What to compute.
         chunk : int, optional
-            Histories of a chunk; as many as take about 0.3 s of the engine, if not given.
+            Histories of a file of results, a chunk; what suits the engine, if not given. One that takes longer than a
+            second is computed in pieces.
 
         Returns
         -------
@@ -104,13 +105,15 @@ class Campaign:
         return cls(path, histories, identity)
 
     @staticmethod
-    def status_of(folder: str | os.PathLike[str]) -> Status:
+    def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> Status:
         """Return how far a campaign is, without its histories and while another process may run it.
 
         Parameters
         ----------
         folder : path
             Where it is kept; nothing is written there.
+        verify : bool
+            Whether to read all results: what is damaged does not count. Without it the ledger is believed.
 
         Returns
         -------
@@ -121,7 +124,7 @@ class Campaign:
         with disk.guarded(path, lambda: _UNKNOWN):
             plan = Identity.read(path).plan
             running = holder(path)
-            nothing = Status(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software)
+            nothing = Status(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software, None)
             if not (path / LEDGER).exists():
                 return nothing
             with Ledger(path) as ledger:
@@ -129,7 +132,13 @@ class Campaign:
                     return nothing
                 chunks, histories = ledger.finished()
                 effort, damaged = ledger.effort(), tuple(ledger.events("damaged"))
-            return Status(path, plan.count, histories, plan.chunks, chunks, running, *effort, damaged, plan.software)
+                work = ledger.costs(plan.count).left()
+            broken: tuple[str, ...] = ()
+            if verify:
+                found = reading.verified(path, plan)
+                chunks, histories, broken = found.chunks, found.verified, found.damaged
+            numbers = (plan.count, histories, plan.chunks, chunks)
+            return Status(path, *numbers, running, *effort, damaged, plan.software, work, broken)
 
     @property
     def plan(self) -> Plan:
@@ -141,15 +150,20 @@ class Campaign:
         """Name of the histories: 64 hexadecimal digits."""
         return self.identity.plan.key
 
-    def status(self) -> Status:
+    def status(self, *, verify: bool = True) -> Status:
         """Return how far it is.
+
+        Parameters
+        ----------
+        verify : bool
+            Whether to read all results: what is damaged does not count. Without it the ledger is believed.
 
         Returns
         -------
         Status
             As recorded at this instant.
         """
-        return self.status_of(self.folder)
+        return self.status_of(self.folder, verify=verify)
 
     def check(self) -> Forecast:
         """Look ahead: compute a sample of the histories and compare the room on the disk with what is needed.
@@ -159,7 +173,7 @@ class Campaign:
         Forecast
             What remains to be done will take this.
         """
-        return forecast(self.status(), self.plan, self.histories)
+        return forecast(self.status(verify=False), self.plan, self.histories)
 
     def run(
         self,
@@ -270,16 +284,16 @@ class Campaign:
         """
         return reading.digest(self.pieces())
 
-    def verify(self) -> list[str]:
-        """Read every shard that the ledger has.
+    def verify(self) -> reading.Verification:
+        """Read every result, and see that all are there once, and are what was written.
 
         Returns
         -------
-        list of str
-            A sentence for each that is damaged or missing; a run computes those again.
+        Verification
+            What is damaged or missing; a run computes that.
         """
         with disk.guarded(self.folder, lambda: _UNKNOWN):
-            return reading.damage(self.folder, self.plan)
+            return reading.verified(self.folder, self.plan)
 
     def rebuild_ledger(self) -> int:
         """Make the ledger anew from the shards; the old one is kept beside it.

@@ -21,12 +21,32 @@ LARGEST_CHUNK = 1 << 22
 
 
 class Chunk(NamedTuple):
-    """Some histories: from the first up to but not including the last."""
+    """Some histories: from the first up to but not including the last; of a piece of a chunk, with the chunk's name."""
 
     number: int
     first: int
     last: int
     name: str
+    of: str = ""
+
+    def piece(self, first: int, last: int) -> "Chunk":
+        """Return a piece of it, which is named by what it holds, too.
+
+        Parameters
+        ----------
+        first, last : int
+            Histories within it.
+
+        Returns
+        -------
+        Chunk
+            The piece; itself if that is all of it.
+        """
+        if (first, last) == (self.first, self.last):
+            return self
+        whole = self.of or self.name
+        name = hashlib.sha256(f"{whole} {first} {last}".encode()).hexdigest()
+        return Chunk(self.number, first, last, name, whole)
 
 
 def default_chunk(engine: str) -> int:

@@ -76,14 +76,14 @@ class DaskExecutor(Executor):
         except (OSError, ValueError) as error:
             raise CampaignWorkerError(f"no Dask scheduler answers at {self.address}: {error}") from error
         with client:
-            yield from _Window(dask, client, job, self.ahead).work(chunks, stop, retried)
+            yield from _Window(dask, client, job, self).work(chunks, stop, retried)
 
 
 class _Window:
     """Chunks that are on the cluster, never many."""
 
-    def __init__(self, dask: ModuleType, client: Any, job: Job, ahead: int) -> None:
-        self._dask, self._client, self._job, self._ahead = dask, client, job, ahead
+    def __init__(self, dask: ModuleType, client: Any, job: Job, executor: DaskExecutor) -> None:
+        self._dask, self._client, self._job, self._executor = dask, client, job, executor
         # a task and not scattered data: when the worker that holds it dies, another one makes it again
         self._loaded = client.submit(pickle.loads, _pickled(job), pure=False)
         self._flying: dict[Any, tuple[Chunk, int]] = {}
@@ -107,8 +107,9 @@ class _Window:
                     yield done._replace(attempts=attempts)
 
     def _fill(self, chunks: Iterator[Chunk], stop: Callable[[], bool]) -> bool:
-        threads = sum(self._client.nthreads().values()) if not stop() else 0
-        while len(self._flying) < max(1, threads) * self._ahead and not stop():
+        if not stop():
+            self._executor.at_once = max(1, sum(self._client.nthreads().values()))
+        while len(self._flying) < self._executor.at_once * self._executor.ahead and not stop():
             chunk = next(chunks, None)
             if chunk is None:
                 break

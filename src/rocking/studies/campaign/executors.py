@@ -14,14 +14,15 @@ from rocking.studies.campaign import disk, fingerprint, identity, shard
 from rocking.studies.campaign.chunks import Chunk
 from rocking.studies.campaign.errors import CampaignWorkerError
 from rocking.studies.campaign.fingerprint import kind_of
-from rocking.studies.campaign.pace import Pace
+from rocking.studies.campaign.pace import Pace, Watch
 from rocking.studies.histories import Histories
 
-SUFFIX = ".shard"
+SUFFIX, PIECES = ".shard", "pieces"
+"""End of the names of shards; the folder of those that are pieces of a chunk, until it is whole."""
 
 
 class Done(NamedTuple):
-    """A chunk whose shard is on disk."""
+    """A chunk whose shard is on disk; a piece from its start, where all of it takes long."""
 
     chunk: Chunk
     seal: str
@@ -55,7 +56,8 @@ class Job:
 
     def __post_init__(self) -> None:
         """Start with few histories at a time."""
-        object.__setattr__(self, "pace", Pace(self.engine))
+        made = not self.histories.motions.in_memory
+        object.__setattr__(self, "pace", Pace(self.engine, self.histories.together, made))
 
     def check(self) -> None:
         """Refuse to compute what this campaign would not recognise as its own bits.
@@ -81,7 +83,7 @@ class Job:
             )
 
     def compute(self, chunk: Chunk, threads: int | None = 1, stop: Callable[[], bool] = lambda: False) -> bytes | None:
-        """Return the shard of a chunk.
+        """Return the shard of a chunk, or of as much of it from its start as takes a second.
 
         Parameters
         ----------
@@ -95,13 +97,14 @@ class Job:
         Returns
         -------
         bytes or None
-            The shard; None if it was stopped.
+            The shard, which says how far it goes; None if it was stopped.
         """
         results = empty_results(chunk.last - chunk.first)
-        return shard.pack(chunk, results) if self.fill(results, chunk, threads, stop) else None
+        last = self.fill(results, chunk, threads, stop)
+        return None if last is None else shard.pack(chunk.piece(chunk.first, last), results)
 
-    def fill(self, results: Arrays, chunk: Chunk, threads: int | None, stop: Callable[[], bool]) -> bool:
-        """Compute the results of a chunk.
+    def fill(self, results: Arrays, chunk: Chunk, threads: int | None, stop: Callable[[], bool]) -> int | None:
+        """Compute the results of a chunk, or of as much of it from its start as takes a second.
 
         Parameters
         ----------
@@ -116,30 +119,30 @@ class Job:
 
         Returns
         -------
-        bool
-            Whether all of them are there; False if it was stopped.
+        int or None
+            How far it came: the first history that is not there; None if it was stopped.
         """
         self.check()
-        first = chunk.first
-        while first < chunk.last:
+        first, watch = chunk.first, Watch()
+        while first < chunk.last and not watch.over(first - chunk.first, chunk.last - first):
             if first > chunk.first and stop():
-                return False
-            start, last = time.perf_counter(), first + self.pace.piece(chunk.last - first)
+                return None
+            start, last = time.perf_counter(), self.pace.until(first, chunk.last)
             for name, values in self.histories.run(first, last, threads=threads).items():
                 results[name][first - chunk.first : last - chunk.first] = values
             self.pace.took(last - first, time.perf_counter() - start)
             first = last
-        return True
+        return first
 
     def keep(self, chunk: Chunk, data: bytes, seconds: float, worker: str = "") -> Done:
-        """Write the shard of a chunk.
+        """Write the shard of a chunk, or of a piece of it.
 
         Parameters
         ----------
         chunk : Chunk
-            Which.
+            Which was to be computed.
         data : bytes
-            The shard.
+            The shard, as of `compute`.
         seconds : float
             What it took [s].
         worker : str
@@ -150,12 +153,34 @@ class Job:
         Done
             For the ledger.
         """
-        disk.write_new(self.folder / f"{chunk.name}{SUFFIX}", data)
-        return Done(chunk, shard.seal(data), len(data), seconds, worker or f"process {os.getpid()}")
+        done = chunk.piece(*shard.range_of(data))
+        disk.write_new(path_of(self.folder, done), data)
+        return Done(done, shard.seal(data), len(data), seconds, worker or f"process {os.getpid()}")
+
+
+def path_of(folder: Path, chunk: Chunk) -> Path:
+    """Return where the shard of a chunk is, or of a piece of one.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the shards are; the pieces are beside it.
+    chunk : Chunk
+        Which.
+
+    Returns
+    -------
+    Path
+        It may not be there.
+    """
+    return (folder.with_name(PIECES) if chunk.of else folder) / f"{chunk.name}{SUFFIX}"
 
 
 class Executor(ABC):
     """Computes chunks, wherever; the shards are the same whoever does."""
+
+    at_once = 1
+    """How many workers share the work."""
 
     @abstractmethod
     def run(
@@ -177,7 +202,8 @@ class Executor(ABC):
         Yields
         ------
         Done
-            Chunks whose shards are on disk, in any order.
+            Chunks whose shards are on disk, in any order. Of one that takes long it is a piece from its start; the
+            iterator then gives the rest, also after it had ended.
         """
 
 

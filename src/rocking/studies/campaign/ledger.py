@@ -1,4 +1,4 @@
-"""Which chunks are finished: a small database that only the process which runs the campaign writes."""
+"""Which chunks, and pieces of chunks, are finished: a small database that only the process which runs the campaign writes."""
 
 import hashlib
 import sqlite3
@@ -6,14 +6,22 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from rocking.studies.campaign.chunks import FORMAT, Plan
 from rocking.studies.campaign.disk import ledger_damaged, sync_folder
 from rocking.studies.campaign.errors import CampaignDamagedError
+from rocking.studies.campaign.estimate import Costs
 
 NAME = "ledger.sqlite"
+_ALL = "(SELECT * FROM chunks UNION ALL SELECT * FROM pieces)"
 _TABLES = """
 CREATE TABLE IF NOT EXISTS chunks (
     number INTEGER PRIMARY KEY, first INTEGER NOT NULL, last INTEGER NOT NULL, name TEXT NOT NULL UNIQUE,
+    seal TEXT NOT NULL, size INTEGER NOT NULL, attempts INTEGER NOT NULL, seconds REAL NOT NULL,
+    worker TEXT NOT NULL, finished TEXT NOT NULL, sum TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS pieces (
+    number INTEGER NOT NULL, first INTEGER PRIMARY KEY, last INTEGER NOT NULL, name TEXT NOT NULL UNIQUE,
     seal TEXT NOT NULL, size INTEGER NOT NULL, attempts INTEGER NOT NULL, seconds REAL NOT NULL,
     worker TEXT NOT NULL, finished TEXT NOT NULL, sum TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS events (
@@ -22,7 +30,7 @@ CREATE TABLE IF NOT EXISTS events (
 
 
 class Record(NamedTuple):
-    """A finished chunk."""
+    """A finished chunk, or a piece of one."""
 
     number: int
     first: int
@@ -64,25 +72,42 @@ class Ledger:
         return bool(tables)
 
     def record(self, record: Record) -> None:
-        """Acknowledge a chunk; on return this is on disk.
+        """Acknowledge a chunk, which takes the place of its pieces; on return this is on disk.
 
         Parameters
         ----------
         record : Record
             The chunk, whose shard is on disk already.
         """
-        row = (*record, _sum(record))
-        self._database.execute(f"INSERT OR REPLACE INTO chunks VALUES ({', '.join('?' * len(row))})", row)
+        with self._database:
+            self._database.execute("BEGIN")
+            self._insert("chunks", record)
+            self._database.execute("DELETE FROM pieces WHERE number = ?", (record.number,))
 
-    def forget(self, number: int) -> None:
-        """Take a chunk back: its shard turned out to be damaged.
+    def record_piece(self, record: Record) -> None:
+        """Acknowledge a piece of a chunk; on return this is on disk.
 
         Parameters
         ----------
-        number : int
-            The chunk.
+        record : Record
+            The piece, whose shard is on disk already.
         """
-        self._database.execute("DELETE FROM chunks WHERE number = ?", (number,))
+        self._insert("pieces", record)
+
+    def _insert(self, table: str, record: Record) -> None:
+        row = (*record, _sum(record))
+        self._database.execute(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(row))})", row)
+
+    def forget(self, name: str) -> None:
+        """Take a chunk or a piece back: its shard turned out to be damaged.
+
+        Parameters
+        ----------
+        name : str
+            The hash that it is named by.
+        """
+        for table in ("chunks", "pieces"):
+            self._database.execute(f"DELETE FROM {table} WHERE name = ?", (name,))
 
     def note(self, what: str, number: int | None, detail: str) -> None:
         """Write down what happened.
@@ -114,7 +139,25 @@ class Ledger:
         CampaignDamagedError
             If a row is not what was recorded.
         """
-        for *values, checked in self._database.execute("SELECT * FROM chunks ORDER BY number"):
+        return self._records("SELECT * FROM chunks ORDER BY number")
+
+    def pieces(self) -> Iterator[Record]:
+        """Return the finished pieces of chunks that are not whole yet, in order.
+
+        Yields
+        ------
+        Record
+            One after another; none that was changed behind the ledger's back.
+
+        Raises
+        ------
+        CampaignDamagedError
+            If a row is not what was recorded.
+        """
+        return self._records("SELECT * FROM pieces ORDER BY first")
+
+    def _records(self, asked: str) -> Iterator[Record]:
+        for *values, checked in self._database.execute(asked):
             record = Record(*values)
             if _sum(record) != checked:
                 raise CampaignDamagedError(ledger_damaged(self._folder, f"row {record.number!r:.20} has changed"))
@@ -138,10 +181,19 @@ class Ledger:
         if found != "ok" or version != FORMAT:
             why = f"it says version {version}, not {FORMAT}" if found == "ok" else str(found)
             raise CampaignDamagedError(ledger_damaged(self._folder, " ".join(why.split())[:120]))
+        whole = set()
         for record in self.records():
+            whole.add(record.number)
             if record.number >= plan.chunks or plan.chunk(record.number)[:4] != record[:4]:
                 why = f"its chunk {record.number} is not of this campaign"
                 raise CampaignDamagedError(ledger_damaged(self._folder, why))
+        end = 0
+        for record in self.pieces():
+            mine = record.number < plan.chunks and record.number not in whole
+            if not mine or plan.chunk(record.number).piece(*record[1:3])[:4] != record[:4] or record.first < end:
+                why = f"its histories {record.first} to {record.last - 1} are not of this campaign, or there twice"
+                raise CampaignDamagedError(ledger_damaged(self._folder, why))
+            end = record.last
 
     def finished(self) -> tuple[int, int]:
         """Return how much is finished.
@@ -149,10 +201,11 @@ class Ledger:
         Returns
         -------
         chunks, histories : int
-            Their numbers.
+            Their numbers; of histories also those in pieces.
         """
-        found = self._database.execute("SELECT count(*), coalesce(sum(last - first), 0) FROM chunks").fetchone()
-        return int(found[0]), int(found[1])
+        (chunks,) = self._database.execute("SELECT count(*) FROM chunks").fetchone()
+        (histories,) = self._database.execute(f"SELECT coalesce(sum(last - first), 0) FROM {_ALL}").fetchone()
+        return int(chunks), int(histories)
 
     def effort(self) -> tuple[float, int]:
         """Return what the finished chunks took.
@@ -164,9 +217,31 @@ class Ledger:
         retries : int
             Attempts beyond the first.
         """
-        asked = "SELECT coalesce(sum(seconds), 0), coalesce(sum(attempts - 1), 0) FROM chunks"
+        asked = "SELECT coalesce(sum(seconds), 0), coalesce(sum(attempts - 1), 0) FROM " + _ALL
         found = self._database.execute(asked).fetchone()
         return float(found[0]), int(found[1])
+
+    def costs(self, count: int, since: str = "") -> Costs:
+        """Return what the histories have taken that are finished.
+
+        Parameters
+        ----------
+        count : int
+            Number of histories of the campaign.
+        since : str
+            Time before which what was finished says nothing of costs, as in a `Record`.
+
+        Returns
+        -------
+        Costs
+            By parts of the campaign.
+        """
+        found = Costs(count)
+        asked = "SELECT first, last, CASE WHEN finished >= ? THEN seconds ELSE 0.0 END FROM " + _ALL
+        rows = self._database.execute(asked, (since,)).fetchall()
+        if rows:
+            found.add(*(np.array(column) for column in zip(*rows, strict=True)))
+        return found
 
     def events(self, what: str) -> list[str]:
         """Return what happened of a kind.
@@ -195,7 +270,9 @@ def _writable(path: Path) -> sqlite3.Connection:
     database.execute("PRAGMA journal_mode = WAL")
     database.execute("PRAGMA synchronous = FULL")
     database.execute("PRAGMA fullfsync = ON")
-    if database.execute("PRAGMA user_version").fetchone() == (0,):
+    (version,) = database.execute("PRAGMA user_version").fetchone()
+    (pieces,) = database.execute("SELECT count(*) FROM sqlite_schema WHERE name = 'pieces'").fetchone()
+    if version == 0 or (version == FORMAT and not pieces):  # an earlier version knew whole chunks only
         database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {FORMAT}; COMMIT;")
     if fresh:
         sync_folder(path.parent)
@@ -207,18 +284,19 @@ def _readable(path: Path) -> sqlite3.Connection:
     address = f"{path.absolute().as_uri()}?mode=ro"
     if path.with_name(f"{path.name}-wal").exists():
         try:
-            database = _connected(address)
-            database.execute("SELECT 1 FROM sqlite_schema").fetchone()
+            return _connected(address)
         except sqlite3.OperationalError:  # in a folder that cannot be written: what the log has beyond is not seen
             if not path.exists():
                 raise
-        else:
-            return database
     return _connected(f"{address}&immutable=1")
 
 
 def _connected(address: str) -> sqlite3.Connection:
-    return sqlite3.connect(address, timeout=5.0, isolation_level=None, uri=True)
+    database = sqlite3.connect(address, timeout=5.0, isolation_level=None, uri=True)
+    found = {name for (name,) in database.execute("SELECT name FROM sqlite_schema")}
+    if "chunks" in found and "pieces" not in found:  # of an earlier version, which knew whole chunks only
+        database.execute("CREATE TEMP TABLE pieces AS SELECT * FROM chunks WHERE 0")
+    return database
 
 
 def _sum(record: Record) -> str:

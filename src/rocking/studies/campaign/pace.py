@@ -1,42 +1,57 @@
-"""How many histories are computed at a time."""
+"""How many histories are computed at a time, and when a piece is long enough to be kept."""
+
+import time
 
 from rocking.studies.campaign.chunks import DEFAULT_CHUNK
 from rocking.studies.campaign.fingerprint import kind_of
 
+PIECE = 1.0
+"""Time after which what is computed is kept [s]: a kill costs no more, a count moves as often."""
+
 _ASK = 0.3
 _FIRST = {"fast": 64, "reference": 4}
 _FASTER = 4
+_REST = 0.5
 
 
 class Pace:
-    """How many histories at a time take as long as nobody minds to wait, learned from one piece to the next.
+    """How many histories at a time take as long as nobody minds to wait, learned from one step to the next.
 
     Parameters
     ----------
     engine : str
         The engine that computes them.
+    together : int
+        Histories of one motion that stand in a row: steps end between motions, where they can.
+    made : bool
+        Whether motions are made for them, which may take long: then the first step takes one.
     """
 
-    def __init__(self, engine: str) -> None:
-        self.step = _FIRST[kind_of(engine)]
+    def __init__(self, engine: str, together: int = 1, made: bool = False) -> None:
+        self.least = _FIRST[kind_of(engine)]
+        self.step = min(self.least, together) if made else self.least
+        self.together = together
 
-    def piece(self, left: int) -> int:
-        """Return how many of the histories that are left to take: equal pieces, since short ones leave lanes idle.
+    def until(self, first: int, last: int) -> int:
+        """Return where to stop: after equal steps, since short ones leave lanes idle.
 
         Parameters
         ----------
-        left : int
-            At least 1.
+        first, last : int
+            The histories that are left, at least one.
 
         Returns
         -------
         int
-            At most `step`.
+            At most `step` beyond the first.
         """
-        return -(-left // -(-left // self.step))
+        left = last - first
+        end = first + -(-left // -(-left // self.step))
+        between = end - end % self.together
+        return between if end < last and between > first else end
 
     def took(self, count: int, seconds: float) -> None:
-        """Learn from a piece.
+        """Learn from a step.
 
         Parameters
         ----------
@@ -46,5 +61,28 @@ class Pace:
             What they took [s].
         """
         wanted = int(count * _ASK / max(seconds, 1e-6))
-        if wanted < self.step or 2 * count >= self.step:  # the end of a chunk says nothing about longer pieces
+        if wanted < self.step or 2 * count >= self.step:  # the end of a piece says nothing about longer steps
             self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
+
+
+class Watch:
+    """Says when a piece is long enough: after a second, unless the rest takes less than half of one."""
+
+    def __init__(self) -> None:
+        self._start = time.perf_counter()
+
+    def over(self, done: int, left: int) -> bool:
+        """Return whether to keep what is done, and leave the rest to whoever is free.
+
+        Parameters
+        ----------
+        done, left : int
+            Histories.
+
+        Returns
+        -------
+        bool
+            False as long as nothing is done.
+        """
+        spent = time.perf_counter() - self._start
+        return spent > PIECE and done > 0 and left * spent > _REST * PIECE * done

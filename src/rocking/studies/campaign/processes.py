@@ -48,7 +48,7 @@ class Processes(Executor):
         known = multiprocessing.get_all_start_methods()
         if start_method not in known:
             raise InvalidValueError(f"start_method must be one of {', '.join(known)}, got {start_method!r:.60}")
-        self.workers = _processors() if workers is None else whole("workers", workers)
+        self.at_once = _processors() if workers is None else whole("workers", workers)
         self.start_method = start_method
 
     def run(self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Retried) -> Iterator[Done]:
@@ -70,7 +70,7 @@ class Processes(Executor):
         Done
             In the order in which they finish.
         """
-        with closing(_Crew(self.workers, self.start_method, job, retried)) as crew:
+        with closing(_Crew(self.at_once, self.start_method, job, retried)) as crew:
             deadline = None
             while crew.feed(chunks, stop):
                 if deadline is None and stop():

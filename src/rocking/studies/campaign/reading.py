@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,7 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.campaign import shard
 from rocking.studies.campaign.chunks import Chunk, Plan
 from rocking.studies.campaign.errors import CampaignDamagedError, CampaignIncompleteError
-from rocking.studies.campaign.executors import SUFFIX
+from rocking.studies.campaign.executors import path_of
 from rocking.studies.campaign.identity import SHARDS
 from rocking.studies.campaign.ledger import NAME, Ledger
 
@@ -139,40 +140,91 @@ def digest(found: Iterator[Piece]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def damage(folder: Path, plan: Plan) -> list[str]:
-    """Return what is wrong with the shards that the ledger has.
+@dataclass(frozen=True)
+class Verification:
+    """What was found of a campaign's results, each of which was read.
+
+    Parameters
+    ----------
+    histories, verified : int
+        All of them, and those whose results are there, to the last bit as they were written.
+    chunks : int
+        Whole chunks among the latter.
+    damaged : tuple of str
+        A sentence for each shard that the ledger has and that is changed, cut short, of other histories, or missing.
+    missing : tuple of tuple of int
+        Histories that are not there: from the first up to but not including the last.
+    """
+
+    histories: int
+    verified: int
+    chunks: int
+    damaged: tuple[str, ...]
+    missing: tuple[tuple[int, int], ...]
+
+    @property
+    def whole(self) -> bool:
+        """Whether all results are there, and are what was written."""
+        return not self.damaged and not self.missing
+
+
+def verified(folder: Path, plan: Plan) -> Verification:
+    """Read every shard that the ledger has, and see that they hold all histories, and none of them twice.
 
     Parameters
     ----------
     folder : Path
-        The campaign.
+        The campaign; another process may run it.
     plan : Plan
         How it is cut.
 
     Returns
     -------
-    list of str
-        A sentence for each that is not what was recorded.
+    Verification
+        What was found.
     """
-    wrong = []
-    for number, sealed in _seals(folder, plan).items():
+    records = _records(folder, plan)
+    damaged: list[str] = []
+    there: list[tuple[int, int]] = []
+    chunks = 0
+    for chunk, sealed in records:
         try:
-            _read(folder, plan.chunk(number), sealed)
+            _read(folder, chunk, sealed)
         except CampaignDamagedError as error:
-            wrong.append(str(error))
-    return wrong
+            if chunk.of and not any(each == chunk for each, _ in _records(folder, plan)):
+                return verified(folder, plan)  # meanwhile whoever runs it has made a chunk of it
+            damaged.append(str(error))
+        else:
+            there.append((chunk.first, chunk.last))
+            chunks += not chunk.of
+    missing, end = [], 0
+    for first, last in [*sorted(there), (plan.count, plan.count)]:
+        if end < first:
+            missing.append((end, first))
+        end = last
+    done = sum(last - first for first, last in there)
+    return Verification(plan.count, done, chunks, tuple(damaged), tuple(missing))
+
+
+def _records(folder: Path, plan: Plan) -> list[tuple[Chunk, str]]:
+    """Return the chunks and pieces that the ledger has, with their seals; it refuses those that overlap."""
+    if not (folder / NAME).exists():
+        return []
+    with Ledger(folder) as ledger:
+        if not ledger.begun:
+            return []
+        ledger.check(plan)
+        found = [(plan.chunk(record.number), record.seal) for record in ledger.records()]
+        parts = ((plan.chunk(record.number).piece(record.first, record.last), record.seal) for record in ledger.pieces())
+        return [*found, *parts]
 
 
 def _seals(folder: Path, plan: Plan) -> dict[int, str]:
-    if not (folder / NAME).exists():
-        return {}
-    with Ledger(folder) as ledger:
-        ledger.check(plan)
-        return {record.number: record.seal for record in ledger.records()}
+    return {chunk.number: sealed for chunk, sealed in _records(folder, plan) if not chunk.of}
 
 
 def _read(folder: Path, chunk: Chunk, sealed: str) -> Arrays:
-    path = folder / SHARDS / f"{chunk.name}{SUFFIX}"
+    path = path_of(folder / SHARDS, chunk)
     advice = "run the campaign again: it is computed anew"
     try:
         return shard.unpack(path.read_bytes(), chunk, sealed)

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from rocking.errors import InvalidValueError
 from rocking.studies.campaign import disk, shard
 from rocking.studies.campaign.chunks import Chunk, Plan
 from rocking.studies.campaign.errors import CampaignDamagedError
-from rocking.studies.campaign.executors import SUFFIX
+from rocking.studies.campaign.executors import PIECES, SUFFIX, path_of
 from rocking.studies.campaign.identity import SHARDS
 from rocking.studies.campaign.ledger import NAME, Ledger, Record
 
@@ -28,11 +29,14 @@ class Found:
         Shards that the ledger did not know: the run ended between writing and recording them.
     set_aside : list of str
         Shards that were damaged or missing, and where the former are now.
+    pieces : dict of int to list of Chunk
+        By number of the chunk, the pieces of those that are not finished, in order.
     """
 
     finished: np.ndarray
     adopted: int = 0
     set_aside: list[str] = field(default_factory=list)
+    pieces: dict[int, list[Chunk]] = field(default_factory=dict)
 
 
 def recover(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[], bool] = lambda: False) -> Found:
@@ -54,22 +58,64 @@ def recover(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[], bool] =
     Found
         What there is.
     """
-    disk.remove_unfinished(folder)
+    for each in (folder, folder.with_name(PIECES)):
+        disk.remove_unfinished(each)
     found = Found(np.zeros(plan.chunks, bool))
     known = np.zeros(plan.chunks, bool)
     for record in ledger.records():
         if stop():
             return found
         known[record.number] = True
-        _recall(folder, plan.chunk(record.number), record.seal, ledger, found)
+        found.finished[record.number] = _recall(folder, plan.chunk(record.number), record.seal, ledger, found)
     there = {entry.name for entry in os.scandir(folder)}
     for number in np.flatnonzero(~known):
         if stop() or not there:
-            return found
+            break
         chunk = plan.chunk(int(number))
         if chunk.name + SUFFIX in there:
-            _adopt(folder, chunk, ledger, found)
+            found.finished[number] = _adopt(folder, chunk, ledger, found)
+    _recover_pieces(folder, plan, ledger, stop, found)
     return found
+
+
+def _recover_pieces(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[], bool], found: Found) -> None:
+    """Check the pieces of chunks that are not finished, adopt what the ledger does not know; the others may go."""
+    known: set[str] = set()
+    for record in list(ledger.pieces()):
+        if stop():
+            return
+        piece = plan.chunk(record.number).piece(record.first, record.last)
+        if found.finished[record.number]:
+            ledger.forget(piece.name)  # its chunk was adopted
+        elif _recall(folder, piece, record.seal, ledger, found):
+            found.pieces.setdefault(record.number, []).append(piece)
+            known.add(piece.name + SUFFIX)
+    for path in sorted(folder.with_name(PIECES).glob(f"*{SUFFIX}")):
+        if stop():
+            return
+        if path.name not in known and not _adopt_piece(path, plan, ledger, found):
+            path.unlink(missing_ok=True)  # or it was damaged, and set aside
+    for pieces in found.pieces.values():
+        pieces.sort()
+
+
+def _adopt_piece(path: Path, plan: Plan, ledger: Ledger, found: Found) -> bool:
+    """Record a piece that is there and whole, and whose histories are not there yet."""
+    try:
+        first, last = shard.range_of(path.read_bytes())
+        whole = plan.chunk(first // plan.size)
+        piece = whole.piece(first, last)
+    except (CampaignDamagedError, InvalidValueError):
+        return False
+    others = found.pieces.get(piece.number, [])
+    if found.finished[piece.number] or not piece.of or f"{piece.name}{SUFFIX}" != path.name or last > whole.last:
+        return False
+    if any(first < other.last and other.first < last for other in others) or not _adopt(
+        path.parent.with_name(SHARDS), piece, ledger, found
+    ):
+        return False
+    found.pieces[piece.number] = sorted([*others, piece])
+    return True
 
 
 def rebuild(folder: Path, plan: Plan) -> int:
@@ -90,7 +136,8 @@ def rebuild(folder: Path, plan: Plan) -> int:
     for path in sorted(folder.glob(f"{NAME}*")):
         if ".damaged-" not in path.name:
             disk.set_aside(path)
-    disk.make_folder(folder / SHARDS)
+    for name in (SHARDS, PIECES):
+        disk.make_folder(folder / name)
     with Ledger(folder, writable=True) as ledger:
         ledger.note("rebuilt", None, "from the shards")
         return int(recover(folder / SHARDS, plan, ledger).finished.sum())
@@ -107,29 +154,30 @@ def now() -> str:
     return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
 
 
-def _recall(folder: Path, chunk: Chunk, sealed: str, ledger: Ledger, found: Found) -> None:
+def _recall(folder: Path, chunk: Chunk, sealed: str, ledger: Ledger, found: Found) -> bool:
     """See whether a recorded shard is still what it was."""
-    path = folder / f"{chunk.name}{SUFFIX}"
+    path = path_of(folder, chunk)
     try:
         shard.unpack(path.read_bytes(), chunk, sealed)
     except FileNotFoundError:
         _take_back(ledger, chunk, found, f"{path.name} is missing; it is computed again")
+        return False
     except CampaignDamagedError as error:
         aside = disk.set_aside(path)
         _take_back(ledger, chunk, found, f"{path.name}: {error}; kept as {aside.name}, and computed again")
-    else:
-        found.finished[chunk.number] = True
+        return False
+    return True
 
 
 def _take_back(ledger: Ledger, chunk: Chunk, found: Found, why: str) -> None:
-    ledger.forget(chunk.number)
+    ledger.forget(chunk.name)
     ledger.note("damaged", chunk.number, why)
     found.set_aside.append(why)
 
 
-def _adopt(folder: Path, chunk: Chunk, ledger: Ledger, found: Found) -> None:
+def _adopt(folder: Path, chunk: Chunk, ledger: Ledger, found: Found) -> bool:
     """Record a shard that is there and whole."""
-    path = folder / f"{chunk.name}{SUFFIX}"
+    path = path_of(folder, chunk)
     data = path.read_bytes()
     try:
         shard.unpack(data, chunk)
@@ -138,8 +186,9 @@ def _adopt(folder: Path, chunk: Chunk, ledger: Ledger, found: Found) -> None:
         why = f"{path.name}: {error}; kept as {aside.name}, and computed again"
         ledger.note("damaged", chunk.number, why)
         found.set_aside.append(why)
-        return
-    disk.sync_folder(folder)  # it was perhaps renamed in the last instant before a kill
-    ledger.record(Record(*chunk, shard.seal(data), len(data), 1, 0.0, "an earlier run", now()))
-    found.finished[chunk.number] = True
+        return False
+    disk.sync_folder(path.parent)  # it was perhaps renamed in the last instant before a kill
+    record = Record(*chunk[:4], shard.seal(data), len(data), 1, 0.0, "an earlier run", now())
+    (ledger.record_piece if chunk.of else ledger.record)(record)
     found.adopted += 1
+    return True

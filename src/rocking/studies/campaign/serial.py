@@ -55,13 +55,15 @@ class Serial(Executor):
             begun = ahead.begin(chunks)
             while begun is not None:
                 chunk, results = begun
-                seconds = ahead.seconds()
-                if seconds is None:
+                found = ahead.found()
+                if found is None:
                     return
+                last, seconds = found
                 begun = ahead.begin(chunks)
-                yield job.keep(chunk, shard.pack(chunk, results), seconds)
+                yield job.keep(chunk, shard.pack(chunk.piece(chunk.first, last), results), seconds)
                 if stop():  # as if the next one had not been begun
                     return
+                begun = begun or ahead.begin(chunks)  # what was left of the last one
 
 
 class _Ahead:
@@ -71,7 +73,7 @@ class _Ahead:
         self._job, self._threads, self._stop = job, threads, stop
         self._over = Event()
         self._pool = ThreadPoolExecutor(1, "campaign")
-        self._begun: Future[float | None]
+        self._begun: Future[tuple[int, float] | None]
 
     def __enter__(self) -> "_Ahead":
         return self
@@ -91,13 +93,13 @@ class _Ahead:
         self._begun = self._pool.submit(copy_context().run, self._compute, results, chunk)
         return chunk, results
 
-    def seconds(self) -> float | None:
-        """Wait for the chunk that was begun: what it took [s]; None if it was stopped."""
+    def found(self) -> tuple[int, float] | None:
+        """Wait for the chunk that was begun: how far it came, and what it took [s]; None if it was stopped."""
         while not wait([self._begun], _LOOK).done:
             pass  # a wait without end would not be woken by Ctrl-C everywhere
         return self._begun.result()
 
-    def _compute(self, results: Arrays, chunk: Chunk) -> float | None:
+    def _compute(self, results: Arrays, chunk: Chunk) -> tuple[int, float] | None:
         start = time.perf_counter()
-        filled = self._job.fill(results, chunk, self._threads, lambda: self._over.is_set() or self._stop())
-        return time.perf_counter() - start if filled else None
+        last = self._job.fill(results, chunk, self._threads, lambda: self._over.is_set() or self._stop())
+        return None if last is None else (last, time.perf_counter() - start)

@@ -25,14 +25,15 @@ def pack(chunk: Chunk, arrays: Arrays) -> bytes:
     chunk : Chunk
         What the arrays are results of.
     arrays : dict of str to ndarray
-        The keys of `rocking.dynamics.engine.RESULTS`.
+        The keys of `rocking.dynamics.engine.RESULTS`; what is beyond the chunk is left out.
 
     Returns
     -------
     bytes
         Magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all that.
     """
-    columns = [np.ascontiguousarray(arrays[name], _little(kind)).data for name, kind in RESULTS.items()]
+    count = chunk.last - chunk.first
+    columns = [np.ascontiguousarray(arrays[name][:count], _little(kind)).data for name, kind in RESULTS.items()]
     header = json.dumps(_header(chunk, columns), sort_keys=True, separators=(",", ":")).encode()
     head = _LENGTHS.pack(MAGIC, FORMAT, len(header)) + header
     made = hashlib.sha256(head)
@@ -55,6 +56,31 @@ def seal(data: bytes) -> str:
         64 hexadecimal digits: SHA-256 of all that stands before.
     """
     return data[-_SEAL:].hex()
+
+
+def range_of(data: bytes) -> tuple[int, int]:
+    """Return which histories a shard says that it holds.
+
+    Parameters
+    ----------
+    data : bytes
+        A shard.
+
+    Returns
+    -------
+    first, last : int
+        From the first up to but not including the last.
+
+    Raises
+    ------
+    CampaignDamagedError
+        If it does not say so.
+    """
+    header = _read_header(data, _payload_at(data))
+    found = header.get("first"), header.get("last")
+    if not all(isinstance(each, int) for each in found):
+        raise CampaignDamagedError("its header does not say what it holds")
+    return found
 
 
 def unpack(data: bytes, chunk: Chunk, sealed: str | None = None) -> Arrays:

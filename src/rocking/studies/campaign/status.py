@@ -1,11 +1,14 @@
 """How far a campaign is, in numbers and in a sentence."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from rocking.studies.campaign.chunks import Plan
+import numpy as np
+
+from rocking.studies.campaign.chunks import Chunk, Plan
+from rocking.studies.campaign.estimate import Costs, Estimate
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,10 @@ class Status:
         Shards that were found damaged or missing so far, and computed again.
     software : str
         Version of this package that computes it.
+    work : Estimate or None
+        Time of one worker for what is missing; None while a part of the campaign was not measured yet.
+    broken : tuple of str
+        Shards that are damaged or missing now, and do not count; a run computes them again.
     """
 
     folder: Path
@@ -42,6 +49,8 @@ class Status:
     retries: int
     damaged: tuple[str, ...]
     software: str
+    work: Estimate | None = None
+    broken: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -54,12 +63,13 @@ class Status:
         if self.complete:
             return f"all {self.chunks} chunks ({self.histories} histories) are safe in {self.folder}"
         now = f"{self.running} runs it" if self.running else "run the campaign again: it goes on from there"
-        return f"{self.chunks_done} of {self.chunks} chunks are safe in {self.folder}; {now}"
+        share = f"{self.chunks_done} of {self.chunks} chunks ({self.histories_done} of {self.histories} histories)"
+        return f"{share} are safe in {self.folder}; {now}"
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a run is, right after a chunk was recorded.
+    """How far a run is, right after a chunk, or a piece of one that takes long, was recorded.
 
     Parameters
     ----------
@@ -69,8 +79,8 @@ class Progress:
         The same, in chunks.
     rate : float
         Histories a second in this run [1/s]; 0 at its start.
-    seconds_left : float or None
-        Time left at this rate [s]; None at the start.
+    left : Estimate or None
+        Time that is left; None while that is being measured.
     seconds : float
         Time since the start of this run [s].
     retries : int
@@ -82,7 +92,7 @@ class Progress:
     chunks_done: int
     chunks: int
     rate: float
-    seconds_left: float | None
+    left: Estimate | None
     seconds: float
     retries: int
 
@@ -132,34 +142,50 @@ class Meter:
         self._folder, self._plan, self._tell = folder, plan, tell
         self._start = time.perf_counter()
         self._begun = self._start
+        self.costs = Costs(plan.count)
+        self._work = 0.0
         self.chunks = self.histories = self.resumed = 0
         self.known = False
         self._error: Exception | None = None
         self.retries: list[str] = []
 
-    def begin(self, chunks: int, histories: int) -> None:
+    def begin(self, chunks: int, there: Iterable[tuple[int, int]]) -> None:
         """Note what is there before the first chunk of this run.
 
         Parameters
         ----------
-        chunks, histories : int
+        chunks : int
             How many.
+        there : iterable of tuple of int
+            First and last history of each, and of each piece.
         """
-        self.chunks, self.histories, self.resumed = chunks, histories, histories
+        ends = np.array(list(there), np.int64).reshape(-1, 2)
+        if ends.size:
+            self.costs.add(ends[:, 0], ends[:, 1])
+        self.chunks, self.histories = chunks, int(np.sum(ends[:, 1] - ends[:, 0]))
+        self.resumed = self.histories
         self.known = True
         self._begun = time.perf_counter()
         self._say()
 
-    def add(self, histories: int) -> None:
-        """Note that one more chunk is recorded.
+    def add(self, done: Chunk, seconds: float, *, whole: bool) -> None:
+        """Note that one more chunk, or piece of one, is recorded.
 
         Parameters
         ----------
-        histories : int
-            How many it holds.
+        done : Chunk
+            Which.
+        seconds : float
+            What it took [s].
+        whole : bool
+            Whether a chunk is whole by this.
         """
-        self.chunks += 1
-        self.histories += histories
+        if not self._work:
+            self._begun = time.perf_counter() - seconds  # what it took to start says nothing about the rest
+        self.costs.add(done.first, done.last, seconds)
+        self._work += seconds
+        self.chunks += whole
+        self.histories += done.last - done.first
         self._say()
 
     @property
@@ -178,7 +204,11 @@ class Meter:
         if not self.known:
             return "nothing that was recorded before is lost"
         total = self._plan.chunks
-        return f"all {total} chunks are safe" if self.chunks == total else f"{self.chunks} of {total} chunks are safe"
+        if self.chunks == total:
+            return f"all {total} chunks are safe"
+        pieces = self.histories % self._plan.size != 0
+        share = f"{self.histories} of {self._plan.count} histories" if pieces else f"{self.chunks} of {total} chunks"
+        return f"{share} are safe"
 
     def raised(self, error: BaseException) -> bool:
         """Return whether an error is of the function that is told, and so not of the campaign.
@@ -201,7 +231,8 @@ class Meter:
         spent = time.perf_counter() - self._begun
         here = self.histories - self.resumed
         rate = here / spent if here and spent > 0.0 else 0.0
-        left = (self._plan.count - self.histories) / rate if rate else None
+        work = self.costs.left()
+        left = work and work.at(self._work / spent) if self._work else None
         done = (self.histories, self._plan.count, self.chunks, self._plan.chunks)
         try:
             self._tell(Progress(*done, rate, left, self.seconds, len(self.retries)))

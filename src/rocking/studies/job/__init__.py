@@ -3,7 +3,7 @@
 from rocking.studies.job.comparison import comparison
 from rocking.studies.job.exporting import export, exports_of
 from rocking.studies.job.findings import analyses, answer, assessment
-from rocking.studies.job.folder import JobFolder, JobStatus, status_of
+from rocking.studies.job.folder import JobFolder, JobStatus, status_of, verified
 from rocking.studies.job.forecasting import Forecast, forecast
 from rocking.studies.job.job import Job
 from rocking.studies.job.measures import measure_comparison
@@ -22,4 +22,5 @@ __all__ = [
     "forecast",
     "measure_comparison",
     "status_of",
+    "verified",
 ]

@@ -9,6 +9,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import (
     Campaign,
@@ -18,13 +20,15 @@ from rocking.studies.campaign import (
     Progress,
     Status,
     Summary,
+    Verification,
     disk,
+    reading,
 )
-from rocking.studies.campaign.identity import NAME
+from rocking.studies.campaign.identity import NAME, Identity
 from rocking.studies.job.inputs import Inputs, refuse_changes
 from rocking.studies.job.job import Job
 from rocking.studies.job.reading import document_of, located
-from rocking.studies.job.round_status import resume, round_folder, status_of_rounds, way_out
+from rocking.studies.job.round_status import resume, round_folder, status_of_rounds, verified_rounds, way_out
 from rocking.studies.job.rounds import opened, run_rounds
 
 JOB, INPUTS, HISTORIES = "job.toml", "inputs.json", "histories"
@@ -196,13 +200,15 @@ class JobStatus:
     rounds: int | None = None
 
 
-def status_of(folder: str | os.PathLike[str]) -> JobStatus:
+def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> JobStatus:
     """Return how far a campaign is; nothing is written, and its inputs are not needed.
 
     Parameters
     ----------
     folder : path
         The folder.
+    verify : bool
+        Whether to read all results: what is damaged does not count. Without it the ledger is believed.
 
     Returns
     -------
@@ -215,10 +221,49 @@ def status_of(folder: str | os.PathLike[str]) -> JobStatus:
         document = document_of(text)
     name, kind = document.campaign.name, document.campaign.kind
     if document.is_adaptive:
-        status, begun, complete = status_of_rounds(path)
+        status, begun, complete = status_of_rounds(path, verify=verify)
         return JobStatus(path, name, kind, status, complete, begun)
-    found = Campaign.status_of(path / HISTORIES) if (path / HISTORIES / NAME).exists() else None
+    there = (path / HISTORIES / NAME).exists()
+    found = Campaign.status_of(path / HISTORIES, verify=verify) if there else None
     return JobStatus(path, name, kind, found, found is not None and found.complete)
+
+
+def verified(folder: str | os.PathLike[str]) -> Verification:
+    """Read everything that a campaign has, and see that it is there once, and is what was written.
+
+    Parameters
+    ----------
+    folder : path
+        The folder; its inputs are not needed, and nothing is written.
+
+    Returns
+    -------
+    Verification
+        Of an adaptive study that of all rounds that have begun, which count on.
+    """
+    path = Path(folder)
+    text, content = _kept(path)
+    wrong: list[str] = []
+    if content.get("job_sha256", _sha256(text.encode())) != _sha256(text.encode()):
+        wrong.append(f"{path / JOB} has changed since the campaign began")
+    with located(content["job_file"]):
+        adaptive = document_of(text).is_adaptive
+    if adaptive:
+        found = verified_rounds(path)
+        if not status_of_rounds(path, verify=False)[2]:
+            wrong.append(f"{path} is not finished, and more rounds may follow")
+    else:
+        there = (path / HISTORIES / NAME).exists()
+        found = [reading.verified(path / HISTORIES, Identity.read(path / HISTORIES).plan)] if there else []
+        wrong += [] if there else [f"{path}: nothing is computed yet"]
+    begins = np.cumsum([0, *(each.histories for each in found)]).tolist()
+    return Verification(
+        begins[-1],
+        sum(each.verified for each in found),
+        sum(each.chunks for each in found),
+        (*wrong, *(sentence for each in found for sentence in each.damaged)),
+        tuple((a + k, b + k) for k, each in zip(begins, found, strict=False) for a, b in each.missing),
+    )
 
 
 def _kept(path: Path) -> tuple[str, dict[str, Any]]:

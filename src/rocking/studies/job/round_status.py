@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from rocking.studies.campaign import Campaign, CampaignDamagedError, Status
-from rocking.studies.campaign.identity import NAME
+from rocking.studies.campaign import Campaign, CampaignDamagedError, Status, Verification
+from rocking.studies.campaign.identity import NAME, Identity
 from rocking.studies.campaign.ledger import NAME as LEDGER
 from rocking.studies.campaign.lock import holder
+from rocking.studies.campaign.reading import verified
 
 FINISHED = "finished.json"
 """Written when a study has asked for its last round: how many there were, and of how many histories."""
@@ -87,13 +88,15 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
         ) from error
 
 
-def status_of_rounds(folder: Path) -> tuple[Status | None, int, bool]:
+def status_of_rounds(folder: Path, *, verify: bool = True) -> tuple[Status | None, int, bool]:
     """Return how far the rounds are that have begun; how many will follow is not known before they do.
 
     Parameters
     ----------
     folder : Path
         The campaign of the job.
+    verify : bool
+        Whether to read all results: what is damaged does not count.
 
     Returns
     -------
@@ -107,18 +110,38 @@ def status_of_rounds(folder: Path) -> tuple[Status | None, int, bool]:
     found: list[Status] = []
     while (round_folder(folder, len(found)) / NAME).exists():
         with way_out(folder, len(found)):
-            found.append(Campaign.status_of(round_folder(folder, len(found))))
+            found.append(Campaign.status_of(round_folder(folder, len(found)), verify=verify))
     if not found:
         return None, 0, False
     sums = {
         name: sum(getattr(each, name) for each in found)
         for name in ("histories", "histories_done", "chunks", "chunks_done", "seconds", "retries")
     }
-    damaged = tuple(word for each in found for word in each.damaged)
-    status = Status(folder, running=holder(folder), damaged=damaged, software=found[0].software, **sums)
+    words = {name: tuple(word for each in found for word in getattr(each, name)) for name in ("damaged", "broken")}
+    status = Status(folder, running=holder(folder), software=found[0].software, **sums, **words)
     told = finished_rounds(folder)
     whole = told is not None and told["rounds"] == len(found) and status.complete
     return status, len(found), whole
+
+
+def verified_rounds(folder: Path) -> list[Verification]:
+    """Read everything that the rounds have that have begun.
+
+    Parameters
+    ----------
+    folder : Path
+        The campaign of the job.
+
+    Returns
+    -------
+    list of Verification
+        Of each.
+    """
+    found: list[Verification] = []
+    while ((path := round_folder(folder, len(found))) / NAME).exists():
+        with way_out(folder, len(found)):
+            found.append(verified(path, Identity.read(path).plan))
+    return found
 
 
 def finished_rounds(folder: Path) -> dict[str, int] | None:

@@ -99,7 +99,7 @@ class Rounds:
     def _results(self, campaign: Campaign) -> Arrays:
         if self.advance is None:
             return _held(campaign)
-        if campaign.status().complete:
+        if campaign.status(verify=False).complete:
             try:
                 return _held(campaign)
             except CampaignDamagedError:  # what is damaged is set aside, said, and computed again

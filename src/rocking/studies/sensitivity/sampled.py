@@ -220,6 +220,11 @@ class SampledHistories(Histories):
         """Number of histories."""
         return self.base.count
 
+    @property
+    def together(self) -> int:
+        """Histories of one motion that stand in a row."""
+        return self.base.together
+
     def rows(self, first: int, last: int) -> Rows:
         """Return some of the rows.
 

@@ -11,6 +11,7 @@ from rocking.dynamics.engine import RESULTS
 from rocking.errors import InvalidValueError
 from rocking.studies import Table
 from rocking.studies.campaign import Campaign, CampaignStorageError, Progress, forecast
+from rocking.studies.campaign.estimate import Estimate
 
 
 def test_results_are_those_of_the_engine(finished: Campaign, work: Table) -> None:
@@ -37,14 +38,15 @@ def test_hash_is_what_it_says(finished: Campaign, work: Table) -> None:
 
 
 def test_progress_counts_up(tmp_path: Path, work: Table) -> None:
-    """The first report is what was there, the last one is everything; rate and time left are finite."""
+    """The first report is what was there, the last one is everything; time left is told when all parts were seen."""
     new = Campaign.create(tmp_path / "c", work, 64)
     seen: list[Progress] = []
     new.run(workers=1, progress=seen.append)
     assert [p.chunks_done for p in seen] == [0, 1, 2, 3, 4, 5]
     assert [p.done_histories for p in seen] == [0, 64, 128, 192, 256, 300]
-    assert (seen[0].rate, seen[0].seconds_left, seen[-1].seconds_left) == (0.0, None, 0.0)
-    assert all(p.rate > 0.0 and p.seconds_left is not None for p in seen[1:])
+    assert (seen[0].rate, seen[0].left, seen[-1].left) == (0.0, None, Estimate(0.0, 0.0, 0.0))
+    assert all(p.rate > 0.0 for p in seen[1:])
+    assert [p.left is None for p in seen] == [True, True, True, True, True, False]
     seen.clear()
     assert new.run(progress=seen.append).resumed == 5
     assert [p.chunks_done for p in seen] == [5]
@@ -56,7 +58,7 @@ def test_status_needs_no_histories(finished: Campaign, tmp_path: Path, work: Tab
     assert (status.histories_done, status.chunks_done, status.complete, status.running) == (300, 6, True, None)
     assert status.sentence == f"all 6 chunks (300 histories) are safe in {finished.folder}"
     new, seen = Campaign.create(tmp_path / "new", work, 100), []
-    assert new.status().sentence.startswith("0 of 3 chunks are safe")
+    assert new.status().sentence.startswith("0 of 3 chunks (0 of 300 histories) are safe")
     new.run(workers=1, progress=lambda _: seen.append(new.status()))
     assert [s.chunks_done for s in seen] == [0, 1, 2, 3]
     assert "process" in str(seen[1].running)

@@ -37,12 +37,12 @@ def test_flips_on_disk_are_found_and_mended(finished: Campaign, shards: Shards) 
             data = bytearray(paths(finished)[k].read_bytes())
             data[random.integers(len(data))] ^= 1 << random.integers(8)
             paths(finished)[k].write_bytes(data)
-        assert len(finished.verify()) == 5
+        assert len(finished.verify().damaged) == 5
         with pytest.raises(CampaignDamagedError, match="run the campaign again: it is computed anew"):
             finished.results()
         summary = finished.run(workers=1)
         assert (summary.computed, len(summary.set_aside)) == (5, 5)
-        assert finished.verify() == []
+        assert finished.verify().whole
     assert (shards(finished), finished.sha256()) == (before, digest)
     assert len(list((finished.folder / "shards").glob("*.damaged-*"))) == DISK_FLIPS
     assert len(finished.status().damaged) == DISK_FLIPS
@@ -63,7 +63,7 @@ def test_missing_shard_is_mended(finished: Campaign, shards: Shards) -> None:
     """A shard that somebody deleted is computed again, and that is said."""
     before = shards(finished)
     paths(finished)[1].unlink()
-    assert "is missing" in finished.verify()[0]
+    assert "is missing" in finished.verify().damaged[0]
     assert "is missing" in finished.run(workers=1).set_aside[0]
     assert shards(finished) == before
 

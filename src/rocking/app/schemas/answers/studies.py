@@ -21,7 +21,8 @@ class StudyFacts(Answer):
     message: str = Field(description="a sentence on the state; empty where there is nothing to say")
     histories_done: int
     rate: float | None = Field(description="while it runs [1/s]")
-    seconds_left: float | None = Field(description="while it runs [s]")
+    seconds_left: float | None = Field(description="while it runs; null while that is measured, or cannot be known [s]")
+    seconds_left_between: tuple[float, float] | None = Field(description="between which it probably is [s]")
 
 
 class Studies(Answer):

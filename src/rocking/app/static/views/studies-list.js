@@ -30,11 +30,17 @@ export function duration(seconds) {
   return `${(seconds / 3600).toFixed(1)} h`;
 }
 
+const left = (study) => {
+  if (study.seconds_left == null) return "measuring the time left";
+  const [low, high] = study.seconds_left_between.map(duration);
+  const between = low === high ? "" : ` (${low} to ${high})`;
+  return `about ${duration(study.seconds_left)} left${between}`;
+};
+
 const pace = (study) => {
   const parts = [`${number(study.histories_done || 0)} of ${number(study.histories || 0)} histories`];
   if (study.state === "running" && study.rate) parts.push(`${number(study.rate, 3)} a second`);
-  if (study.state === "running" && study.seconds_left != null)
-    parts.push(`${duration(study.seconds_left)} left`);
+  if (study.state === "running") parts.push(left(study));
   return parts.join(" \u00b7 ");
 };
 
