@@ -5,6 +5,7 @@ import itertools
 import os
 import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,18 @@ def bare(work: Table) -> Arrays:
     found = work.run(0, COUNT, threads=1)
     assert min(np.bincount(found["outcome"], minlength=3)[:3]) > COUNT / 20  # worth it: all three outcomes
     return found
+
+
+def stop_at(chunks: int) -> Callable[[Progress], None]:
+    """Ctrl-C, once, when so many chunks are there."""
+    asked = []
+
+    def stop(progress: Progress) -> None:
+        if progress.chunks_done == chunks and not asked:
+            asked.append(chunks)
+            signal.raise_signal(signal.SIGINT)
+
+    return stop
 
 
 def same(campaign: Campaign, bare: Arrays) -> bool:
@@ -94,13 +107,8 @@ def test_interruptions_do_not_matter(tmp_path: Path, work: Table, bare: Arrays) 
     stops = 0
     while not campaign.status().complete:
         start = campaign.status().chunks_done
-
-        def stop(progress: Progress, start: int = start) -> None:
-            if progress.chunks_done == start + 3:
-                signal.raise_signal(signal.SIGINT)
-
         try:
-            campaign.run(**runs[stops % len(runs)], progress=stop)
+            campaign.run(**runs[stops % len(runs)], progress=stop_at(start + 3))
         except CampaignInterrupted:
             stops += 1
     assert stops >= 4
@@ -123,14 +131,9 @@ def of_case(folder: Path, case: Case, work: Table) -> Campaign:
     campaign = Campaign.create(folder, work, chunk)
     how: dict[str, Any] = {"executor": "processes", "start_method": method, "workers": workers}
     half = max(1, campaign.plan.chunks // 2)
-
-    def stop(progress: Progress) -> None:
-        if progress.chunks_done == half:
-            signal.raise_signal(signal.SIGINT)
-
     if resumed:
         with pytest.raises(CampaignInterrupted):
-            campaign.run(**how, order_seed=11 if shuffled else None, progress=stop)
+            campaign.run(**how, order_seed=11 if shuffled else None, progress=stop_at(half))
     campaign.run(**how, order_seed=5 if shuffled else None)
     return campaign
 

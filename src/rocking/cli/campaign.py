@@ -39,7 +39,7 @@ def check(
     workers: Annotated[int, typer.Option(min=1, max=4096, help="Cores that would compute.")] = 1,
     as_json: AsJson = False,
 ) -> None:
-    """Read a job and all its files, and say what it will take, from a trial of one second."""
+    """Read a job and all its files, and say what it will take, from a trial of two seconds."""
     from rocking.cli import campaign_output as output
 
     with output.codes():

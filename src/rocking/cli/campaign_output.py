@@ -220,7 +220,9 @@ def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> 
         if found.later is not None:
             print("             in the first round, as are time and disk; what it finds decides on later rounds:")
             print(f"             usually {found.later[0]} to {found.later[1]} more histories, with their time and disk")
-        print(f"  time       about {_span(found.seconds)} with {workers} core(s): {found.rate:.0f} histories/s each")
+        between = " to ".join(_span(seconds) for seconds in found.between)
+        rate = f"{found.rate:.3g} histories/s each"
+        print(f"  time       about {_span(found.seconds)} ({between}) with {workers} core(s): {rate}")
         print(f"  memory     about {found.memory / 1e6:.0f} MB{'' if found.later is None else ' in all rounds'}")
         free = "" if found.free is None else f", {found.free / 1e6:.0f} MB are free"
         print(f"  disk       {found.disk / 1e6:.1f} MB{free}")

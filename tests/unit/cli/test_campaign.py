@@ -96,8 +96,8 @@ def test_check_as_json(run, job):
     code, out, _ = run("check", job(), "--json", "--workers", 2)
     assert code == 0
     assert list(json.loads(out)) == [
-        "job", "campaign", "kind", "dimensions", "inputs", "histories", "chunks", "chunk", "rate", "seconds", "memory",
-        "disk", "free",
+        "job", "campaign", "kind", "dimensions", "inputs", "histories", "chunks", "chunk", "rate", "seconds", "between",
+        "memory", "disk", "free",
     ]  # fmt: skip
     assert json.loads(out)["histories"] == 600
 

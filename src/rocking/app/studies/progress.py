@@ -3,6 +3,8 @@
 import time
 from collections import deque
 
+from rocking.studies.campaign.estimate import Speed
+
 _WINDOW = 6.0
 _LEAST = 0.15
 
@@ -13,13 +15,13 @@ class Pace:
     Examples
     --------
     >>> pace = Pace()
-    >>> pace.look(0, 0.0, now=10.0), pace.look(100, 1.5, now=11.0), pace.look(200, 3.5, now=12.0)
+    >>> pace.look(0, 0.0, now=10.0), pace.look(100, 1.5, now=11.0), pace.look(600, 11.5, now=16.0)
     ((0.0, 0.0), (100.0, 0.0), (100.0, 2.0))
     """
 
     def __init__(self) -> None:
         self._looks: deque[tuple[float, int]] = deque()
-        self._work: list[tuple[float, float]] = []
+        self._speed, self._pace = Speed(), 0.0
 
     def look(self, done: int, work: float, now: float | None = None) -> tuple[float, float]:
         """Note how many histories are finished, and return how fast they are.
@@ -44,14 +46,10 @@ class Pace:
         # a study finishes in jumps, a piece at a time: only looks that found more say anything
         if not self._looks or done > self._looks[-1][1]:
             if self._looks:
-                self._work = [*self._work[:1], (instant, work)]
+                self._pace = self._speed.look(work, instant)
             self._looks.append((instant, done))
         while len(self._looks) > 2 and instant - self._looks[0][0] > _WINDOW:
             self._looks.popleft()
         (first, before), (_, after) = self._looks[0], self._looks[-1]
         spent = max(self._looks[-1][0] - first, instant - first - _WINDOW)
-        rate = (after - before) / spent if spent > _LEAST else 0.0
-        if len(self._work) < 2:
-            return rate, 0.0
-        (begun, had), (ended, has) = self._work
-        return rate, (has - had) / (ended - begun) if ended - begun > _LEAST else 0.0
+        return (after - before) / spent if spent > _LEAST else 0.0, self._pace

@@ -195,7 +195,8 @@ class Campaign:
         start_method : {"spawn", "fork", "forkserver"}, optional
             How processes start; "spawn" if not given.
         order_seed : int, optional
-            Seed of the order of the chunks; that of the histories, if not given. The results do not depend on it.
+            Seed of the order of the chunks; that of the histories in every part, if not given. The results do not
+            depend on it.
         progress : callable, optional
             Called with a `Progress` at the start and after every recorded chunk, while the next ones are computed.
 

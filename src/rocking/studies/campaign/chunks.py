@@ -49,20 +49,23 @@ class Chunk(NamedTuple):
         return Chunk(self.number, first, last, name, whole)
 
 
-def default_chunk(engine: str) -> int:
+def default_chunk(engine: str, together: int = 1) -> int:
     """Return how many histories make a chunk, unless somebody wants another number.
 
     Parameters
     ----------
     engine : str
         The engine, as in a `Plan`.
+    together : int
+        Histories in a row that are not to be parted: of a motion that is made for them.
 
     Returns
     -------
     int
         Histories.
     """
-    return DEFAULT_CHUNK if engine.startswith("fast") else REFERENCE_CHUNK
+    usual = DEFAULT_CHUNK if engine.startswith("fast") else REFERENCE_CHUNK
+    return max(usual - usual % together, usual if together > usual else 1)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 PARTS = 16
 """Equal parts of the histories, each of which is measured: costs change from the first history to the last one."""
 
+_SETTLED = 4.0
 _NOISE = 0.1
 """A machine is no steadier than this from one minute to the next [-]."""
 
@@ -44,6 +45,39 @@ class Estimate:
         return Estimate(self.seconds / speed, self.low / speed, self.high / speed)
 
 
+class Speed:
+    """How much work is done in a second, since the first piece was finished.
+
+    Examples
+    --------
+    >>> speed = Speed()
+    >>> speed.look(1.0, 10.0), speed.look(3.0, 11.0), speed.look(13.0, 16.0)
+    (0.0, 0.0, 2.0)
+    """
+
+    def __init__(self) -> None:
+        self._first: tuple[float, float] | None = None
+
+    def look(self, work: float, now: float) -> float:
+        """Note the work of all pieces that are finished, right after one was.
+
+        Parameters
+        ----------
+        work : float
+            Of all workers together [s].
+        now : float
+            Instant of a clock that never goes back [s].
+
+        Returns
+        -------
+        float
+            Seconds of work in a second; 0 during the first seconds, when that says nothing [-].
+        """
+        self._first = self._first or (work, now)
+        spent = now - self._first[1]
+        return (work - self._first[0]) / spent if spent >= _SETTLED else 0.0
+
+
 class Costs:
     """What histories have taken, in equal parts of all of them.
 
@@ -78,12 +112,30 @@ class Costs:
         seconds : array_like
             What they took; 0 where that is not known [s].
         """
-        first, last = np.atleast_1d(first)[:, None], np.atleast_1d(last)[:, None]
-        share = np.clip(np.minimum(self.edges[1:], last) - np.maximum(self.edges[:-1], first), 0, None)
+        share = self._overlap(first, last)
         seconds = np.broadcast_to(np.atleast_1d(seconds), len(share))
         self._missing -= share.sum(axis=0)
         self._seen += share[seconds > 0.0].sum(axis=0)
-        self._spent += (share / (last - first) * seconds[:, None]).sum(axis=0)
+        self._spent += (share / share.sum(axis=1, keepdims=True) * seconds[:, None]).sum(axis=0)
+
+    def shares(self, first: Any, last: Any) -> np.ndarray:
+        """Return how many histories of every part are among some.
+
+        Parameters
+        ----------
+        first, last : array_like of int
+            From the first up to but not including the last, of one piece or of many.
+
+        Returns
+        -------
+        ndarray of int
+            For every part.
+        """
+        return np.asarray(self._overlap(first, last).sum(axis=0))
+
+    def _overlap(self, first: Any, last: Any) -> np.ndarray:
+        first, last = (np.atleast_1d(np.asarray(each, np.int64))[:, None] for each in (first, last))
+        return np.clip(np.minimum(self.edges[1:], last) - np.maximum(self.edges[:-1], first), 0, None)
 
     def unseen(self) -> np.ndarray:
         """Return the parts of which nothing was measured yet, and which are not finished.

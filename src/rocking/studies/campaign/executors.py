@@ -130,6 +130,8 @@ class Job:
             start, last = time.perf_counter(), self.pace.until(first, chunk.last)
             for name, values in self.histories.run(first, last, threads=threads).items():
                 results[name][first - chunk.first : last - chunk.first] = values
+            if not self.pace.begun:
+                watch = Watch()  # the first step of all starts much else
             self.pace.took(last - first, time.perf_counter() - start)
             first = last
         return first

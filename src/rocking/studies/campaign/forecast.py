@@ -9,17 +9,18 @@ import numpy as np
 from rocking.dynamics.engine import RESULTS
 from rocking.studies.campaign.chunks import Plan
 from rocking.studies.campaign.errors import CampaignStorageError
-from rocking.studies.campaign.fingerprint import kind_of
+from rocking.studies.campaign.estimate import Estimate
 from rocking.studies.campaign.status import Status
 from rocking.studies.histories import Histories
 
 _BESIDE = 8192
 _WARM = 4
 _RUN = 2048
-_SHARE = 0.2
+_SHARE = 0.1
 _LONGEST = 2.0
-_ORDER = (0, 4, 2, 6, 1, 5, 3, 7)
-"""Places of the runs: those that are done when time is up are spread, too."""
+_PLACES = 32
+_NOISE = 0.1
+"""A machine is no steadier than this from one minute to the next [-]."""
 
 
 @dataclass(frozen=True)
@@ -30,15 +31,15 @@ class Forecast:
     ----------
     histories, chunks : int
         How many remain.
-    seconds : float
-        Time of one core for them, from a sample spread over them [s].
+    work : Estimate
+        Time of one core for them, from a sample spread over them.
     needed, free : int
         Room on the disk [bytes].
     """
 
     histories: int
     chunks: int
-    seconds: float
+    work: Estimate
     needed: int
     free: int
 
@@ -66,31 +67,58 @@ def forecast(status: Status, plan: Plan, histories: Histories) -> Forecast:
         If the disk is too small.
     """
     left, chunks = status.histories - status.histories_done, status.chunks - status.chunks_done
-    seconds = left * _seconds_each(histories, quick=kind_of(plan.engine) == "fast" and histories.motions.in_memory)
+    work = trial(histories).at(1.0 / left) if left else Estimate(0.0, 0.0, 0.0)
     needed = left * sum(np.dtype(kind).itemsize for kind in RESULTS.values()) + chunks * _BESIDE
     free = shutil.disk_usage(status.folder).free
     if free < needed:
         raise CampaignStorageError(
             f"{status.folder}: {needed / 1e6:.0f} MB are needed, {free / 1e6:.0f} MB are free; make room first"
         )
-    return Forecast(left, chunks, seconds, needed, free)
+    return Forecast(left, chunks, work, needed, free)
 
 
-def _seconds_each(histories: Histories, *, quick: bool) -> float:
-    """Return the time of a history in runs that are as long as those of a campaign, spread over all of them."""
-    count = histories.count
+def trial(histories: Histories) -> Estimate:
+    """Return what a history takes, from runs that are spread over all of them.
+
+    A motion that has to be made is timed apart, and shared among all histories that it is for.
+
+    Parameters
+    ----------
+    histories : Histories
+        What to compute.
+
+    Returns
+    -------
+    Estimate
+        The mean of all histories, with twice its standard error.
+    """
+    count, made = histories.count, not histories.motions.in_memory
+    start = time.perf_counter()
     _timed(histories, 0, min(count, _WARM))  # motions are laid out, code is loaded
-    size = min(count, _RUN)
-    if not quick:
-        middle = count // 2
-        size = max(1, min(size, int(_SHARE / _timed(histories, middle, min(middle + _WARM, count)))))
-    spent, done = 0.0, 0
-    for first in dict.fromkeys(place * (count - size) // (len(_ORDER) - 1) for place in _ORDER):
-        spent += _timed(histories, first, first + size) * size
-        done += size
-        if spent > _LONGEST:
+    middle = count // 2
+    size = int(_SHARE / max(_timed(histories, middle, min(middle + _WARM, count)), 1e-9))
+    size = max(1, min(size, _RUN, histories.together if made else count, count))
+    found: list[float] = []
+    for place in range(1, _PLACES + 1):
+        first = int(_spread(place) * (count - size + 1))
+        first -= first % histories.together if made else 0
+        last = min(first + size, count)
+        each = _timed(histories, first, last)
+        if made:  # the second time they are there
+            again = _timed(histories, first, last)
+            used = np.unique(histories.rows(first, last).motion).size
+            each = again + max(0.0, each - again) * (last - first) / used * min(1.0, len(histories.motions) / count)
+        found.append(each)
+        if time.perf_counter() - start > _LONGEST or count == size:
             break
-    return spent / done
+    best, number = float(np.mean(found)), len(found)
+    doubt = 2.0 * float(np.std(found, ddof=1)) / number**0.5 if number > 1 else 0.5 * best
+    return Estimate(best, max(0.0, (1.0 - _NOISE) * best - doubt), (1.0 + _NOISE) * best + doubt)
+
+
+def _spread(place: int) -> float:
+    """Return numbers that fill the space from nought to one evenly, however many are taken: 1/2, 1/4, 3/4, 1/8 ..."""
+    return int(f"{place:b}"[::-1], 2) / 2.0 ** place.bit_length()
 
 
 def _timed(histories: Histories, first: int, last: int) -> float:

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from rocking.dynamics import engine
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import disk
 from rocking.studies.campaign.chunks import FORMAT, Plan, default_chunk
@@ -51,7 +52,7 @@ class Identity:
             The same wherever it is made with this version of the package by an engine of the same last digits.
         """
         chosen = engine_of(histories)
-        pieces = default_chunk(chosen) if size is None else size
+        pieces = usual_chunk(histories) if size is None else size
         told = histories.description()
         return cls(Plan(histories.key(told), histories.count, pieces, chosen, software()), _plain(told))
 
@@ -134,6 +135,23 @@ class Identity:
             )
         if was != now:
             raise CampaignMismatchError(_other(folder, "engine", was, now))
+
+
+def usual_chunk(histories: Histories) -> int:
+    """Return how many histories make a chunk, unless somebody wants another number.
+
+    Parameters
+    ----------
+    histories : Histories
+        What to compute.
+
+    Returns
+    -------
+    int
+        Histories; where motions are made for them, those of one motion are in one chunk.
+    """
+    together = 1 if histories.motions.in_memory else histories.together
+    return default_chunk(engine.chosen(histories.engine, histories.law), together)
 
 
 def software() -> str:

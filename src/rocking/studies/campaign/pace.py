@@ -31,6 +31,9 @@ class Pace:
         self.least = _FIRST[kind_of(engine)]
         self.step = min(self.least, together) if made else self.least
         self.together = together
+        self._first: tuple[int, float] | None = None
+        self._startup = 0.0
+        self.begun = False
 
     def until(self, first: int, last: int) -> int:
         """Return where to stop: after equal steps, since short ones leave lanes idle.
@@ -60,9 +63,25 @@ class Pace:
         seconds : float
             What they took [s].
         """
+        if self._first is None:
+            self._first = count, seconds
+        elif not self.begun:
+            self.begun, self._startup = True, max(0.0, self._first[1] - self._first[0] * seconds / count)
         wanted = int(count * _ASK / max(seconds, 1e-6))
         if wanted < self.step or 2 * count >= self.step:  # the end of a piece says nothing about longer steps
             self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
+
+
+    def startup(self) -> float:
+        """Return what the first step took beyond its histories: code is loaded, motions are laid out; asked once.
+
+        Returns
+        -------
+        float
+            Time that says nothing of those that follow [s].
+        """
+        found, self._startup = self._startup, 0.0
+        return found
 
 
 class Watch:

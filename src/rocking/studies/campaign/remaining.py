@@ -1,6 +1,5 @@
 """What remains to be done of a campaign, handed out in pieces that suit those who share it."""
 
-import time
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -9,23 +8,24 @@ from rocking.studies.campaign.chunks import Chunk, Plan
 from rocking.studies.campaign.estimate import Costs
 from rocking.studies.campaign.pace import PIECE
 
-_SURVEY_AFTER = 3.0
-_SURVEY = 0.25
-_LEAST = 0.2
+_LEAST, _FIRST, _MOST = 0.2, 0.25, 1.2
+"""What a piece is to take at least, while parts were not measured yet, and at most, as far as that is known [s]."""
+
+_LONG = 20.0
+"""A campaign that takes longer is measured everywhere at first, by small pieces [s]."""
 
 
 class Remaining(Iterator[Chunk]):
     """Chunks, and pieces of chunks, that nobody has computed yet; each is handed out once, unless it is put back.
 
-    After a few seconds a piece in the middle of every part of the campaign goes before the others, so that what will
-    come is known soon.
+    They are taken from all parts of the campaign in turn: what was measured is like what will come.
 
     Parameters
     ----------
     plan : Plan
         How the campaign is cut.
-    order : ndarray of int
-        Numbers of the chunks that are not finished, in the order in which they are to be computed.
+    numbers : ndarray of int
+        Numbers of the chunks that are not finished.
     pieces : dict of int to list of Chunk
         Pieces of them that are finished.
     together : int
@@ -34,35 +34,41 @@ class Remaining(Iterator[Chunk]):
         How many histories several workers take at first, while nothing is known of their cost, and more remain.
     costs : Costs
         What was measured so far.
-    sharers : callable
-        Returns how many workers there are.
-    stop : callable
-        Whether to hand out nothing more.
+    sharers, stop : callable
+        Returns how many workers there are, and whether to hand out nothing more.
+    seed : int, optional
+        Of the order; that of the histories in every part, if not given.
     """
 
     def __init__(
-        self, plan: Plan, order: np.ndarray, pieces: dict[int, list[Chunk]], together: int, least: int,
-        costs: Costs, sharers: Callable[[], int], stop: Callable[[], bool],
+        self, plan: Plan, numbers: np.ndarray, pieces: dict[int, list[Chunk]], together: int, least: int,
+        costs: Costs, sharers: Callable[[], int], stop: Callable[[], bool], seed: int | None = None,
     ) -> None:  # fmt: skip
-        self._plan, self._together, self._costs = plan, together, costs
-        self._sharers, self._stop, self._least = sharers, stop, least
-        self._fresh, self._wanted = iter(order.tolist()), set(order.tolist())
-        self._gaps = {number: _gaps(plan.chunk(number), done) for number, done in pieces.items()}
-        self._opened, self._surveyed = set(self._gaps), set[int]()
-        chunks = [plan.chunk(number) for number in self._wanted]
-        self._left = sum(each.last - each.first for each in chunks)
-        self._left -= sum(each.last - each.first for done in pieces.values() for each in done)
+        self._plan, self._together, self._least, self._costs = plan, together, least, costs
+        self._sharers, self._stop, self._rate = sharers, stop, 0.0
         self._out: dict[int, Chunk] = {}
-        self._begun = self._spent = 0.0
-        self._done = 0
+        self._gaps = {number: _gaps(plan.chunk(number), done) for number, done in pieces.items()}
+        self._fresh = set(numbers.tolist()) - set(self._gaps)
+        self._free = costs.shares(numbers * plan.size, np.minimum((numbers + 1) * plan.size, plan.count))
+        for done in pieces.values():
+            self._free -= costs.shares([each.first for each in done], [each.last for each in done])
+        order = np.random.default_rng(seed).permutation if seed is not None else np.asarray
+        self._rank = order(np.arange(len(self._free)))
+        ends = zip(costs.edges[:-1], costs.edges[1:], strict=True)
+        # the next chunk is the last of the list
+        self._chunks = [
+            order(numbers[(numbers * plan.size < high) & ((numbers + 1) * plan.size > low)])[::-1].tolist()
+            for low, high in ends
+        ]
 
     def __next__(self) -> Chunk:
         """Return the next piece; the next call may find one that was put back, also after there was none."""
-        found = None if self._stop() else self._middle() or self._front()
-        if found is None:
+        if self._stop() or not self._free.any():
             raise StopIteration
+        done = np.where(self._free > 0, 1.0 - self._free / np.diff(self._costs.edges), np.inf)
+        found = self._next(int(np.lexsort((self._rank, done))[0]))
         self._out[found.first] = found
-        self._left -= found.last - found.first
+        self._free -= self._costs.shares(found.first, found.last)
         return found
 
     def back(self, done: Chunk, seconds: float) -> None:
@@ -75,50 +81,42 @@ class Remaining(Iterator[Chunk]):
         seconds : float
             What it took [s].
         """
+        self._rate = (done.last - done.first) / max(seconds, 1e-9)
         asked = self._out.pop(done.first, done)
-        if asked.last > done.last:
-            self._gaps[done.number] = _joined([asked.piece(done.last, asked.last), *self._gaps.get(done.number, [])])
-            self._left += asked.last - done.last
-        self._begun = self._begun or time.monotonic() - seconds
-        self._spent, self._done = self._spent + seconds, self._done + done.last - done.first
+        if asked.last == done.last:
+            return
+        self._gaps[done.number] = _joined([asked.piece(done.last, asked.last), *self._gaps.get(done.number, [])])
+        shares = self._costs.shares(done.last, asked.last)
+        self._free += shares
+        for part in np.flatnonzero(shares):
+            self._chunks[part].append(done.number)
 
-    def _front(self) -> Chunk | None:
-        """Return the next piece: of chunks that were begun first."""
-        if not self._gaps:
-            self._open(next((number for number in self._fresh if number not in self._opened), -1))
-        for number, gaps in self._gaps.items():
-            return self._cut(number, 0, gaps[0].first, self._share())
-        return None
-
-    def _middle(self) -> Chunk | None:
-        """Return a piece from the middle of a part that was not measured yet, where it is time for that."""
-        if not self._begun or time.monotonic() - self._begun < _SURVEY_AFTER:
-            return None
-        for part in set(self._costs.unseen().tolist()) - self._surveyed:
-            self._surveyed.add(part)
-            low, high = self._costs.edges[part : part + 2].tolist()
-            middle = (low + high) // 2
-            middle -= middle % (self._plan.size if high - low >= 2 * self._plan.size else self._together)
-            number = middle // self._plan.size
-            self._open(number if number in self._wanted else -1)
+    def _next(self, part: int) -> Chunk:
+        """Return a piece from the first gap of a part, which has one."""
+        low, high = self._costs.edges[part : part + 2].tolist()
+        wanted = self._share()
+        while True:
+            number = self._chunks[part][-1]
+            if number in self._fresh:
+                self._fresh.discard(number)
+                self._gaps[number] = [self._plan.chunk(number)]
             for place, gap in enumerate(self._gaps.get(number, [])):
-                if middle < gap.last:
-                    return self._cut(number, place, max(middle, gap.first), self._worth(_SURVEY))
-        return None
-
-    def _open(self, number: int) -> None:
-        if number >= 0 and number not in self._opened:
-            self._opened.add(number)
-            self._gaps[number] = [self._plan.chunk(number)]
+                if gap.last > low and gap.first < high:
+                    whole = gap.last - gap.first <= wanted
+                    first = gap.first if whole else max(gap.first, low - low % self._together)
+                    return self._cut(number, place, first, wanted)
+            self._chunks[part].pop()
 
     def _share(self) -> int:
         """Return how many histories to hand out at once: with several workers never so many that one has to wait."""
-        sharers = self._sharers()
-        return self._left if sharers == 1 else max(self._worth(_LEAST), -(-self._left // (2 * sharers)))
+        left, sharers = int(self._free.sum()), self._sharers()
+        small = self._costs.unseen().size and left > self._worth(_LONG)
+        most = self._worth(_FIRST if small else _MOST) if self._rate else left
+        return most if sharers == 1 else max(self._worth(_LEAST), min(most, -(-left // (2 * sharers))))
 
     def _worth(self, seconds: float) -> int:
-        """Return how many histories take some time, as far as that is known."""
-        return max(1, int(seconds * self._done / self._spent)) if self._spent > 0.0 else self._least
+        """Return how many histories take some time, as far as that is known from the last piece."""
+        return max(1, int(seconds * self._rate)) if self._rate else self._least
 
     def _cut(self, number: int, place: int, first: int, wanted: int) -> Chunk:
         """Take some histories out of a gap; what is left of it on either side stays."""
@@ -132,8 +130,6 @@ class Remaining(Iterator[Chunk]):
         last = gap.last if gap.last - last < (last - first) // 2 else last  # no crumbs
         sides = ((gap.first, first), (last, gap.last))
         gaps[place:place] = [gap.piece(*side) for side in sides if side[0] < side[1]]
-        if not gaps:
-            del self._gaps[number]
         return gap.piece(first, last)
 
 

@@ -44,7 +44,7 @@ def run(
     executor : Executor
         Who computes.
     order_seed : int, optional
-        Seed of the order of the chunks; that of the histories, if not given.
+        Seed of the order of the chunks; that of the histories in every part of the campaign, if not given.
     progress : callable, optional
         Called with `Progress` after every chunk.
 
@@ -72,8 +72,8 @@ def run(
             run = _Run(job, identity.plan, ledger, meter, found)
             run.merge_all()
             remaining = Remaining(
-                identity.plan, _order(found, order_seed), found.pieces, histories.together, job.pace.step,
-                meter.costs, lambda: executor.at_once, interruption.asked,
+                identity.plan, np.flatnonzero(~found.finished), found.pieces, histories.together, job.pace.step,
+                meter.costs, lambda: executor.at_once, interruption.asked, order_seed,
             )  # fmt: skip
             run.compute(executor, remaining, interruption.asked)
         if interruption.asked():
@@ -142,11 +142,6 @@ class _Run:
         for each in self.found.pieces.pop(number):
             path_of(self.job.folder, each).unlink(missing_ok=True)
         return True
-
-
-def _order(found: Found, seed: int | None) -> np.ndarray:
-    numbers = np.flatnonzero(~found.finished)
-    return numbers if seed is None else np.random.default_rng(seed).permutation(numbers)
 
 
 def _record(done: Done) -> Record:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from rocking.studies.campaign.chunks import Chunk, Plan
-from rocking.studies.campaign.estimate import Costs, Estimate
+from rocking.studies.campaign.estimate import Costs, Estimate, Speed
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,8 @@ class Meter:
         self._start = time.perf_counter()
         self._begun = self._start
         self.costs = Costs(plan.count)
-        self._work = 0.0
+        self._work = self._pace = 0.0
+        self._speed = Speed()
         self.chunks = self.histories = self.resumed = 0
         self.known = False
         self._error: Exception | None = None
@@ -184,6 +185,7 @@ class Meter:
             self._begun = time.perf_counter() - seconds  # what it took to start says nothing about the rest
         self.costs.add(done.first, done.last, seconds)
         self._work += seconds
+        self._pace = self._speed.look(self._work, time.perf_counter())
         self.chunks += whole
         self.histories += done.last - done.first
         self._say()
@@ -231,8 +233,9 @@ class Meter:
         spent = time.perf_counter() - self._begun
         here = self.histories - self.resumed
         rate = here / spent if here and spent > 0.0 else 0.0
-        work = self.costs.left()
-        left = work and work.at(self._work / spent) if self._work else None
+        left = self.costs.left()
+        if left is not None and left.seconds:
+            left = left.at(self._pace) if self._pace else None
         done = (self.histories, self._plan.count, self.chunks, self._plan.chunks)
         try:
             self._tell(Progress(*done, rate, left, self.seconds, len(self.retries)))

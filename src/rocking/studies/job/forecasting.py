@@ -2,15 +2,14 @@
 
 import math
 import shutil
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from rocking.dynamics import engine
 from rocking.motions.pulse import Pulse
-from rocking.studies.campaign.chunks import default_chunk
+from rocking.studies.campaign.forecast import trial
+from rocking.studies.campaign.identity import usual_chunk
 from rocking.studies.histories import MOTIONS_AT_ONCE
 from rocking.studies.job.job import Job
 
@@ -25,8 +24,6 @@ _OF_SEARCHES = {"pulses": (2.0, 10.0), "records": (10.0, 100.0)}
 _EDGES = (2.0, 12.0)
 
 _BASE = 150_000_000
-_PIECE = 128
-_TRIAL = 1.0
 
 
 @dataclass(frozen=True)
@@ -41,6 +38,8 @@ class Forecast:
         Histories of one core in a second [1/s].
     seconds : float
         Time of the workers for all of them [s].
+    between : tuple of float
+        Bounds between which it probably is [s].
     memory : int
         Memory of all workers together, of an adaptive study with all that its rounds keep, roughly [bytes].
     disk : int
@@ -57,6 +56,7 @@ class Forecast:
     chunk: int
     rate: float
     seconds: float
+    between: tuple[float, float]
     memory: int
     disk: int
     free: int | None
@@ -64,7 +64,7 @@ class Forecast:
 
 
 def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> Forecast:
-    """Return what a job will take, from histories that are computed for a second.
+    """Return what a job will take, from histories that are computed for two seconds.
 
     Parameters
     ----------
@@ -78,19 +78,20 @@ def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> Forecast
     Returns
     -------
     Forecast
-        Estimates; a motion that takes longer than others makes them wrong.
+        Estimates.
     """
     histories = job.study.histories
-    usual = default_chunk(engine.chosen(histories.engine, histories.law))
-    chunk = min(job.document.campaign.chunk or usual, histories.count)
+    chunk = min(job.document.campaign.chunk or usual_chunk(histories), histories.count)
     chunks = -(-histories.count // chunk)
-    rate, later = _trial(job), _later(job)
+    each, later = trial(histories), _later(job)
+    work = each.at(workers / histories.count)
     return Forecast(
         histories.count,
         chunks,
         chunk,
-        rate,
-        histories.count / rate / workers,
+        1.0 / each.seconds,
+        work.seconds,
+        (work.low, work.high),
         workers * (_BASE + 4 * BYTES * chunk + _motions(job)) + _held(job, later),
         BYTES * histories.count + 5000 * chunks,
         None if folder is None else shutil.disk_usage(_existing(folder)).free,
@@ -118,23 +119,6 @@ def _held(job: Job, later: tuple[int, int] | None) -> int:
         return 0
     kept = later[1] if job.document.map is None else later[1] // 4  # halvings of edges are forgotten
     return _KEPT * (job.study.histories.count + kept)
-
-
-def _trial(job: Job) -> float:
-    """Return how many histories one core computes in a second."""
-    histories = job.study.histories
-    # spread over all of them, in an order that soon has been everywhere
-    count = min(512, -(-histories.count // _PIECE))
-    starts = np.random.default_rng(0).permutation(np.linspace(0, max(0, histories.count - _PIECE), count).astype(int))
-    histories.run(0, 1, threads=1)  # motions are laid out once
-    begun, done = time.perf_counter(), 0
-    for start in starts:
-        last = min(int(start) + _PIECE, histories.count)
-        histories.run(int(start), last, threads=1)
-        done += last - int(start)
-        if time.perf_counter() - begun > _TRIAL:
-            break
-    return done / (time.perf_counter() - begun)
 
 
 def _motions(job: Job) -> int:

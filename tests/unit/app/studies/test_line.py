@@ -245,11 +245,11 @@ def test_a_campaign_without_its_words_is_kept(
 def test_a_server_starts_on_a_full_disk(
     tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A study that was waiting is interrupted, though nothing can be written."""
+    """A study that was waiting waits again, though nothing can be written."""
     study = StudyManager(tmp_path, Limits(), records, workers=1, at_once=0).create(None, map_job())
     monkeypatch.setattr(StudyFolder, "write", _full)
     again = StudyManager(tmp_path, Limits(), records, workers=1, at_once=0)
-    assert again.get(study)["state"] == "interrupted"
+    assert again.get(study)["state"] == "waiting"
 
 
 def test_a_process_that_does_not_listen_ends_with_its_server() -> None:

@@ -67,11 +67,11 @@ def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager: StudyManage
     assert 0 < facts["histories_done"] < facts["histories"]
     with pytest.raises(ProcessLookupError):
         os.killpg(child._process.pid, 0)
-    before = {path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("*.shard")}
+    before = {path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("shards/*.shard")}
     manager.resume(study)
     _wait(manager, study, "running", done=facts["histories_done"] + 1)
     manager.cancel(study)
-    after = {path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("*.shard")}
+    after = {path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("shards/*.shard")}
     assert before.items() <= after.items()
     assert len(after) > len(before)
 
@@ -103,28 +103,33 @@ def test_one_runs_and_the_others_wait(manager: StudyManager, long_job: Tables, m
     assert not (manager._folder / first).exists()
 
 
-def test_a_closed_server_leaves_studies_to_resume(
+def test_studies_of_a_closed_server_go_on_by_themselves(
     tmp_path: Path, records: RecordStore, long_job: Tables, map_job: Callable[..., Tables]
 ) -> None:
-    """What ran and what waited is interrupted, and is that after the next start."""
+    """What ran and what waited goes on with the next start, in the order it was launched; what was cancelled stays."""
     manager = StudyManager(tmp_path, Limits(), records, workers=1)
-    studies = [manager.create(None, job) for job in (long_job, map_job())]
+    studies = [manager.create(None, job) for job in (long_job, map_job(), map_job())]
+    manager.cancel(studies[2])
     done = _wait(manager, studies[0], "running", done=1)["histories_done"]
     manager.close()
+    told = [json.loads((tmp_path / "studies" / study / "meta.json").read_text()) for study in studies]
+    assert [each["state"] for each in told] == ["interrupted", "interrupted", "cancelled"]
+    assert all("when the server starts again" in each["message"] for each in told[:2])
     again = StudyManager(tmp_path, Limits(), records, workers=1)
-    facts = [again.get(study) for study in studies]
-    assert [each["state"] for each in facts] == ["interrupted", "interrupted"]
-    assert all("resume" in each["message"] for each in facts)
-    assert facts[0]["histories_done"] >= done
-    again.resume(studies[1])
+    assert [again.get(study)["state"] for study in studies] in (
+        ["waiting", "waiting", "cancelled"], ["running", "waiting", "cancelled"],
+    )  # fmt: skip
+    assert _wait(again, studies[0], "running", done=done + 1)["message"] == ""
+    again.cancel(studies[0])
     assert _wait(again, studies[1], "done")["histories_done"] == 72
+    assert again.get(studies[2])["state"] == "cancelled"
     again.close()
 
 
 def test_a_server_that_was_killed_finds_its_studies(
     tmp_path: Path, records: RecordStore, map_job: Callable[..., Tables]
 ) -> None:
-    """Running is interrupted at the next start, but done where all is finished; what was half made or deleted goes."""
+    """Running waits again at the next start, but is done where all is finished; what was half made or deleted goes."""
     manager = _idle(tmp_path, records)
     running, complete, torn = (manager.create(None, map_job()) for _ in range(3))
     for study in (running, complete):
@@ -135,7 +140,7 @@ def test_a_server_that_was_killed_finds_its_studies(
     (tmp_path / "studies" / torn / "meta.json").unlink()
     (tmp_path / "studies" / ".deleted-x").mkdir()
     again = _idle(tmp_path, records)
-    assert {each["id"]: each["state"] for each in again.overview()} == {running: "interrupted", complete: "done"}
+    assert {each["id"]: each["state"] for each in again.overview()} == {running: "waiting", complete: "done"}
     assert again.get(complete)["histories_done"] == 72
     assert sorted(path.name for path in (tmp_path / "studies").iterdir()) == sorted([running, complete])
 

@@ -34,4 +34,4 @@ def test_work_of_two_workers_is_two_seconds_a_second() -> None:
     pace.look(1000, 500.0, now=0.0)
     speeds = [pace.look(1000 + 20 * (k // 5), 500.0 + 2.0 * (k // 5), now=7.0 + 0.2 * k)[1] for k in range(100)]
     assert speeds[0] == 0.0
-    assert speeds[20:] == pytest.approx([2.0] * 80)
+    assert speeds[30:] == pytest.approx([2.0] * 70)

@@ -15,14 +15,14 @@ from rocking.studies import MotionSet, Product, Table
 class Motions(MotionSet):
     """Pulses that take a while to make, and are noted in a folder with the process that made them."""
 
-    def __init__(self, count: int, seconds: float, folder: Path) -> None:
-        self.count, self.seconds, self.folder = count, seconds, folder
+    def __init__(self, count: int, seconds: float, folder: Path, spend: Any = time.sleep) -> None:
+        self.count, self.seconds, self.folder, self.spend = count, seconds, folder, spend
 
     def __len__(self) -> int:
         return self.count
 
     def __getitem__(self, index: int) -> Any:
-        time.sleep(self.seconds)
+        self.spend(self.seconds)
         with (self.folder / f"made-{os.getpid()}").open("a") as file:
             file.write(f"{index}\n")
         return rk.pulses.sine(2.0 + 6.0 * (index % 17) / 17.0, 0.4 + 0.8 * (index % 13) / 13.0)
@@ -51,12 +51,13 @@ class Costly(Table):
         return np.asarray(self.__dict__["costs"](share))
 
     def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
-        time.sleep(float(self.cost((np.arange(first, last) + 0.5) / self.count).sum()))
+        self.__dict__["spend"](float(self.cost((np.arange(first, last) + 0.5) / self.count).sum()))
         return super().run(first, last, threads=threads)
 
 
-def costly(table: Table, costs: Any) -> Costly:
+def costly(table: Table, costs: Any, spend: Any = time.sleep) -> Costly:
     """Give histories a cost."""
     made = Costly(table.motions, table.motion, table.values, law=table.law)
     object.__setattr__(made, "costs", costs)
+    object.__setattr__(made, "spend", spend)
     return made

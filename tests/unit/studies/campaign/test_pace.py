@@ -100,6 +100,6 @@ def test_default_chunk_follows_the_engine(tmp_path: Path, make: Any) -> None:
 def test_forecast_is_near(tmp_path: Path, make: Any, kind: type[Table], count: int) -> None:
     """What a run takes is within a factor of 2 of the forecast: the machine is busy with other things now and then."""
     campaign = Campaign.create(tmp_path / "c", as_(kind, make(count)))
-    told = campaign.check().seconds
+    told = campaign.check().work.seconds
     took = campaign.run(workers=1).seconds
     assert 0.5 < took / told < 2.0

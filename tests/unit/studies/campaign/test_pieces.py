@@ -6,7 +6,6 @@ import sqlite3
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -221,8 +220,8 @@ def test_scattered_motions_are_kept(tmp_path: Path) -> None:
     assert max(Counter(motions.made()).values()) == 1
 
 
-def given_out(remaining: Remaining, rate: Callable[[Chunk], int], workers: int = 2) -> list[Chunk]:
-    """Play workers that come no further than a rate: everything that is done, in turn."""
+def given_out(remaining: Remaining, rate: int, workers: int = 2) -> list[Chunk]:
+    """Play workers that do so many histories a second, and keep what is done after one: all of that, in turn."""
     out, done = [], []
     while True:
         while len(out) < workers and (piece := next(remaining, None)) is not None:
@@ -230,8 +229,8 @@ def given_out(remaining: Remaining, rate: Callable[[Chunk], int], workers: int =
         if not out:
             return done
         asked = out.pop(0)
-        part = asked.piece(asked.first, min(asked.last, asked.first + rate(asked)))
-        remaining.back(part, 1.0)
+        part = asked.piece(asked.first, min(asked.last, asked.first + rate))
+        remaining.back(part, (part.last - part.first) / rate)
         done.append(part)
 
 
@@ -243,7 +242,7 @@ def test_what_remains_is_handed_out_once(workers: int, rate: int) -> None:
     order = np.array([3, 1, 0])
     costs = Costs(1000)
     remaining = Remaining(PLAN, order, before, 10, 4, costs, lambda: workers, lambda: False)
-    done = given_out(remaining, lambda _: rate, workers)
+    done = given_out(remaining, rate, workers)
     numbers = Counter(k for each in done for k in range(each.first, each.last))
     assert max(numbers.values()) == 1
     assert set(numbers) == set(range(1000)) - set(range(600, 900)) - set(range(310, 350)) - set(range(500, 520))
@@ -258,14 +257,14 @@ def test_slow_work_is_shared_evenly() -> None:
     assert max(each.last - each.first for each in first) <= 8
     for each in first:
         remaining.back(each.piece(each.first, each.first + 1), 1.0)
-    rest = given_out(remaining, lambda _: 1, 4)
+    rest = given_out(remaining, 1, 4)
     assert len(rest) == 60
 
 
 def test_pieces_end_between_motions() -> None:
     """Where histories of a motion stand together, pieces end with the last one of a motion."""
     remaining = Remaining(PLAN, np.array([0, 1, 2, 3]), {}, 12, 12, Costs(1000), lambda: 3, lambda: False)
-    ends = {each.last for each in given_out(remaining, lambda _: 24, 3)}
+    ends = {each.last for each in given_out(remaining, 24, 3)}
     assert {end % 12 for end in ends - {1000}} == {0}
 
 
