@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rocking.app.problems import TooLarge
 from rocking.app.takeaway.toml_words import toml_of
 from rocking.errors import InvalidValueError
+from rocking.restitution.from_file import file_of
 
 if TYPE_CHECKING:
     from rocking.studies.job.tables import Document
@@ -188,6 +189,9 @@ def _refuse_files(given: dict[str, Any]) -> None:
     for key in _keys(given.get("body")):
         if key in _FILES:
             raise InvalidValueError(f"body: {key} names a file, which a page cannot do; upload the file instead")
+    for word in _words(given.get("restitution")):
+        if file_of(word.strip()):  # it would be run
+            raise InvalidValueError(f"restitution: {word!r:.60} names a file, which a page cannot do; see rocking campaign")
     motions = given.get("motions")
     for table in motions if isinstance(motions, list) else [motions]:
         names = table.get("records") if isinstance(table, dict) else None
@@ -197,6 +201,11 @@ def _refuse_files(given: dict[str, Any]) -> None:
                     f"motions.records must be SHA-256 hashes of uploaded records (64 hexadecimal digits), "
                     f"got {name!r:.60}; upload the file first"
                 )
+
+
+def _words(value: Any) -> list[str]:
+    inside = [value] if isinstance(value, str) else []
+    return inside + [word for each in _inside(value) for word in _words(each)]
 
 
 def _keys(value: Any) -> Iterator[str]:

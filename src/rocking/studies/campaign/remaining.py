@@ -126,7 +126,7 @@ class Remaining(Iterator[Chunk]):
         between = last - last % self._together
         if between <= first and self._together <= self._worth(PIECE):  # a motion that is no more than a piece stays one
             between += self._together
-        last = between if first < between < gap.last else last
+        last = min(between, gap.last) if between > first else last
         last = gap.last if gap.last - last < (last - first) // 2 else last  # no crumbs
         sides = ((gap.first, first), (last, gap.last))
         gaps[place:place] = [gap.piece(*side) for side in sides if side[0] < side[1]]

@@ -82,7 +82,7 @@ class Parts:
             document,
             bodies,
             motions_of(document.motions, inputs),
-            choices_of(document.restitution, document.campaign.seed, bodies),
+            choices_of(document.restitution, document.campaign.seed, bodies, inputs),
             settings,
             inputs,
         )

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Any
 from rocking.bodies import Body
 from rocking.dynamics.impact_law import RandomRestitution
 from rocking.errors import InvalidValueError
-from rocking.restitution import model
+from rocking.restitution import RestitutionModel, model
+from rocking.restitution.from_file import file_of, model_in_file
+from rocking.studies.job.inputs import Inputs
 from rocking.studies.job.reading import located
 from rocking.studies.sensitivity.posterior import posterior
 from rocking.studies.sensitivity.sampled import SampledRestitution
@@ -15,7 +17,9 @@ if TYPE_CHECKING:
     from rocking.studies.job.restitution_tables import RandomTable, RestitutionTable
 
 
-def choices_of(table: "RestitutionTable", seed: int, bodies: Sequence[Body] = ()) -> dict[str, Any]:
+def choices_of(
+    table: "RestitutionTable", seed: int, bodies: Sequence[Body] = (), inputs: Inputs | None = None
+) -> dict[str, Any]:
     """Return the restitutions that a table describes.
 
     Parameters
@@ -26,6 +30,8 @@ def choices_of(table: "RestitutionTable", seed: int, bodies: Sequence[Body] = ()
         Seed of draws, where the table gives none.
     bodies : sequence of Body
         The bodies of the job; a posterior is of one.
+    inputs : Inputs, optional
+        Takes note of the files of models, as in ``mine.py:Mine``; without it, models are asked for by name only.
 
     Returns
     -------
@@ -39,13 +45,14 @@ def choices_of(table: "RestitutionTable", seed: int, bodies: Sequence[Body] = ()
     """
     with located("restitution"):
         words = [*([table.model] if table.model else []), *(table.models or [])]
-        pairs: list[tuple[str, Any]] = [(model(word).label, model(word)) for word in words]
+        models = [_model(word, inputs) for word in words]
+        pairs: list[tuple[str, Any]] = [(each.label, each) for each in models]
         numbers = [*([] if table.value is None else [table.value]), *(table.values or [])]
         pairs += [(f"{value!r}", value) for value in numbers]
         if table.left is not None:
             pairs.append((f"left {table.left!r}, right {table.right!r}", {"left": table.left, "right": table.right}))
         if table.distribution is not None:
-            pairs.append(_drawn(table.distribution, seed, bodies))
+            pairs.append(_drawn(table.distribution, seed, bodies, inputs))
         labels = [label for label, _ in pairs]
         twice = [label for label in labels if labels.count(label) > 1]
         if twice:
@@ -53,8 +60,16 @@ def choices_of(table: "RestitutionTable", seed: int, bodies: Sequence[Body] = ()
         return dict(pairs)
 
 
-def _drawn(table: "RandomTable", seed: int, bodies: Sequence[Body]) -> tuple[str, Any]:
-    times = model(table.times) if isinstance(table.times, str) else table.times
+def _model(word: str, inputs: Inputs | None) -> RestitutionModel:
+    """Return a model by name, or one of the user's own, whose file is then an input of the job."""
+    name = file_of(word) if inputs is not None else None
+    return model(word) if inputs is None or name is None else model_in_file(word, inputs.file(name))
+
+
+def _drawn(
+    table: "RandomTable", seed: int, bodies: Sequence[Body], inputs: Inputs | None
+) -> tuple[str, Any]:  # fmt: skip
+    times = _model(table.times, inputs) if isinstance(table.times, str) else table.times
     law = SampledRestitution if table.each == "history" else RandomRestitution
     seed = seed if table.seed is None else table.seed
     how: dict[str, Any] = {"seed": seed, "times": times}
