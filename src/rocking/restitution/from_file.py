@@ -90,7 +90,7 @@ def _made(source: str, where: str, name: str) -> RestitutionModel:
         raise UnknownModelError(f"{where} failed: {type(error).__name__}: {error}") from error
     for kind in kinds.values():
         _SOURCES[kind] = (source, where)
-        copyreg.pickle(kind, _reduced)  # type: ignore[arg-type]
+        copyreg.pickle(kind, _reduced)
     return made
 
 
@@ -102,7 +102,7 @@ def _module(source: str, where: str) -> ModuleType:
         module.__file__ = where
         sys.modules[name] = module
         try:
-            exec(compile(source, where, "exec"), module.__dict__)  # noqa: S102 (it is the user's own, who asked for it)
+            exec(compile(source, where, "exec"), module.__dict__)  # the user's own, who asked for it
         except BaseException:
             del sys.modules[name]
             raise

@@ -191,7 +191,9 @@ def _refuse_files(given: dict[str, Any]) -> None:
             raise InvalidValueError(f"body: {key} names a file, which a page cannot do; upload the file instead")
     for word in _words(given.get("restitution")):
         if file_of(word.strip()):  # it would be run
-            raise InvalidValueError(f"restitution: {word!r:.60} names a file, which a page cannot do; see rocking campaign")
+            raise InvalidValueError(
+                f"restitution: {word!r:.60} names a file, which a page cannot do; see rocking campaign"
+            )
     motions = given.get("motions")
     for table in motions if isinstance(motions, list) else [motions]:
         names = table.get("records") if isinstance(table, dict) else None

@@ -196,7 +196,9 @@ class Line:
                 process.stop()
                 self.end(found, process)
             elif found.meta.state == WAITING:
-                found.become(INTERRUPTED, "the server was closed before it began; it begins when the server starts again")
+                found.become(
+                    INTERRUPTED, "the server was closed before it began; it begins when the server starts again"
+                )
         self.publish()
 
     def _watch(self) -> None:

@@ -29,7 +29,7 @@ class Study:
         Histories of the rounds that have begun, and finished ones, at the last look [-].
     rate : float
         Histories a second, at the last look [1/s].
-    left : Estimate, optional
+    estimate : Estimate, optional
         Time that is left, at the last look; None while that is not known.
     cancelled, left : bool
         Whether a user wants it to stop, and whether it is being deleted.
@@ -45,7 +45,7 @@ class Study:
     begun: int = 0
     done: int = 0
     rate: float = 0.0
-    left: Estimate | None = None
+    estimate: Estimate | None = None
     cancelled: bool = False
     left: bool = False
     unreadable: bool = False
@@ -60,7 +60,7 @@ class Study:
         workers : int
             Threads or processes.
         """
-        self._pace, self.rate, self.left, self.cancelled = Pace(), 0.0, None, False
+        self._pace, self.rate, self.estimate, self.cancelled = Pace(), 0.0, None, False
         self.process = StudyProcess(self.folder, workers)
         self.become(RUNNING)
 
@@ -105,7 +105,7 @@ class Study:
         if status is not None:
             self.begun, self.done = status.histories, status.histories_done
             self.rate, speed = self._pace.look(self.done, status.seconds)
-            self.left = None if status.work is None or not speed else status.work.at(speed)
+            self.estimate = None if status.work is None or not speed else status.work.at(speed)
         return complete
 
     def end(self, *, closed: bool) -> None:
@@ -125,7 +125,10 @@ class Study:
         elif self.cancelled:
             self.become(CANCELLED, "cancelled; what was finished is safe, resume it")
         elif closed:
-            self.become(INTERRUPTED, "the server was closed; what was finished is safe, and it goes on when the server starts again")
+            self.become(
+                INTERRUPTED,
+                "the server was closed; what was finished is safe, and it goes on when the server starts again",
+            )
         else:
             self.become(FAILED, process.refusal())
 
@@ -134,7 +137,7 @@ class Study:
         """What the application answers."""
         running = self.meta.state == RUNNING
         total = max(self.meta.histories, self.begun)  # an adaptive study finds out on the way how many there are
-        left = self.left if running else None
+        left = self.estimate if running else None
         told: dict[str, Any] = {"histories": total, "histories_done": self.done}
         told |= {"rate": self.rate if running else None, "seconds_left": left and left.seconds}
         told |= {"seconds_left_between": left and [left.low, left.high]}

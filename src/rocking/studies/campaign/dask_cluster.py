@@ -156,7 +156,11 @@ def _pickled(job: Job) -> bytes:
 def _compute(job: Job, chunk: Chunk) -> tuple[bytes, float, str]:
     start = time.perf_counter()
     data = job.compute(chunk)
-    return data or b"", time.perf_counter() - start - job.pace.startup(), f"process {os.getpid()} on {socket.gethostname()}"
+    return (
+        data or b"",
+        time.perf_counter() - start - job.pace.startup(),
+        f"process {os.getpid()} on {socket.gethostname()}",
+    )
 
 
 def _distributed() -> ModuleType:

@@ -135,7 +135,7 @@ class Costs:
 
     def _overlap(self, first: Any, last: Any) -> np.ndarray:
         first, last = (np.atleast_1d(np.asarray(each, np.int64))[:, None] for each in (first, last))
-        return np.clip(np.minimum(self.edges[1:], last) - np.maximum(self.edges[:-1], first), 0, None)
+        return np.asarray(np.clip(np.minimum(self.edges[1:], last) - np.maximum(self.edges[:-1], first), 0, None))
 
     def unseen(self) -> np.ndarray:
         """Return the parts of which nothing was measured yet, and which are not finished.

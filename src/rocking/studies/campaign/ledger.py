@@ -1,4 +1,4 @@
-"""Which chunks, and pieces of chunks, are finished: a small database that only the process which runs the campaign writes."""
+"""Which chunks, and pieces of them, are finished: a small database that only the process of the campaign writes."""
 
 import hashlib
 import sqlite3
@@ -129,9 +129,9 @@ class Ledger:
     def records(self) -> Iterator[Record]:
         """Return the finished chunks, in order.
 
-        Yields
-        ------
-        Record
+        Returns
+        -------
+        iterator of Record
             One after another; none that was changed behind the ledger's back.
 
         Raises
@@ -144,9 +144,9 @@ class Ledger:
     def pieces(self) -> Iterator[Record]:
         """Return the finished pieces of chunks that are not whole yet, in order.
 
-        Yields
-        ------
-        Record
+        Returns
+        -------
+        iterator of Record
             One after another; none that was changed behind the ledger's back.
 
         Raises

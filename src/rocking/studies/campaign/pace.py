@@ -71,7 +71,6 @@ class Pace:
         if wanted < self.step or 2 * count >= self.step:  # the end of a piece says nothing about longer steps
             self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
 
-
     def startup(self) -> float:
         """Return what the first step took beyond its histories: code is loaded, motions are laid out; asked once.
 

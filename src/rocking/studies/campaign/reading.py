@@ -215,7 +215,9 @@ def _records(folder: Path, plan: Plan) -> list[tuple[Chunk, str]]:
             return []
         ledger.check(plan)
         found = [(plan.chunk(record.number), record.seal) for record in ledger.records()]
-        parts = ((plan.chunk(record.number).piece(record.first, record.last), record.seal) for record in ledger.pieces())
+        parts = (
+            (plan.chunk(record.number).piece(record.first, record.last), record.seal) for record in ledger.pieces()
+        )
         return [*found, *parts]
 
 

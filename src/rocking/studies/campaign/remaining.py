@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.studies.campaign.chunks import Chunk, Plan
 from rocking.studies.campaign.estimate import Costs
-from rocking.studies.campaign.pace import PIECE
+from rocking.studies.campaign.pace import PIECE, Pace
 
 _LEAST, _FIRST, _MOST = 0.2, 0.25, 1.2
 """What a piece is to take at least, while parts were not measured yet, and at most, as far as that is known [s]."""
@@ -30,8 +30,6 @@ class Remaining(Iterator[Chunk]):
         Pieces of them that are finished.
     together : int
         Histories of one motion that stand in a row: pieces end between motions, where they can.
-    least : int
-        How many histories several workers take at first, while nothing is known of their cost, and more remain.
     costs : Costs
         What was measured so far.
     sharers, stop : callable
@@ -41,10 +39,11 @@ class Remaining(Iterator[Chunk]):
     """
 
     def __init__(
-        self, plan: Plan, numbers: np.ndarray, pieces: dict[int, list[Chunk]], together: int, least: int,
-        costs: Costs, sharers: Callable[[], int], stop: Callable[[], bool], seed: int | None = None,
+        self, plan: Plan, numbers: np.ndarray, pieces: dict[int, list[Chunk]], together: int, costs: Costs, *,
+        sharers: Callable[[], int], stop: Callable[[], bool] = lambda: False, seed: int | None = None,
     ) -> None:  # fmt: skip
-        self._plan, self._together, self._least, self._costs = plan, together, least, costs
+        self._plan, self._together, self._costs = plan, together, costs
+        self._least = Pace(plan.engine).step
         self._sharers, self._stop, self._rate = sharers, stop, 0.0
         self._out: dict[int, Chunk] = {}
         self._gaps = {number: _gaps(plan.chunk(number), done) for number, done in pieces.items()}

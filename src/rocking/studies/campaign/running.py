@@ -72,8 +72,8 @@ def run(
             run = _Run(job, identity.plan, ledger, meter, found)
             run.merge_all()
             remaining = Remaining(
-                identity.plan, np.flatnonzero(~found.finished), found.pieces, histories.together, job.pace.step,
-                meter.costs, lambda: executor.at_once, interruption.asked, order_seed,
+                identity.plan, np.flatnonzero(~found.finished), found.pieces, histories.together, meter.costs,
+                sharers=lambda: executor.at_once, stop=interruption.asked, seed=order_seed,
             )  # fmt: skip
             run.compute(executor, remaining, interruption.asked)
         if interruption.asked():

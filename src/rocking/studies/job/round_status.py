@@ -117,8 +117,9 @@ def status_of_rounds(folder: Path, *, verify: bool = True) -> tuple[Status | Non
         name: sum(getattr(each, name) for each in found)
         for name in ("histories", "histories_done", "chunks", "chunks_done", "seconds", "retries")
     }
-    words = {name: tuple(word for each in found for word in getattr(each, name)) for name in ("damaged", "broken")}
-    status = Status(folder, running=holder(folder), software=found[0].software, **sums, **words)
+    damaged, broken = (tuple(word for each in found for word in getattr(each, name)) for name in ("damaged", "broken"))
+    software = found[0].software
+    status = Status(folder, running=holder(folder), software=software, damaged=damaged, broken=broken, **sums)
     told = finished_rounds(folder)
     whole = told is not None and told["rounds"] == len(found) and status.complete
     return status, len(found), whole

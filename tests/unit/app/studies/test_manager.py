@@ -67,13 +67,17 @@ def test_cancel_takes_less_than_a_second_and_resume_goes_on(manager: StudyManage
     assert 0 < facts["histories_done"] < facts["histories"]
     with pytest.raises(ProcessLookupError):
         os.killpg(child._process.pid, 0)
-    before = {path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("shards/*.shard")}
+    before = {
+        path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("shards/*.shard")
+    }
     manager.resume(study)
     _wait(manager, study, "running", done=facts["histories_done"] + 1)
     manager.cancel(study)
-    after = {path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("shards/*.shard")}
+    after = {
+        path.name: path.stat().st_mtime_ns for path in manager._line.study(study).folder.path.rglob("shards/*.shard")
+    }
     assert before.items() <= after.items()
-    assert len(after) > len(before)
+    assert manager.get(study)["histories_done"] > facts["histories_done"]
 
 
 def test_a_study_that_does_not_listen_is_killed(
@@ -235,8 +239,7 @@ def test_a_failure_is_told_in_a_sentence(tmp_path: Path, records: RecordStore, m
     job = tmp_path / "studies" / study / "job.toml"
     whole = job.read_text()
     job.write_text(whole.replace("0.5", "-0.5"))
-    manager = StudyManager(tmp_path, Limits(), records, workers=1)
-    manager.resume(study)
+    manager = StudyManager(tmp_path, Limits(), records, workers=1)  # it begins by itself
     message = _wait(manager, study, "failed", "done")["message"]
     assert message.startswith("body: ")
     assert "-0.5" in message

@@ -42,7 +42,8 @@ def test_a_study_from_launch_to_file(client: TestClient, map_job: Callable[..., 
     assert [each["id"] for each in client.get("/api/studies").json()["studies"]] == [study]
     facts = _wait(client, study, "done")
     assert set(facts) == {
-        "id", "name", "kind", "state", "histories", "histories_done", "rate", "seconds_left", "message", "created",
+        "id", "name", "kind", "state", "histories", "histories_done", "rate", "seconds_left",
+        "seconds_left_between", "message", "created",
     }  # fmt: skip
     result = client.get(f"/api/studies/{study}/result").json()
     assert result["kind"] == "overturning-map"

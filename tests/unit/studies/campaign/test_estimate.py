@@ -42,13 +42,15 @@ def played(costs: np.ndarray, workers: int, size: int) -> tuple[list[tuple[float
     plan = Plan("a" * 64, COUNT, size, "fast", "1.0")
     known, ends = Costs(COUNT), np.cumsum(costs)
     now, work, done, told, speed = 0.0, 0.0, 0, [], Speed()
-    left = Remaining(plan, np.arange(plan.chunks), {}, EACH, EACH, known, lambda: workers, lambda: False)
+    left = Remaining(plan, np.arange(plan.chunks), {}, EACH, known, sharers=lambda: workers)
     busy: list[tuple[float, Chunk, float]] = []
     while True:
         while len(busy) < workers and (asked := next(left, None)) is not None:
             before = ends[asked.first] - costs[asked.first]
             last = min(asked.last, int(np.searchsorted(ends, before + 1.0)) // EACH * EACH + EACH)  # as of a second
-            heapq.heappush(busy, (now + ends[last - 1] - before, asked.piece(asked.first, last), ends[last - 1] - before))
+            heapq.heappush(
+                busy, (now + ends[last - 1] - before, asked.piece(asked.first, last), ends[last - 1] - before)
+            )
         if not busy:
             return told, now
         now, piece, seconds = heapq.heappop(busy)

@@ -165,13 +165,15 @@ def test_killed_before_pieces_are_joined(
     from rocking.studies.campaign import running
 
     campaign = Campaign.create(tmp_path / "c", work, 50)
-    with monkeypatch.context() as patched, pytest.raises(ZeroDivisionError):
+    with monkeypatch.context() as patched:
         patched.setattr(running.shard, "unpack", lambda *_: 1 // 0)
-        campaign.run(workers=1)
+        with pytest.raises(ZeroDivisionError):
+            campaign.run(workers=1)
     assert {50, 100} & {last for _, last in pieces(campaign)}
-    with monkeypatch.context() as patched, pytest.raises(ZeroDivisionError):
+    with monkeypatch.context() as patched:
         patched.setattr(Ledger, "record", lambda *_: 1 // 0)
-        campaign.run(workers=1)
+        with pytest.raises(ZeroDivisionError):
+            campaign.run(workers=1)
     assert len(shards(campaign)) == 1
     assert campaign.run(workers=1).adopted == 1
     assert shards(campaign) == shards(finished)
@@ -213,7 +215,9 @@ def test_each_motion_is_made_once_by_who_needs_it(tmp_path: Path) -> None:
 def test_scattered_motions_are_kept(tmp_path: Path) -> None:
     """Histories whose motions are in no order, in steps of a few: no motion is made twice while there is room."""
     motions = Motions(40, 0.0, tmp_path)
-    values = {f"{n}_{side}": np.array([v]) for n, v in (("alpha", 0.3), ("p", 2.0), ("r", 0.9)) for side in ("right", "left")}
+    values = {
+        f"{n}_{side}": np.array([v]) for n, v in (("alpha", 0.3), ("p", 2.0), ("r", 0.9)) for side in ("right", "left")
+    }
     work = Table(motions, np.random.default_rng(1).integers(0, 40, 600), values)
     for first in range(0, 600, 10):
         work.run(first, first + 10, threads=1)
@@ -240,8 +244,7 @@ def test_what_remains_is_handed_out_once(workers: int, rate: int) -> None:
     """Whatever was done before, however far workers come: every history once, none in two chunks."""
     before = {1: [PLAN.chunk(1).piece(310, 350), PLAN.chunk(1).piece(500, 520)]}
     order = np.array([3, 1, 0])
-    costs = Costs(1000)
-    remaining = Remaining(PLAN, order, before, 10, 4, costs, lambda: workers, lambda: False)
+    remaining = Remaining(PLAN, order, before, 10, Costs(1000), sharers=lambda: workers)
     done = given_out(remaining, rate, workers)
     numbers = Counter(k for each in done for k in range(each.first, each.last))
     assert max(numbers.values()) == 1
@@ -251,8 +254,8 @@ def test_what_remains_is_handed_out_once(workers: int, rate: int) -> None:
 
 def test_slow_work_is_shared_evenly() -> None:
     """One chunk of slow histories among four: none is given more than its share, the last ones get one each."""
-    plan = Plan("a" * 64, 64, 64, "fast", "1.0")
-    remaining = Remaining(plan, np.array([0]), {}, 1, 1, Costs(64), lambda: 4, lambda: False)
+    plan = Plan("a" * 64, 64, 64, "reference", "1.0")
+    remaining = Remaining(plan, np.array([0]), {}, 1, Costs(64), sharers=lambda: 4)
     first = [next(remaining) for _ in range(4)]
     assert max(each.last - each.first for each in first) <= 8
     for each in first:
@@ -263,7 +266,7 @@ def test_slow_work_is_shared_evenly() -> None:
 
 def test_pieces_end_between_motions() -> None:
     """Where histories of a motion stand together, pieces end with the last one of a motion."""
-    remaining = Remaining(PLAN, np.array([0, 1, 2, 3]), {}, 12, 12, Costs(1000), lambda: 3, lambda: False)
+    remaining = Remaining(PLAN, np.array([0, 1, 2, 3]), {}, 12, Costs(1000), sharers=lambda: 3)
     ends = {each.last for each in given_out(remaining, 24, 3)}
     assert {end % 12 for end in ends - {1000}} == {0}
 

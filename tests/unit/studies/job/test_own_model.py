@@ -1,4 +1,4 @@
-"""A restitution model in the user's own file works in a campaign: in every process, and only as long as it is the same."""
+"""A model in the user's own file works in a campaign: in every process, and only as long as it is the same."""
 
 import json
 import pickle
