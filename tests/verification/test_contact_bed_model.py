@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import os
 
 import numpy as np
 import pytest
@@ -50,9 +51,10 @@ def test_stated_error(points: int) -> None:
     """300 random impacts inside the table are met within the stated error; a quarter of the nodes would not do."""
     cases = random_cases(300, seed=points)
     exact = resolved(cases, points)
-    assert np.abs(read(bed_table(), points, cases) - exact).max() <= stated_error(points, 1.0)
+    stated = stated_error(points, 1.0, cases[:, 0])
+    assert (np.abs(read(bed_table(), points, cases) - exact) <= stated).all()
     if points > 2:  # negative control; two points are Housner's impact, the same everywhere in the table
-        assert np.abs(read(bed_table().coarser(), points, cases) - exact).max() > stated_error(points, 1.0)
+        assert (np.abs(read(bed_table().coarser(), points, cases) - exact) > stated).any()
 
 
 @needs_engine
@@ -63,11 +65,38 @@ def test_stated_error_of_light_damping(points: int) -> None:
         cases = random_cases(100, seed=points, damping=band)
         exact = np.minimum(resolved(cases, points), most(cases))
         error = np.abs(read(bed_table(), points, cases) - exact)
-        assert error.max() <= stated_error(points, band[0])
+        stated = stated_error(points, band[0], cases[:, 0])
+        assert (error <= stated).all()
         assert np.median(error) < 5e-3
         # negative control: another number of points is another impact
         other = read(bed_table(), 41 if points == 2 else 2, cases)
-        assert np.abs(other - exact).max() > stated_error(points, band[0])
+        assert (np.abs(other - exact) > stated).any()
+
+
+@needs_engine
+@pytest.mark.parametrize("points", POINTS)
+def test_stated_error_where_bodies_almost_stop(points: int) -> None:
+    """The worst corner of the table: lightly damped, squat, offset. A statement without flatness was broken there."""
+    places = [[0.37294116, -0.318051094, 0.0550323505, 591.625508], [0.37671932, -0.3030463, 0.06156481, 636.197715]]
+    random = np.random.default_rng(points)
+    cases = np.repeat(places, 20, axis=0) * np.exp(random.uniform(-0.02, 0.02, (40, 4)))
+    error = np.abs(read(bed_table(), points, cases) - np.minimum(resolved(cases, points), most(cases)))
+    stated = [float(stated_error(points, damping, flatness)) for flatness, _, damping, _ in cases.tolist()]
+    assert (error <= stated).all()
+    if points in {5, 11}:  # negative control: what is stated for slender bodies does not hold here
+        assert error.max() > stated_error(points, 0.05, 0.3)
+
+
+@needs_engine
+@pytest.mark.skipif("ROCKING_CAMPAIGN" not in os.environ, reason="half an hour: ROCKING_CAMPAIGN=1 runs it")
+@pytest.mark.parametrize("points", POINTS)
+def test_a_million_random_bodies(points: int) -> None:
+    """None of 10^6 random impacts in the table's domain, 200,000 a number of points, is beyond the stated error."""
+    for part in range(100):
+        cases = random_cases(2000, seed=1000 * points + part, damping=(0.05, 5.0))
+        error = np.abs(read(bed_table(), points, cases) - np.minimum(resolved(cases, points), most(cases)))
+        stated = [float(stated_error(points, damping, flatness)) for flatness, _, damping, _ in cases.tolist()]
+        assert (error <= stated).all(), cases[np.argmax(error / stated)]
 
 
 @needs_engine

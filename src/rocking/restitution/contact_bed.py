@@ -70,7 +70,8 @@ class ContactBedModel(InertiaModel):
         Coefficient of friction; infinite by default. A base sticks from m h w / (I_C + m h^2) on, w the lever of the
         new foot, whatever the number of points; below, the impact is resolved [-].
     allowed_error : float
-        The table is read where its stated error is no larger; from damping 1 on that is 0.001 [-].
+        The table is read for bodies for which its stated error is no larger; from damping 1 on that is 0.001 to 0.002,
+        the most for the most squat bodies [-].
 
     Raises
     ------
@@ -106,7 +107,7 @@ class ContactBedModel(InertiaModel):
     )
     domain = (
         "table: (I_C + m h^2) / (m w^2) from 1.6 (a rectangle with h/b = 0.97) to 199, the plumb line within a "
-        "third of the half base of its middle; r within 0.001 of the resolved impact there for damping >= 1, see "
+        "third of the half base of its middle; r within 0.002 of the resolved impact there for damping >= 1, see "
         "bed_table.STATED_ERRORS below; beyond, the impulse keeps the place it has at the edge of the table; beds "
         "outside the table are resolved in time; where r <= 0 the body stops"
     )
@@ -139,10 +140,9 @@ class ContactBedModel(InertiaModel):
 
     @property
     def tabulated(self) -> bool:
-        """Whether the bed is inside the table and that is good enough; a body on it may still slide."""
+        """Whether the bed is inside the table; a body on it may be squatter than is read there, or slide."""
         inside = self.points in POINTS and DAMPING[0] <= self.damping <= DAMPING[1]
-        inside = inside and HARDNESS[0] <= self.hardness <= HARDNESS[1]
-        return inside and stated_error(self.points, self.damping) <= self.allowed_error
+        return inside and HARDNESS[0] <= self.hardness <= HARDNESS[1]
 
     def evaluate(self, body: Body, onto: Foot = "right") -> BedRestitution:
         """Return the coefficient of a body with its flags and where it comes from.
@@ -160,8 +160,9 @@ class ContactBedModel(InertiaModel):
             Coefficient, raw value, flags, source and its stated error.
         """
         found = super().evaluate(body, onto)
-        read = bool(self._read(ImpactGeometry.of_body(body, onto)))
-        source, error = (Source.TABLE, stated_error(self.points, self.damping)) if read else (Source.RESOLVED, 1e-6)
+        geometry = ImpactGeometry.of_body(body, onto)
+        read = bool(self._read(geometry))
+        source, error = (Source.TABLE, float(self._error(geometry))) if read else (Source.RESOLVED, 1e-6)
         return BedRestitution(found.model, found.raw, found.coefficient, found.flags, source, error)
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
@@ -185,10 +186,14 @@ class ContactBedModel(InertiaModel):
         return np.asarray(np.minimum(r, np.sqrt(geometry.old_gyration / geometry.new_gyration)))
 
     def _read(self, geometry: ImpactGeometry) -> BoolArray:
-        """Whether the table serves: the bed is in it, and the base does not slide."""
+        """Whether the table serves: the bed is in it, it is good enough there, and the base does not slide."""
         longest = np.maximum(geometry.old_lever, geometry.new_lever)
         need = geometry.height * longest / geometry.base_gyration
-        return np.asarray(self.tabulated & (self.friction >= _NEARLY * need))
+        sticks = self.friction >= _NEARLY * need
+        return np.asarray(sticks & (self._error(geometry) <= self.allowed_error) if self.tabulated else sticks & False)
+
+    def _error(self, geometry: ImpactGeometry) -> FloatArray:
+        return stated_error(self.points, self.damping, _flatness(geometry))
 
     def _from_table(self, geometry: ImpactGeometry) -> FloatArray:
         half = 0.5 * (geometry.old_lever + geometry.new_lever)
@@ -204,10 +209,15 @@ class ContactBedModel(InertiaModel):
 
     def _resolved(self, geometry: ImpactGeometry, where: BoolArray) -> FloatArray:
         half = 0.5 * (geometry.old_lever + geometry.new_lever)
-        flatness = 1.0 / (1.0 + geometry.base_gyration / half**2)
+        flatness = _flatness(geometry)
         share = geometry.height**2 / geometry.base_gyration
         bodies = np.stack([flatness, geometry.old_lever / half - 1.0, share], axis=-1)[where]
         place, name = _RESOLVER
         resolver: Callable[..., FloatArray] = getattr(import_module(place), name)
         bed = (self.points, float(self.damping), float(self.hardness), float(self.friction))
         return resolver(np.atleast_2d(bodies), bed)
+
+
+def _flatness(geometry: ImpactGeometry) -> FloatArray:
+    half = 0.5 * (geometry.old_lever + geometry.new_lever)
+    return np.asarray(1.0 / (1.0 + geometry.base_gyration / half**2))
