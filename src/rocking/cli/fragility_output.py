@@ -158,17 +158,25 @@ def counted(answer: FragilityAnswer) -> "CellTable":
 
 
 def _draw(answer: FragilityAnswer, path: Path) -> None:
+    from rocking.plots.study_words import axis_label, shown_in
     from rocking.plots.style import write
 
     if answer.compared is not None:
         from rocking.plots.sensitivity import sensitivity_picture
 
-        write(sensitivity_picture(answer.compared), path)
+        figure = sensitivity_picture(answer.compared)
     elif answer.question.analysis == "incremental":
         from rocking.plots.incremental import incremental_picture
 
-        write(incremental_picture(answer.found), path)
+        figure = incremental_picture(answer.found)
     else:
         from rocking.plots.fragility import fragility_picture
 
-        write(fragility_picture(answer.found), path)
+        figure = fragility_picture(answer.found)
+    unit, size = answer.question.unit
+    own = axis_label(answer.question.measure.name, answer.question.measure.unit)
+    for axes in figure.axes if answer.question.written else []:
+        for which in ("x", "y"):
+            if getattr(axes, f"get_{which}label")() == own:
+                shown_in(axes, which, unit, size)
+    write(figure, path)

@@ -127,7 +127,7 @@ def _uplift(answer: FragilityAnswer) -> str:
     check = _stripes(answer.found).uplift
     if check.threshold is None:
         return str(check.verdict)
-    unit, factor = _unit(answer)
+    unit, factor = answer.question.unit
     return (
         f"certain above {check.threshold / factor:.4g} {unit}, impossible below; "
         f"{check.contradictions} of {check.checked} histories contradict it"
@@ -148,7 +148,7 @@ def _motions(facts: dict[str, Any]) -> str:
 
 
 def _curves(answer: FragilityAnswer, first: str, result: Any) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    unit, factor = _unit(answer)
+    unit, factor = answer.question.unit
     head = (first, f"median [{unit}]", "95 %", "dispersion", "95 %")
     rows: list[tuple[str, ...]] = []
     for name, fit in result.fits.items():
@@ -159,12 +159,6 @@ def _curves(answer: FragilityAnswer, first: str, result: Any) -> tuple[tuple[str
         middle = _interval(told["median_95"], factor) if known else ""
         rows.append((name, median, middle, spread, _interval(told["dispersion_95"], 1.0) if known else ""))
     return head, rows
-
-
-def _unit(answer: FragilityAnswer) -> tuple[str, float]:
-    """Return the unit that the levels were written in, and its size."""
-    unit, written = answer.question.measure.unit, answer.question.written
-    return (written, shared.UNITS[unit][written]) if written else (unit, 1.0)
 
 
 def _interval(ends: list[float | None], factor: float) -> str:
@@ -232,7 +226,7 @@ def _line(found: Any) -> str:
 
 
 def _crossings(answer: FragilityAnswer, found: IncrementalAnalysis) -> list[str]:
-    unit, factor = _unit(answer)
+    unit, factor = answer.question.unit
     first, whole = found.first_crossing_fit, int(found.complete.sum())
     curve = (
         "too few motions overturn it for a curve"

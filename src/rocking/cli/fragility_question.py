@@ -66,6 +66,12 @@ class FragilityQuestion:
     choices: dict[str, Any]
     settings: dict[str, Any]
 
+    @property
+    def unit(self) -> tuple[str, float]:
+        """Unit that the levels were written in, that of the measure if in none, and its size."""
+        unit, written = self.measure.unit, self.written
+        return (written, shared.UNITS[unit][written]) if written else (unit, 1.0)
+
     @classmethod
     def of(
         cls, body: Body, asked: dict[str, Any], restitution: Sequence[str] | None, settings: dict[str, Any]

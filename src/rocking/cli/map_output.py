@@ -1,7 +1,7 @@
 """What `rocking map` computes, writes and draws."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -45,6 +45,8 @@ class MapQuestion:
         Levels of refinement.
     settings : dict
         As of `rocking.cli.study_output.settings_from`.
+    written : dict of str to str
+        Units that axes were written in, by axis, in which they are printed and drawn.
     """
 
     body: Body
@@ -54,6 +56,7 @@ class MapQuestion:
     choices: dict[str, Any]
     refine: int | None
     settings: dict[str, Any]
+    written: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -96,7 +99,8 @@ class MapQuestion:
         InvalidValueError
             If the axes cannot be read, the map is too large, or options contradict one another.
         """
-        x, y = (axis_from(name, word) for name, word in zip(("--x", "--y"), axes, strict=True))
+        (x, in_x), (y, in_y) = (axis_from(name, word) for name, word in zip(("--x", "--y"), axes, strict=True))
+        written = {axis.name: unit for axis, unit in ((x, in_x), (y, in_y)) if unit}
         _check_size(x, y, drawn=drawn)
         words = list(restitution or ["ked"])
         twice = next((word for word in words if words.count(word) > 1), None)
@@ -108,7 +112,12 @@ class MapQuestion:
             raise InvalidValueError(f"--refine must be in [1, 12], got {refine}")
         if refine is not None and len(words) > 1:
             raise InvalidValueError("--refine is for one --restitution: several are compared cell by cell")
-        return cls(body, motion, x, y, {word: restitution_from(word) for word in words}, refine, settings)
+        return cls(body, motion, x, y, {word: restitution_from(word) for word in words}, refine, settings, written)
+
+    def unit(self, axis: Axis) -> tuple[str, float]:
+        """Return the unit that an axis was written in, its own if in none, and its size."""
+        word = self.written.get(axis.name, "")
+        return (word, shared.UNITS[axis.unit][word]) if word else (axis.unit, 1.0)
 
     def answered(self, *, quiet: bool = False) -> "MapAnswer":
         """Compute the map, with every restitution.
@@ -176,7 +185,7 @@ class MapAnswer:
         return made
 
 
-def axis_from(option: str, word: str) -> Axis:
+def axis_from(option: str, word: str) -> tuple[Axis, str]:
     """Return an axis from one word.
 
     Parameters
@@ -188,8 +197,10 @@ def axis_from(option: str, word: str) -> Axis:
 
     Returns
     -------
-    Axis
+    axis : Axis
         The axis.
+    written : str
+        Unit that its values were written in, empty if none.
 
     Raises
     ------
@@ -198,8 +209,9 @@ def axis_from(option: str, word: str) -> Axis:
 
     Examples
     --------
-    >>> axis_from("--x", "semi_diagonal=40cm,80cm").values.tolist()
-    [0.4, 0.8]
+    >>> axis, unit = axis_from("--x", "semi_diagonal=40cm,80cm")
+    >>> axis.values.tolist(), unit
+    ([0.4, 0.8], 'cm')
     """
     from rocking.studies.axes import axes
 
@@ -212,7 +224,8 @@ def axis_from(option: str, word: str) -> Axis:
     if not equals or not values.strip():
         raise InvalidValueError(f"{option} must be {name}=FIRST:LAST:COUNT or {name}=A,B,C, got no values")
     kind = known[name]
-    return kind(shared.row(kind.name, values, kind.unit)[0])
+    row, written = shared.row(kind.name, values, kind.unit)
+    return kind(row), written
 
 
 def _check_size(x: Axis, y: Axis, *, drawn: bool) -> None:
@@ -251,6 +264,7 @@ def write(answer: MapAnswer, picture: Path | None, csv: Path | None, netcdf: Pat
 
 def _draw(answer: MapAnswer, path: Path) -> None:
     from rocking.plots.overturning_map import overturning_map_picture
+    from rocking.plots.study_words import shown_in
     from rocking.plots.style import write as write_picture
     from rocking.studies.boundary import boundary
 
@@ -259,7 +273,11 @@ def _draw(answer: MapAnswer, path: Path) -> None:
         asked.body, asked.motion, asked.x, asked.y, next(iter(asked.choices.values())),
         levels=asked.refine or 0, tolerance=_LINE, **asked.settings,
     ) if str(answer.found.attrs["engine"]).startswith("fast") else []  # fmt: skip
-    write_picture(overturning_map_picture(answer.found, lines), path)
+    figure = overturning_map_picture(answer.found, lines)
+    for which, axis in (("x", asked.x), ("y", asked.y)):
+        if axis.name in asked.written:
+            shown_in(figure.axes[0], which, *asked.unit(axis))
+    write_picture(figure, path)
 
 
 def _write_csv(found: "xr.Dataset", path: Path) -> None:

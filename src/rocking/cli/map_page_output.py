@@ -80,8 +80,8 @@ def show(answer: MapAnswer) -> None:
     console.print(f"motion:       {asked.motion.name}", markup=False)
     console.print(f"restitution:  {found.attrs['restitution']};  engine: {found.attrs['engine']}", markup=False)
     for name, axis in (("x", asked.x), ("y", asked.y)):
-        ends = f"{axis.values[0]:.4g} to {axis.values[-1]:.4g}{_unit(axis.unit)}, {axis.values.size} values"
-        console.print(f"{name}:            {axis.name}, {ends}", markup=False)
+        span = _span(answer, axis, (axis.values[0], axis.values[-1]))
+        console.print(f"{name}:            {span.replace(' ', ', ', 1)}, {axis.values.size} values", markup=False)
     console.print()
     console.print(table(("how it ends", "cells", "share"), _share_rows(shares(answer))))
     console.print()
@@ -171,10 +171,10 @@ def _begins(answer: MapAnswer) -> str:
     if found is None:
         return "Nothing on this map overturns."
     first = found["first"]
-    spans = f"{_span(x, found['x'])}, {_span(y, found['y'])}"
+    spans = f"{_span(answer, x, found['x'])}, {_span(answer, y, found['y'])}"
     return (
-        f"Overturning begins at {y.name} = {first['y']:.4g}{_unit(y.unit)}, where {x.name} = "
-        f"{first['x']:.4g}{_unit(x.unit)}; it lies within {spans}."
+        f"Overturning begins at {y.name} = {_in_unit(answer, y, first['y'])}, where {x.name} = "
+        f"{_in_unit(answer, x, first['x'])}; it lies within {spans}."
     )
 
 
@@ -183,7 +183,7 @@ def _islands_words(answer: MapAnswer) -> str:
     if not count:
         return "No safe islands: no survival on this map is surrounded by overturning."
     one, x, y = answer.islands[0], answer.question.x, answer.question.y
-    spans = f"{_span(x, one.x)}, {_span(y, one.y)}"
+    spans = f"{_span(answer, x, one.x)}, {_span(answer, y, one.y)}"
     cells = f"{one.cells} cell{'s' if one.cells != 1 else ''}"
     return f"Safe islands: {count}; the largest has {cells}: {spans}."
 
@@ -229,10 +229,12 @@ def _share_rows(told: list[dict[str, Any]]) -> list[tuple[str, ...]]:
     return [(one["meaning"], str(one["count"]), f"{100.0 * one['share']:.2f} %") for one in [*rows, *late]]
 
 
-def _span(axis: Axis, ends: Sequence[float]) -> str:
-    low, high = (f"{end:.4g}" for end in ends)
-    return f"{axis.name} {low if low == high else f'{low} to {high}'}{_unit(axis.unit)}"
+def _span(answer: MapAnswer, axis: Axis, ends: Sequence[float]) -> str:
+    unit, size = answer.question.unit(axis)
+    low, high = (f"{end / size:.4g}" for end in ends)
+    return f"{axis.name} {low if low == high else f'{low} to {high}'}{'' if unit == '1' else f' {unit}'}"
 
 
-def _unit(unit: str) -> str:
-    return "" if unit == "1" else f" {unit}"
+def _in_unit(answer: MapAnswer, axis: Axis, value: float) -> str:
+    unit, size = answer.question.unit(axis)
+    return f"{value / size:.4g}{'' if unit == '1' else f' {unit}'}"

@@ -238,3 +238,36 @@ def note(axes: "Axes", words: str, width: int = 62) -> None:
         Characters in a line.
     """
     axes.set_title(wrapped(words, width).replace("m/s2", "m/s$^2$"), loc="left", fontsize=7, color=INK)
+
+
+def shown_in(axes: "Axes", which: str, unit: str, size: float) -> None:
+    """Give an axis the numbers of another unit than it was drawn in, round in that unit.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Where.
+    which : {"x", "y"}
+        Which axis.
+    unit : str
+        The unit, which takes the place of the one in brackets in the label.
+    size : float
+        How much one of it is, in the unit that was drawn.
+    """
+    from matplotlib.ticker import FuncFormatter, Locator
+
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    drawn = axis.get_major_locator()
+
+    class _Round(Locator):
+        def tick_values(self, vmin: float, vmax: float) -> list[float]:
+            return [size * tick for tick in drawn.tick_values(vmin / size, vmax / size)]
+
+        def __call__(self) -> list[float]:
+            return self.tick_values(*axis.get_view_interval())
+
+    axis.set_major_locator(_Round())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / size:.6g}"))
+    head, _, _ = axis.get_label_text().rpartition("[")
+    if head:
+        axis.set_label_text(f"{head}[{unit}]")

@@ -175,7 +175,7 @@ def test_files(capsys, tmp_path):
 )
 def test_axis_words(word, values):
     """Ranges, lists, equal ratios and units give the values that they say."""
-    assert axis_from("--x", word).values == pytest.approx(values, rel=1e-14)
+    assert axis_from("--x", word)[0].values == pytest.approx(values, rel=1e-14)
 
 
 REFUSALS = [
