@@ -9,7 +9,7 @@
 namespace rocking {
 
 enum Outcome : std::int8_t { kNoUplift = 0, kRocked = 1, kOverturned = 2, kFailed = 3 };
-enum Status : std::int8_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyImpacts = 3, kNotResolved = 4 };
+enum Status : std::int8_t { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyEvents = 3, kNotResolved = 4 };
 enum EventKind : std::int8_t { kUplift = 0, kImpact = 1, kRest = 2 };
 
 struct Range {

@@ -131,7 +131,7 @@ bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::settle(int i) {
     const double after = -v[i];
-    if (lanes[i].impacts >= set.most_impacts) return finish(i, kFailed, kTooManyImpacts);
+    if (lanes[i].impacts >= set.most_impacts) return finish(i, kFailed, kTooManyEvents);
     if (over(i)) return conclude(i);
     if (!(after <= here(i).calm)) return;
     const std::int64_t block = block_at(i);  // soon at rest: then these are needed

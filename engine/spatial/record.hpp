@@ -6,7 +6,7 @@ namespace rocking::spatial {
 namespace ROCKING_ISA {
 
 enum Outcome : int { kNoUplift = 0, kRocked = 1, kOverturned = 2, kFailed = 3 };
-enum Status : int { kGood = 0, kLostContact = 1, kTooManyEvents = 2, kNotFinite = 3, kInvalid = 4 };
+enum Status : int { kGood = 0, kInvalid = 1, kNotFinite = 2, kTooManyEvents = 3, kLostContact = 5 };  // codes of `Status`
 enum Kind : int { kUplift = 0, kImpact = 1, kChange = 2, kComesToRest = 3 };
 
 struct Settings {

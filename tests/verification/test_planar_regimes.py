@@ -8,9 +8,8 @@ import pytest
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
 from rocking.dynamics.histories import simulate
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.planar import (
-    PlanarOutcome,
-    PlanarStatus,
     Regime,
     Start,
     analytic_regime,
@@ -229,7 +228,7 @@ def test_block_on_a_rectangular_pulse_slides_as_newmark_says():
     assert response.displacement[-1] == pytest.approx(-expected, rel=1e-12)
     wrong = 1.01 * grip
     assert response.sliding_distance != pytest.approx((push - wrong) * push * duration**2 / (2.0 * wrong), rel=1e-3)
-    assert response.outcome is PlanarOutcome.SLID
+    assert response.outcome is Outcome.SLID
 
 
 def test_block_that_is_pushed_stops_where_friction_stops_it():
@@ -263,7 +262,7 @@ def test_ground_that_drops_away_is_seen_from_the_ground():
     motion = GroundMotion(samples, 0.01, vertical=vertical)
     response = simulate_with_contact(SLENDER, motion, 0.4, duration=0.5)
     assert response.rise[10] == pytest.approx(0.5 * G * 0.1**2, rel=1e-12)
-    assert response.outcome is PlanarOutcome.FLEW
+    assert response.outcome is Outcome.FLEW
 
 
 @pytest.mark.parametrize("restitution", ["housner", "ked", None])
@@ -275,7 +274,7 @@ def test_much_friction_is_the_pure_rocking_engine(restitution):
     assert pure.impacts.size > 30
     assert pure.peak_rotation > 0.01
     assert np.max(np.abs(planar.rotation - pure.rotation)) < 1e-9
-    assert planar.outcome is PlanarOutcome.ROCKED
+    assert planar.outcome is Outcome.ROCKED
     assert planar.peak_rotation == pytest.approx(pure.peak_rotation, rel=1e-9)
 
 
@@ -300,7 +299,7 @@ def _strong():
 def test_energy_adds_up(width, mu, bounce):
     """Kinetic + potential + lost = work + initial to 1e-10, through every regime; losses only grow."""
     response = simulate_with_contact(Block(width=width, height=2.0), _strong(), mu, bounce=bounce)
-    assert response.status is PlanarStatus.GOOD
+    assert response.status is Status.GOOD
     assert response.energy.closure < 1e-10
     for lost in (response.energy.lost_in_impacts, response.energy.lost_in_friction):
         assert np.all(np.diff(lost) >= -1e-9 * lost[-1])
@@ -351,9 +350,9 @@ def test_a_foot_dragged_behind_the_paradox_is_a_status():
     block = Block(width=1.0, height=2.0)
     start = Start(rotation=1e-6, horizontal_velocity=1.0)
     stuck, fine = (simulate_with_contact(block, None, 4.0 / 3.0 + d, start=start, duration=0.01) for d in (0.1, -0.1))
-    assert stuck.status is PlanarStatus.NO_CONTACT_FORCE
-    assert stuck.outcome is PlanarOutcome.FAILED
-    assert fine.status is PlanarStatus.GOOD
+    assert stuck.status is Status.NO_CONTACT_FORCE
+    assert stuck.outcome is Outcome.FAILED
+    assert fine.status is Status.GOOD
 
 
 # ---- a general-purpose peer -----------------------------------------------------------------------------------------

@@ -13,11 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import (
     Contact,
     SpatialBody,
-    SpatialStatus,
     events,
     free_rocking_spatial,
     simulate_spatial,
@@ -40,7 +39,7 @@ SPIN = st.tuples(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4
 def test_nothing_ever_enters_the_ground_and_energy_adds_up(azimuth, tilt, spin):
     """Wobbling to rest or overturning from any start: gaps >= -1e-12 m, the ledger closes, impacts create no energy."""
     run = free_rocking_spatial(SQUARE, tilt, azimuth, angular_velocity=spin)
-    assert run.status is SpatialStatus.GOOD or run.outcome is Outcome.OVERTURNED
+    assert run.status is Status.GOOD or run.outcome is Outcome.OVERTURNED
     fine = np.linspace(0.0, run.time[-1], 2000)
     assert run.at(fine).least_gap.min() >= -1e-12
     assert run.energy.closure < 1e-9
@@ -89,7 +88,7 @@ def test_a_ground_that_falls_faster_than_the_body_is_said_so():
     """Downwards with 2 g the contact is lost: a status, no number for the peak; with 0.9 g the body just stands."""
     drop = rk.pulses.rectangular(amplitude=-2.0 * rk.conventions.g, duration=0.2)
     run = simulate_spatial(SQUARE, vertical=drop)
-    assert (run.outcome, run.status) == (Outcome.FAILED, SpatialStatus.LOST_CONTACT)
+    assert (run.outcome, run.status) == (Outcome.FAILED, Status.LOST_CONTACT)
     assert math.isnan(run.peak_tilt)
     assert simulate_spatial(SQUARE, vertical=drop.scaled(0.45)).outcome is Outcome.NO_UPLIFT
 

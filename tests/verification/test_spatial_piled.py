@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import SpatialBody, reference, simulate_spatial
-from rocking.dynamics.spatial.outcome import SpatialStatus
-from rocking.dynamics.spatial_batch import SpatialBatchStatus, engine, simulate_spatial_batch
+from rocking.dynamics.spatial_batch import engine, simulate_spatial_batch
 
 STEP, LENGTH = 0.02, 8.0
 LAWS = ["housner-3d", "horizontal-momentum-3d", 0.9]
@@ -60,10 +59,10 @@ def _reference(seed, law):
 def test_a_corner_whose_neighbour_chatters_comes_to_stick(monkeypatch):
     """The history ends and its energy closes to 1e-9; impacts that may pile up for ever stop it."""
     sticks = _reference(96, "housner-3d")
-    assert sticks.status is SpatialStatus.GOOD
+    assert sticks.status is Status.GOOD
     assert sticks.energy.closure < 1e-9
     monkeypatch.setattr(reference, "_PILED", 10**9)
-    assert _reference(96, "housner-3d").status is SpatialStatus.TOO_MANY_EVENTS
+    assert _reference(96, "housner-3d").status is Status.TOO_MANY_EVENTS
 
 
 def test_a_body_on_its_way_down_is_not_at_rest(monkeypatch):
@@ -88,8 +87,8 @@ def test_no_history_on_polygons_ends_in_piled_impacts():
     status, outcome = (np.concatenate([one[name].ravel() for one in found]) for name in ("status", "outcome"))
     peak = np.concatenate([one.peak_tilt.ravel() for one in found])
     assert len(status) == 1800
-    assert not (status == SpatialBatchStatus.TOO_MANY_EVENTS.code).any()
-    assert not (status == SpatialBatchStatus.NOT_FINITE.code).any()
+    assert not (status == Status.TOO_MANY_EVENTS.code).any()
+    assert not (status == Status.NOT_FINITE.code).any()
     assert (outcome == Outcome.FAILED.code).mean() < 0.01
     assert peak[outcome == Outcome.ROCKED.code].max() < 0.5 * math.pi
     assert (outcome == Outcome.OVERTURNED.code).mean() > 0.2

@@ -11,12 +11,11 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import SpatialBody, attitude, events, free_rocking_spatial, release, simulate_spatial
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.events import Step
 from rocking.dynamics.spatial.ground import ground_of
-from rocking.dynamics.spatial.outcome import SpatialStatus
 from rocking.dynamics.spatial.rolling import RollingFlow
 from rocking.dynamics.spatial_batch import engine, simulate_spatial_batch
 from rocking.dynamics.spatial_batch.course import course_of
@@ -107,7 +106,7 @@ def test_a_fall_is_a_fall_and_rounding_must_have_a_floor(monkeypatch):
 
 def test_a_history_lifted_from_rest_has_a_result():
     """The record under which a floor that was missing made a body drop and lift a hundred times at one instant."""
-    assert _reference(96).status is SpatialStatus.GOOD
+    assert _reference(96).status is Status.GOOD
 
 
 def test_a_rim_nearly_flat_is_held_down(monkeypatch):
@@ -120,7 +119,7 @@ def test_a_rim_nearly_flat_is_held_down(monkeypatch):
     assert "hopped or slipped" in held.summary
     assert held.energy.closure < 1e-9
     monkeypatch.setattr(events, "nearly_flat", lambda _body, _up: False)
-    assert _reference(117).status is SpatialStatus.LOST_CONTACT
+    assert _reference(117).status is Status.LOST_CONTACT
 
 
 def _normal_by_angles(tilt, rate, turning, spin):

@@ -5,7 +5,8 @@ import math
 from typing import Any
 
 from rocking.cli.simulate_question import Question, restitution_from
-from rocking.dynamics.planar import PlanarOutcome, PlanarResponse, Regime, Start, simulate_with_contact
+from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.planar import PlanarResponse, Regime, Start, simulate_with_contact
 from rocking.errors import RockingError
 from rocking.report.facts.response import finite, moved_facts
 
@@ -54,7 +55,7 @@ def contact_response(question: Question, restitution: str, bounce: float) -> Pla
         gravity=question.settings.gravity,
         start=Start(rotation=question.rotation),
     )
-    if response.outcome is PlanarOutcome.FAILED:
+    if response.outcome is Outcome.FAILED:
         raise RockingError(f"there is no response: {response.status.value}")
     return response
 
@@ -182,7 +183,7 @@ def _impacts(rows: Any) -> Any:
 
 
 def _measures(response: PlanarResponse) -> list[tuple[str, str]]:
-    fell, energy = response.outcome is PlanarOutcome.OVERTURNED, response.energy
+    fell, energy = response.outcome is Outcome.OVERTURNED, response.energy
     return [
         ("peak rotation", "it overturned" if fell else f"{math.degrees(response.peak_rotation):.6g} deg"),
         ("slid", f"{response.sliding_distance:.6g} m in all, {float(response.displacement[-1]):+.6g} m at the end"),

@@ -10,7 +10,7 @@ from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
-from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.outcome import OVERTURNED, Outcome, Status, overturned
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
 from rocking.errors import InvalidValueError
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _UNITS = {
     "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
     "status": ("1", ", ".join(f"{s.code} {s.value}" for s in Status)),
+    "overturned": OVERTURNED,
     "side": ("1", "side to which it overturned: 1 right, -1 left"),
     "peak_rotation": ("rad", "rotation of largest size; a quarter turn if it overturned"),
     "peak_time": ("s", "time of the peak rotation; the end of the motion if it comes later"),
@@ -115,7 +116,7 @@ def simulate_many(
     dims = ("body", "motion", "scale", "restitution")
     data = {
         name: (dims, values.reshape(shape), {"units": _UNITS[name][0], "long_name": _UNITS[name][1]})
-        for name, values in results.items()
+        for name, values in {**results, "overturned": overturned(results["outcome"])}.items()
     }
     from rocking import __version__
 

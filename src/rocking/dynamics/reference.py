@@ -180,7 +180,7 @@ class Reference:
         self.u, self.rate = self._alpha, -after
         self._move(tau)
         if self.impacts >= self.settings.most_impacts:
-            return _Ended(Outcome.FAILED, Status.TOO_MANY_IMPACTS)
+            return _Ended(Outcome.FAILED, Status.TOO_MANY_EVENTS)
         if self.stretch >= self.count:
             return self._conclude()
         args = (self.side, after, self.stretch, self.tau, self.settings.rest_speed)

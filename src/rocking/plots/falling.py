@@ -6,7 +6,6 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial_batch.result import SpatialBatch
 from rocking.errors import InvalidValueError
 from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, in_journal_style, new_figure
@@ -94,13 +93,14 @@ def _compass(axes: "Axes", letter: str, title: str) -> None:
 
 
 def _share(axes: "Axes", batch: SpatialBatch, angles: FloatArray) -> None:
-    over = batch.overturned[0, :, :, :, 0].mean(axis=1)
+    with np.errstate(invalid="ignore"):  # a direction without any result has no share
+        over = np.nansum(batch.overturned, axis=2)[0, :, :, 0] / np.isfinite(batch.overturned).sum(axis=2)[0, :, :, 0]
     closed = np.append(angles, angles[0] + 2.0 * np.pi)
     for k in range(2):
         color, line, label = _look(batch, k)
         share = 100.0 * np.append(over[:, k], over[0, k])
         axes.plot(closed, share, linewidth=1.1, color=color, linestyle=line, label=label)
-    top = max(10.0, 10.0 * np.ceil(10.0 * over.max()))
+    top = max(10.0, 10.0 * np.ceil(10.0 * np.nanmax(over, initial=0.0)))
     axes.set_ylim(0.0, top)
     axes.set_yticks([0.5 * top, top], [f"{0.5 * top:g}", f"{top:g} %"])
     axes.set_rlabel_position(22.5)  # type: ignore[attr-defined]
@@ -113,7 +113,7 @@ def _rose(axes: "Axes", batch: SpatialBatch, base: FloatArray | None) -> None:
     edges = (np.arange(_SECTORS + 1) - 0.5) * 2.0 * np.pi / _SECTORS
     tops = []
     for k in range(2):
-        fell = batch.overturned[0, :, :, k, 0]
+        fell = batch.overturned[0, :, :, k, 0] == 1.0
         where = np.mod(batch.direction[0, :, :, k, 0][fell] - edges[0], 2.0 * np.pi) + edges[0]
         part = 100.0 * np.histogram(where, edges)[0] / max(1, fell.sum())
         color, line, _ = _look(batch, k)
@@ -141,8 +141,7 @@ def _difference(axes: "Axes", batch: SpatialBatch, angles: FloatArray) -> None:
     from matplotlib.patches import Patch
 
     over = batch.overturned[0, :, :, :, 0]
-    classes = 1 * over[..., 0] + 2 * over[..., 1]
-    classes[(batch.outcome[0, :, :, :, 0] == Outcome.FAILED.code).any(axis=-1)] = 4
+    classes = np.nan_to_num(over[..., 0] + 2.0 * over[..., 1], nan=4.0)  # one without a result leaves it open
     looks = [_look(batch, k) for k in range(2)]
     colors = [_NONE, looks[0][0], looks[1][0], _BOTH, _UNKNOWN]
     scales = np.array(batch.labels["scale"], dtype=np.float64)
@@ -155,7 +154,7 @@ def _difference(axes: "Axes", batch: SpatialBatch, angles: FloatArray) -> None:
     axes.set_xlim(np.degrees(angles[0]), np.degrees(angles[-1]))
     axes.set_xlabel("direction of the shaking [degrees]")
     axes.set_ylabel("scale of the record [-]")
-    differ = float(((classes == 1) | (classes == 2)).mean())
+    differ = float(((classes == 1) | (classes == 2)).sum() / max(1, (classes < 4).sum()))
     axes.set_title(f"c  Verdicts: {100.0 * differ:.1f} % differ", loc="left", pad=12.0)
     words = ["neither", f"{looks[0][2]} alone", f"{looks[1][2]} alone", "both", "no result"]
     shown = [k for k in range(5) if (classes == k).any() or k in (1, 2)]

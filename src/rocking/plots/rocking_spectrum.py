@@ -131,8 +131,9 @@ def _overturning(axes: "Axes", found: "xr.Dataset") -> None:
         axes.set_yticks(range(angles.size), [f"{alpha:.3g}" for alpha in angles])
         axes.set_ylabel("overturns,\n" + r"$\alpha$ [rad]")
         return
-    known = np.maximum((mode != -3).sum(axis=0), 1)
-    for place, share in enumerate((mode >= 0).sum(axis=0) / known):
+    with np.errstate(invalid="ignore"):  # where nothing could be computed there is no share
+        shares = (mode >= 0).sum(axis=0) / (mode != -3).sum(axis=0)
+    for place, share in enumerate(shares):
         axes.plot(period, share, linewidth=1.0, **look(place))
     axes.set_ylim(-0.03, 1.03)
     axes.set_ylabel("share over-\nturned [-]")

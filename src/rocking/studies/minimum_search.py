@@ -200,17 +200,22 @@ def _crossings(scan: Scan, cases: Cases, effort: Effort) -> tuple[Crossings | No
     bounds, marks = (np.searchsorted(each.body, np.arange(count + 1)) for each in (found, scan.samples))
     made: list[Crossings | None] = []
     for k in range(count):
-        own, modes = slice(bounds[k], bounds[k + 1]), all_modes[marks[k] : marks[k + 1]]
-        good = modes[modes != FAILED]
+        own, mine = slice(bounds[k], bounds[k + 1]), slice(marks[k], marks[k + 1])
+        modes = all_modes[mine]
+        known = modes != FAILED
+        good = modes[known]
         if not good.size:
             made.append(None)
             continue
         scale, low, high = found.ends[own].mean(axis=1), float(cases.low[k]), float(cases.high[k])
         peak, uplift = float(cases.peak[k]), float(cases.uplift[k])
+        # what is said of the ends of the range is said of the outermost histories that have a result
+        first, last = (scan.samples.scale[mine][known][[0, -1]] * peak).tolist()
+        ends = low if known[0] else first, high if known[-1] else last
         made.append(
             Crossings(
                 scale * peak, scale * peak / uplift, scale, found.modes[own], np.diff(found.ends[own])[:, 0] * peak,
-                low, high, uplift, (high / low) ** (1.0 / (effort.points - 1)) - 1.0, bool(good[0] >= 0),
+                *ends, uplift, (high / low) ** (1.0 / (effort.points - 1)) - 1.0, bool(good[0] >= 0),
                 int(modes.size), int(np.sum(modes == FAILED)), gaps.get(k, math.nan),
             )
         )  # fmt: skip

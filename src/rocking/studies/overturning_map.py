@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from rocking import conventions
 from rocking.bodies import Body
 from rocking.dynamics.export import extra
-from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.outcome import OVERTURNED, Outcome, Status
 from rocking.dynamics.response import Motion
 from rocking.studies.axis import Axis
 from rocking.studies.plane import Plane
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 VARIABLES = {
     "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
+    "overturned": OVERTURNED,
     "mode": ("1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts"),
     "peak_rotation": ("rad", "rotation of largest size; a quarter turn if it overturned"),
     "peak_ratio": ("1", "peak rotation over the slenderness angle of its side; beyond 1 is not overturning"),

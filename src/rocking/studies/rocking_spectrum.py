@@ -13,6 +13,7 @@ from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.export import extra
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution
+from rocking.dynamics.outcome import overturned
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
@@ -98,7 +99,8 @@ def rocking_spectrum(
     results = _computed(histories, threads, progress)
     shape = (len(given), angles.size, times.size)
     alpha = np.tile(sides["alpha_right"], len(given))
-    results |= {"mode": modes_of(results), "peak_ratio": peak_ratio(results["peak_rotation"], alpha, alpha)}
+    results |= {"mode": modes_of(results), "overturned": overturned(results["outcome"])}
+    results["peak_ratio"] = peak_ratio(results["peak_rotation"], alpha, alpha)
     data = {name: (_DIMENSIONS, results[name].reshape(shape), _about(name)) for name in VARIABLES}
     constant = isinstance(question.law, ConstantRestitution)
     coefficient = np.where(constant, sides["r_right"], np.nan).reshape(shape[1:])

@@ -10,7 +10,7 @@ from PIL import Image
 import rocking as rk
 from rocking.bodies.formats import read_solid
 from rocking.cli import main
-from rocking.dynamics.spatial import SpatialStatus
+from rocking.dynamics.outcome import Status
 from rocking.dynamics.spatial.response import SpatialResponse
 
 PRISM = 'units = "m"\nname = "prism"\n[[solid.part]]\nbox = { width = 0.5, depth = 0.5, height = 2.0 }\n'
@@ -150,7 +150,7 @@ def test_overturning_names_edge_and_direction(capsys, body):
 def test_a_history_without_a_result_is_refused(capsys, body, monkeypatch):
     """Where the engine stops, the sentence says why, and no number is printed."""
     monkeypatch.setattr(SpatialResponse, "outcome", rk.Outcome.FAILED)
-    monkeypatch.setattr(SpatialResponse, "status", SpatialStatus.LOST_CONTACT)
+    monkeypatch.setattr(SpatialResponse, "status", Status.LOST_CONTACT)
     code, out, err = run(capsys, body, SINE)
     assert (code, out) == (2, "")
     assert err.startswith("rocking: there is no response: stopped: the ground would have to pull")

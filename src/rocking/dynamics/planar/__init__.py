@@ -2,7 +2,6 @@
 
 from rocking.dynamics.planar.histories import simulate_with_contact
 from rocking.dynamics.planar.mode import Regime
-from rocking.dynamics.planar.outcome import PlanarOutcome, PlanarStatus
 from rocking.dynamics.planar.response import PlanarResponse
 from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
 from rocking.dynamics.planar.shenton import analytic_regime, friction_demand, regime_at_start, regime_map
@@ -10,10 +9,8 @@ from rocking.dynamics.planar.start import Start
 
 __all__ = [
     "ContactLaw",
-    "PlanarOutcome",
     "PlanarResponse",
     "PlanarSettings",
-    "PlanarStatus",
     "Regime",
     "Start",
     "analytic_regime",

@@ -7,12 +7,12 @@ Lemke's algorithm would find is among them, and unlike it the trial also sees wh
 from itertools import chain, combinations
 from typing import NamedTuple
 
+from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.course import Course, course
 from rocking.dynamics.planar.footing import Footing
 from rocking.dynamics.planar.ground import Ground
 from rocking.dynamics.planar.margins import consistent, margins
 from rocking.dynamics.planar.mode import Mode
-from rocking.dynamics.planar.outcome import PlanarStatus
 from rocking.dynamics.planar.state import State, along, away
 
 TOLERANCE = 1e-12
@@ -62,7 +62,7 @@ class Choice(NamedTuple):
     tolerance: float
 
 
-def choose(footing: Footing, state: State, ground: Ground, friction: float) -> Choice | PlanarStatus:
+def choose(footing: Footing, state: State, ground: Ground, friction: float) -> Choice | Status:
     """Return the mode that follows a state.
 
     Parameters
@@ -78,7 +78,7 @@ def choose(footing: Footing, state: State, ground: Ground, friction: float) -> C
 
     Returns
     -------
-    Choice or PlanarStatus
+    Choice or Status
         The mode; where there is none, or where two of them move the body differently, a status that says so.
     """
     weight = weight_of(ground)
@@ -88,8 +88,8 @@ def choose(footing: Footing, state: State, ground: Ground, friction: float) -> C
         good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]
         if good:
             same = all(_agree(good[0][1], other, footing.size) for _, other in good[1:])
-            return Choice(good[0][0], tolerance) if same else PlanarStatus.AMBIGUOUS
-    return PlanarStatus.NO_CONTACT_FORCE
+            return Choice(good[0][0], tolerance) if same else Status.AMBIGUOUS
+    return Status.NO_CONTACT_FORCE
 
 
 def weight_of(ground: Ground) -> float:

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.choosing import TOLERANCE, Choice, choose, weight_of
 from rocking.dynamics.planar.course import Course, course
 from rocking.dynamics.planar.footing import BOTH, Footing
@@ -20,7 +21,6 @@ from rocking.dynamics.planar.imposed import strike_with
 from rocking.dynamics.planar.log import Blow, Log
 from rocking.dynamics.planar.margins import Kind, consistent, first_end, margins
 from rocking.dynamics.planar.mode import FLIGHT, REST, Mode
-from rocking.dynamics.planar.outcome import PlanarStatus
 from rocking.dynamics.planar.power_series import value
 from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
 from rocking.dynamics.planar.state import State, away, kept, kinetic
@@ -72,7 +72,7 @@ class Planar:
         self.stretch, self.tau = 0, 0.0
         self.tolerance, self.changed, self.events = TOLERANCE, 0, 0
         self.passed = math.nan
-        self.ended: PlanarStatus | None = None
+        self.ended: Status | None = None
         self.lies = False
         self.latest: Course | None = None
 
@@ -97,7 +97,7 @@ class Planar:
         self._first_sample()
         while self.ended is None and not self._over():
             self._step()
-        return History(self.log, self.ended or PlanarStatus.GOOD, self.lies, self.passed, self._now)
+        return History(self.log, self.ended or Status.GOOD, self.lies, self.passed, self._now)
 
     # ---- from event to event ----------------------------------------------------------------------------------------
 
@@ -129,7 +129,7 @@ class Planar:
         full = course(self.footing, self.state, self.mode, ground, self.law.friction, _ORDER)
         part = self._trusted(full)
         if not part > 0.0:
-            self.ended = PlanarStatus.NOT_FINITE if full.stiff > 0.0 else PlanarStatus.NO_CONTACT_FORCE
+            self.ended = Status.NOT_FINITE if full.stiff > 0.0 else Status.NO_CONTACT_FORCE
             return
         whole, here = full.shortened(part), ground.shortened(part)
         stretch = whole.unit * self.pace
@@ -187,7 +187,7 @@ class Planar:
         """Let a mode end."""
         self._count()
         if kind is Kind.LYING:
-            self.lies, self.ended = True, PlanarStatus.GOOD
+            self.lies, self.ended = True, Status.GOOD
         elif kind is Kind.LANDING:
             self._land(whole, at)
         else:
@@ -214,7 +214,7 @@ class Planar:
         """Resolve an impact of the feet that touch; rounding in its place is booked with it."""
         before = self.state
         struck = self._struck(before, mode)
-        if isinstance(struck, PlanarStatus):
+        if isinstance(struck, Status):
             self.ended = struck
             return
         rounding = 1e-13 * largest_speed(self.footing, before)
@@ -224,7 +224,7 @@ class Planar:
         self.state = after
         self._change()
 
-    def _struck(self, before: State, mode: Mode) -> Struck | PlanarStatus:
+    def _struck(self, before: State, mode: Mode) -> Struck | Status:
         law = self.law
         if law.restitution is not None and len(mode.feet) == 1:
             foot = -mode.feet[0]
@@ -250,7 +250,7 @@ class Planar:
     def _count(self) -> None:
         self.events += 1
         if self.events >= self.settings.most_events:
-            self.ended = PlanarStatus.TOO_MANY_EVENTS
+            self.ended = Status.TOO_MANY_EVENTS
 
     def _change(self) -> None:
         """Choose the mode that follows."""
@@ -258,11 +258,11 @@ class Planar:
             return
         self.changed += 1
         found = choose(self.footing, self.state, self._ground(1.0 / self.pace), self.law.friction)
-        if isinstance(found, PlanarStatus):
+        if isinstance(found, Status):
             self.ended = found
             return
         if self.changed > _MOST_CHANGES:
-            self.ended = PlanarStatus.NOT_RESOLVED
+            self.ended = Status.STUCK
         self.tolerance = max(found.tolerance, TOLERANCE * 10.0 ** min(self.changed - 3, 5) if self.changed > 3 else 0.0)
         self.mode = found.mode
         self.log.change(self._now, self.mode)

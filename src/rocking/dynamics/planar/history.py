@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
+from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.log import Log
-from rocking.dynamics.planar.outcome import PlanarStatus
 
 
 class History(NamedTuple):
@@ -13,7 +13,7 @@ class History(NamedTuple):
     ----------
     log : Log
         Samples, pieces, events, energy.
-    status : PlanarStatus
+    status : Status
         Whether it could be computed.
     lies : bool
         Whether the body fell over.
@@ -24,7 +24,7 @@ class History(NamedTuple):
     """
 
     log: Log
-    status: PlanarStatus
+    status: Status
     lies: bool
     passed: float
     end: float

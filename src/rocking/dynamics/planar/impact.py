@@ -12,8 +12,8 @@ that only the sum of the ``P_t`` is determined: it is shared as the ``P_n`` are.
 from itertools import combinations
 from typing import NamedTuple
 
+from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
-from rocking.dynamics.planar.outcome import PlanarStatus
 from rocking.dynamics.planar.state import State, along, away, kept, kinetic
 
 _ROUNDING = 1e-13
@@ -40,7 +40,7 @@ class Struck(NamedTuple):
     slip: int
 
 
-def strike(footing: Footing, state: State, friction: float, bounce: dict[int, float]) -> Struck | PlanarStatus:
+def strike(footing: Footing, state: State, friction: float, bounce: dict[int, float]) -> Struck | Status:
     """Return what an impact does.
 
     Parameters
@@ -56,7 +56,7 @@ def strike(footing: Footing, state: State, friction: float, bounce: dict[int, fl
 
     Returns
     -------
-    Struck or PlanarStatus
+    Struck or Status
         The state after it with the impulses; a status where there is no solution, where two of them differ, or where
         energy would be created.
     """
@@ -64,11 +64,11 @@ def strike(footing: Footing, state: State, friction: float, bounce: dict[int, fl
     speed = largest_speed(footing, state)
     good = [s for s in _solutions(footing, state, friction, targets) if _valid(footing, s, friction, targets, speed)]
     if not good:
-        return PlanarStatus.NO_CONTACT_FORCE
+        return Status.NO_CONTACT_FORCE
     if any(_differ(footing, good[0].state, other.state, speed) for other in good[1:]):
-        return PlanarStatus.AMBIGUOUS
+        return Status.AMBIGUOUS
     if kinetic(footing, good[0].state) > kinetic(footing, state) * (1.0 + 10.0 * _ROUNDING):
-        return PlanarStatus.ENERGY_GAIN
+        return Status.ENERGY_GAIN
     return good[0]
 
 

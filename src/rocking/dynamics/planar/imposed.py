@@ -9,15 +9,15 @@ k b). That place is kept. Where the impact takes more friction than there is, ``
 new foot slides off; with Housner's r this is the complementarity problem's own solution.
 """
 
+from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.footing import LEFT, RIGHT, Footing
 from rocking.dynamics.planar.impact import Struck
-from rocking.dynamics.planar.outcome import PlanarStatus
 from rocking.dynamics.planar.state import State, along, away, kinetic
 
 _ROUNDING = 1e-12
 
 
-def strike_with(footing: Footing, state: State, foot: int, friction: float, r: float) -> Struck | PlanarStatus | None:
+def strike_with(footing: Footing, state: State, foot: int, friction: float, r: float) -> Struck | Status | None:
     """Return what a rocking impact does when its coefficient of restitution is imposed.
 
     Parameters
@@ -35,7 +35,7 @@ def strike_with(footing: Footing, state: State, foot: int, friction: float, r: f
 
     Returns
     -------
-    Struck or PlanarStatus or None
+    Struck or Status or None
         The state after it with the impulses; a status where energy would be created; None where an impulse at that
         place would pull, or press the old foot into the ground.
     """
@@ -53,7 +53,7 @@ def strike_with(footing: Footing, state: State, foot: int, friction: float, r: f
     if sum(found.normal.values()) < -slack or away(footing, found.state, -foot) < -slack:
         return None
     gained = kinetic(footing, found.state) > kinetic(footing, state) * (1.0 + _ROUNDING)
-    return PlanarStatus.ENERGY_GAIN if gained else found
+    return Status.ENERGY_GAIN if gained else found
 
 
 def _stuck(footing: Footing, state: State, foot: int, place: float) -> Struck:

@@ -10,13 +10,13 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.planar.books import PlanarEnergy, PlanarForces, energy_of, forces_of
 from rocking.dynamics.planar.events import impacts_of, places_of, regimes_of
 from rocking.dynamics.planar.footing import Footing
 from rocking.dynamics.planar.history import History
 from rocking.dynamics.planar.log import SAMPLED
 from rocking.dynamics.planar.mode import Regime
-from rocking.dynamics.planar.outcome import PlanarOutcome, PlanarStatus
 from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
@@ -163,37 +163,37 @@ class PlanarResponse(Exportable):
         return self.history.log.peak
 
     @property
-    def status(self) -> PlanarStatus:
+    def status(self) -> Status:
         """Whether it could be computed."""
         return self.history.status
 
     @property
     def overturning_time(self) -> float:
         """When the centre passed over the foot for good; NaN if it did not overturn [s]."""
-        return self.history.passed if self.outcome is PlanarOutcome.OVERTURNED else float("nan")
+        return self.history.passed if self.outcome is Outcome.OVERTURNED else float("nan")
 
     @cached_property
-    def outcome(self) -> PlanarOutcome:
+    def outcome(self) -> Outcome:
         """How it ended."""
-        if self.status is not PlanarStatus.GOOD:
-            return PlanarOutcome.FAILED
+        if self.status is not Status.GOOD:
+            return Outcome.FAILED
         if self.history.lies:
-            return PlanarOutcome.OVERTURNED
+            return Outcome.OVERTURNED
         seen = {Regime[name] for name in self.regimes["regime"]}
         if Regime.FLIGHT in seen:
-            return PlanarOutcome.FLEW
+            return Outcome.FLEW
         slid = bool(seen & {Regime.SLIDE, Regime.SLIDE_ROCK})
         if seen & {Regime.ROCK, Regime.SLIDE_ROCK}:
-            return PlanarOutcome.ROCKED_AND_SLID if slid else PlanarOutcome.ROCKED
-        return PlanarOutcome.SLID if slid else PlanarOutcome.NO_MOTION
+            return Outcome.ROCKED_AND_SLID if slid else Outcome.ROCKED
+        return Outcome.SLID if slid else Outcome.NO_UPLIFT
 
     @property
     def summary(self) -> str:
         """The outcome in one sentence."""
-        if self.outcome is PlanarOutcome.FAILED:
+        if self.outcome is Outcome.FAILED:
             return f"{self.outcome.value}: {self.status.value}"
         told = [self.outcome.value]
-        if self.peak_rotation > 0.0 and self.outcome is not PlanarOutcome.OVERTURNED:
+        if self.peak_rotation > 0.0 and self.outcome is not Outcome.OVERTURNED:
             told.append(f"largest rotation {np.degrees(self.peak_rotation):.4g} degrees")
         if self.sliding_distance > 0.0:
             told.append(f"slid {self.sliding_distance:.4g} m in all")

@@ -2,7 +2,7 @@
 
 from rocking.dynamics.spatial.histories import free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
-from rocking.dynamics.spatial.outcome import Contact, SpatialStatus
+from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.response import SpatialResponse
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
@@ -13,7 +13,6 @@ __all__ = [
     "SpatialImpactLaw",
     "SpatialResponse",
     "SpatialSettings",
-    "SpatialStatus",
     "free_rocking_spatial",
     "simulate_spatial",
 ]

@@ -5,10 +5,9 @@ import math
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial import stance as stances
-from rocking.dynamics.spatial.outcome import SpatialStatus
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.stance import Stance
@@ -98,7 +97,7 @@ class Course:
 
     def ended(
         self, time: float, quaternion: FloatArray, velocity: FloatArray, pivot: FloatArray, final: bool | None
-    ) -> tuple[Outcome, SpatialStatus] | None:
+    ) -> tuple[Outcome, Status] | None:
         """Return how a history has ended, if it has.
 
         Parameters
@@ -114,20 +113,20 @@ class Course:
         -------
         outcome : Outcome
             It lies, or it can no longer overturn: less energy is left than that takes.
-        status : SpatialStatus
+        status : Status
             Good; None instead of both if it goes on.
         """
         up = attitude.matrix(quaternion)[2]
         if up[2] <= 0.0:
             self.over_time = time if math.isnan(self.over_time) else self.over_time
-            return Outcome.OVERTURNED, SpatialStatus.GOOD
+            return Outcome.OVERTURNED, Status.GOOD
         if final is False:
             return None
         body, settings = self.body, self.settings
         energy = body.kinetic(pivot, velocity) + body.mass * settings.gravity * stances.rise(body, pivot, up)
         inside = not _leaning_over(body, up, pivot) > 0.0
         if final is None or (inside and energy < body.mass * settings.gravity * body.lift):
-            return Outcome.ROCKED, SpatialStatus.GOOD
+            return Outcome.ROCKED, Status.GOOD
         return None
 
     def falls(self, pivot: FloatArray, up: FloatArray) -> Outcome:
@@ -155,14 +154,14 @@ class Course:
         """
         return Outcome.ROCKED if self.events else Outcome.NO_UPLIFT
 
-    def trajectory(self, outcome: Outcome, status: SpatialStatus) -> SpatialTrajectory:
+    def trajectory(self, outcome: Outcome, status: Status) -> SpatialTrajectory:
         """Return what was kept.
 
         Parameters
         ----------
         outcome : Outcome
             How it ended.
-        status : SpatialStatus
+        status : Status
             Whether it could be computed.
 
         Returns

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import attitude, events, flow, release, resting
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.attitude import cross
@@ -14,7 +14,7 @@ from rocking.dynamics.spatial.events import Step
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
 from rocking.dynamics.spatial.landing import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
-from rocking.dynamics.spatial.outcome import Contact, SpatialStatus
+from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.rolling import RollingFlow
 from rocking.dynamics.spatial.selection import Choice, State, of_forces
@@ -86,7 +86,7 @@ class SpatialReference:
             ended = self._rest() if self.stance.contact is Contact.REST else self._move()
         return self.course.trajectory(*ended)
 
-    def _start(self) -> tuple[Outcome, SpatialStatus] | None:
+    def _start(self) -> tuple[Outcome, Status] | None:
         stance, touching = started(self.body, self.velocity, self._up)
         self.stance = stance
         # the base lies with its origin at the origin of the ground, and the body leans from there
@@ -100,7 +100,7 @@ class SpatialReference:
             self.course.note(self.time, SpatialEventKind.UPLIFT, self.stance, 0.0, self._kinetic())
         return None
 
-    def _rest(self) -> tuple[Outcome, SpatialStatus] | None:
+    def _rest(self) -> tuple[Outcome, Status] | None:
         """Rest until the ground lifts the body, or to the end."""
         self.velocity = np.zeros(3)
         rotation = attitude.matrix(self.quaternion)
@@ -111,23 +111,23 @@ class SpatialReference:
         found = resting.next_uplift(self.body, self.ground, rotation, self.settings.gravity, (self.stretch, tau))
         if found is None:
             self._add_rest(max(self.horizon, self.ground.end, self.time))
-            return self.course.calm(), SpatialStatus.GOOD
+            return self.course.calm(), Status.GOOD
         self.stretch, tau, edges = found
         begin, end = self.ground.times[self.stretch : self.stretch + 2]
         self._add_rest(max(float(begin + tau * (end - begin)), self.time))
         lifted = resting.lifted(self.body, self._state(), edges)
         if lifted is None:
-            return Outcome.FAILED, SpatialStatus.LOST_CONTACT
+            return Outcome.FAILED, Status.LOST_CONTACT
         self._stand(lifted)
         self.touching = tuple(i for i in range(len(self.body.vertices)) if i not in lifted.points)
         self.course.note(self.time, SpatialEventKind.UPLIFT, lifted, 0.0, 0.0)
         return self._guard()
 
-    def _move(self) -> tuple[Outcome, SpatialStatus] | None:
+    def _move(self) -> tuple[Outcome, Status] | None:
         """Advance to the end of the step, or to the first event before it."""
         step, piece, whole = self._step()
         if step is None or piece is None:
-            return Outcome.FAILED, SpatialStatus.NOT_FINITE
+            return Outcome.FAILED, Status.NOT_FINITE
         contact = events.first_contact(self.body, self.stance, step, self.touching)
         letting = release.first_release(self.body, self.stance, step)
         rim = events.rim_events(self.body, self.stance, step) if self.body.round else None
@@ -146,7 +146,7 @@ class SpatialReference:
             return self._released(letting[1])
         return self._stepped(step, at, held=held)
 
-    def _stepped(self, step: Step, at: float, *, held: bool) -> tuple[Outcome, SpatialStatus] | None:
+    def _stepped(self, step: Step, at: float, *, held: bool) -> tuple[Outcome, Status] | None:
         """Look at where a step without event has led."""
         pulls = self.stance.contact is Contact.EDGE
         pulls = pulls and min(release.end_forces(self.body, self.stance, step, at)) < -self.pull
@@ -215,7 +215,7 @@ class SpatialReference:
 
     # ---- events -----------------------------------------------------------------------------------------------------
 
-    def _impact(self, vertex: int) -> tuple[Outcome, SpatialStatus] | None:
+    def _impact(self, vertex: int) -> tuple[Outcome, Status] | None:
         body = self.body
         gaps = applied(body.vertices - self.stance.pivot, self._up)
         closed = {vertex, *self.stance.points, *np.flatnonzero(gaps <= CLOSED * body.size).tolist()}
@@ -228,7 +228,7 @@ class SpatialReference:
             return self._stick(touching)
         return self._land(landed(body, self._state(), touching, self.law), touching)
 
-    def _stick(self, touching: tuple[int, ...]) -> tuple[Outcome, SpatialStatus] | None:
+    def _stick(self, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
         before, choice = self._kinetic(), stuck(self.body, self._state(), touching)
         self._stand(choice.stance)
         self.velocity, self.touching = choice.velocity, ()
@@ -243,7 +243,7 @@ class SpatialReference:
             return self.sticks
         return events.nearly_flat(self.body, flow.value(step.up, letting[0]))
 
-    def _rim(self) -> tuple[Outcome, SpatialStatus] | None:
+    def _rim(self) -> tuple[Outcome, Status] | None:
         up = self._up
         if self.stance.contact is not Contact.ROLLING and math.hypot(up[0], up[1]) > 0.5 * events.START_ROLLING:
             self.stance = stances.rolling(self.stance)
@@ -255,7 +255,7 @@ class SpatialReference:
         self.quaternion = attitude.flat(self.quaternion)
         return self._land(rim_landed(self.body, state, self.law), ())
 
-    def _land(self, choice: Choice, touching: tuple[int, ...]) -> tuple[Outcome, SpatialStatus] | None:
+    def _land(self, choice: Choice, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
         before = self._kinetic() + (self._potential() if self.stance.contact is Contact.ROLLING else 0.0)
         self._stand(choice.stance)
         self.velocity = choice.velocity
@@ -270,9 +270,9 @@ class SpatialReference:
             self.course.note(self.time, SpatialEventKind.REST, choice.stance, 0.0, 0.0)
         return self._guard()
 
-    def _released(self, which: int) -> tuple[Outcome, SpatialStatus] | None:
+    def _released(self, which: int) -> tuple[Outcome, Status] | None:
         if which < 0:
-            return self.course.falls(self._pivot, self._up), SpatialStatus.LOST_CONTACT
+            return self.course.falls(self._pivot, self._up), Status.LOST_CONTACT
         stays, leaves = self.stance.points[1 - which], self.stance.points[which]
         self._stand(stances.vertex(self.body, stays))
         self.touching = (leaves,)
@@ -287,11 +287,11 @@ class SpatialReference:
             self._stand(found[0].stance)
             self.touching = tuple(i for i in touching if i not in self.stance.points)
 
-    def _guard(self) -> tuple[Outcome, SpatialStatus] | None:
+    def _guard(self) -> tuple[Outcome, Status] | None:
         self.at_once = self.at_once + 1 if self.time <= self.moment else 0
         self.moment = self.time
         if self.at_once > _STUCK or len(self.course.events) > self.settings.most_events:
-            return Outcome.FAILED, SpatialStatus.TOO_MANY_EVENTS
+            return Outcome.FAILED, Status.TOO_MANY_EVENTS
         return None
 
     # ---- small parts ------------------------------------------------------------------------------------------------

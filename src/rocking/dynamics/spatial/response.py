@@ -10,12 +10,12 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial.events import NEARLY_FLAT
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
-from rocking.dynamics.spatial.outcome import Contact, SpatialStatus
+from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.trajectory import SpatialTrajectory
@@ -152,7 +152,7 @@ class SpatialResponse(Exportable):
         return self.trajectory.outcome
 
     @property
-    def status(self) -> SpatialStatus:
+    def status(self) -> Status:
         """Whether it could be computed."""
         return self.trajectory.status
 

@@ -6,8 +6,8 @@ from enum import Enum
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
-from rocking.dynamics.spatial.outcome import Contact, SpatialStatus
+from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.stance import Stance
 from rocking.portable import powers, times
 
@@ -109,7 +109,7 @@ class SpatialTrajectory:
         In order of time.
     outcome : Outcome
         How it ended.
-    status : SpatialStatus
+    status : Status
         Whether it could be computed.
     peak_tilt, peak_time : float
         Largest angle between the axis of the body and the vertical [rad], and when [s].
@@ -127,7 +127,7 @@ class SpatialTrajectory:
     pieces: list[Piece] = field(repr=False)
     events: list[SpatialEvent] = field(repr=False)
     outcome: Outcome
-    status: SpatialStatus
+    status: Status
     peak_tilt: float
     peak_time: float
     overturning_time: float

@@ -83,7 +83,7 @@ def simulate_spatial_batch(  # noqa: PLR0913 - every one of them is a question t
     >>> record = rk.pulses.sine(amplitude=4.0, period=0.8)
     >>> batch = simulate_spatial_batch(boxes, (record, record.scaled(0.5)), scales=[0.2, 0.8, 3.0])
     >>> batch.overturned[:, 0, :, 0, 0].tolist()
-    [[False, False, True], [False, False, True]]
+    [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]
     """
     settings = SpatialBatchSettings.of(gravity, options)
     made, refused = _bodies(bodies)

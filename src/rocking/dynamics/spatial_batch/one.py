@@ -7,7 +7,6 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import attitude
-from rocking.dynamics.spatial.outcome import SpatialStatus
 from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory
 
 
@@ -38,7 +37,7 @@ def results_of(found: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
     stance = found.fell_over
     number = -1 if stance is None or not stance.points else stance.points[0]
     uplifts = sum(event.kind is SpatialEventKind.UPLIFT for event in events)
-    status, contact = list(SpatialStatus).index(found.status), -1 if stance is None else stance.contact.code
+    status, contact = found.status.code, -1 if stance is None else stance.contact.code
     counts = [found.outcome.code, status, contact, number]
     return results, [*counts, len(found.impacts), uplifts, len(events), len(found.pieces)]
 

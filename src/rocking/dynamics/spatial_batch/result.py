@@ -7,9 +7,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import OVERTURNED, Outcome, Status, overturned
 from rocking.dynamics.spatial.outcome import Contact
-from rocking.dynamics.spatial_batch.outcome import SpatialBatchStatus
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,7 +22,8 @@ DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
 
 UNITS: dict[str, tuple[str, str]] = {
     "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
-    "status": ("1", ", ".join(f"{s.code} {s.name.lower()}" for s in SpatialBatchStatus)),
+    "status": ("1", ", ".join(f"{s.code} {s.name.lower()}" for s in Status)),
+    "overturned": OVERTURNED,
     "over_contact": ("1", ", ".join(f"{c.code} {c.name.lower()}" for c in Contact) + " over which it fell, -1 none"),
     "over_number": ("1", "number of that edge or vertex; -1 where there is none"),
     "peak_tilt": ("rad", "largest angle from the vertical; a quarter turn if it overturned"),
@@ -71,7 +71,7 @@ class SpatialBatch(Exportable):
     --------
     >>> batch = SpatialBatch((1, 1, 1, 1, 1), {"outcome": np.array([2]), "status": np.array([0])}, "none")
     >>> batch.overturned.item()
-    True
+    1.0
     """
 
     shape: tuple[int, int, int, int, int]
@@ -96,13 +96,13 @@ class SpatialBatch(Exportable):
 
     @property
     def status(self) -> IntArray:
-        """Codes of `SpatialBatchStatus`."""
+        """Codes of `Status`."""
         return self["status"]
 
     @property
-    def overturned(self) -> np.ndarray:
-        """Whether it overturned."""
-        return np.asarray(self.outcome == Outcome.OVERTURNED.code)
+    def overturned(self) -> FloatArray:
+        """1 where it overturned, 0 where it did not, NaN where there is no result."""
+        return overturned(self.outcome)
 
     @property
     def peak_tilt(self) -> FloatArray:
@@ -140,7 +140,7 @@ class SpatialBatch(Exportable):
         xarray = extra("xarray", "a labelled dataset")
         data = {
             name: (DIMENSIONS, values.reshape(self.shape), {"units": UNITS[name][0], "long_name": UNITS[name][1]})
-            for name, values in self.values.items()
+            for name, values in {**self.values, "overturned": overturned(self.values["outcome"])}.items()
         }
         made: xr.Dataset = xarray.Dataset(
             data, coords={name: (name, row) for name, row in self.labels.items()}, attrs=stated(self)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import law_of
 from rocking.dynamics.spatial.reference import SpatialReference
@@ -16,7 +16,6 @@ from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial_batch import engine, tables
 from rocking.dynamics.spatial_batch.one import results_of
-from rocking.dynamics.spatial_batch.outcome import SpatialBatchStatus
 from rocking.dynamics.spatial_batch.result import FLOATS, WHOLES
 from rocking.dynamics.spatial_batch.rows import RowTable
 from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
@@ -166,7 +165,7 @@ def named(results: FloatArray, counts: IntArray) -> Results:
 def _one(
     body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: SpatialSettings
 ) -> tuple[FloatArray, list[int]]:
-    codes = [Outcome.FAILED.code, SpatialBatchStatus.INVALID.code, -1, -1]
+    codes = [Outcome.FAILED.code, Status.INVALID.code, -1, -1]
     refused = np.full(tables.RESULTS, math.nan), [*codes, 0, 0, 0, 0]
     if body is None or not (np.abs(row) <= 1e9).all():
         return refused

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from rocking.dynamics.engine import RESULTS, Arrays
+from rocking.dynamics.outcome import overturned
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories
 from rocking.studies.job.answer import Answer
@@ -21,6 +22,7 @@ VARIABLES: dict[str, tuple[Any, str, str]] = {
     "peak_velocity": (np.float64, "rad/s", "largest angular velocity at samples and impacts"),
     "first_uplift": (np.float64, "s", "first uplift"),
     "uplifts": (np.int64, "1", "number of uplifts from rest"),
+    "overturned": (np.float64, *OF_MAPS["overturned"]),
     "mode": (np.int64, *OF_MAPS["mode"]),
     "peak_ratio": (np.float64, *OF_MAPS["peak_ratio"]),
 }
@@ -121,7 +123,7 @@ class Study:
         found = results if self.rescale is None else self.rescale(first, last, dict(results))
         sides = self.histories.rows(first, last).values
         ratio = peak_ratio(found["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
-        whole = {**found, "mode": modes_of(found), "peak_ratio": ratio}
+        whole = {**found, "overturned": overturned(found["outcome"]), "mode": modes_of(found), "peak_ratio": ratio}
         return {name: whole[name] for name in VARIABLES}
 
     def places(self, first: int, last: int) -> dict[str, np.ndarray]:

@@ -7,6 +7,7 @@ import pytest
 
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
+from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.choosing import Choice, candidates, choose
 from rocking.dynamics.planar.course import course
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
@@ -15,7 +16,6 @@ from rocking.dynamics.planar.impact import Struck, strike
 from rocking.dynamics.planar.imposed import strike_with
 from rocking.dynamics.planar.margins import Kind, Margin, consistent, first_end, leading
 from rocking.dynamics.planar.mode import FLIGHT, REST, Mode, Regime
-from rocking.dynamics.planar.outcome import PlanarStatus
 from rocking.dynamics.planar.power_series import derivative, integral, value
 from rocking.dynamics.planar.state import State, along, away, kept, kinetic
 
@@ -112,7 +112,7 @@ def test_newton_and_coulomb_may_create_energy_and_then_there_is_no_result():
     """A fast bounce of a foot under the body, found at random, gains energy: a status; its plastic twin is fine."""
     rotation, spin = 1.3334259860891, -1.8520466144989
     state = State(0.0, TALL.rise_on(RIGHT, rotation), rotation, -0.12833044107477, -0.64140325334667, spin, (RIGHT,))
-    assert strike(TALL, state, 3.0, {RIGHT: 0.9}) is PlanarStatus.ENERGY_GAIN
+    assert strike(TALL, state, 3.0, {RIGHT: 0.9}) is Status.ENERGY_GAIN
     assert isinstance(strike(TALL, state, 3.0, {RIGHT: 0.0}), Struck)
 
 

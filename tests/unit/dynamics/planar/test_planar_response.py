@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from rocking.bodies import Block
 from rocking.dynamics.impact_law import SpeedRestitution
+from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.planar import (
-    PlanarOutcome,
-    PlanarStatus,
     Regime,
     Start,
     friction_demand,
@@ -45,11 +44,11 @@ def test_outcomes_of_five_bodies(rocked):
         simulate_with_contact(Block(width=0.2, height=2.0), pulse, 0.6),
     ]
     expected = [
-        PlanarOutcome.NO_MOTION,
-        PlanarOutcome.SLID,
-        PlanarOutcome.ROCKED,
-        PlanarOutcome.ROCKED_AND_SLID,
-        PlanarOutcome.OVERTURNED,
+        Outcome.NO_UPLIFT,
+        Outcome.SLID,
+        Outcome.ROCKED,
+        Outcome.ROCKED_AND_SLID,
+        Outcome.OVERTURNED,
     ]
     assert [response.outcome for response in found] == expected
     assert ["overturned" in response.summary for response in found] == [False, False, False, False, True]
@@ -176,8 +175,8 @@ def test_settings_are_frozen_values():
 def test_too_many_events_are_a_status():
     """A history that is cut by its limit has no result."""
     response = simulate_with_contact(BODY, None, 0.5, bounce=0.9, start=Start(height=0.1), most_events=5)
-    assert response.status is PlanarStatus.TOO_MANY_EVENTS
-    assert response.outcome is PlanarOutcome.FAILED
+    assert response.status is Status.TOO_MANY_EVENTS
+    assert response.outcome is Outcome.FAILED
     assert "no result" in response.summary
 
 
@@ -211,7 +210,7 @@ def test_long_steps_are_cut_where_series_need_it():
 def test_paradox_at_the_start_leaves_empty_tables():
     """Without a contact force at time zero there are no regimes and no impacts, but still a sentence."""
     response = simulate_with_contact(BODY, None, 2.5, start=Start(rotation=0.1, horizontal_velocity=1.0))
-    assert response.status is PlanarStatus.NO_CONTACT_FORCE
+    assert response.status is Status.NO_CONTACT_FORCE
     assert response.regimes.size == 0
     assert response.impacts.size == 0
     assert "Painleve" in response.summary
@@ -245,7 +244,7 @@ def test_any_history_keeps_its_books_and_stays_above_the_ground(
     response = simulate_with_contact(
         body, pulse, friction, bounce=bounce, restitution=restitution, duration=period + 1.0
     )
-    assert response.status is PlanarStatus.GOOD
+    assert response.status is Status.GOOD
     assert response.energy.closure < 1e-10
     for lever in (-0.5 * width, 0.5 * width):
         gap = response.rise + 1.0 - lever * np.sin(response.rotation) - np.cos(response.rotation)

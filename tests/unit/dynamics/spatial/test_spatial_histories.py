@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
-from rocking.dynamics.spatial import Contact, SpatialBody, SpatialStatus, free_rocking_spatial, simulate_spatial
+from rocking.dynamics.outcome import Outcome, Status
+from rocking.dynamics.spatial import Contact, SpatialBody, free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial.impact import law_of
 from rocking.errors import InvalidValueError
 
@@ -92,7 +92,7 @@ def test_a_motion_is_needed():
 def test_too_many_events_is_a_status():
     """A limit on events stops a history without a result."""
     run = free_rocking_spatial(BOX, 0.1, 0.4, most_events=3)
-    assert (run.outcome, run.status) == (Outcome.FAILED, SpatialStatus.TOO_MANY_EVENTS)
+    assert (run.outcome, run.status) == (Outcome.FAILED, Status.TOO_MANY_EVENTS)
     assert math.isnan(run.peak_tilt)
 
 

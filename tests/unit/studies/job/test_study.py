@@ -33,7 +33,7 @@ def test_blocks_fill_an_array_once(shape, data):
 
 def test_variables_have_units():
     """Every result of the engine, and what follows from it, has a unit and words."""
-    assert set(rk.dynamics.engine.RESULTS) | {"mode", "peak_ratio"} == set(VARIABLES)
+    assert set(rk.dynamics.engine.RESULTS) | {"overturned", "mode", "peak_ratio"} == set(VARIABLES)
     assert all(unit in {"1", "rad", "rad/s", "s"} and words for _, unit, words in VARIABLES.values())
 
 

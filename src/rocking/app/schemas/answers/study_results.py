@@ -56,7 +56,7 @@ class SpectrumCurve(Answer):
     low: list[Number] = Field(description="16 % of the motions: peak over alpha [-]; null where they overturn")
     median: list[Number] = Field(description="peak rotation over alpha [-]; null where half of the motions overturn")
     high: list[Number] = Field(description="84 % of the motions: peak over alpha [-]; null where they overturn")
-    overturned: list[float] = Field(description="share of the motions that overturn [-]")
+    overturned: list[float | None] = Field(description="share that overturns of the motions with a result [-]")
     coefficient: list[Number] = Field(description="of restitution [-]")
 
 

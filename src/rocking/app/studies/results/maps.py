@@ -40,14 +40,16 @@ def map_result(study: OpenStudy) -> dict[str, Any]:
         "peak": plain(by_restitution(study, "peak_ratio")),
         "impacts": by_restitution(study, "impacts").tolist(),
         "shares": [shares(each) for each in modes],
-        "contours": [contours_of(each >= 0, *axes) for each in modes],
+        "contours": [contours_of(each >= 0, *axes, known=each != -3) for each in modes],
         "body": str(about.get("body", "")),
         "motion": str(about.get("motion", "")),
         "tables": {} if study.job.job.study.search is None else tables_of(study),
     }
 
 
-def contours_of(inside: np.ndarray, x: FloatArray, y: FloatArray) -> list[list[list[float]]]:
+def contours_of(
+    inside: np.ndarray, x: FloatArray, y: FloatArray, known: np.ndarray | None = None
+) -> list[list[list[float]]]:
     """Return the lines that part a region of a grid from the rest.
 
     Parameters
@@ -56,6 +58,8 @@ def contours_of(inside: np.ndarray, x: FloatArray, y: FloatArray) -> list[list[l
         Which points are in the region.
     x, y : ndarray
         Coordinates of the points.
+    known : ndarray of bool, shape (y, x), optional
+        Which points have a result; no line runs beside one that has none.
 
     Returns
     -------
@@ -71,11 +75,17 @@ def contours_of(inside: np.ndarray, x: FloatArray, y: FloatArray) -> list[list[l
     """
     if min(inside.shape) < 2:
         return []
-    corners = np.stack([inside[:-1, :-1], inside[:-1, 1:], inside[1:, 1:], inside[1:, :-1]], axis=-1).reshape(-1, 4)
-    mixed = np.flatnonzero(corners.any(axis=1) & ~corners.all(axis=1))
+    corners = _corners(inside)
+    mixed = np.flatnonzero(
+        corners.any(axis=1) & ~corners.all(axis=1) & (True if known is None else _corners(known).all(axis=1))
+    )
     j, i = np.divmod(mixed, inside.shape[1] - 1)
     joined = segments(corners[mixed], edge_numbers(i, j, inside.shape[1]), np.zeros(mixed.size, dtype=bool))
     return [_points(np.array(chain), x, y) for chain in chains(joined)]
+
+
+def _corners(grid: np.ndarray) -> np.ndarray:
+    return np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=-1).reshape(-1, 4)
 
 
 def _points(edges: np.ndarray, x: FloatArray, y: FloatArray) -> list[list[float]]:

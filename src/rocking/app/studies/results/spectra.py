@@ -35,10 +35,11 @@ def spectrum_result(study: OpenStudy) -> dict[str, Any]:
         for place, angle in enumerate(angles["values"]):
             low, middle, high = fractiles(found, place)
             mode = modes[k][:, place]
-            known = np.maximum((mode != -3).sum(axis=0), 1)
+            with np.errstate(invalid="ignore"):  # where nothing could be computed there is no share
+                share = (mode >= 0).sum(axis=0) / (mode != -3).sum(axis=0)
             curves.append({
                 "restitution": label, "angle": angle, "low": plain(low), "median": plain(middle), "high": plain(high),
-                "overturned": ((mode >= 0).sum(axis=0) / known).tolist(),
+                "overturned": plain(share),
                 "coefficient": plain(coefficient[place, :, k] if coefficient.ndim > 2 else coefficient[place]),
             })  # fmt: skip
     return {

@@ -1,0 +1,97 @@
+"""A history without a result has neither overturned nor stayed standing: shares, lines and pictures leave it out."""
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.app.studies.results.maps import contours_of
+from rocking.dynamics.outcome import Outcome, Status, overturned
+from rocking.motions.pulses import sine
+from rocking.plots.falling import falling_picture
+from rocking.plots.rocking_spectrum import rocking_spectrum_picture
+from rocking.studies.minimum_search import Cases, Effort, searched
+
+LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])
+FALLS, STANDS, NONE = Outcome.OVERTURNED.code, Outcome.ROCKED.code, Outcome.FAILED.code
+
+
+def test_outcomes_as_numbers():
+    """1 and 0 for a result, whatever kept the body standing, and NaN for none."""
+    found = overturned([outcome.code for outcome in Outcome])
+    assert found[FALLS] == 1.0
+    assert np.isnan(found[NONE])
+    assert sum(found == 0.0) == len(Outcome) - 2
+
+
+def test_batches_and_maps_say_so():
+    """Two impacts allowed: rows that need more have no result, and the share of falls is that of the others."""
+    pulses = [sine(amplitude=a, period=0.8) for a in (2.0, 3.0, 4.0, 6.0)]
+    found = rk.simulate_many(LEANING, pulses, 0.9, most_impacts=2)
+    failed = (found["status"] == Status.TOO_MANY_EVENTS.code).to_numpy().ravel()
+    assert failed.any()
+    assert np.array_equal(np.isnan(found["overturned"].to_numpy().ravel()), failed)
+    fell = found["outcome"].to_numpy().ravel() == FALLS
+    assert fell.any()
+    assert float(found["overturned"].mean()) == pytest.approx(fell.sum() / (~failed).sum())
+    assert float(found["overturned"].mean()) != pytest.approx(fell.mean())  # negative control: no result as standing
+    ratios = np.linspace(0.5, 4.0, 6)
+    axes = ("frequency_ratio", ratios), ("amplitude_ratio", ratios)
+    mapped = rk.overturning_map(LEANING, pulses[0], *axes, 0.9, most_impacts=2)
+    assert np.array_equal(np.isnan(mapped["overturned"]), mapped["mode"] == -3)
+    assert np.array_equal(mapped["overturned"] == 1.0, mapped["mode"] >= 0)
+
+
+def spatial_batch(outcome):
+    """A batch of one body, two motions, scales by outcome, two restitutions."""
+    codes = np.broadcast_to(np.array(outcome)[None, None, :, None, None], (1, 2, len(outcome), 2, 1))
+    values = {"outcome": codes.ravel(), "direction": np.zeros(codes.size)}
+    labels = {"motion": ["a", "b"], "scale": list(range(1, 1 + len(outcome))), "restitution": ["housner-3d", "ked-3d"]}
+    return rk.SpatialBatch(codes.shape, values, "none", labels)
+
+
+def test_space_says_so():
+    """Lost contact is no stand: one fall of two results is a half, in the batch and in its picture."""
+    batch = spatial_batch([FALLS, STANDS, NONE, NONE])
+    assert np.isnan(batch.overturned[0, 0, 2:]).all()
+    assert batch.overturned[0, 0, :2, 0, 0].tolist() == [1.0, 0.0]
+    figure = falling_picture(batch, np.array([0.0, np.pi]))
+    assert figure.axes[0].lines[0].get_ydata().tolist() == [50.0] * 3
+    assert "0.0 % differ" in figure.axes[2].get_title(loc="left")
+    nothing = falling_picture(spatial_batch([NONE]), np.array([0.0, np.pi]))
+    assert np.isnan(nothing.axes[0].lines[0].get_ydata()).all()
+
+
+def test_lines_of_a_map_keep_away_from_what_has_no_result():
+    """A row without results beside falls is no border between falling and standing."""
+    inside = np.array([[True] * 4, [False] * 4, [False] * 4])
+    grid = np.arange(4.0), np.arange(3.0)
+    known = np.array([[True] * 4, [False] * 4, [True] * 4])
+    assert contours_of(inside, *grid)
+    assert contours_of(inside, *grid, known=known) == []
+
+
+def test_spectra_have_no_share_without_results():
+    """Periods at which nothing was computed have a gap, not a share of nought."""
+    found = rk.rocking_spectrum([sine(3.0, 0.6), sine(5.0, 0.8)], [0.2], [1.0, 3.0], 0.9)
+    found["mode"].to_numpy()[:, :, 0] = -3
+    found["mode"].to_numpy()[:, :, 1] = [[-3], [2]]
+    figure = rocking_spectrum_picture(found)
+    share = figure.axes[1].lines[0].get_ydata()
+    assert np.isnan(share[0])
+    assert share[1] == 1.0
+
+
+def test_ends_of_a_search_are_those_that_have_a_result():
+    """Lowest accelerations without a result: what overturns first is not said of the lowest."""
+
+    def run(values, body):
+        ratio = values["scale"]
+        mode = np.where(ratio < 2.0, -3, 1)
+        return {"mode": mode, "side": np.ones_like(ratio), "peak_ratio": ratio, "overturning_time": ratio}
+
+    sides = {f"{n}_{s}": np.array([0.2]) for n in ("alpha", "p", "r") for s in ("right", "left")}
+    case = Cases(sides, np.array([1.0]), np.array([1.0]), np.array([1.0]), np.array([8.0]), record=False)
+    (found,) = searched(case, Effort(points=9, levels=0, tolerance=1e-3), run)
+    assert found.starts_overturned
+    assert found.lowest == found.certain >= 2.0
+    assert found.failed > 0
