@@ -53,6 +53,7 @@ class Histories:
     def rows(self, motion: np.ndarray | None = None) -> Rows:
         """The blocks as engines take them."""
         values = {f"{name}_{side}": getattr(self, name) for name in ("alpha", "p", "r") for side in ("right", "left")}
+        values |= {"q_right": 0.75, "q_left": 0.75}  # rectangles
         return Rows.of(len(self), np.arange(len(self)) if motion is None else motion, scale=self.scale, **values)
 
 

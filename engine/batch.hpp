@@ -70,12 +70,12 @@ struct Trace {
 
 struct Rows {
     std::int64_t count;
-    const double *alpha_right, *alpha_left, *p_right, *p_left, *r_right, *r_left;
+    const double *alpha_right, *alpha_left, *p_right, *p_left, *r_right, *r_left, *q_right, *q_left;
     const double *scale, *rotation, *velocity;
     const std::int64_t *motion, *key;
     // results
     std::int8_t *outcome, *status, *side;
-    double *peak, *peak_time, *peak_velocity, *overturning_time, *first_uplift, *error;
+    double *peak, *peak_time, *peak_velocity, *overturning_time, *first_uplift, *error, *least_force, *friction;
     std::int64_t *impacts, *uplifts;
     const std::int64_t* list = nullptr;  // the rows to be done; all of them if there is none
 };

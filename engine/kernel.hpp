@@ -42,6 +42,8 @@ class Kernel {
     // state of the lanes; unused ones stay at rest on stretch zero. `peak` is a height that the body has had: points that are
     // not above it are of no interest. It may lie below the highest point by what a step adds.
     alignas(64) double u[W], v[W], tau[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], err[W], fastest[W], gate[W];
+    // Forces of the ground so far: the least normal one over m g, the largest ratio of horizontal to normal; -2 m R^2 / I_o.
+    alignas(64) double least[W], demand[W], lever[W];
     alignas(64) std::int64_t idx[W], last[W];
     alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U];
     alignas(64) double u_end[W], v_end[W];   // where the last step ends
@@ -61,8 +63,10 @@ class Kernel {
         Side sides[2];
         std::int64_t row = -1, impacts = 0, uplifts = 0, still = 0, first, block;
         int side = 0;
+        double q[2];  // m R^2 / I_o of the sides
         double ax, az, step, peak_signed, peak_time, over_time, first_uplift;  // the highest point found so far
     } lanes[W];
+    double least_before[W], demand_before[W];  // of a body that has passed over its foot: what they were up to there
     // Steps within which a lane may have its highest point: their terms, the heights from which they start, whose they are,
     // the places up to which they count, and the heights there if the body has turned round by then, or -1.
     alignas(64) double waiting[N + 1][M * P] = {}, bases[M * P] = {};
@@ -156,6 +160,12 @@ class Kernel {
     void raise_peak(const Top& top, double at, double y);
     void raise_peak(int i, double y, double time);
     bool has_tops(int i) const;
+    ROCKING_APART void note_forces(int at, Mask where, Pack up, Pack along, Pack square);
+    ROCKING_INLINE void force_at(int i, double sine, double cosine, double speed, double push, double weight);
+    void force_at_end(int i);
+    ROCKING_APART void note_force(int i, double up, double along, double square);
+    ROCKING_INLINE void touch(int i, double speed, double push, double weight);
+    void forces_up_to_here(int i);
     ROCKING_INLINE bool bounce(int i, double at, double speed);
     void settle(int i);
     ROCKING_APART double coefficient(int i, double speed) const;
@@ -219,6 +229,7 @@ Work run_rows(const Motions& m, const Law& law, const Rows& r, const Settings& s
 }  // namespace ROCKING_ISA
 }  // namespace rocking
 
+#include "forces.hpp"
 #include "resting.hpp"
 #include "rows.hpp"
 #include "step.hpp"

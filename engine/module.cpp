@@ -120,6 +120,8 @@ static Rows rows_of(const nb::dict& in, const nb::dict& out) {
     rows.p_left = number("p_left");
     rows.r_right = number("r_right");
     rows.r_left = number("r_left");
+    rows.q_right = number("q_right");
+    rows.q_left = number("q_left");
     rows.scale = number("scale");
     rows.rotation = number("rotation");
     rows.velocity = number("velocity");
@@ -148,7 +150,9 @@ static Rows rows_of(const nb::dict& in, const nb::dict& out) {
     rows.peak_velocity = real("peak_velocity");
     rows.overturning_time = real("overturning_time");
     rows.first_uplift = real("first_uplift");
-    rows.error = real("error");
+    rows.error = real("truncation");
+    rows.least_force = real("least_force");
+    rows.friction = real("friction_demand");
     rows.impacts = count("impacts");
     rows.uplifts = count("uplifts");
     return rows;

@@ -208,6 +208,10 @@ void Kernel<G, U, N, D, Z, L>::await(int i, std::int64_t at) {
         const double right = release(i, 1, at, from), left = release(i, -1, at, from);
         int side = right < left ? 1 : left < right ? -1 : 0;
         if (side == 0 && right <= 1.0) side = preferred(i, at, right);
+        if (Z && side == 0 && right <= 1.0) {  // no push, so it stays where it is, though the ground would have to pull
+            least[i] = std::min({least[i], 1.0 + lane.az * motions.data[at + 1], 1.0 + lane.az * motions.data[at + stride + 1]});
+            demand[i] = std::numeric_limits<double>::infinity();
+        }
         if (side) return lift(i, at, side, side > 0 ? right : left);
         at += stride;
         from = 0.0;

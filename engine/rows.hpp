@@ -25,6 +25,10 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     rows.overturning_time[row] = outcome == kOverturned ? lane.over_time : nan;
     rows.first_uplift[row] = lane.first_uplift;
     rows.error[row] = good ? err[i] : nan;
+    const double force = down ? least_before[i] : least[i];
+    const bool rocked = good && force < std::numeric_limits<double>::infinity();
+    rows.least_force[row] = rocked ? force : nan;
+    rows.friction[row] = rocked ? (down ? demand_before[i] : demand[i]) : nan;
     rows.impacts[row] = lane.impacts;
     rows.uplifts[row] = lane.uplifts;
     --active;
@@ -35,7 +39,9 @@ ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::idle(int i) {
     lanes[i].row = -1;
     u[i] = 0.0;
-    v[i] = tau[i] = kappa[i] = ca[i] = cz[i] = err[i] = fastest[i] = gate[i] = sub[i] = 0.0;
+    least[i] = least_before[i] = -1e300;  // nothing is beyond it
+    v[i] = lever[i] = demand[i] = demand_before[i] = 0.0;
+    tau[i] = kappa[i] = ca[i] = cz[i] = err[i] = fastest[i] = gate[i] = sub[i] = 0.0;
     idx[i] = 0;
     alpha[i] = peak[i] = 1.0;
     last[i] = std::numeric_limits<std::int64_t>::max();
@@ -55,7 +61,9 @@ void Kernel<G, U, N, D, Z, L>::close_ranks() {
 
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::move_lane(int from, int to) {
-    for (double* value : {u, v, tau, sub, kappa, ca, cz, alpha, peak, err, fastest, gate}) value[to] = value[from];
+    for (double* value : {u, v, tau, sub, kappa, ca, cz, alpha, peak, err, fastest, gate, least, demand, lever, least_before,
+                          demand_before})
+        value[to] = value[from];
     for (std::int64_t* value : {idx, last}) value[to] = value[from];
     lanes[to] = lanes[from];
     for (int s = 0; s < tops_waiting; ++s)
@@ -69,6 +77,8 @@ bool Kernel<G, U, N, D, Z, L>::valid(const Rows& r, std::int64_t k, std::size_t 
         if (!(angle[k] > 0.0 && angle[k] < kHalfPi)) return false;
     for (const double* p : {r.p_right, r.p_left})
         if (!(p[k] > 1e-9 && p[k] < 1e9)) return false;
+    for (const double* q : {r.q_right, r.q_left})
+        if (q[k] <= 0.0 || q[k] > 1.000001) return false;  // NaN is not known: nor are the forces then
     for (const double* e : {r.r_right, r.r_left})
         if (!(e[k] >= 0.0 && e[k] <= 100.0)) return false;
     return std::fabs(r.scale[k]) <= 1e9 && std::fabs(r.rotation[k]) < kHalfPi && std::fabs(r.velocity[k]) < 1e9 &&
@@ -123,6 +133,7 @@ void Kernel<G, U, N, D, Z, L>::write_invalid(std::int64_t row) {
     rows.side[row] = 0;
     rows.peak[row] = rows.peak_time[row] = rows.peak_velocity[row] = nan;
     rows.overturning_time[row] = rows.first_uplift[row] = rows.error[row] = nan;
+    rows.least_force[row] = rows.friction[row] = nan;
     rows.impacts[row] = rows.uplifts[row] = 0;
 }
 
@@ -134,7 +145,7 @@ void Kernel<G, U, N, D, Z, L>::write_still(std::int64_t row) {
     rows.status[row] = kGood;
     rows.side[row] = 0;
     rows.peak[row] = rows.peak_time[row] = rows.peak_velocity[row] = rows.error[row] = 0.0;
-    rows.overturning_time[row] = rows.first_uplift[row] = nan;
+    rows.overturning_time[row] = rows.first_uplift[row] = rows.least_force[row] = rows.friction[row] = nan;
     rows.impacts[row] = rows.uplifts[row] = 0;
 }
 
@@ -154,6 +165,8 @@ bool Kernel<G, U, N, D, Z, L>::prepare(std::int64_t row) {
     lane.ax = lane.az = rows.scale[row] / set.gravity;
     lane.sides[0] = side_of(rows.alpha_right[row], rows.p_right[row], rows.r_right[row], lane.step, lane.ax);
     lane.sides[1] = side_of(rows.alpha_left[row], rows.p_left[row], rows.r_left[row], lane.step, -lane.ax);
+    lane.q[0] = rows.q_right[row];
+    lane.q[1] = rows.q_left[row];
     lane.first = shake.first;
     lane.still = shake.still;
     ready.parts = parts_of(shake, std::max(rows.p_right[row], rows.p_left[row]), lane.ax, set.longest_step);
@@ -189,6 +202,7 @@ void Kernel<G, U, N, D, Z, L>::start(int i) {
     tau[i] = 0.0;
     if (!resolved(ready.parts, ready.segments + lane.still)) return finish(i, kFailed, kNotResolved);
     peak[i] = 0.0;
+    least[i] = std::numeric_limits<double>::infinity();
     if (ready.still) return await(i, ready.from);
     const double angle = rows.rotation[lane.row], speed = rows.velocity[lane.row];
     lane.side = angle > 0.0 || (angle == 0.0 && speed > 0.0) ? 1 : -1;
@@ -196,7 +210,14 @@ void Kernel<G, U, N, D, Z, L>::start(int i) {
     u[i] = alpha[i] - std::fabs(angle);
     v[i] = -lane.side * speed * lane.step;
     raise_peak(i, std::fabs(angle), 0.0);
-    if (u[i] < 0.0) lane.over_time = 0.0;
+    if (u[i] < 0.0) {  // let go beyond the top: the start counts
+        const double* a = motions.data + idx[i];
+        double s, c;
+        sine_cosine(u[i], s, c);
+        force_at(i, s, c, v[i], ca[i] * a[0], Z ? 1.0 + lane.az * a[Z] : 1.0);
+        forces_up_to_here(i);
+        lane.over_time = 0.0;
+    }
     lane.uplifts = 1;
     lane.first_uplift = 0.0;
     note(i, kUplift, 0.0, 0.0, 0.0, 0.0);

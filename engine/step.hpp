@@ -121,6 +121,22 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             const Mask turns = ((v0 < zero) & (v1 >= zero)) | (sway[j] >= min(abs(V[0][j]), abs(vh)));
             const Mask turning = turns & (y0 + max(away, zero) + sag > Pack::load(peak + at));
             const Mask beyond = (u1 < Pack::load(gate + at)) | ((u1 < zero) & (fma(Pack(0.25), max(sag, zero), max(u0, u1)) >= zero));
+            // the force of the ground where the step starts, times the square of p h: see forces.hpp
+            Pack up = Z ? fma(z[0][r + j], qh[j], qh[j]) : qh[j], along = b[0][r + j] * qh[j];
+            const Pack minus = Pack::load(lever + at);
+            if (L) {
+                Pack sine, cosine;
+                sine_cosine(max(S[0][j], Pack(-kHalfPi)), sine, cosine);
+                const Pack half = minus * Pack(0.5), square = V[0][j] * V[0][j];
+                up = fma(half, fma(V[1][j], sine, square * cosine), up);
+                along = fma(half, fnma(square, sine, V[1][j] * cosine), along);
+            } else {
+                up = fnma(minus, C[2][j], up);
+                along = fma(minus, S[2][j], along);
+            }
+            const Mask beats = (up < Pack::load(least + at) * qh[j]) | (abs(along) > Pack::load(demand + at) * up);
+            if (beats.bits()) note_forces(at, beats, up, along, qh[j]);
+
             const Pack t1 = t0 + h[j];
             const Mask done = t1 >= Pack(kWhole);
             const Whole i1 = i0.plus(stride, done);

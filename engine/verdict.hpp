@@ -57,20 +57,29 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     Lane& lane = lanes[i];
     if (has_tops(i)) find_tops();  // in their order, so that the first of several equal ones counts
     raise_peak(i, alpha[i] - u[i], now(i, 0.0));
+    if (idx[i] >= last[i]) force_at_end(i);
     const double speed = v[i] / lane.step;
     const double e = energy(here(i), u[i], speed);
     const bool inward = speed > 0.0, passes = e > energy(here(i), 0.0, 0.0);
     if (u[i] < 0.0 && !(inward && passes)) return falls(i, lane.over_time >= 0.0 ? lane.over_time : now(i, 0.0));
-    if (!inward && passes) return falls(i, now(i, 0.0));
+    if (!inward && passes) {
+        forces_up_to_here(i);
+        return falls(i, now(i, 0.0));
+    }
     if (!inward) raise_peak(i, height(here(i), e), now(i, 0.0));
     double arrival = here(i).p * std::sqrt(2.0 * std::max(e, 0.0));
     fastest[i] = std::max(fastest[i], arrival * lane.step);
     for (int flight = 0; flight < 2; ++flight) {  // each later visit to a side has less energy than the one before
+        touch(i, arrival * lane.step, 0.0, 1.0);
         lane.side = -lane.side;
+        stand(i);
         arrival *= coefficient(i, arrival * lane.step);
         ++lane.impacts;
         const double f = 0.5 * arrival * arrival / (here(i).p * here(i).p);
-        if (f > energy(here(i), 0.0, 0.0)) return falls(i, now(i, 0.0));
+        if (f > energy(here(i), 0.0, 0.0)) {
+            forces_up_to_here(i);
+            return falls(i, now(i, 0.0));
+        }
         raise_peak(i, height(here(i), f), now(i, 0.0));
     }
     lane.impacts -= 2;  // those to come are not counted unless they end in overturning

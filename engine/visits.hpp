@@ -111,6 +111,12 @@ bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     Lane& lane = lanes[i];
     const int old = lane.side;
     fastest[i] = std::max(fastest[i], speed);
+    const double to = tau[i] + at * length(i);
+    const double* ground = motions.data + idx[i];
+    constexpr int hop = D == 1 ? stride : 0;
+    const double push = D == 1 ? ground[0] + (ground[hop] - ground[0]) * to : value_of<D>(ground, to);
+    const double weight = Z ? 1.0 + lane.az * (ground[1] + (ground[hop + 1] - ground[1]) * to) : 1.0;
+    touch(i, speed, ca[i] * push, weight);
     lane.side = -old;
     const Side& s = here(i);
     const double r = law.kind == LawKind::constant ? s.r : coefficient(i, speed), after = r * speed;
@@ -119,7 +125,6 @@ bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     stand(i);
     u[i] = s.alpha;
     v[i] = -after;
-    const double to = tau[i] + at * length(i);
     const bool whole = to >= kWhole;
     idx[i] += whole ? stride : 0;
     tau[i] = whole ? 0.0 : to;
@@ -160,6 +165,7 @@ void Kernel<G, U, N, D, Z, L>::stand(int i) {
     alpha[i] = s.alpha;
     kappa[i] = s.kappa;
     ca[i] = s.push;
+    lever[i] = -2.0 * lanes[i].q[lanes[i].side < 0];
 }
 
 ROCKING_KERNEL
@@ -178,6 +184,7 @@ bool Kernel<G, U, N, D, Z, L>::over(int i) {
     Lane& lane = lanes[i];
     if (idx[i] < last[i]) return false;
     if (!lane.still) return true;
+    force_at_end(i);
     idx[i] += stride;
     lane.first += stride;  // the pair of samples counts as one instant
     last[i] = idx[i] + lane.still * stride;
@@ -193,8 +200,10 @@ void Kernel<G, U, N, D, Z, L>::advance(int i, Step made) {
         double c[N + 2];
         c[0] = u[i];
         for (int k = 0; k <= N; ++k) c[k + 1] = made[k] / (k + 1);
+        const double before = lane.over_time;
         if (c[0] == 0.0) lane.over_time = now(i, 0.0);
         each_fall<N + 1>(c, [&](double at) { lane.over_time = now(i, at); });
+        if (lane.over_time != before) forces_up_to_here(i);
     }
     u[i] = u1;
     v[i] = v1;

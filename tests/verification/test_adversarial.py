@@ -224,7 +224,7 @@ def shortened(cases: list[Case], settings: Settings, fast: dict[str, Any], slow:
     """Give cases that differ, and of which the fast engine itself says so, shorter steps; how many they were."""
     differ = np.any([fast[name] != slow[name] for name in DISCRETE], axis=0)
     differ |= np.abs(fast["peak_rotation"] - slow["peak_rotation"]) > 1e-8
-    doubted = np.flatnonzero(differ & (fast["error"] > 1e-10))
+    doubted = np.flatnonzero(differ & (fast["truncation"] > 1e-10))
     if doubted.size:
         again = results([cases[k] for k in doubted], replace(settings, longest_step=1e-3), "fast")
         for name, values in again.items():

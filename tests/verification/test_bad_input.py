@@ -31,7 +31,7 @@ ENGINES = pytest.mark.parametrize(
     [pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="not built")), "reference"],
 )
 POISON = (math.nan, math.inf, -math.inf, -math.nan)
-REALS = ("peak_rotation", "peak_time", "peak_velocity", "error")
+REALS = ("peak_rotation", "peak_time", "peak_velocity", "truncation")
 HALF_PI = 0.5 * math.pi
 
 
@@ -77,7 +77,7 @@ def false_success(found: dict[str, Any], *, linear: bool = False) -> Any:
     known = np.isin(found["status"], range(len(Status))) & np.isin(found["outcome"], range(len(Outcome)))
     with np.errstate(invalid="ignore"):
         fits = (np.abs(found["peak_rotation"]) <= (math.inf if linear else HALF_PI)) & (found["peak_time"] >= 0.0)
-        fits &= (found["error"] >= 0.0) & (found["peak_velocity"] >= 0.0)
+        fits &= (found["truncation"] >= 0.0) & (found["peak_velocity"] >= 0.0)
     fits &= np.isfinite(found["overturning_time"]) == down
     fits &= (np.abs(found["side"]) == 1) == down
     fits &= ~still | ((found["peak_rotation"] == 0.0) & (found["impacts"] + found["uplifts"] == 0))

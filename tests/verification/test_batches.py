@@ -135,7 +135,7 @@ def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
             scale=row["scale"], rotation=row["rotation"], velocity=row["velocity"],
         )  # fmt: skip
         names = ["peak_rotation", "peak_time", "overturning_time", "impacts", "uplifts", "side"]
-        names += [] if one.outcome is rk.Outcome.OVERTURNED else ["peak_velocity", "error"]
+        names += [] if one.outcome is rk.Outcome.OVERTURNED else ["peak_velocity", "truncation"]
         assert one.outcome.code == whole["outcome"][k]
         for name in names:
             assert np.array_equal(getattr(one, columns.get(name, name)), whole[name][k], equal_nan=True), (k, name)

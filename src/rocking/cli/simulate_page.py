@@ -41,7 +41,7 @@ def show(answer: Answer) -> None:
     console.print()
     for word, value in _measures(answer):
         console.print(f"{word + ':':<16} {value}", markup=False)
-    for warning in response.contact.warnings(answer.friction):
+    for warning in response.doubts(answer.friction):
         console.print(f"! {warning.replace(_IN_PYTHON, '--contact')}", style="yellow", markup=False)
     console.print()
     console.print("With other restitution models", style="bold")

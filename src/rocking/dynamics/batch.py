@@ -22,9 +22,15 @@ PIECE = 1 << 16
 
 _CHUNK = 64
 ROWS = (
-    "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "scale", "rotation", "velocity",
+    "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "q_right", "q_left", "scale",
+    "rotation", "velocity",
 )  # fmt: skip
 """Numbers that make a history, beside the number of its motion and its key."""
+
+SIDES = (
+    ("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"), ("q", "inertia_ratio"),
+)  # fmt: skip
+"""What rows call the properties of a `RockingSide`."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,7 @@ class Rows:
     Parameters
     ----------
     values : dict of str to ndarray
-        The keys of `ROWS` [rad, rad/s, -, rad, rad/s].
+        The keys of `ROWS` [rad, rad/s, -, -, -, rad, rad/s]; q is m R^2 / I_o of a side.
     motion : ndarray of int
         Number of the motion.
     key : ndarray of int
@@ -58,7 +64,8 @@ class Rows:
         key : array_like of int, optional
             Number of the history; 0, 1, ... if not given.
         **values
-            The keys of `ROWS`; scale is 1, rotation and velocity 0 if not given.
+            The keys of `ROWS`; scale is 1, rotation and velocity 0, q unknown if not given:
+            forces of the ground are then not known either.
 
         Returns
         -------
@@ -70,7 +77,7 @@ class Rows:
         InvalidValueError
             If a key is missing or unknown, or an array does not fit the count.
         """
-        given = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0} | values
+        given = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "q_right": np.nan, "q_left": np.nan} | values
         if set(given) != set(ROWS):
             odd = sorted(set(given) ^ set(ROWS))
             raise InvalidValueError(f"rows have {', '.join(ROWS)}; missing or unknown: {', '.join(odd)}")
@@ -205,7 +212,9 @@ class Batch:
             return bad | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0}
         from rocking.dynamics.reference import Reference
 
-        sides = [RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"]) for s in ("right", "left")]
+        sides = [
+            RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"], row[f"q_{s}"]) for s in ("right", "left")
+        ]
         reference = Reference(
             Rocker(sides[0], sides[1], self.law, ""), self.motions[motion], self.settings,
             scale=row["scale"], key=key, to_the_ground=False,
@@ -213,10 +222,11 @@ class Batch:
         run = reference.run(row["rotation"], row["velocity"])
         uplift = next((e.time for e in run.events if e.kind == 0), np.nan)
         return {
-            "outcome": run.outcome.code, "status": run.status.code, "side": run.side, "error": run.error,
+            "outcome": run.outcome.code, "status": run.status.code, "side": run.side, "truncation": run.truncation,
             "peak_rotation": run.peak_rotation, "peak_time": run.peak_time, "peak_velocity": run.peak_angular_velocity,
             "first_uplift": uplift, "overturning_time": run.overturning_time,
-            "impacts": run.impacts, "uplifts": run.uplifts,
+            "impacts": run.impacts, "uplifts": run.uplifts, "least_force": run.least_force,
+            "friction_demand": run.friction_demand,
         }  # fmt: skip
 
 
@@ -236,9 +246,10 @@ def valid_row(row: dict[str, float]) -> bool:
     half_pi = 0.5 * np.pi
     angles = all(0.0 < row[f"alpha_{s}"] < half_pi for s in ("right", "left"))
     frequencies = all(1e-9 < row[f"p_{s}"] < 1e9 for s in ("right", "left"))
+    levers = not any(row[f"q_{s}"] <= 0.0 or row[f"q_{s}"] > 1.000001 for s in ("right", "left"))
     coefficients = all(0.0 <= row[f"r_{s}"] <= 100.0 for s in ("right", "left"))
     motion = abs(row["scale"]) <= 1e9 and abs(row["rotation"]) < half_pi and abs(row["velocity"]) < 1e9
-    return bool(angles and frequencies and coefficients and motion)
+    return bool(angles and frequencies and levers and coefficients and motion)
 
 
 def _drawn(rows: Rows, law: ImpactLaw) -> Rows:

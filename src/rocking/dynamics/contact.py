@@ -15,6 +15,7 @@ from rocking.dynamics.trajectory import EventKind, Trajectory
 _ROUNDING = 1e-9
 
 
+LEAVES = "the body would leave the ground, which pure rocking cannot do"
 _FOLLOWS = "simulate_with_contact(body, motion, friction=...) follows it"
 
 
@@ -65,6 +66,22 @@ class Contact:
         Returns
         -------
         list of str
+            Loss of contact, and what `slips` says.
+        """
+        slips = self.slips(friction)
+        return [f"the vertical force falls to zero: {LEAVES}; {_FOLLOWS}", *slips] if self.loses_contact else slips
+
+    def slips(self, friction: float = 0.5) -> list[str]:
+        """Return why feet that do not slip are not credible, in plain words; empty if they are.
+
+        Parameters
+        ----------
+        friction : float
+            Coefficient of friction between body and ground [-].
+
+        Returns
+        -------
+        list of str
             Sentences.
 
         Raises
@@ -74,12 +91,7 @@ class Contact:
         """
         friction = checks.positive("friction", friction)
         found = []
-        if self.loses_contact:
-            found.append(
-                "the vertical force falls to zero: the body would leave the ground, which pure rocking cannot do; "
-                + _FOLLOWS
-            )
-        elif self.friction_of_motion > friction:
+        if not self.loses_contact and self.friction_of_motion > friction:
             found.append(
                 f"rocking without slip takes a coefficient of friction of {self.friction_of_motion:.2f}; "
                 f"with {friction:g} the body would slide; {_FOLLOWS}"

@@ -21,8 +21,8 @@ Arrays = dict[str, Any]
 RESULTS: dict[str, Any] = {
     "outcome": np.int8, "status": np.int8, "side": np.int8,
     "peak_rotation": np.float64, "peak_time": np.float64, "peak_velocity": np.float64,
-    "overturning_time": np.float64, "first_uplift": np.float64, "error": np.float64,
-    "impacts": np.int64, "uplifts": np.int64,
+    "overturning_time": np.float64, "first_uplift": np.float64, "truncation": np.float64,
+    "impacts": np.int64, "uplifts": np.int64, "least_force": np.float64, "friction_demand": np.float64,
 }  # fmt: skip
 """What the fast engine reports for every history."""
 

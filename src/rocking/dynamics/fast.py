@@ -48,6 +48,7 @@ def run_fast(
     values = {
         "alpha_right": rocker.right.slenderness_angle, "alpha_left": rocker.left.slenderness_angle,
         "p_right": rocker.right.frequency_parameter, "p_left": rocker.left.frequency_parameter,
+        "q_right": rocker.right.inertia_ratio, "q_left": rocker.left.inertia_ratio,
         "r_right": rocker.right.coefficient, "r_left": rocker.left.coefficient,
         "scale": scale, "rotation": rotation, "velocity": velocity,
     }  # fmt: skip
@@ -77,7 +78,9 @@ def run_fast(
         overturning_time=float(out["overturning_time"][0]),
         impacts=int(out["impacts"][0]),
         uplifts=int(out["uplifts"][0]),
-        error=float(out["error"][0]),
+        truncation=float(out["truncation"][0]),
+        least_force=float(out["least_force"][0]),
+        friction_demand=float(out["friction_demand"][0]),
         engine=f"fast (Taylor, order 8, {arguments['isa']})",
     )
 

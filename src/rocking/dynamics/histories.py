@@ -60,8 +60,8 @@ def simulate(  # noqa: PLR0913 - every one of them is a question that users ask
     key : int
         Number of the history, for random coefficients.
     friction : float, optional
-        Coefficient of friction between body and ground [-]; where the response takes more, or the body would fly, a
-        `PureRockingWarning` says so. Without it nothing is checked; `Response.contact` holds what it takes.
+        Coefficient of friction between body and ground [-]; where the response takes more, a `PureRockingWarning`
+        says so; where the body would fly, with or without it, one says what it then does (`Response.with_contact`).
     **options
         Fields of `Settings`: linear, rest_speed, most_impacts, longest_step, order, tolerance.
 
@@ -139,8 +139,8 @@ def free_rocking(  # noqa: PLR0913 - as for `simulate`
     key : int
         Number of the history, for random coefficients.
     friction : float, optional
-        Coefficient of friction between body and ground [-]; where the response takes more, or the body would fly, a
-        `PureRockingWarning` says so. Without it nothing is checked; `Response.contact` holds what it takes.
+        Coefficient of friction between body and ground [-]; where the response takes more, a `PureRockingWarning`
+        says so; where the body would fly, with or without it, one says what it then does (`Response.with_contact`).
     **options
         Fields of `Settings`.
 
@@ -264,7 +264,6 @@ def _until_rest(found: Any, segments: Segments) -> tuple[Any, Segments]:
 
 
 def _credible(response: Response, friction: float | None) -> Response:
-    if friction is not None:
-        for sentence in response.contact.warnings(friction):
-            warnings.warn(sentence, PureRockingWarning, stacklevel=3)
+    for sentence in response.doubts(friction):
+        warnings.warn(sentence, PureRockingWarning, stacklevel=3)
     return response

@@ -10,6 +10,7 @@ from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
+from rocking.dynamics.lost_contact import FORCES, contact_words, lost_contact
 from rocking.dynamics.outcome import OVERTURNED, Outcome, Status, overturned
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
@@ -32,7 +33,8 @@ _UNITS = {
     "peak_velocity": ("rad/s", "largest angular velocity at samples and impacts, the first after the motion included"),
     "overturning_time": ("s", "when the centre passed over the foot for good; the end of the motion if it is later"),
     "first_uplift": ("s", "first uplift"),
-    "error": ("rad", "sum of the local error estimates"),
+    "truncation": ("rad", "sum of what the series of the steps leave out; no measure of accuracy"),
+    **FORCES,
     "impacts": ("1", "number of impacts during the motion"),
     "uplifts": ("1", "number of uplifts from rest"),
 }
@@ -114,9 +116,10 @@ def simulate_many(
     count = int(np.prod(shape))
     results, work = batch.run(count, _pieces(rockers, scales, shape), progress)
     dims = ("body", "motion", "scale", "restitution")
+    results |= {"overturned": overturned(results["outcome"]), "lost_contact": lost_contact(results)}
     data = {
         name: (dims, values.reshape(shape), {"units": _UNITS[name][0], "long_name": _UNITS[name][1]})
-        for name, values in {**results, "overturned": overturned(results["outcome"])}.items()
+        for name, values in results.items()
     }
     from rocking import __version__
 
@@ -136,6 +139,7 @@ def simulate_many(
         attrs={
             "software": f"rocking {__version__}",
             "engine": f"fast ({instruction_set()})" if work else "reference",
+            "contact": contact_words(results["lost_contact"]),
             "seed": getattr(law, "seed", 0),
             **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in vars(settings).items()},
             **{f"work_{k}": v for k, v in work.items()},
@@ -145,11 +149,11 @@ def simulate_many(
 
 
 def _pieces(rockers: list[list[Rocker]], scales: np.ndarray, shape: tuple[int, ...]) -> "Callable[[int, int], Rows]":
-    from rocking.dynamics.batch import Rows
+    from rocking.dynamics.batch import SIDES, Rows
 
     table = {
         f"{short}_{side}": np.array([[getattr(getattr(r, side), name) for r in row] for row in rockers])
-        for short, name in (("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"))
+        for short, name in SIDES
         for side in ("right", "left")
     }
 

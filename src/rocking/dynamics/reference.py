@@ -80,7 +80,8 @@ class Reference:
         self.side, self.u, self.rate = 0, 0.0, 0.0  # u = alpha - |theta| and its rate [rad/s]
         self.stretch, self.tau = 0, 0.0
         self.impacts = self.uplifts = 0
-        self.peak, self.peak_time, self.fastest, self.error = 0.0, 0.0, 0.0, 0.0
+        self.peak, self.peak_time, self.fastest, self.truncation = 0.0, 0.0, 0.0, 0.0
+        self.forces = self.forces_before = (math.inf, 0.0)  # least normal force over m g, largest friction demand
         self.over_time = math.nan
         self._set_later_bounds()
 
@@ -113,8 +114,9 @@ class Reference:
             return self._rest()
         self.u, self.rate = self._alpha - abs(rotation), -self.side * velocity
         self._raise_peak(abs(rotation), 0.0)
-        if self.u < 0.0:
-            self.over_time = 0.0
+        if self.u < 0.0:  # let go beyond the top: the start counts
+            self._note_force(self.u, self.rate, *self._ground_at(0, 0.0))
+            self.over_time, self.forces_before = 0.0, self.forces
         self.uplifts = 1
         self._note(EventKind.UPLIFT, 0.0)
         return self._impact(self.rate, 0.0) if upright and self.rate > 0.0 else None
@@ -126,13 +128,14 @@ class Reference:
         weight = shifted(self.push.vertical[self.stretch].tolist(), self.tau, 1.0 - self.tau)
         push = [self.side * c for c in push]
         weight[0] += 1.0
+        self._note_force(self.u, self.rate, push[0], weight[0])
         kappa = (self._p * left) ** 2
         terms = series(self.u, self.rate * left, kappa, push, weight, _ORDER, linear=self.settings.linear)
         part = self._trusted_part(terms)
         if not part > 0.0:
             return _Ended(Outcome.FAILED, Status.NOT_FINITE)
         scaled = [c * part**k for k, c in enumerate(terms)]
-        self.error += abs(scaled[-1]) + abs(scaled[-2])
+        self.truncation += abs(scaled[-1]) + abs(scaled[-2])
         length = left * part
         gap = [self._alpha - self.u, *(-c for c in scaled[1:])]
         at = self._contact(gap)
@@ -172,6 +175,7 @@ class Reference:
         speed = max(speed, 0.0)
         time = (self.stretch + tau) * self.push.step
         self.fastest = max(self.fastest, speed)
+        self._note_force(self._alpha, speed, *self._ground_at(self.stretch, tau))
         old, self.side = self.side, -self.side
         r = self._coefficient(speed)
         after = r * speed
@@ -193,9 +197,11 @@ class Reference:
         start, end = self.u, value(terms, 1.0)
         passing = last_fall(terms) if end < 0.0 else None
         if passing is not None or start >= 0.0 > end:
-            self.over_time = self._now + (passing or 0.0) * length
+            self.over_time, self.forces_before = self._now + (passing or 0.0) * length, self.forces
         self.u, self.rate = end, slope(terms, 1.0) / length
         self.fastest = max(self.fastest, abs(self.rate))
+        if tau >= _WHOLE:  # before a jump to rest, where there is one
+            self._note_force(self.u, self.rate, *self._ground_at(self.stretch, 1.0))
         self._move(tau)
         if end < 0.0:
             gone = self._beyond_return()
@@ -207,6 +213,10 @@ class Reference:
     def _rest(self) -> _Ended | None:
         """Rest until the ground lifts the body, or to the end."""
         found = self.ground.next_uplift(self.stretch, self.tau) if self.stretch < self.count else None
+        rested = 1.0 + self.push.vertical[self.stretch : self.count if found is None else found[0]]
+        pull = min(rested[:, 0].min(initial=0.0), (rested.sum(axis=1) - rested.shape[1] + 1.0).min(initial=0.0))
+        if pull < 0.0:  # without any push it stays where it is
+            self.forces = min(self.forces[0], float(pull)), math.inf
         calm = _Ended(Outcome.ROCKED if self.uplifts or self.impacts else Outcome.NO_UPLIFT)
         if found is None:
             self.side = 0
@@ -223,6 +233,7 @@ class Reference:
     def _conclude(self) -> _Ended:
         """Let energy decide: the motion is over."""
         linear = self.settings.linear
+        self._note_force(self.u, self.rate, *self._ground_at(self.count - 1, 1.0))
         self._raise_peak(self._alpha - self.u, self._now)
         top = float(equations.energy_at_top(self._alpha, linear=linear))
         e = float(equations.energy(self._alpha - self.u, self.rate, self._alpha, self._p, linear=linear))
@@ -232,18 +243,20 @@ class Reference:
             return _Ended(Outcome.OVERTURNED)
         if not inward:
             if passes:
-                self.over_time = self._now
+                self.over_time, self.forces_before = self._now, self.forces
                 return _Ended(Outcome.OVERTURNED)
             self._raise_peak(float(equations.turning_rotation(e, self._alpha, linear=linear)), self._now)
         speed, impacts = self._p * math.sqrt(2.0 * max(e, 0.0)), self.impacts
         self.fastest = max(self.fastest, speed)
         for _ in range(2):
+            self._note_force(self._alpha, speed, 0.0, 1.0)
             self.side = -self.side
             speed *= self._coefficient(speed)
             self.impacts += 1
             e = 0.5 * (speed / self._p) ** 2
+            self._note_force(self._alpha, speed, 0.0, 1.0)
             if e > float(equations.energy_at_top(self._alpha, linear=linear)):
-                self.over_time = self._now
+                self.over_time, self.forces_before = self._now, self.forces
                 return _Ended(Outcome.OVERTURNED)
             self._raise_peak(float(equations.turning_rotation(e, self._alpha, linear=linear)), self._now)
         self.impacts = impacts
@@ -271,6 +284,21 @@ class Reference:
                 f"{type(law).__name__}.factor must be in [0, {law.largest:g}], its largest, got {factor!r}"
             )
         return self.rocker.side(self.side).coefficient * factor
+
+    def _ground_at(self, stretch: int, tau: float) -> tuple[float, float]:
+        """Push towards the side on which it stands, and weight, over gravity."""
+        push, lift = (value(part[stretch].tolist(), tau) for part in (self.push.horizontal, self.push.vertical))
+        return self.side * push, 1.0 + lift
+
+    def _note_force(self, u: float, rate: float, push: float, weight: float) -> None:
+        """Force of the ground over the weight: (1 + a_z / g) + z'' / g upwards, a_x / g + x'' / g along it."""
+        sine, cosine = math.sin(u), math.cos(u)
+        moment = weight * u + push if self.settings.linear else weight * sine + push * cosine  # u'' / p^2
+        share, spin = self.rocker.side(self.side).inertia_ratio, (rate / self._p) ** 2
+        up = weight - share * (moment * sine + spin * cosine)
+        along = push - share * (moment * cosine - spin * sine)
+        least, demand = self.forces
+        self.forces = min(least, up), max(demand, abs(along) / up) if up > 0.0 else math.inf
 
     def _note(self, kind: EventKind, time: float, before: float = 0.0, after: float = 0.0, r: float = 0.0) -> None:
         self.events.append(Event(time, kind, self.side, before, after, r))
@@ -317,6 +345,8 @@ class Reference:
         if over or not good:
             self.rotations[self.stretch + 1 :] = np.nan
             self.velocities[self.stretch + 1 :] = np.nan
+        least, demand = self.forces_before if over else self.forces
+        rocked = good and least < math.inf
         peak, when = (self.side * 0.5 * math.pi, self.over_time) if over else (self.peak, self.peak_time)
         return Trajectory(
             rotation=self.rotations,
@@ -331,6 +361,8 @@ class Reference:
             overturning_time=self.over_time if over else math.nan,
             impacts=self.impacts,
             uplifts=self.uplifts,
-            error=self.error if good else math.nan,
+            truncation=self.truncation if good else math.nan,
+            least_force=least if rocked else math.nan,
+            friction_demand=demand if rocked else math.nan,
             engine=f"reference (Taylor, order up to {_ORDER}, tolerance {self.settings.tolerance:g})",
         )

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from rocking.dynamics.exported import Exported
     from rocking.dynamics.intervals import Intervals
     from rocking.dynamics.ledger import ResponseEnergy
+    from rocking.dynamics.planar import PlanarResponse
 
 Motion = GroundMotion | Pulse
 
@@ -136,6 +137,85 @@ class Response(Exportable):
     def side(self) -> int:
         """Side to which it overturned: 1 right, -1 left, 0 if it did not; as `simulate_many` has it [-]."""
         return int(self.trajectory.side) if self.outcome is Outcome.OVERTURNED else 0
+
+    @property
+    def least_force(self) -> float:
+        """Smallest normal force of the ground while rocking over the weight; NaN if it never rocked [-].
+
+        Below zero the ground would have to pull. At the samples, uplifts and impacts, up to where a body that
+        overturns passes over its foot for good; the same number as of `simulate_many`.
+        """
+        return self.trajectory.least_force
+
+    @property
+    def lost_contact(self) -> bool | None:
+        """Whether the ground would have to pull, so that the verdict assumes contact; None if there is no result."""
+        return None if self.outcome is Outcome.FAILED else self.least_force < 0.0
+
+    def with_contact(self, friction: float | None = None) -> "PlanarResponse":
+        """Return what the body does if it may slide, hop and fly: the same question to `simulate_with_contact`.
+
+        Parameters
+        ----------
+        friction : float, optional
+            Coefficient of friction [-]; if not given, the largest of 10, 3 and 1 that has a response, so that feet
+            that carry do not slide.
+
+        Returns
+        -------
+        PlanarResponse
+            With the full equations.
+
+        Raises
+        ------
+        InvalidValueError
+            If the coefficient of restitution changes from impact to impact.
+        """
+        from rocking.dynamics.planar import Start, simulate_with_contact
+
+        rocker, run = self.rocker, self.trajectory
+        if rocker.law.kind:
+            raise InvalidValueError(f"restitution must be constant where the body may fly, got {rocker.label}")
+        start = Start(rotation=float(run.rotation[0]), angular_velocity=float(run.angular_velocity[0]))
+        for mu in (friction,) if friction is not None else (10.0, 3.0, 1.0):
+            found = simulate_with_contact(
+                self.body, self.motion, mu, restitution={f: getattr(rocker, f).coefficient for f in ("left", "right")},
+                scale=self.scale, duration=self.segments.count * self.segments.step, start=start,
+                gravity=self.settings.gravity,
+            )  # fmt: skip
+            if found.outcome is not Outcome.FAILED:
+                break
+        return found
+
+    def doubts(self, friction: float | None = None) -> list[str]:
+        """Return why pure rocking is not credible; where contact is lost, with what the body does if it may fly.
+
+        Parameters
+        ----------
+        friction : float, optional
+            Coefficient of friction between body and ground [-]; if not given, only loss of contact is looked at.
+
+        Returns
+        -------
+        list of str
+            Sentences; empty if it is credible.
+        """
+        told = [self._flown(friction)] if self.lost_contact else []
+        return told if friction is None else [*told, *self.contact.slips(friction)]
+
+    def _flown(self, friction: float | None) -> str:
+        from rocking.dynamics.contact import LEAVES
+
+        lost = (
+            f"the ground would have to pull, with up to {-self.least_force:.2g} of the weight: {LEAVES}; "
+            f"rocking alone: {self._ending}; if it may fly, "
+        )
+        try:
+            found = self.with_contact(friction)
+        except InvalidValueError as error:
+            return f"{lost}nothing is known: {error}"
+        why = "enough not to slide" if friction is None else "as given"
+        return f"{lost}with a coefficient of friction of {found.law.friction:g}, {why}: {found.summary}"
 
     @property
     def summary(self) -> str:

@@ -30,12 +30,15 @@ class RockingSide:
         R [m].
     coefficient : float
         theta_dot_after / theta_dot_before when the body lands on this side [-].
+    inertia_ratio : float
+        m R^2 / I_o, with the moment of inertia I_o about the foot; 3/4 for a rectangle [-].
     """
 
     slenderness_angle: float
     frequency_parameter: float
     semi_diagonal: float
     coefficient: float
+    inertia_ratio: float = 0.75
 
 
 @dataclass(frozen=True)
@@ -117,7 +120,11 @@ class Rocker:
                 )
         made = {
             foot: RockingSide(
-                side.slenderness_angle, side.frequency_parameter, side.semi_diagonal, float(coefficients[foot])
+                side.slenderness_angle,
+                side.frequency_parameter,
+                side.semi_diagonal,
+                float(coefficients[foot]),
+                body.mass * side.semi_diagonal**2 / side.moment_of_inertia,
             )
             for foot, side in sides.items()
         }

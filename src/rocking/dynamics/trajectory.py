@@ -68,8 +68,14 @@ class Trajectory:
         later; NaN if it did not overturn [s].
     impacts, uplifts : int
         How many.
-    error : float
-        What the engine thinks of its own local errors, summed [rad].
+    truncation : float
+        Sum of what the series of the steps leave out: no measure of accuracy, which takes a twin [rad].
+    least_force : float
+        Smallest normal force of the ground while rocking over the weight m g, up to where a body that overturns passes
+        over its foot for good; at samples, uplifts and impacts; below zero the ground would have to pull; NaN if it
+        never rocked [-].
+    friction_demand : float
+        Largest ratio of horizontal to normal force at the same instants; infinite where contact is lost [-].
     engine : str
         Which engine, and how.
     """
@@ -86,5 +92,7 @@ class Trajectory:
     overturning_time: float
     impacts: int
     uplifts: int
-    error: float
+    truncation: float
+    least_force: float
+    friction_demand: float
     engine: str

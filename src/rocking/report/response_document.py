@@ -189,8 +189,7 @@ def _response(found: Found) -> list[Block]:
     blocks += [Paragraph(why, f"{restitution_words(label)}:", "fair") for label, why in found.refused.items()]
     for label, response in found.responses.items():
         blocks += [
-            Paragraph(words, f"{restitution_words(label)}:", "fair")
-            for words in response.contact.warnings(found.friction)
+            Paragraph(words, f"{restitution_words(label)}:", "fair") for words in response.doubts(found.friction)
         ]
     return [*blocks, impacts_table(first_label, first)] if first.impacts.size else blocks
 

@@ -305,7 +305,7 @@ class Product(Histories):
     motions : MotionSet
         The motions.
     sides : dict of str to ndarray, shape (bodies, choices)
-        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-].
+        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left [-].
     scales : ndarray, shape (scales,) or (motions, scales)
         Factors on the motions, the same for all or for each its own [-].
     """

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from rocking import conventions
 from rocking.bodies import Body
 from rocking.dynamics.export import extra
+from rocking.dynamics.lost_contact import FORCES, contact_words
 from rocking.dynamics.outcome import OVERTURNED, Outcome, Status
 from rocking.dynamics.response import Motion
 from rocking.studies.axis import Axis
@@ -25,7 +26,8 @@ VARIABLES = {
     "side": ("1", "side to which it overturned: 1 right, -1 left"),
     "overturning_time": ("s", "when the centre passed over the foot for good; the end of the motion if it is later"),
     "status": ("1", ", ".join(f"{s.code} {s.value}" for s in Status)),
-    "error": ("rad", "sum of the local error estimates"),
+    "truncation": ("rad", "sum of what the series of the steps leave out; no measure of accuracy"),
+    **FORCES,
 }
 """Unit and meaning of every variable of a map."""
 
@@ -105,7 +107,7 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     made: xr.Dataset = xarray.Dataset(
         {name: (dims, results[name].reshape(shape), _about(name)) for name in VARIABLES},
         coords={axis.name: (axis.name, axis.values, axis.attributes) for axis in (plane.y, plane.x)},
-        attrs=plane.question.attributes(work),
+        attrs={**plane.question.attributes(work), "contact": contact_words(results["lost_contact"])},
     )
     if refine is None:
         return made

@@ -9,9 +9,10 @@ import numpy as np
 
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.batch import Batch, Rows
+from rocking.dynamics.batch import SIDES, Batch, Rows
 from rocking.dynamics.engine import Arrays, instruction_set
 from rocking.dynamics.impact_law import ImpactLaw
+from rocking.dynamics.lost_contact import lost_contact
 from rocking.dynamics.outcome import Outcome, overturned
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
@@ -23,8 +24,6 @@ from rocking.studies.histories import part
 
 UNLIFTED, SURVIVED, FAILED = -2, -1, -3
 """Modes beside the number of impacts before overturning: never lifted; rocked and stayed standing; no result."""
-
-_SIDES = (("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"))
 
 
 @dataclass(frozen=True)
@@ -134,7 +133,11 @@ class Question:
         for name in ("peak_time", "overturning_time", "first_uplift"):
             found[name] = found[name] * stretch
         found["peak_velocity"] = found["peak_velocity"] / stretch
-        found["mode"], found["overturned"] = modes_of(found), overturned(found["outcome"])
+        found |= {
+            "mode": modes_of(found),
+            "overturned": overturned(found["outcome"]),
+            "lost_contact": lost_contact(found),
+        }
         found["peak_ratio"] = peak_ratio(found["peak_rotation"], values["alpha_right"], values["alpha_left"])
         return found, work
 
@@ -197,11 +200,12 @@ def sides_of(rockers: Sequence[Rocker | None]) -> dict[str, FloatArray]:
     Returns
     -------
     dict of str to ndarray
-        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-]; NaN where there is no body.
+        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left [-]; NaN where there is
+        no body.
     """
     return {
         f"{short}_{side}": np.array([np.nan if r is None else getattr(getattr(r, side), name) for r in rockers])
-        for short, name in _SIDES
+        for short, name in SIDES
         for side in ("right", "left")
     }
 

@@ -13,6 +13,7 @@ from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.export import extra
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution
+from rocking.dynamics.lost_contact import contact_words, lost_contact
 from rocking.dynamics.outcome import overturned
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
@@ -100,6 +101,7 @@ def rocking_spectrum(
     shape = (len(given), angles.size, times.size)
     alpha = np.tile(sides["alpha_right"], len(given))
     results |= {"mode": modes_of(results), "overturned": overturned(results["outcome"])}
+    results["lost_contact"] = lost_contact(results)
     results["peak_ratio"] = peak_ratio(results["peak_rotation"], alpha, alpha)
     data = {name: (_DIMENSIONS, results[name].reshape(shape), _about(name)) for name in VARIABLES}
     constant = isinstance(question.law, ConstantRestitution)
@@ -113,7 +115,10 @@ def rocking_spectrum(
             "semi_diagonal": ("period", sizes, {"units": "m", "long_name": "semi-diagonal R of the block"}),
             "coefficient": (_DIMENSIONS[1:], coefficient, {"units": "1", "long_name": "coefficient of restitution"}),
         },
-        attrs=_attributes(question, settings, scale, given),
+        attrs={
+            **_attributes(question, settings, scale, given),
+            "contact": contact_words(results["lost_contact"]),
+        },
     )
     return made
 

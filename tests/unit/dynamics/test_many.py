@@ -75,7 +75,11 @@ def test_entries_are_single_histories(name: str, tables: dict[str, Any]) -> None
             "first_uplift": alone.uplifts[0] if alone.uplifts.size else math.nan,
         }  # fmt: skip
         if run.outcome is not Outcome.OVERTURNED:
-            expected |= {"peak_time": run.peak_time, "peak_velocity": run.peak_angular_velocity, "error": run.error}
+            expected |= {
+                "peak_time": run.peak_time,
+                "peak_velocity": run.peak_angular_velocity,
+                "truncation": run.truncation,
+            }
         for key, value in expected.items():
             np.testing.assert_array_equal(found[key].to_numpy()[place], value, err_msg=f"{key} at {place}")
         seen.add(run.outcome)

@@ -76,7 +76,7 @@ def test_engines_hand_back_the_same() -> None:
 def test_error_and_peaks_are_finite(name: str) -> None:
     """A good history has finite peaks, an error estimate from zero, and no overturning time."""
     run = rk.simulate(BLOCK, BURSTS, 0.6, engine=name).trajectory
-    assert 0.0 <= run.error < 1e-8
+    assert 0.0 <= run.truncation < 1e-8
     assert math.isfinite(run.peak_angular_velocity)
     assert run.peak_angular_velocity >= np.abs(run.angular_velocity).max() * (1.0 - 1e-12)
     assert abs(run.peak_rotation) >= np.abs(run.rotation).max() * (1.0 - 1e-12)

@@ -82,7 +82,8 @@ class Told(Bare):
 def product(motions=None, law=None, **changed):
     angle = np.array([[0.2, 0.2], [0.25, 0.25], [0.3, 0.3]])
     sides = {"alpha_right": angle, "alpha_left": angle, "p_right": 8.0 * angle, "p_left": 8.0 * angle}
-    sides |= {"r_right": np.array([[0.8, 0.9]] * 3), "r_left": np.array([[0.8, 0.9]] * 3)} | changed
+    sides |= {"r_right": np.array([[0.8, 0.9]] * 3), "r_left": np.array([[0.8, 0.9]] * 3)}
+    sides |= {"q_right": np.full((3, 2), 0.75), "q_left": np.full((3, 2), 0.75)} | changed
     motions = MotionList([Sines()[k] for k in range(5)]) if motions is None else motions
     return Product(motions, sides, np.array([0.5, 1.0, 2.0, 4.0]), **({} if law is None else {"law": law}))
 

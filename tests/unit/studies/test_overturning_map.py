@@ -15,7 +15,7 @@ from rocking.studies.refined import refined_map
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSE = rk.pulses.sine(3.0, 0.7)
 RATIOS = ("frequency_ratio", np.linspace(1.5, 6.0, 19)), ("amplitude_ratio", np.linspace(0.5, 8.0, 26))
-SAME = ("outcome", "peak_rotation", "impacts", "side", "status", "error", "overturning_time")
+SAME = ("outcome", "peak_rotation", "impacts", "side", "status", "truncation", "overturning_time")
 
 
 def noise(samples=400):

@@ -25,7 +25,7 @@ def test_a_spectrum_is_simulate_many_block_by_block(motions):
     sizes = 0.75 * 9.80665 * (0.5 * PERIODS / np.pi) ** 2
     blocks = [rk.Block.from_angle(alpha, size) for alpha in ANGLES for size in sizes]
     single = rk.simulate_many(blocks, motions, "ked", threads=1)
-    for name in ("outcome", "peak_rotation", "impacts", "side", "status", "error"):
+    for name in ("outcome", "peak_rotation", "impacts", "side", "status", "truncation"):
         expected = single[name].values[:, :, 0, 0].T.reshape(len(motions), 3, 9)
         np.testing.assert_array_equal(found[name].values, expected, strict=True)
 

@@ -85,7 +85,7 @@ def credibility_facts(response: Response, friction: float) -> dict[str, Any]:
             "of_impacts": finite(contact.friction_of_impacts),
         },
         "least_vertical_force_N": contact.least_vertical,
-        "warnings": contact.warnings(friction),
+        "warnings": response.doubts(friction),
     }
 
 

@@ -107,6 +107,7 @@ def _rows(count: int) -> Rows:
     values = {
         "alpha_right": alpha, "alpha_left": 0.75 * alpha + 0.03125, "p_right": 1.0 + 0.25 * (k * 7 % 16),
         "p_left": 1.125 + 0.25 * (k * 7 % 16), "r_right": 0.75 + k / 128.0, "r_left": 0.875 - k / 128.0,
+        "q_right": 0.5 + k / 128.0, "q_left": 0.75 - k / 128.0,
         "scale": np.where(k == _EACH - 1, np.nan, 0.5 + k / 16.0), "rotation": np.where(k % 5 == 4, 0.03125, 0.0),
     }  # fmt: skip
     return Rows.of(count, k % 4, k, **values)

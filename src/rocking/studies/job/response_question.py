@@ -1,5 +1,6 @@
 """One body, one motion or first rotation, some restitutions: the question that commands and the application ask."""
 
+import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,7 +9,7 @@ from rocking.bodies import Body
 from rocking.dynamics.histories import free_rocking, simulate
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, PureRockingWarning
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +80,8 @@ class ResponseQuestion:
             The response.
         """
         how = {**vars(self.settings), "engine": self.engine}
-        if self.motion is None:
-            return free_rocking(self.body, self.rotation, restitution, **how)
-        return simulate(self.body, self.motion, restitution, scale=self.scale, **how)
+        with warnings.catch_warnings():  # whoever shows the response shows its doubts
+            warnings.simplefilter("ignore", PureRockingWarning)
+            if self.motion is None:
+                return free_rocking(self.body, self.rotation, restitution, **how)
+            return simulate(self.body, self.motion, restitution, scale=self.scale, **how)

@@ -33,13 +33,13 @@ def test_blocks_fill_an_array_once(shape, data):
 
 def test_variables_have_units():
     """Every result of the engine, and what follows from it, has a unit and words."""
-    assert set(rk.dynamics.engine.RESULTS) | {"overturned", "mode", "peak_ratio"} == set(VARIABLES)
+    assert set(rk.dynamics.engine.RESULTS) | {"overturned", "lost_contact", "mode", "peak_ratio"} == set(VARIABLES)
     assert all(unit in {"1", "rad", "rad/s", "s"} and words for _, unit, words in VARIABLES.values())
 
 
 def test_dimensions_must_fit():
     """Dimensions of another number of histories are refused."""
-    sides = {f"{n}_{side}": np.full((1, 1), 0.3) for n in ("alpha", "p", "r") for side in ("right", "left")}
+    sides = {f"{n}_{side}": np.full((1, 1), 0.3) for n in ("alpha", "p", "r", "q") for side in ("right", "left")}
     histories = Product(MotionList(rk.pulses.sine(1.0, 1.0)), sides, np.ones(3))
     with pytest.raises(InvalidValueError, match="do not fit 3 histories"):
         Study(histories, {"a": 2}, {})

@@ -1,5 +1,6 @@
 """The history behind a point: what is stored of it, its inputs, and how the body rocks there."""
 
+import warnings
 from typing import Any
 
 from rocking.app.api.answers import answer_facts
@@ -12,7 +13,7 @@ from rocking.app.studies.results.plain import meaning, plain
 from rocking.dynamics.histories import simulate
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, PureRockingWarning
 
 POINTS = 1000
 """Samples of the curves."""
@@ -93,7 +94,9 @@ def _responded(study: OpenStudy, place: Place, variation: Variation, motion: Cho
         variation.body, motion.motion, {variation.label: variation.restitution}, job.parts.settings, engine, scale=scale
     )
     how = {**vars(asked.settings), "engine": engine, "key": place.number}
-    return asked, simulate(asked.body, motion.motion, variation.restitution, scale=scale, **how)
+    with warnings.catch_warnings():  # the answer shows its doubts
+        warnings.simplefilter("ignore", PureRockingWarning)
+        return asked, simulate(asked.body, motion.motion, variation.restitution, scale=scale, **how)
 
 
 def _why_not(variation: Variation, motion: ChosenMotion) -> str:

@@ -1,0 +1,65 @@
+"""Whether the ground would have to pull, which it cannot: the verdict of rocking then assumes a contact it lacks."""
+
+from typing import Any
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.outcome import Outcome
+
+FORCES: dict[str, tuple[str, str]] = {
+    "least_force": ("1", "smallest normal force of the ground while rocking, over the weight; below 0 it would pull"),
+    "friction_demand": ("1", "largest horizontal over normal force while rocking; infinite where contact is lost"),
+    "lost_contact": ("1", "1 where the ground would have to pull, so that the verdict assumes contact; NaN no result"),
+}
+"""Unit and meaning of what is known of the forces of the ground; at samples, uplifts and impacts."""
+
+
+def lost_contact(results: Any) -> FloatArray:
+    """Return in which histories the ground would have to pull.
+
+    Parameters
+    ----------
+    results : mapping of str to array_like
+        With outcome and least_force.
+
+    Returns
+    -------
+    ndarray
+        1 where it would, 0 where not, NaN where there is no result [-].
+
+    Examples
+    --------
+    >>> lost_contact({"outcome": [1, 1, 0, 3], "least_force": [-0.1, 0.2, np.nan, np.nan]}).tolist()
+    [1.0, 0.0, 0.0, nan]
+    """
+    force = np.asarray(results["least_force"], dtype=np.float64)
+    unknown = np.isnan(force) & (np.asarray(results["outcome"]) != Outcome.NO_UPLIFT.code)
+    return np.where(unknown, np.nan, force < 0.0)
+
+
+def contact_words(flags: Any) -> str:
+    """Return in how many histories the ground would have to pull, as a sentence that stands beside their verdicts.
+
+    Parameters
+    ----------
+    flags : array_like
+        As of `lost_contact`.
+
+    Returns
+    -------
+    str
+        Empty if there is none.
+
+    Examples
+    --------
+    >>> contact_words([1.0, 0.0, 0.0, np.nan])
+    'in 1 of 3 histories (33 %) the ground would have to pull; their verdicts assume contact'
+    """
+    known = np.asarray(flags, dtype=np.float64)
+    known = known[np.isfinite(known)]
+    lost = int((known == 1.0).sum())
+    if not lost:
+        return ""
+    share = f"{100.0 * lost / known.size:.2g} %"
+    return f"in {lost} of {known.size} histories ({share}) the ground would have to pull; their verdicts assume contact"
