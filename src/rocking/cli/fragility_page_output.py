@@ -67,6 +67,7 @@ def _result(found: Any) -> dict[str, Any]:
         "definition": found.definition,
         "uplift": told["uplift"],
         "failed": told["failed"],
+        "contact": _stripes(found).responses.contact,
         "trials": found.trials.tolist(),
         "reached": {name: counts.tolist() for name, counts in found.counts.items()},
         "curves": {name: fit.summary() for name, fit in found.fits.items()},
@@ -179,6 +180,8 @@ def _sentences(answer: FragilityAnswer) -> list[str]:
         failed = _stripes(result).failed
         if failed:
             told.append(f"! {before}{failed} histories could not be computed; they count at no level")
+        if contact := _stripes(result).responses.contact:
+            told.append(f"! {before}{contact}")
     found = answer.found
     if answer.question.analysis == "cloud":
         told.append(_line(found))

@@ -59,6 +59,7 @@ def as_json(answer: MapAnswer) -> str:
         "refined_points": found.sizes.get("point"),
         "islands": {"count": len(answer.islands), "all": [_island(one) for one in answer.islands.islands]},
         "overturning": extent(answer),
+        "contact": found.attrs["contact"],
         "sensitivity": _sensitivity(answer),
     }
     return json.dumps(facts, indent=1, allow_nan=False)
@@ -87,6 +88,8 @@ def show(answer: MapAnswer) -> None:
     console.print()
     for sentence in (_begins(answer), _islands_words(answer)):
         console.print(sentence, markup=False)
+    if found.attrs["contact"]:
+        console.print(f"! {found.attrs['contact']}", style="yellow", markup=False)
     if "point" in found.sizes:
         console.print(f"Refined along boundaries: {found.sizes['point']} points.", markup=False)
     if answer.compared is not None:

@@ -192,6 +192,7 @@ def as_json(answer: MinimumAnswer) -> str:
         "starts_overturned": found.starts_overturned,
         "samples": found.samples,
         "failed": found.failed,
+        "contact": found.contact,
         "sentence": sentence(found),
     }
     return json.dumps(facts, indent=1, allow_nan=False)
@@ -288,6 +289,8 @@ def show(answer: MinimumAnswer) -> None:
         console.print(shared.table(head, rows, left=0))
     if found.failed:
         console.print(f"! {found.failed} of {found.samples} histories could not be computed", style="yellow")
+    if found.contact:
+        console.print(f"! {found.contact}", style="yellow", markup=False)
 
 
 def _short(mode: int) -> str:

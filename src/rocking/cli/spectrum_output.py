@@ -216,6 +216,7 @@ def as_json(found: "xr.Dataset") -> str:
         "mode": found["mode"].values.tolist(),
         "peak_ratio": plain(found["peak_ratio"].values),
         "curves": curves(found),
+        "contact": found.attrs["contact"],
     }
     return json.dumps(facts, indent=1, allow_nan=False)
 
@@ -287,6 +288,8 @@ def show(found: "xr.Dataset") -> None:
     failed = sum(one["failed"] for one in found_curves)
     if failed:
         console.print(f"! {failed} histories could not be computed", style="yellow", markup=False)
+    if found.attrs["contact"]:
+        console.print(f"! {found.attrs['contact']}", style="yellow", markup=False)
 
 
 def _row(one: dict[str, Any]) -> tuple[str, ...]:

@@ -311,7 +311,7 @@ class Response(Exportable):
 
     @cached_property
     def error_estimate(self) -> float:
-        """Largest change of theta if every step is halved: what the integration leaves open [rad].
+        """Largest change of theta in a twin with every step halved: what the integration leaves open [rad].
 
         It grows with the length of a history, since rocking multiplies small differences; where another step changes
         the outcome, it is infinite.

@@ -45,7 +45,7 @@ def below(samples: Samples) -> dict[int, Below]:
     Examples
     --------
     >>> n, x = np.array([0, 0, 0, 1, 1]), np.array([1.0, 2.0, 3.0, 1.0, 2.0])
-    >>> found = below(Samples(n, x, np.array([-1, -1, 2, -1, -1]), n, x, x))
+    >>> found = below(Samples(n, x, np.array([-1, -1, 2, -1, -1]), n, x, x, x))
     >>> {k: each.scales.tolist() for k, each in found.items()}
     {0: [1.0, 2.0, 3.0]}
     """

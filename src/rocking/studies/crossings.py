@@ -42,6 +42,8 @@ class Crossings:
         Histories that were computed, and those that have no result; a bracket stays wide where one failed.
     resolution_below : float
         Widest relative gap between samples below the minimum; NaN if there is no minimum [-].
+    contact : str
+        In how many of the histories the ground would have to pull, as a sentence; empty if in none.
     """
 
     acceleration: FloatArray
@@ -57,6 +59,7 @@ class Crossings:
     samples: int
     failed: int
     resolution_below: float = math.nan
+    contact: str = ""
 
     def __len__(self) -> int:
         """Return the number of crossings."""

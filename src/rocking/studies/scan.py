@@ -7,6 +7,7 @@ import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.engine import Arrays
+from rocking.dynamics.lost_contact import lost_contact
 from rocking.studies.question import FAILED
 
 Run = Callable[[dict[str, FloatArray], IntArray], Arrays]
@@ -14,7 +15,7 @@ Run = Callable[[dict[str, FloatArray], IntArray], Arrays]
 
 # halvings after which neighbouring doubles have met, and the relative width at which a hunt is given up
 _MOST_ROUNDS, _GIVEN_UP = 70, 1e-9
-_FIELDS = ("body", "scale", "mode", "side", "peak", "time")
+_FIELDS = ("body", "scale", "mode", "side", "peak", "time", "lost")
 
 
 @dataclass
@@ -35,6 +36,8 @@ class Samples:
         Peak rotation over the slenderness angle [-].
     time : ndarray
         Time of overturning, NaN where it did not [s].
+    lost : ndarray
+        1 where the ground would have to pull, NaN where that is not known [-].
     """
 
     body: IntArray
@@ -43,6 +46,7 @@ class Samples:
     side: IntArray
     peak: FloatArray
     time: FloatArray
+    lost: FloatArray
 
     def joined(self, other: "Samples") -> "Samples":
         """Return these and others, sorted.
@@ -196,7 +200,8 @@ class Scan:
         """
         values = {name: array[body] for name, array in self.sides.items()}
         found = self.run({**values, "scale": scale}, body)
-        return Samples(body, scale, *(found[n] for n in ("mode", "side", "peak_ratio", "overturning_time")))
+        names = ("mode", "side", "peak_ratio", "overturning_time")
+        return Samples(body, scale, *(found[n] for n in names), lost_contact(found))
 
     def zoom(self) -> None:
         """Halve the intervals in which a change of verdict may hide between ends that agree."""

@@ -178,3 +178,18 @@ def test_company_does_not_matter() -> None:
     beside = rk.simulate_many(body, [plain, upright], "ked", scale=[0.5, 1.0, 1.5]).isel(motion=[0])
     for name in alone.data_vars:
         np.testing.assert_array_equal(alone[name].values, beside[name].values)
+
+
+@every_engine
+def test_a_twin_tells_what_the_integration_leaves_open(name: str) -> None:
+    """The twin has half the steps: its change is of the size of that to a quarter of the step; `error` is gone."""
+    record, odd = MOTIONS[0], {"longest_step": 1.0, "engine": name}
+    found = rk.simulate_many(BODIES[0], record, 0.9, scale=SCALES, twin=True, **odd)
+    one, half = (
+        rk.simulate_many(BODIES[0], record, 0.9, scale=SCALES, engine=name, longest_step=step) for step in (1.0, 0.25)
+    )
+    assert not {"twin_change", "twin_flips", "error"} & set(one.data_vars)
+    change = np.abs(np.abs(one["peak_rotation"]) - np.abs(half["peak_rotation"])).to_numpy()
+    same = found["twin_flips"].to_numpy() == 0.0
+    assert np.all(found["twin_change"].to_numpy()[same] <= 4.0 * change[same] + 1e-9)
+    assert found["twin_change"].attrs["units"] == "rad"

@@ -133,7 +133,7 @@ def test_what_is_suspicious():
     scale = np.arange(1.0, 7.0)
 
     def samples(**given):
-        values = {"body": n, "scale": scale, "mode": n - 1, "side": n, "peak": nan, "time": nan} | given
+        values = {"body": n, "scale": scale, "mode": n - 1, "side": n, "peak": nan, "time": nan, "lost": nan} | given
         return Samples(**{name: np.asarray(value) for name, value in values.items()})
 
     far = samples(peak=[0.1, 0.11, 0.12, 0.11, 0.1, 0.09])
@@ -246,8 +246,8 @@ def test_samples_up_to_the_first_fall():
     body = np.array([0, 0, 0, 0, 1, 1, 2, 2, 3])
     scale = np.array([1.0, 1.5, 1.8, 9.0, 1.0, 2.0, 1.0, 2.0, 1.0])
     mode = np.array([-2, -1, 0, -1, -1, -1, 0, -1, 3])
-    found = below(Samples(body, scale, mode, body, scale, scale))
+    found = below(Samples(body, scale, mode, body, scale, scale, scale))
     assert list(found) == [0]
     assert found[0].gap == pytest.approx(0.5)
-    assert below(Samples(*(np.empty(0, dtype=np.int64) for _ in range(6)))) == {}
+    assert below(Samples(*(np.empty(0, dtype=np.int64) for _ in range(7)))) == {}
     assert math.isnan(minimum_overturning_acceleration(BLOCK, SINE, 0.85, highest=2.0, threads=1).resolution_below)

@@ -87,7 +87,10 @@ def test_ends_of_a_search_are_those_that_have_a_result():
     def run(values, body):
         ratio = values["scale"]
         mode = np.where(ratio < 2.0, -3, 1)
-        return {"mode": mode, "side": np.ones_like(ratio), "peak_ratio": ratio, "overturning_time": ratio}
+        return {"mode": mode, "side": np.ones_like(ratio), "peak_ratio": ratio, "overturning_time": ratio} | {
+            "outcome": np.where(mode == -3, NONE, FALLS),
+            "least_force": ratio,
+        }
 
     sides = {f"{n}_{s}": np.array([0.2]) for n in ("alpha", "p", "r", "q") for s in ("right", "left")}
     case = Cases(sides, np.array([1.0]), np.array([1.0]), np.array([1.0]), np.array([8.0]), record=False)

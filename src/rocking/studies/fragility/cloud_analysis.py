@@ -188,6 +188,7 @@ class CloudAnalysis:
         xarray = extra("xarray", "a labelled dataset")
         data = {**self.responses.labelled("motion"), "level": ("motion", self.motion_levels, self.subject.label)}
         more = {"definition": self.definition, "uplift": self.uplift.verdict, "failed": self.failed}
+        more["contact"] = self.responses.contact
         coords = {"motion_name": ("motion", self.subject.names)}
         made: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=self.subject.about() | more)
         return made
@@ -207,6 +208,7 @@ class CloudAnalysis:
             "unit": self.subject.measure.unit,
             "uplift": self.uplift.verdict,
             "failed": self.failed,
+            "contact": self.responses.contact,
             "states": {state.name.lower(): n for state, n in self.responses.counts().items()},
             "regression": _told(self),
             "least": self.least,

@@ -11,6 +11,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray
 from rocking.dynamics.engine import Arrays
+from rocking.dynamics.lost_contact import FORCES, contact_words, lost_contact
 from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
 
@@ -82,11 +83,14 @@ class Responses:
         Largest rotation over the alpha of its side; infinite if overturned, NaN if the history failed [-].
     sides : ndarray of int8
         Side overturned to: 1 right, -1 left, 0 if it did not.
+    lost : ndarray, optional
+        1 where the ground would have to pull, as of `lost_contact`; None where it is not known [-].
     """
 
     outcome: np.ndarray
     rotation: FloatArray
     sides: np.ndarray
+    lost: FloatArray | None = None
 
     @classmethod
     def of(cls, arrays: Arrays, rocker: Any, shape: tuple[int, ...]) -> "Responses":
@@ -125,7 +129,13 @@ class Responses:
         rotation = np.abs(peak)  # there may be ten million of them: no more copies than needed
         rotation /= right if right == left else np.where(to_right, right, left)
         rotation[over], rotation[outcome == Outcome.FAILED.code] = math.inf, math.nan
-        return cls(outcome, rotation, over * np.where(to_right, np.int8(1), np.int8(-1)))
+        lost = lost_contact(arrays).reshape(shape) if "least_force" in arrays else None
+        return cls(outcome, rotation, over * np.where(to_right, np.int8(1), np.int8(-1)), lost)
+
+    @property
+    def contact(self) -> str:
+        """In how many histories the ground would have to pull, as a sentence; empty if in none."""
+        return "" if self.lost is None else contact_words(self.lost)
 
     @property
     def good(self) -> BoolArray:
@@ -177,10 +187,14 @@ class Responses:
         """
         told = "largest rotation over alpha; infinite if overturned, NaN if the history failed"
         codes = ", ".join(f"{one.code} {one.value}" for one in Outcome)
-        return {
+        made: dict[str, Any] = {
             "outcome": (dimensions, self.outcome, {"units": "1", "long_name": codes}),
             "rotation": (dimensions, self.rotation, {"units": "1", "long_name": told}),
         }
+        if self.lost is not None:
+            unit, words = FORCES["lost_contact"]
+            made["lost_contact"] = (dimensions, self.lost, {"units": unit, "long_name": words})
+        return made
 
     def counts(self) -> dict[RockingState, int]:
         """Return how many histories ended in which state.

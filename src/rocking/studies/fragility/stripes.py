@@ -101,6 +101,7 @@ class StripeAnalysis:
         levels = ("level", self.levels, self.subject.label)
         coords = {"level": levels, "state": names, "motion_name": ("motion", self.subject.names)}
         more = {"definition": self.definition, "uplift": self.uplift.verdict, "failed": self.failed}
+        more["contact"] = self.responses.contact
         made: xr.Dataset = xarray.Dataset(data, coords=coords, attrs=self.subject.about() | more)
         return made
 
@@ -119,6 +120,7 @@ class StripeAnalysis:
             "unit": self.subject.measure.unit,
             "uplift": self.uplift.verdict,
             "failed": self.failed,
+            "contact": self.responses.contact,
             "curves": {name: fit.summary() for name, fit in self.fits.items()},
         }
 

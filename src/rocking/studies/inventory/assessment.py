@@ -8,8 +8,10 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FEET, FloatArray, g
+from rocking.dynamics.batch import SIDES
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.impact_law import ImpactLaw
+from rocking.dynamics.lost_contact import lost_contact
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
@@ -232,7 +234,7 @@ def _verdicts(bodies: _Bodies, tables: Mapping[str, np.ndarray], asked: _Asked) 
 
 
 def _run(product: Product, threads: int | None, progress: Callable[[int], None] | None) -> Mapping[str, np.ndarray]:
-    kept = {name: np.empty(product.count, RESULTS[name]) for name in ("outcome", "peak_rotation")}
+    kept = {name: np.empty(product.count, RESULTS[name]) for name in ("outcome", "peak_rotation", "least_force")}
     for first in range(0, product.count, PIECE):
         last = min(first + PIECE, product.count)
         found = product.run(first, last, threads=threads)
@@ -244,17 +246,17 @@ def _run(product: Product, threads: int | None, progress: Callable[[int], None] 
 
 
 def _shaped(product: Product, results: Arrays) -> Mapping[str, np.ndarray]:
-    """Return outcome and peak rotation over the slenderness angle, each by motion, body and model."""
+    """Return outcome, peak rotation over the slenderness angle, loss of contact, each by motion, body and model."""
     motions, count, _, choices = product.shape
     outcome, peak = (results[name].reshape(motions, count, choices) for name in ("outcome", "peak_rotation"))
-    return {"outcome": outcome, "ratio": np.abs(peak) / product.sides["alpha_right"]}
+    lost = lost_contact(results).reshape(motions, count, choices)
+    return {"outcome": outcome, "ratio": np.abs(peak) / product.sides["alpha_right"], "lost": lost}
 
 
 def _sides(pairs: Sequence[Sequence[Rocker]]) -> dict[str, FloatArray]:
-    attributes = {"alpha": "slenderness_angle", "p": "frequency_parameter", "r": "coefficient"}
     return {
         f"{short}_{foot}": np.array([[getattr(getattr(rocker, foot), name) for rocker in pair] for pair in pairs])
-        for short, name in attributes.items()
+        for short, name in SIDES
         for foot in FEET
     }
 
@@ -267,7 +269,7 @@ def _verdict(
         return NotAssessed(item.row, item.name, "no motion could be computed in one of its directions")
     found = [
         tuple(
-            _direction(item, way, table["outcome"][:, k, choice], table["ratio"][:, k, choice], limits, gravity)
+            _direction(item, way, {name: values[:, k, choice] for name, values in table.items()}, limits, gravity)
             for k, way in enumerate(DIRECTIONS)
         )
         for choice in range(_MODELS)
@@ -277,8 +279,9 @@ def _verdict(
 
 
 def _direction(
-    item: InventoryObject, way: Direction, outcome: np.ndarray, ratio: FloatArray, limits: Thresholds, gravity: float
+    item: InventoryObject, way: Direction, table: Mapping[str, np.ndarray], limits: Thresholds, gravity: float
 ) -> DirectionResult:
+    outcome, ratio = table["outcome"], table["ratio"]
     good = outcome != Outcome.FAILED.code
     fell = outcome[good] == Outcome.OVERTURNED.code
     lifted = outcome[good] != Outcome.NO_UPLIFT.code
@@ -288,7 +291,14 @@ def _direction(
     light = limits.light(high_rotation=high, failed=failed, **counts)
     uplift = item.uplift_acceleration(way, gravity)
     return DirectionResult(
-        way, uplift, median_rotation=middle, high_rotation=high, light=light, failed=failed, **counts
+        way,
+        uplift,
+        median_rotation=middle,
+        high_rotation=high,
+        light=light,
+        failed=failed,
+        lost_contact=int(np.nansum(table["lost"])),
+        **counts,
     )
 
 

@@ -176,6 +176,7 @@ def _direction(result: DirectionResult) -> dict[str, Any]:
         "lifted": result.lifted,
         "overturned": result.overturned,
         "failed": result.failed,
+        "lost_contact": result.lost_contact,
         "overturned_share": result.overturned_share,
         "median_rotation_over_angle": result.median_rotation,
         "high_rotation_over_angle": result.high_rotation,

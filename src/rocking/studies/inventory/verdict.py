@@ -24,6 +24,8 @@ class DirectionResult:
         Median and 84 % quantile of the peak rotation over the slenderness angle [-]; None if it overturns there.
     light : Light
         What this direction alone would show.
+    lost_contact : int
+        Motions of the computed ones in which the ground would have to pull: their verdicts assume contact [-].
     """
 
     direction: Direction
@@ -35,6 +37,7 @@ class DirectionResult:
     median_rotation: float | None
     high_rotation: float | None
     light: Light
+    lost_contact: int = 0
 
     @property
     def overturned_share(self) -> float:

@@ -48,7 +48,10 @@ def sentence(verdict: Verdict, assessment: Assessment) -> str:
     at = f"at {hazard.words()}"
     if worse.failed:
         at += f" ({worse.failed} of {worse.count + worse.failed} motions could not be computed)"
-    return f"{still}; {at} {_fate(worse, hazard.synthetic)}."
+    words = f"{still}; {at} {_fate(worse, hazard.synthetic)}"
+    if worse.lost_contact:
+        words += f"; in {worse.lost_contact} the ground would have to pull, and the verdict assumes contact"
+    return f"{words}."
 
 
 def advice(verdict: Verdict, assessment: Assessment) -> str:
