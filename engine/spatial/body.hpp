@@ -11,7 +11,7 @@ namespace ROCKING_ISA {
 
 enum Contact : int { kRest = 0, kEdge = 1, kVertex = 2, kRolling = 3 };
 
-constexpr int kMostVertices = 64, kKept = 117;
+constexpr int kMostVertices = 64, kKept = 117, kInterval = 35;
 
 // What stays on the ground: the face, an edge, a vertex, or a point of a rim.
 struct Pivot {
@@ -36,6 +36,8 @@ struct Body {
     int count = 0;
     bool round = false, usable = false;
     std::vector<Vec> vertices, edges, inward;
+    const double* positions = nullptr;    // intervals of azimuth, with the coefficients of k over each
+    int intervals = 0;
     Pivot face;
     std::vector<Pivot> vertex, edge;
 

@@ -10,6 +10,7 @@ public:
     explicit Kernel(const Numbers& n) : degree_(n.degree) {
         times_.assign(n.times, n.times + n.time_count);
         data_.assign(n.accelerations, n.accelerations + n.acceleration_count);
+        positions_.assign(n.positions, n.positions + n.position_count * kPosition);
         if (n.kept) kept_.assign(n.kept, n.kept + 2 * n.vertex_count * kKept);
         for (std::int64_t i = 0; i < n.motion_count; ++i)
             motions_.push_back({times_.data() + n.places[3 * i], data_.data() + n.places[3 * i + 1], n.places[3 * i + 2]});
@@ -41,7 +42,8 @@ private:
         b.mass = v[0], b.p = v[1], b.size = v[2], b.lift = v[3], b.radius = v[4];
         b.centre = {v[5], v[6], v[7]};
         b.inertia = {{v[8], v[9], v[10]}, {v[11], v[12], v[13]}, {v[14], v[15], v[16]}};
-        const std::int64_t first = n.corners[2 * i], count = n.corners[2 * i + 1];
+        const std::int64_t first = n.corners[4 * i], count = n.corners[4 * i + 1];
+        b.positions = positions_.data() + n.corners[4 * i + 2] * kPosition, b.intervals = static_cast<int>(n.corners[4 * i + 3]);
         b.usable = true;
         for (int k = 0; k < kBodyNumbers; ++k) b.usable &= std::isfinite(v[k]);
         for (std::int64_t k = 0; k < 2 * count; ++k) b.usable &= std::isfinite(n.vertices[2 * first + k]);
@@ -61,8 +63,8 @@ private:
         const auto count = [](const auto& all) { return static_cast<std::int64_t>(all.size()); };
         if (row.body < 0 || row.body >= count(bodies_) || row.motion < 0 || row.motion >= count(motions_)) return false;
         const Body& body = bodies_[row.body];
-        if (row.law < kHousner || row.law > kKed || (row.law == kKed && (kept_.empty() || body.round))) return false;
-        if (row.law == kKed && !std::isfinite(body.vertex[0].kept[0])) return false;
+        if (row.law < kHousner || row.law > kKedPoint || (row.law == kKed && body.intervals == 0)) return false;
+        if (row.law == kKedPoint && (kept_.empty() || body.round || !std::isfinite(body.vertex[0].kept[0]))) return false;
         const Vec w = row.velocity;
         const double* q = row.attitude;
         const bool upright = q[0] * q[0] + q[3] * q[3] > q[1] * q[1] + q[2] * q[2];
@@ -81,13 +83,13 @@ private:
     static void write(const Result& r, double* v, std::int64_t* c) {
         const double values[kResults] = {r.peak_tilt, r.peak_time, r.peak_spin, r.overturning_time, r.direction,
                                          r.first_uplift, r.end_time, r.held, r.lost};
-        const std::int64_t counts[kCounts] = {r.outcome, r.status, r.over_contact, r.over_number, r.impacts, r.uplifts, r.events, r.steps};
+        const std::int64_t counts[kCounts] = {r.outcome, r.status, r.over_contact, r.over_number, r.impacts, r.uplifts, r.events, r.steps, r.still_rocking};
         std::copy(values, values + kResults, v);
         std::copy(counts, counts + kCounts, c);
     }
 
     int degree_;
-    std::vector<double> times_, data_, kept_;
+    std::vector<double> times_, data_, kept_, positions_;
     std::vector<Motion> motions_;
     std::vector<Body> bodies_;
 };

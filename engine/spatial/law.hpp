@@ -5,12 +5,12 @@
 namespace rocking::spatial {
 namespace ROCKING_ISA {
 
-enum Law : int { kHousner = 0, kHorizontal = 1, kFixed = 2, kKed = 3 };
+enum Law : int { kHousner = 0, kHorizontal = 1, kFixed = 2, kKed = 3, kKedPoint = 4 };
 
-// A body at an instant: a point at rest on the ground, angular velocity, vertical, and gravity less the acceleration of
-// the ground, in its own axes.
+// A body at an instant: a point at rest on the ground, angular velocity, vertical, gravity less the acceleration of the
+// ground, and of a body on an edge the way to its other end, in its own axes.
 struct State {
-    Vec pivot, velocity, up, field;
+    Vec pivot, velocity, up, field, along;
 };
 
 // About a pivot, the velocity that has a given angular momentum; about an edge only its component along that counts.
@@ -60,13 +60,56 @@ inline Vec scaled_to(const Pivot& onto, Vec direction, double twice) {
     return left > 0.0 ? std::sqrt(greater(twice, 0.0) / left) * direction : direction;
 }
 
+// k of a landing of the whole base in the direction of a step, not above 1; 1 where there is no step.
+inline double impulse_position(const Body& body, Vec step) {
+    if (!(largest(step) > 1e-12 * body.size)) return 1.0;
+    double angle = std::atan2(step.y, step.x);
+    if (angle < body.positions[0]) angle += 2.0 * 3.141592653589793;
+    const double* p = body.positions;
+    for (int i = 1; i < body.intervals && angle >= body.positions[i * kInterval]; ++i) p += kInterval;
+    const double x = (2.0 * angle - p[0] - p[1]) / (p[1] - p[0]);
+    double one = 0.0, two = 0.0;
+    for (int k = kInterval - 1; k > 2; --k) {
+        const double sum = 2.0 * x * one - two + p[k];
+        two = one, one = sum;
+    }
+    return lesser(x * one - two + p[2], 1.0);
+}
+
+// Momentum about the point where the impulse acts, which lies behind the new pivot by (1 - k)/2 of the step.
+inline Vec about_impulse(const Body& body, const State& s, const Pivot& onto, Vec step, double k) {
+    const Vec back = 0.5 * (1.0 - k) * body.mass * step, speed = cross(s.velocity, body.centre - s.pivot);
+    const Vec momentum = body.inertia * s.velocity + body.mass * cross(onto.arm, speed) + cross(back, speed);
+    if (onto.contact == kEdge) return dot(onto.axis, momentum) / (onto.about_axis + dot(back, onto.arm)) * onto.axis;
+    return inverse(onto.inertia + diagonal(dot(back, onto.arm)) - outer(onto.arm, back)) * momentum;
+}
+
+inline Vec by_position(const Body& body, const State& before, const Pivot& onto) {
+    State s = before;
+    const double length = dot(s.along, s.along);
+    if (length > 0.0) {  // of an edge the point that is nearest to the new stance
+        const Vec way = onto.at + 0.5 * onto.length * onto.axis - s.pivot;
+        s.pivot = s.pivot + lesser(greater(dot(way, s.along) / length, 0.0), 1.0) * s.along;
+    }
+    Vec step = onto.at - s.pivot;
+    if (onto.contact == kEdge) step = step - dot(step, onto.axis) * onto.axis;
+    const Vec speed = cross(s.velocity, body.centre - s.pivot);
+    const double k = impulse_position(body, step);
+    Vec made = about_impulse(body, s, onto, step, k);
+    if (k < 1.0 && dot(s.up, cross(made, onto.arm) - speed) < 0.0) made = about_impulse(body, s, onto, step, 1.0);
+    const double first = dot(s.velocity, body.inertia * s.velocity) + body.mass * dot(speed, speed), left = dot(made, onto.inertia * made);
+    return left > first ? std::sqrt(first / left) * made : made;
+}
+
 inline Vec velocity_after(const Body& body, const State& s, const Pivot& onto, int law, double coefficient) {
     if (law == kHorizontal) return level_only(body, s, onto);
-    if (law == kKed) return scaled_to(onto, level_only(body, s, onto), twice_kept(s, onto));
+    if (law == kKed) return by_position(body, s, onto);
+    if (law == kKedPoint) return scaled_to(onto, level_only(body, s, onto), twice_kept(s, onto));
     const Vec plastic = projected(body, s, onto);
     if (law == kHousner) return plastic;
-    const double before = dot(s.velocity, body.about(s.pivot) * s.velocity);
-    return scaled_to(onto, plastic, coefficient * coefficient * before);
+    const double before = dot(s.velocity, body.about(s.pivot) * s.velocity), size = dot(plastic, plastic);
+    const double left = size > 0.0 ? dot(plastic, onto.inertia * plastic) / size : 0.0;
+    return scaled_to(onto, plastic, lesser(coefficient * coefficient * dot(s.velocity, s.velocity) * left, before));
 }
 
 }  // namespace ROCKING_ISA

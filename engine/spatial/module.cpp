@@ -41,18 +41,20 @@ static void expect(bool fine, const char* what) {
 
 class Stock {
 public:
-    Stock(Table<const double> bodies, Table<const std::int64_t> corners, Table<const double> vertices, Line<const double> kept, int degree,
-          Table<const std::int64_t> places, Line<const double> times, Line<const double> accelerations, const std::string& isa) {
+    Stock(Table<const double> bodies, Table<const std::int64_t> corners, Table<const double> vertices, Line<const double> kept,
+          Table<const double> positions, int degree, Table<const std::int64_t> places, Line<const double> times, Line<const double> accelerations, const std::string& isa) {
         const auto size = [](const auto& a, int k) { return static_cast<std::int64_t>(a.shape(k)); };
-        Numbers n{bodies.data(), corners.data(), vertices.data(), kept.size() ? kept.data() : nullptr, size(bodies, 0), size(vertices, 0),
-                  degree, places.data(), times.data(), accelerations.data(), size(places, 0), size(times, 0), size(accelerations, 0)};
-        expect(size(bodies, 1) == kBodyNumbers && size(corners, 0) == n.body_count && size(corners, 1) == 2, "a table of bodies expected");
+        Numbers n{bodies.data(), corners.data(), vertices.data(), kept.size() ? kept.data() : nullptr, positions.data(),
+                  size(bodies, 0), size(vertices, 0), size(positions, 0), degree, places.data(), times.data(), accelerations.data(), size(places, 0), size(times, 0), size(accelerations, 0)};
+        expect(size(bodies, 1) == kBodyNumbers && size(corners, 0) == n.body_count && size(corners, 1) == 4, "a table of bodies expected");
+        expect(size(positions, 1) == kPosition, "azimuths and coefficients of intervals expected");
         expect(size(vertices, 1) == 2 && size(places, 1) == 3 && (degree == 1 || degree == 7), "tables of vertices and motions expected");
         expect(!n.kept || size(kept, 0) == 2 * n.vertex_count * kKeptNumbers, "moments of every vertex and edge expected");
         for (std::int64_t i = 0; i < n.body_count; ++i) {
-            const std::int64_t first = n.corners[2 * i], count = n.corners[2 * i + 1];
+            const std::int64_t first = n.corners[4 * i], count = n.corners[4 * i + 1], place = n.corners[4 * i + 2], intervals = n.corners[4 * i + 3];
             expect(first >= 0 && count >= 0 && count != 1 && count != 2 && count <= kMostCorners && first + count <= n.vertex_count,
                    "a body names vertices that are not there");
+            expect(place >= 0 && intervals >= 0 && place + intervals <= n.position_count, "a body names intervals that are not there");
         }
         for (std::int64_t i = 0; i < n.motion_count; ++i) {
             const std::int64_t* p = n.places + 3 * i;
@@ -117,9 +119,9 @@ NB_MODULE(_spatial, m) {
     m.doc() = "Many histories of bodies in space.";
     m.def("instruction_sets", &instruction_sets);
     nb::class_<Stock>(m, "Stock")
-        .def(nb::init<Table<const double>, Table<const std::int64_t>, Table<const double>, Line<const double>, int, Table<const std::int64_t>,
-                      Line<const double>, Line<const double>, const std::string&>(),
-             "bodies"_a, "corners"_a, "vertices"_a, "kept"_a, "degree"_a, "places"_a, "times"_a, "accelerations"_a, "isa"_a)
+        .def(nb::init<Table<const double>, Table<const std::int64_t>, Table<const double>, Line<const double>, Table<const double>, int,
+                      Table<const std::int64_t>, Line<const double>, Line<const double>, const std::string&>(),
+             "bodies"_a, "corners"_a, "vertices"_a, "kept"_a, "positions"_a, "degree"_a, "places"_a, "times"_a, "accelerations"_a, "isa"_a)
         .def("run", &Stock::run, "numbers"_a, "choices"_a, "results"_a, "counts"_a, "gravity"_a, "rest_speed"_a, "tolerance"_a, "longest"_a,
              "most_events"_a, "threads"_a)
         .def("trace", &Stock::trace, "numbers"_a, "choices"_a, "results"_a, "counts"_a, "gravity"_a, "rest_speed"_a, "tolerance"_a,

@@ -27,7 +27,7 @@ struct Result {
     int outcome = kFailed, status = kInvalid, over_contact = -1, over_number = -1;
     double peak_tilt = kNan, peak_time = kNan, peak_spin = kNan, overturning_time = kNan, direction = kNan, first_uplift = kNan;
     double end_time = kNan, held = kNan, lost = kNan;
-    std::int64_t impacts = 0, uplifts = 0, events = 0, steps = 0;
+    std::int64_t impacts = 0, uplifts = 0, events = 0, steps = 0, still_rocking = 0;
 };
 
 // Attitude as the axes of the ground in axes of the body, angular velocity in axes of the body.

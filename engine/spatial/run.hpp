@@ -132,7 +132,7 @@ private:
         const double size = -body_.radius / std::sqrt(up.x * up.x + up.y * up.y);
         return {size * up.x, size * up.y, 0.0};
     }
-    State state() const { return {stance_->at, velocity_, z_, field_now()}; }
+    State state() const { return {stance_->at, velocity_, z_, field_now(), stance_->length * stance_->axis}; }
     double kinetic() const { return 0.5 * dot(velocity_, stance_->inertia * velocity_); }
     // Whether hardly any energy is left; a body on its way down has less than none, and is not at rest.
     bool calm() const { return kinetic() + std::fabs(potential()) < weak_; }

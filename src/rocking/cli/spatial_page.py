@@ -42,6 +42,7 @@ def spatial_facts(response: SpatialResponse, file: SolidFile) -> dict[str, Any]:
         "gravity_m_s2": response.settings.gravity,
         "outcome": response.outcome.name.lower(),
         "summary": response.summary,
+        "still_rocking": _last_state(response),
         "peak_tilt_rad": response.peak_tilt,
         "overturning_time_s": finite(response.overturning_time),
         "overturning_direction_rad": finite(response.overturning_direction),
@@ -52,6 +53,18 @@ def spatial_facts(response: SpatialResponse, file: SolidFile) -> dict[str, Any]:
         ],
         "impacts": [dict(zip(keys, row, strict=True)) for row in impacts.tolist()],
         "energy_closure": response.energy.closure,
+    }
+
+
+def _last_state(response: SpatialResponse) -> dict[str, Any] | None:
+    if not response.still_rocking:
+        return None
+    last = response.at(response.end)
+    return {
+        "time_s": response.end,
+        "quaternion": last.quaternion[0].tolist(),
+        "angular_velocity_rad_s": last.angular_velocity[0].tolist(),
+        "sentence": response.unfinished,
     }
 
 

@@ -69,6 +69,7 @@ def provenance(response: "SpatialResponse") -> dict[str, Any]:
         "engine": response.trajectory.engine,
         "outcome": response.outcome.name,
         "status": response.status.name,
+        "still_rocking": response.still_rocking,
         "summary": response.summary,
         **({} if math.isnan(direction) else {"overturning_direction_rad": direction}),
         "mass_kg": body.mass,

@@ -54,8 +54,8 @@ def simulate_spatial(  # noqa: PLR0913 - every one of them is a question that us
         Components of the motion, all starting at time zero; z is upwards.
     restitution : str, float, SpatialModel or SpatialImpactLaw
         A model of `rocking.restitution.spatial` or its name: "housner-3d", "horizontal-momentum-3d", or "ked-3d" for a
-        `Solid`, a box or a cylinder; a coefficient r from 0 to 1 (r^2 of the energy goes on, in the direction of the
-        plastic impact); or any object with `velocity_after` and `label`.
+        `Solid`, a box or a cylinder; a coefficient r from 0 to 1 (that share of the angular velocity goes on, in the
+        direction of the plastic impact); or any object with `velocity_after` and `label`.
     scale : float
         Factor on all components [-].
     tilt, azimuth : float

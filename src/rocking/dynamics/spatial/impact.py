@@ -11,6 +11,7 @@ from rocking.bodies.solid import Corner, Edge
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.errors import InvalidValueError
+from rocking.portable import dot
 from rocking.restitution.spatial import SpatialHousner, SpatialModel, spatial_model
 from rocking.restitution.spatial.geometry import UP
 from rocking.restitution.spatial.leaning import NO_MATTER, LeaningImpact
@@ -142,9 +143,10 @@ def projected(
 
 
 class FixedSpatial:
-    """The direction of the projection, and r^2 of the energy.
+    """The direction of the projection, and r of the angular velocity: ``|w+| = r |w-|``, as in the plane.
 
-    For symmetric bodies in the plane r is the ratio of velocities.
+    It is a ratio of magnitudes in every impact, from an edge to the parallel one as from a corner to any other, and
+    never creates energy: a body that lands on its longer lever keeps at most what it had.
 
     A vertex that only grazes the ground costs this share as well, which no real impact does: for bodies that turn
     about edges, not for wobbling ones.
@@ -188,7 +190,9 @@ class FixedSpatial:
         left = body.kinetic(after, made)
         if not left > 0.0:
             return made
-        return np.asarray(self.coefficient * math.sqrt(body.kinetic(before, velocity) / left) * made)
+        bound = body.kinetic(before, velocity) / left
+        wanted = self.coefficient**2 * dot(velocity, velocity) / dot(made, made)
+        return np.asarray(math.sqrt(min(wanted, bound)) * made)
 
 
 def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLaw:

@@ -328,7 +328,9 @@ class SpatialReference:
         return applied(attitude.matrix(self.quaternion).T, field)
 
     def _state(self) -> State:
-        return State(self._pivot, self.velocity, self._up, self._field_now())
+        axis = self.stance.axis
+        along = np.zeros(3) if axis is None else self.stance.length * axis
+        return State(self._pivot, self.velocity, self._up, self._field_now(), along)
 
     def _kinetic(self) -> float:
         return self.body.kinetic(self._pivot, self.velocity)

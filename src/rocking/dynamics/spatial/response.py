@@ -184,9 +184,30 @@ class SpatialResponse(Exportable):
             return "its rim"
         return f"{over.contact.name.lower()} {'-'.join(map(str, over.points))}"
 
+    @cached_property
+    def still_rocking(self) -> bool:
+        """Whether it stands, but does not yet rest where the response ends; later impacts are not among `impacts`."""
+        return self.outcome is Outcome.ROCKED and self._last.contact[0] != Contact.REST.code
+
+    @property
+    def unfinished(self) -> str:
+        """A sentence that says when and how it still rocks where the response ends; empty if it does not."""
+        if not self.still_rocking:
+            return ""
+        angle = np.degrees(attitude.tilt(self._last.quaternion)[0])
+        rate = math.hypot(*self._last.angular_velocity[0])
+        return (
+            f"it is still rocking when the computation ends at {self.end:.4g} s, leaning by {angle:.3g} degrees and "
+            f"turning at {rate:.3g} rad/s; later impacts are not counted"
+        )
+
+    @cached_property
+    def _last(self) -> "States":
+        return self.at(self.end)
+
     @property
     def summary(self) -> str:
-        """The outcome in one sentence."""
+        """The outcome in one sentence; also whether it still rocks where the response ends."""
         run = self.trajectory
         count = self.impacts.size
         if run.outcome is Outcome.OVERTURNED:
@@ -199,7 +220,7 @@ class SpatialResponse(Exportable):
             return (
                 f"rocked and stayed standing: largest tilt {math.degrees(run.peak_tilt):.4g} degrees, {count} "
                 f"impact{'s' * (count != 1)}{self._pulled}{self._nearly_flat}"
-            )
+            ) + (f"; {self.unfinished}" if self.still_rocking else "")
         return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
 
     @property

@@ -8,7 +8,7 @@ another touching point, and the ground must not pull. This is the linear complem
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -38,12 +38,36 @@ class State:
         Vertical [-].
     field : ndarray, shape (3,)
         Gravity less the acceleration of the ground [m/s2].
+    along : ndarray, shape (3,)
+        Of a body on an edge, from the pivot to the other end of the edge; zero on a vertex [m].
     """
 
     pivot: FloatArray
     velocity: FloatArray
     up: FloatArray
     field: FloatArray
+    along: FloatArray = field(default_factory=lambda: np.zeros(3))
+
+    def nearest(self, stance: Stance) -> FloatArray:
+        """Return the point at rest that is nearest to a new stance: from there laws measure the step.
+
+        Parameters
+        ----------
+        stance : Stance
+            What stays on the ground; of an edge its middle counts.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            The pivot, or a point of the edge, in body axes [m].
+        """
+        length = float((self.along * self.along).sum())
+        if length == 0.0:
+            return self.pivot
+        middle = stance.pivot if stance.axis is None else stance.pivot + 0.5 * stance.length * stance.axis
+        share = float(((middle - self.pivot) * self.along).sum()) / length
+        nearest: FloatArray = self.pivot + min(max(share, 0.0), 1.0) * self.along
+        return nearest
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +142,9 @@ def of_impact(body: SpatialBody, state: State, touching: tuple[int, ...], law: S
             continue
         velocity = plastic
         if stance.contact is not Contact.REST:
-            velocity = law.velocity_after(body, state.pivot, stance.pivot, stance.axis, state.up, state.velocity)
+            velocity = law.velocity_after(
+                body, state.nearest(stance), stance.pivot, stance.axis, state.up, state.velocity
+            )
         if _opening(body, stance, velocity, state.up, touching) >= -_ROUNDING * scale:
             found.append(Choice(stance, velocity, push))
     return found

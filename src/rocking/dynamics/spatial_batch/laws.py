@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import Any
 
-from rocking.dynamics.spatial.impact import FixedSpatial, SpatialImpactLaw, law_of
+from rocking.dynamics.spatial.impact import FixedSpatial, ModelLaw, SpatialImpactLaw, law_of
 from rocking.errors import InvalidValueError
 
-CODES = {"housner-3d": 0, "horizontal-momentum-3d": 1, "ked-3d": 3}
+CODES = {"housner-3d": 0, "horizontal-momentum-3d": 1, "ked-3d": 3, "ked-3d-point": 4}
 """Laws without a number of their own."""
 
 _FIXED = 2
@@ -19,7 +19,7 @@ class BatchLaw:
     Parameters
     ----------
     law : SpatialImpactLaw, optional
-        What the reference engine takes; None where the body decides it (ked-3d).
+        What the reference engine takes; None where the body decides it (ked-3d and ked-3d-point).
     label : str
         Its name, or its coefficient.
     code : int
@@ -36,6 +36,11 @@ class BatchLaw:
     @property
     def needs_moments(self) -> bool:
         """Whether it needs moments of the mass distribution."""
+        return self.code == CODES["ked-3d-point"]
+
+    @property
+    def needs_positions(self) -> bool:
+        """Whether it needs to know where the impulse of a landing of the whole base acts."""
         return self.code == CODES["ked-3d"]
 
 
@@ -45,8 +50,8 @@ def batch_law(restitution: Any) -> BatchLaw:
     Parameters
     ----------
     restitution : str, float or SpatialImpactLaw
-        "housner-3d", "horizontal-momentum-3d", "ked-3d", a coefficient from 0 to 1, or an object that stands for
-        one of these.
+        "housner-3d", "horizontal-momentum-3d", "ked-3d", "ked-3d-point", a coefficient from 0 to 1, or an object
+        that stands for one of these.
 
     Returns
     -------
@@ -60,9 +65,9 @@ def batch_law(restitution: Any) -> BatchLaw:
     UnknownModelError
         If there is no law of that name.
     """
-    if restitution == "ked-3d":
-        return BatchLaw(None, "ked-3d", CODES["ked-3d"])
     law = law_of(restitution)
+    if isinstance(law, ModelLaw) and law.model.needs_solid and law.label in CODES:
+        return BatchLaw(None, law.label, CODES[law.label])
     if isinstance(law, FixedSpatial):
         return BatchLaw(law, law.label, _FIXED, law.coefficient)
     if law.label in CODES and type(law).__module__.startswith("rocking."):

@@ -45,7 +45,7 @@ def simulate_spatial_batch(  # noqa: PLR0913 - every one of them is a question t
     motions : GroundMotion, Pulse, tuple of up to three of them, or list of such, optional
         A tuple has the components x, y and vertical, None for a direction without; ground at rest if not given.
     restitution : str, float, law, or list of such
-        "housner-3d", "horizontal-momentum-3d", "ked-3d", or a coefficient from 0 to 1.
+        "housner-3d", "horizontal-momentum-3d", "ked-3d", "ked-3d-point", or a coefficient from 0 to 1.
     scales : float or array_like
         Factors on the motions [-].
     start : SpatialStart or sequence of them, optional

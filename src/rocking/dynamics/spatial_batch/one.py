@@ -7,6 +7,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import attitude
+from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory
 
 
@@ -39,7 +40,8 @@ def results_of(found: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
     uplifts = sum(event.kind is SpatialEventKind.UPLIFT for event in events)
     status, contact = found.status.code, -1 if stance is None else stance.contact.code
     counts = [found.outcome.code, status, contact, number]
-    return results, [*counts, len(found.impacts), uplifts, len(events), len(found.pieces)]
+    still = found.outcome is Outcome.ROCKED and last.stance.contact is not Contact.REST
+    return results, [*counts, len(found.impacts), uplifts, len(events), len(found.pieces), int(still)]
 
 
 def _fastest(found: SpatialTrajectory) -> float:

@@ -36,6 +36,7 @@ UNITS: dict[str, tuple[str, str]] = {
     "held": ("s", "for how long a corner, or a rim that is nearly flat, was held down though it should slip or hop"),
     "lost": ("J", "kinetic energy lost at impacts"),
     "impacts": ("1", "number of impacts"),
+    "still_rocking": ("1", "1 where it stands but does not yet rest when its history ends, else 0"),
     "uplifts": ("1", "number of uplifts from rest"),
     "events": ("1", "number of impacts, uplifts and changes of contact"),
     "steps": ("1", "number of steps of the engine"),
@@ -45,7 +46,7 @@ UNITS: dict[str, tuple[str, str]] = {
 FLOATS = (
     "peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "end_time", "held", "lost",
 )  # fmt: skip
-WHOLES = ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events", "steps")
+WHOLES = ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events", "steps", "still_rocking")
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +104,11 @@ class SpatialBatch(Exportable):
     def overturned(self) -> FloatArray:
         """1 where it overturned, 0 where it did not, NaN where there is no result."""
         return overturned(self.outcome)
+
+    @property
+    def still_rocking(self) -> np.ndarray:
+        """Whether it stands, but does not yet rest when its history ends."""
+        return np.asarray(self["still_rocking"] == 1)
 
     @property
     def peak_tilt(self) -> FloatArray:

@@ -49,11 +49,21 @@ def stock_of(bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, 
         `rocking.dynamics._spatial.Stock`.
     """
     numbers, corners, vertices = tables.body_table(bodies, gravity)
-    needed = any(law.needs_moments for law in table.laws)
-    kept = tables.kept_table(bodies) if needed else np.zeros(0)
-    degree, places, times, accelerations = tables.motion_table(grounds)
+    kept = tables.kept_table(bodies) if any(law.needs_moments for law in table.laws) else np.zeros(0)
+    needed = any(law.needs_positions for law in table.laws)
+    places, positions = tables.position_table(bodies if needed else [None] * len(bodies))
+    degree, motions, times, accelerations = tables.motion_table(grounds)
     return engine.module().Stock(
-        numbers, corners, vertices, kept, degree, places, times, accelerations, engine.instruction_set()
+        numbers,
+        np.column_stack([corners, places]),
+        vertices,
+        kept,
+        positions,
+        degree,
+        motions,
+        times,
+        accelerations,
+        engine.instruction_set(),
     )
 
 
@@ -137,7 +147,7 @@ def run_reference(
         numbers, choices = table.piece(k, k + 1)
         law = int(np.unravel_index(k, table.shape)[3])
         body, ground = bodies[choices[0, 0]], grounds[choices[0, 1]]
-        results[k], counts[k] = _one(body, ground, table.laws[law].law or "ked-3d", numbers[0], fields)
+        results[k], counts[k] = _one(body, ground, table.laws[law].law or table.laws[law].label, numbers[0], fields)
         if progress is not None:
             progress(1)
     return named(results, counts), "reference, row by row"
@@ -150,7 +160,7 @@ def named(results: FloatArray, counts: IntArray) -> Results:
     ----------
     results : ndarray, shape (n, 9)
         Numbers.
-    counts : ndarray of int, shape (n, 8)
+    counts : ndarray of int, shape (n, 9)
         Codes and counts.
 
     Returns
@@ -166,7 +176,7 @@ def _one(
     body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: SpatialSettings
 ) -> tuple[FloatArray, list[int]]:
     codes = [Outcome.FAILED.code, Status.INVALID.code, -1, -1]
-    refused = np.full(tables.RESULTS, math.nan), [*codes, 0, 0, 0, 0]
+    refused = np.full(tables.RESULTS, math.nan), [*codes, 0, 0, 0, 0, 0]
     if body is None or not (np.abs(row) <= 1e9).all():
         return refused
     scaled = SpatialGround(ground.times, row[1] * ground.coefficients)

@@ -1,6 +1,7 @@
 """Bodies and motions as the tables that the compiled engine takes."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -8,16 +9,17 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.errors import InvalidValueError
+from rocking.restitution.spatial.impulse_position import HIGHEST, impulse_position
 
 MOST_CORNERS = 64
 """Most vertices of a base that the compiled engine takes."""
 
 KEPT = 117
-"""Moments of a vertex or an edge for what KED keeps: 9, 27 and 81."""
+"""Moments of a vertex or an edge for what ked-3d-point keeps: 9, 27 and 81."""
 
 _ROUNDING = 1e-9
 
-BODY, ROW, RESULTS, COUNTS = 17, 10, 9, 8
+BODY, ROW, RESULTS, COUNTS = 17, 10, 9, 9
 """Columns of the tables."""
 
 
@@ -67,7 +69,7 @@ def body_table(bodies: Sequence[SpatialBody | None], gravity: float) -> tuple[Fl
 
 
 def kept_table(bodies: Sequence[SpatialBody | None]) -> FloatArray:
-    """Return the moments of the mass that KED needs, for every vertex and then every edge of every body.
+    """Return the moments of the mass that ked-3d-point needs, for every vertex and then every edge of every body.
 
     Parameters
     ----------
@@ -88,7 +90,7 @@ def kept_table(bodies: Sequence[SpatialBody | None]) -> FloatArray:
     for body in bodies:
         if body is not None and body.round:
             raise InvalidValueError(
-                "ked-3d on a round base lands on any point of its rim, for which the compiled engine has no moments; "
+                "ked-3d-point on a round base lands on any point of its rim, for which the compiled engine has no moments; "
                 'engine="reference" takes it'
             )
         if body is None:
@@ -98,6 +100,33 @@ def kept_table(bodies: Sequence[SpatialBody | None]) -> FloatArray:
         else:
             rows.append(_kept(body))
     return np.concatenate(rows) if rows else np.zeros(0)
+
+
+def position_table(bodies: Sequence[SpatialBody | None]) -> tuple[IntArray, FloatArray]:
+    """Return where the impulse of a landing of the whole base acts, which ked-3d needs.
+
+    Parameters
+    ----------
+    bodies : sequence of SpatialBody or None
+        The bodies.
+
+    Returns
+    -------
+    places : ndarray of int, shape (n, 2)
+        First interval and number of intervals; none for a body whose distribution of mass is not known.
+    positions : ndarray, shape (m, 3 + HIGHEST)
+        First and last azimuth of an interval [rad], and the coefficients of k over it [-].
+    """
+    places, rows = np.zeros((len(bodies), 2), np.int64), []
+    for number, body in enumerate(bodies):
+        if body is None or body.matter is None:
+            continue
+        position = impulse_position(body.matter.placed[0])
+        places[number] = len(rows), len(position.breaks) - 1
+        for k, ends in enumerate(pairwise(position.breaks)):
+            row = [*ends, *position.piece(k)]
+            rows.append(row + [0.0] * (HIGHEST + 3 - len(row)))
+    return places, np.array(rows).reshape(-1, HIGHEST + 3)
 
 
 def _kept(body: SpatialBody) -> FloatArray:

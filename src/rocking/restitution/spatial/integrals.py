@@ -50,20 +50,35 @@ def _line_moment(solid: Solid, x: float, y: float, z: float, *direction: float) 
     point, edge = np.array([x, y, z]), np.array(direction)
     total = 0.0
     for part in solid.local_parts:
-        axis = part.rotation[:, 2]
-        if isinstance(part.shape, Prism) and np.abs(np.cross(axis, edge)).max() <= _ALONG:
-            total += part.density * _extruded(part, part.shape, point, edge)
-        else:
-            total += _line_moment_part(part, point, edge)
+        exact = extruded_moment(part, point, edge)
+        total += _line_moment_part(part, point, edge) if exact is None else exact
     return total
 
 
-def _extruded(part: Part, prism: Prism, point: FloatArray, edge: FloatArray) -> float:
+def extruded_moment(part: Part, point: FloatArray, edge: FloatArray) -> float | None:
+    """Return the exact integral of a part that is extruded along the line; None for any other.
+
+    Parameters
+    ----------
+    part : Part
+        The part, in the frame of the body.
+    point, edge : ndarray, shape (3,)
+        A point of the line [m], and the unit vector along it [-].
+
+    Returns
+    -------
+    float, optional
+        ``Int z^4/(t^2 + z^2) dm`` [kg m2].
+    """
+    prism = part.shape
+    if not isinstance(prism, Prism) or not np.abs(np.cross(part.rotation[:, 2], edge)).max() <= _ALONG:
+        return None
     across = np.array([-edge[1], edge[0], 0.0])
     frame = np.stack([across, np.array([0.0, 0.0, 1.0])])
     plane, shift = times(frame, part.rotation[:, :2]), applied(frame, part.translation - point)
     turned = float(np.sign(plane[0, 0] * plane[1, 1] - plane[0, 1] * plane[1, 0]))
-    return prism.length * turned * sum(ring_integral(times(ring, plane.T) + shift) for ring in prism.region.rings)
+    length = part.density * prism.length
+    return length * turned * sum(ring_integral(times(ring, plane.T) + shift) for ring in prism.region.rings)
 
 
 def _line_moment_part(part: Part, point: FloatArray, edge: FloatArray) -> float:

@@ -13,11 +13,12 @@ from rocking.portable import norm
 from rocking.restitution.spatial.geometry import SpatialImpact
 from rocking.restitution.spatial.horizontal_momentum import SpatialHorizontalMomentum
 from rocking.restitution.spatial.housner import SpatialHousner
-from rocking.restitution.spatial.ked import SpatialKed
+from rocking.restitution.spatial.ked import SpatialKedPoint
+from rocking.restitution.spatial.ked_impulse import SpatialKed
 from rocking.restitution.spatial.model import SpatialModel, SpatialRestitution
 
 _MODELS: dict[str, type[SpatialModel]] = {
-    kind.name: kind for kind in (SpatialHousner, SpatialHorizontalMomentum, SpatialKed)
+    kind.name: kind for kind in (SpatialHousner, SpatialHorizontalMomentum, SpatialKed, SpatialKedPoint)
 }
 
 
@@ -32,7 +33,7 @@ def spatial_models() -> dict[str, type[SpatialModel]]:
     Examples
     --------
     >>> sorted(spatial_models())
-    ['horizontal-momentum-3d', 'housner-3d', 'ked-3d']
+    ['horizontal-momentum-3d', 'housner-3d', 'ked-3d', 'ked-3d-point']
     """
     return dict(_MODELS)
 
@@ -109,7 +110,7 @@ def impact_in_space(solid: Solid, velocity: Any, *, pivot: Any, onto: Any, model
     before = vector("velocity", velocity, "rad/s")
     if isinstance(start, Edge) and np.abs(np.cross(before, start.direction)).max() > 1e-9 * np.abs(before).max():
         raise InvalidValueError("a body that turns about an edge has its angular velocity along that edge")
-    return spatial_model(model).after(SpatialImpact(solid, before, start.point, landing))
+    return spatial_model(model).after(SpatialImpact(solid, before, _nearest(solid, start, landing), landing))
 
 
 def edge_coefficient(solid: Solid, model: Any = "ked-3d", *, start: float = 0, onto: float | None = None) -> float:
@@ -174,6 +175,29 @@ def _local(solid: Solid, name: str, value: Any) -> Corner | Edge:
     corner = Corner(_grounded(solid, name, value.point if isinstance(value, Corner) else value))
     _check_on_base(solid, name, corner.point, -solid.local_base.margin(corner.point[:2]))
     return corner
+
+
+def _nearest(solid: Solid, start: Corner | Edge, onto: Corner | Edge) -> FloatArray:
+    """Return the point at rest that is nearest to the landing place: from there the step is measured."""
+    if isinstance(start, Corner):
+        return start.point
+    target = onto.point if isinstance(onto, Corner) else sum(_ends(solid, onto), np.zeros(3)) / 2.0
+    first, last = _ends(solid, start)
+    along = (target - start.point) * start.direction
+    low, high, share = (float(value.sum()) for value in ((first - start.point) * start.direction,
+                        (last - start.point) * start.direction, along))
+    nearest: FloatArray = start.point + min(max(share, low), high) * start.direction
+    return nearest
+
+
+def _ends(solid: Solid, edge: Edge) -> tuple[FloatArray, FloatArray]:
+    """Return the ends of the stretch of a line that the base touches."""
+    base, along = solid.local_base, edge.direction
+    points = base.vertices if isinstance(base, SupportPolygon) else np.zeros((1, 2)) + base.centre
+    arm = points - edge.point[:2]
+    aside = np.abs(along[0] * arm[:, 1] - along[1] * arm[:, 0])
+    shares = (arm[:, 0] * along[0] + arm[:, 1] * along[1])[aside <= aside.min() + 1e-9 * solid.size]
+    return edge.point + float(shares.min()) * along, edge.point + float(shares.max()) * along
 
 
 def _gap_of_line(base: Base, edge: Edge) -> float:

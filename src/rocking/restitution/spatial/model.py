@@ -25,6 +25,11 @@ class SpatialFlag(Enum):
         "the base would go through the ground beside the new corner: the body lands on more than this corner, "
         "and an impact with complementarity has to find out on what"
     )
+    CUT = (
+        "the base is so narrow in this direction that the model would have the impulse beyond the new foot, where the "
+        "ground would have to pull: it is taken at the foot, as Housner has it"
+    )
+    PULLS = "the ground would have to pull: the body does not come to stand on this corner or edge"
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,6 +136,23 @@ class SpatialModel(ABC):
             Angular velocity along the direction [rad/s].
         """
 
+    def flags(self, impact: RigidImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:  # noqa: ARG002, PLR6301
+        """Return what a user must know of this model's answer.
+
+        Parameters
+        ----------
+        impact : RigidImpact
+            The impact.
+        velocity : ndarray, shape (3,)
+            Angular velocity after it [rad/s].
+
+        Returns
+        -------
+        tuple of SpatialFlag
+            None by default.
+        """
+        return ()
+
     def turned(self, impact: RigidImpact) -> FloatArray:
         """Return the angular velocity that the model's equation gives, in any attitude of the body.
 
@@ -176,7 +198,8 @@ class SpatialModel(ABC):
             If the model does not give finite numbers.
         """
         raw = self.turned(impact)
+        said = self.flags(impact, raw)
         sinks = impact.rise(raw) < -_TOUCH * impact.speed * impact.solid.size
         if sinks and isinstance(impact.onto, Edge):
-            return SpatialRestitution(self, impact, raw, np.zeros(3), (SpatialFlag.STOPS,))
-        return SpatialRestitution(self, impact, raw, raw, (SpatialFlag.PENETRATES,) if sinks else ())
+            return SpatialRestitution(self, impact, raw, np.zeros(3), (*said, SpatialFlag.STOPS))
+        return SpatialRestitution(self, impact, raw, raw, (*said, SpatialFlag.PENETRATES) if sinks else said)

@@ -221,7 +221,7 @@ def test_two_motions_that_both_obey_coulomb_are_not_chosen_between():
     tangential, normal = np.linalg.solve(sides, [AWAY.push[0], AWAY.lift[0]])
     assert 0.0 < abs(tangential) < friction * normal, "it may stick"
     assert -AWAY.lift[0] > 0.0, "and it may fly"
-    assert choose(UNEVEN, state, AWAY, friction) is PlanarStatus.AMBIGUOUS
+    assert choose(UNEVEN, state, AWAY, friction) is Status.AMBIGUOUS
     frictionless = choose(UNEVEN, state, AWAY, 0.0)
     assert isinstance(frictionless, Choice)
     assert frictionless.mode == FLIGHT

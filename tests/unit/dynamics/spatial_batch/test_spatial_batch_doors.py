@@ -95,8 +95,8 @@ def test_the_reference_engine_serves_row_by_row():
     bodies = [BOX, SpatialBody.box(0.7, 0.5, 2.5)]
     starts = [SpatialStart(), SpatialStart(0.03, 0.7), SpatialStart(math.nan)]
     given = {"scales": [0.3, 0.8, 2.5], "start": starts}
-    fast = simulate_spatial_batch(bodies, RECORD, ["housner-3d", "ked-3d"], **given)
-    slow = simulate_spatial_batch(bodies, RECORD, ["housner-3d", "ked-3d"], engine="reference", **given)
+    fast = simulate_spatial_batch(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], **given)
+    slow = simulate_spatial_batch(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], engine="reference", **given)
     assert "reference" in slow.engine
     for name in ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events"):
         np.testing.assert_array_equal(fast[name], slow[name], err_msg=name)
@@ -140,7 +140,9 @@ def test_what_the_engine_does_not_know_is_refused_in_words():
 
 def test_laws_by_name_number_and_object():
     """Every way of saying a law gives its number; foreign laws are refused and named."""
-    assert [batch_law(given).code for given in ("housner-3d", "horizontal-momentum-3d", 0.9, "ked-3d")] == [0, 1, 2, 3]
+    assert [batch_law(law).code for law in ("housner-3d", "horizontal-momentum-3d", 0.9, "ked-3d", "ked-3d-point")] == [
+        *range(5)
+    ]
     assert batch_law(FixedSpatial(0.8)).coefficient == 0.8
 
     class Bouncy:
@@ -159,9 +161,10 @@ def test_laws_by_name_number_and_object():
 def test_ked_without_matter_is_a_status():
     """A body that does not know of what it consists cannot take ked-3d; its rows say so, others go on."""
     bare = SpatialBody(BOX.mass, BOX.centre, BOX.inertia, BOX.base)
-    batch = simulate_spatial_batch([bare, BOX], RECORD, "ked-3d")
-    assert batch.status.ravel().tolist()[0] == Status.INVALID.code
-    assert batch.status.ravel().tolist()[1] == Status.GOOD.code
+    for law in ("ked-3d", "ked-3d-point"):
+        batch = simulate_spatial_batch([bare, BOX], RECORD, law)
+        assert batch.status.ravel().tolist()[0] == Status.INVALID.code
+        assert batch.status.ravel().tolist()[1] == Status.GOOD.code
 
 
 @pytest.mark.parametrize(
