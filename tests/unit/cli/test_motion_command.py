@@ -41,7 +41,7 @@ def triangle(tmp_path):
 
 
 def test_record_by_closed_form(capsys, triangle):
-    """The triangle: PGA 1, PGV 1/2, PGD 1/4, CAV 1/2, Arias pi/(4 g) by the samples, to rounding; and what the file is."""
+    """The triangle: PGA 1, PGV 1/2, PGD 1/4, CAV 1/2, Arias pi/(4 g) by its samples; and what the file is."""
     answer = measured(capsys, triangle, "--units", "m/s2")
     found = answer["intensity"]
     expected = {"pga_m_s2": 1.0, "pgv_m_s": 0.5, "pgd_m": 0.25, "cav_m_s": 0.5, "arias_m_s": math.pi / (4.0 * G)}

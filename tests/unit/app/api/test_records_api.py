@@ -362,3 +362,12 @@ def test_files_are_private_and_a_strange_note_is_ignored(store):
     note = store.folder / f"{sha}.json"
     note.write_text(note.read_text().replace("a.txt", "../../x.txt"))
     assert store.stored() == []
+
+
+def test_a_sheet_that_is_no_record_is_refused(client):
+    """Rows of separators alone, as in a sheet of a cone penetration test: a refusal with its reason, no fault."""
+    sheet = ";;;\n" * 3 + "Ground water:;0.94;m;\n" + "Depth (m);qc (MPa);fs (kPa);u (kPa)\n"
+    sheet += "".join(f"{0.01 * k:.2f};{0.1 * k:.2f};0.01;0\n" for k in range(1, 400))
+    answer = sent(client, sheet.encode(), units="g")
+    assert answer.status_code == 422
+    assert "columns" in answer.text
