@@ -385,7 +385,7 @@ def test_the_drawn_body_outlasts_a_cell(open_page: Callable[..., Any], shot: Any
         expect(go).to_be_enabled()
         go.click()
         expect(page.get_by_test_id("verdict")).to_be_visible()
-        expect(line).to_contain_text("a cell of lent")
+        expect(line).to_contain_text("a cell of \u201clent\u201d")
         assert kept_inputs(page) != own
         page.get_by_role("tab", name="Studies").click()
     page.get_by_role("tab", name="Response").click()

@@ -165,7 +165,7 @@ export class Player {
       Home: () => this.seek(0),
       End: () => this.seek(end),
     }[event.key];
-    if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!this.play || !does || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     does();
   }

@@ -22,7 +22,8 @@ export const cellHistory = (app, study) => {
     if (!inputs || go.disabled) return;
     // what the cell does not have must be absent, not null
     const there = KEYS.filter((key) => inputs[key] !== undefined && inputs[key] !== null);
-    app.inputs.lend(Object.fromEntries(there.map((key) => [key, inputs[key]])), `a cell of ${study.name}`);
+    const cell = Object.fromEntries(there.map((key) => [key, inputs[key]]));
+    app.inputs.lend(cell, `a cell of \u201c${study.name}\u201d`);
     app.go("response");
   };
   const go = button({ text: "Open in Response", kind: "primary", onClick: open });
