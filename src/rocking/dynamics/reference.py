@@ -1,7 +1,7 @@
 """The reference engine: Taylor steps of free order and length, one history at a time, events located to rounding.
 
 It shares no code with the fast engine: series and zeros are computed by other means (order up to 30, lengths from the
-size of the last terms, zeros by eigenvalues and Newton's method), so that each is a check on the other.
+size of the last terms, zeros between those of the slope, by Newton's method), so that each is a check on the other.
 """
 
 import math
