@@ -15,7 +15,7 @@ from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
-from rocking.portable import gauss_legendre
+from rocking.portable import applied, gauss_legendre, powers, times
 
 # Gauss-Legendre points and weights on [0, 1], exact to degree 9
 _POINTS, _WEIGHTS = gauss_legendre(5)
@@ -150,9 +150,9 @@ class Intervals:
             theta [rad] and theta' [rad/s].
         """
         c = self.quintics()
-        powers = x[None, :] ** np.arange(6)[:, None]
-        slopes = np.arange(1, 6)[:, None] * x[None, :] ** np.arange(5)[:, None]
-        return c @ powers, (c[:, 1:] @ slopes) / self.length[:, None]
+        by_power = powers(x, 6).T
+        slopes = np.arange(1, 6)[:, None] * by_power[:5]
+        return times(c, by_power), times(c[:, 1:], slopes) / self.length[:, None]
 
     def quintics(self) -> FloatArray:
         """Return the quintics that have the value, rate and acceleration of the motion at both ends.
@@ -206,7 +206,7 @@ class Intervals:
             lift = self._scale * _evaluated(self._segments.vertical, stretch, tau)
             force = force - lift * sine * self.side[:, None]
         power = self.semi_diagonal[:, None] * force * velocity
-        return np.where(self.side != 0.0, (power @ _WEIGHTS) * self.length, 0.0)
+        return np.where(self.side != 0.0, applied(power, _WEIGHTS) * self.length, 0.0)
 
 
 def _nodes(trajectory: Trajectory, step: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -14,6 +14,7 @@ from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.bed.friction import FrictionKind
 from rocking.dynamics.bed.law import LawKind, force, stored
 from rocking.dynamics.bed.tables import END_AT_PEAK, Setup
+from rocking.portable import dot
 
 Method = Literal["DOP853", "LSODA"]
 Event = Callable[[float, FloatArray], float]
@@ -77,7 +78,7 @@ class Field:
         _, _, value = self.points(x)
         r, g, a = self.setup.rigid, self.setup.gravity, self.setup.push
         m, h, normal = r.mass, r.height, float(value.sum())
-        moment, tilt = float(value @ self.bed.positions), float(value @ self.bed.heights)
+        moment, tilt = dot(value, self.bed.positions), dot(value, self.bed.heights)
         s, c = math.sin(x[THETA]), math.cos(x[THETA])
         turning = m * h * (g * s - a * c)
         if self.bed.kinematics == "small":
@@ -108,7 +109,7 @@ class Field:
         return np.concatenate([
             [x[W] * c - x[U] * s, x[OMEGA], *accelerations, x[U] * c + x[W] * s],
             [self._bed_loss(depth, rate, value, x[PAST:]), 0.0 if self.held else -shear * x[U]],
-            [normal, value @ self.bed.positions, shear, abs(x[U]) if normal > 0.0 else 0.0],
+            [normal, dot(value, self.bed.positions), shear, abs(x[U]) if normal > 0.0 else 0.0],
             sinking,
         ])  # fmt: skip
 

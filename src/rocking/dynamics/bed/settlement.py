@@ -6,6 +6,7 @@ import numpy as np
 
 from rocking.dynamics.bed.law import LawNumbers, depth_under, stored
 from rocking.dynamics.bed.rigid import RigidRocking
+from rocking.portable import dot
 
 
 def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: float) -> tuple[float, float]:
@@ -38,10 +39,10 @@ def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: floa
     for _ in range(0 if shallow else 60):
         pressed = np.maximum(depth - above, 0.0)
         slope = law.exponent * law.stiffness * pressed ** (law.exponent - 1.0)
-        excess = float(bed.shares @ (law.stiffness * pressed**law.exponent)) - load
-        down = excess / float(bed.shares @ np.where(pressed > 0.0, slope, 0.0))
+        excess = dot(bed.shares, law.stiffness * pressed**law.exponent) - load
+        down = excess / dot(bed.shares, np.where(pressed > 0.0, slope, 0.0))
         depth -= down
         if down <= 1e-15 * depth:
             break
     depths = np.maximum(depth - above, 0.0)
-    return depth, float(bed.shares @ stored(law, depths, depths))
+    return depth, dot(bed.shares, stored(law, depths, depths))

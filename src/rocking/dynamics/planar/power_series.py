@@ -3,6 +3,7 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.portable import convolved
 
 
 def padded(series: list[float] | FloatArray, size: int) -> FloatArray:
@@ -79,7 +80,7 @@ def integral(first: FloatArray, second: FloatArray, at: float) -> float:
     float
         The integral.
     """
-    product = np.convolve(first, second)
+    product = convolved(first, second)
     return at * value(product / np.arange(1, product.size + 1), at)
 
 
