@@ -18,7 +18,6 @@ from rocking.dynamics.bed import ContactBed, KelvinVoigt
 from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial_batch import engine as space_engine
 from rocking.dynamics.spatial_batch import simulate_spatial_batch
-from rocking.evidence import calibrate
 
 STEP = 0.015625
 PEDESTAL = rk.Section([rk.Region([(-0.45, 0.0), (0.55, 0.0), (0.4, 2.5), (-0.15, 2.2)], density=2400.0)])
@@ -148,11 +147,6 @@ def starts() -> list[Any]:
     ]
 
 
-def evidence() -> list[Any]:
-    """The calibration."""
-    return [calibrate().summary]
-
-
 RESULTS: dict[str, Callable[[], list[Any]]] = {
     "space, polygon, reference": lambda: space(tower()),
     "space, round base, reference": lambda: space(tower(0.3)),
@@ -167,7 +161,6 @@ RESULTS: dict[str, Callable[[], list[Any]]] = {
     "plane, coefficients": coefficients,
     "bed, reference": lambda: bed("reference"),
     "bed, fast": lambda: bed("fast"),
-    "evidence": evidence,
 }
 
 
