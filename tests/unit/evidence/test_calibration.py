@@ -7,7 +7,14 @@ import pytest
 from scipy import stats
 
 from rocking import Block
-from rocking.evidence.calibration import NAMES, calibrate, calibrate_on, interval_for, posterior_grid
+from rocking.evidence.calibration import (
+    NAMES,
+    calibrate,
+    calibrate_on,
+    interval_for,
+    marginal_quantiles,
+    posterior_grid,
+)
 from rocking.evidence.coefficient_table import coefficient_table, outside_evidence
 from rocking.evidence.coverage import coverage
 from rocking.evidence.likelihood import fit_scatter, scatter
@@ -139,3 +146,56 @@ def test_priors_are_the_stated_ones():
     assert np.ptp(gap) < 1e-9
     wrong = stats.beta.logpdf(1.0 - eta, 1.5, 97.5)[:, None] + stats.norm.logpdf(k, 0.6, 0.12)
     assert np.ptp(log_prior[:, :, 0, 0] - wrong) > 1e-3
+
+
+def log_posterior(eta, k, log_s, gamma):
+    """Own likelihood and priors of the calibration, from the words of its module alone; columns are parameters."""
+    data, sine = all_measurements(), 1.0 / (1.0 + all_measurements().slenderness ** 2)
+    mean = eta * (4.0 - 3.0 * sine * (1.0 + k)) / (4.0 - 3.0 * sine * (1.0 - k))  # the shifted impulse
+    sd = np.exp(log_s) * (1.0 - mean) ** gamma
+    upper, lower = (data.high - mean) / sd, (data.low - mean) / sd
+    flip = np.where(lower > 0.0, -1.0, 1.0)  # differences are taken in the tail that is small
+    share = np.abs(stats.norm.cdf(flip * upper) - stats.norm.cdf(flip * lower))
+    prior = stats.norm.logpdf(k, 0.6, 0.12) + stats.beta.logpdf(1.0 - eta, 1.5, 98.5)
+    return np.log(np.maximum(share, 1e-300)).sum(axis=1) + prior[:, 0]
+
+
+def test_credible_intervals_against_a_markov_chain():
+    """Ends of the intervals are those of 400 random-walk chains of an own posterior within .1 sd; nodes are not."""
+    random, walkers, steps = np.random.default_rng(6), 400, 700
+    scale = np.array([0.0021, 0.029, 0.5, 0.17])
+    at = np.array([0.9845, 0.555, -2.2, 0.79]) + 0.3 * scale * random.normal(size=(walkers, 4))
+    value, kept = log_posterior(*at.T[:, :, None]), []
+    for step in range(steps):
+        trial = at + scale * random.normal(size=at.shape)
+        inside = (trial[:, 0] < 1.0) & (trial[:, 1] > 0.0) & (trial[:, 1] < 1.0)
+        trial = np.where(inside[:, None], trial, at)
+        new = log_posterior(*trial.T[:, :, None])
+        taken = np.log(random.random(walkers)) < new - value
+        at, value = np.where(taken[:, None], trial, at), np.where(taken, new, value)
+        if step >= 100:
+            kept.append(at)
+    chain, found = np.concatenate(kept), calibrate()
+    for i, name in ((0, "eta"), (1, "k")):
+        fact, ends = found.summary[name], np.quantile(chain[:, i], [0.025, 0.975])
+        # some 10,000 independent draws know a 2.5 % quantile to .03 sd
+        assert (fact["low"], fact["high"]) == pytest.approx(tuple(ends), abs=0.1 * fact["sd"])
+        # negative control: quantiles of samples at nodes
+        assert np.abs(np.quantile(found.samples[:, i], [0.025, 0.975]) - ends).max() > 0.1 * fact["sd"]
+
+
+@pytest.mark.parametrize("axis", ["even", "logarithmic"])
+def test_quantiles_converge_with_the_grid(axis):
+    """Quantiles of a gamma distribution from its density at nodes: fourth order; by steps at nodes, first."""
+    law, levels, errors, coarse = stats.gamma(9.0), (0.025, 0.975), [], []
+    for count in (25, 49):
+        # to 1e-9 in the tails, so that cutting it does not matter
+        ends = law.ppf([1e-9, 1.0 - 1e-9])
+        grid = np.linspace(*ends, count) if axis == "even" else np.geomspace(*ends, count)
+        weight = law.pdf(grid) * (1.0 if axis == "even" else grid)
+        errors.append(np.abs(np.array(marginal_quantiles(grid, weight, levels)) - law.ppf(levels)).max())
+        steps = grid[np.searchsorted(np.cumsum(weight) / weight.sum(), levels)]
+        coarse.append(np.abs(steps - law.ppf(levels)).max())
+    # the logarithmic axis suits this law: there the finer points on which the spline is summed limit it already
+    assert errors[0] / errors[1] > 2.0**3.5 or errors[0] < 2e-4
+    assert coarse[1] > 100.0 * errors[1]
