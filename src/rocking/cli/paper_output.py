@@ -144,7 +144,7 @@ def _league(result: Reproduction) -> object:
             f"{row.bias:+.3f}",
             *bands,
             f"{row.log_loss_rmse:.3f}",
-            f"{row.bic_rounding:.1f}",
+            f"{row.bic:.1f}",
             style=style,
         )
     return table

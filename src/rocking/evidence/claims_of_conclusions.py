@@ -6,26 +6,29 @@ import numpy as np
 
 from rocking.evidence.agreement import rmse
 from rocking.evidence.claim import HOLDS, IN_PART, UNTESTABLE, Claim, truth
+from rocking.evidence.comparison import compare
 from rocking.evidence.errata import closer_rows
+from rocking.evidence.measurements import all_measurements
 from rocking.restitution import HorizontalMomentum
 from rocking.studies.impact_laboratory.large_bodies import large_bodies
 
 
 def _outperforms() -> Claim:
     parts = [truth(name) for name in ("table1", "S", "M", "L")]
-    measured = np.concatenate([data.coefficient for data, _, _ in parts])
+    data = all_measurements()
     housner, ked = (np.concatenate([part[i] for part in parts]) for i in (1, 2))
-    won = [closer for data, _, _ in parts for closer in closer_rows(data)]
-    slender = [bool(ratio > 6.0) for data, _, _ in parts for ratio in data.slenderness]
+    won = [closer for part, _, _ in parts for closer in closer_rows(part)]
+    slender = [bool(ratio > 6.0) for part, _, _ in parts for ratio in part.slenderness]
     above = sum(closer and beyond for closer, beyond in zip(won, slender, strict=True))
-    simple = np.concatenate([HorizontalMomentum().of_slenderness(data.slenderness) for data, _, _ in parts])
+    simple = HorizontalMomentum().of_slenderness(data.slenderness)
     return Claim(
         "4",
         "the proposed model outperforms the classical model",
         IN_PART,
-        f"RMSE of r {rmse(ked, measured):.4f} against {rmse(housner, measured):.4f}, but closer in {sum(won)} of "
-        f"{len(won)} rows only, in {above} of {sum(slender)} above slenderness 6; the one-liner cos^2(alpha) has "
-        f"{rmse(simple, measured):.4f}",
+        f"error of r: {compare(data, ked, housner).sentence('KED', 'Housner')}; relative error of the loss: "
+        f"{compare(data, ked, housner, 'relative error of the loss').sentence('KED', 'Housner')}; closer in {sum(won)} "
+        f"of {len(won)} rows, in {above} of {sum(slender)} above slenderness 6; against the one-liner cos^2(alpha): "
+        f"{compare(data, ked, simple).sentence('KED', 'cos^2(alpha)')}",
         "errors of r over all 39 rows, and rows won",
     )
 

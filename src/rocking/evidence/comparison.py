@@ -1,0 +1,158 @@
+"""The one rule by which two models are compared: a paired bootstrap of the difference of their errors, and by group.
+
+Rows of one block, or of one pair of materials in Table 1, are not independent (pseudo-replication): what is drawn
+again is the specimen with all its rows, within its data set. Both models meet the same draws (Efron & Tibshirani 1993).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.evidence.measurements import DataSet
+
+_RESAMPLES = 4000
+_SEED = 20240710
+_FEWEST = 5  # specimens; of four that agree, one in eight does so by chance
+
+MEASURES: dict[str, Callable[[FloatArray], FloatArray]] = {
+    "r": lambda r: r,
+    "absolute error of the loss": lambda r: r**2,
+    "relative error of the loss": lambda r: np.log1p(-(r**2)),
+}
+"""What is compared: root mean square differences of these functions of r."""
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Error of one model minus that of another.
+
+    Parameters
+    ----------
+    first, second : float
+        Root mean square errors [-].
+    low, high : float
+        95 % paired bootstrap interval of their difference; infinite from fewer than five specimens [-].
+    by_group : dict of str to Comparison
+        The same within each data set.
+    """
+
+    first: float
+    second: float
+    low: float
+    high: float
+    by_group: "dict[str, Comparison]"
+
+    @property
+    def sign(self) -> int:
+        """-1 where the first is closer, 1 where the second is, 0 where the interval includes zero."""
+        return int(self.low > 0.0) - int(self.high < 0.0)
+
+    def sentence(self, one: str, other: str) -> str:
+        """Return the outcome in words.
+
+        Parameters
+        ----------
+        one, other : str
+            Names of the models.
+
+        Returns
+        -------
+        str
+            Without a full stop.
+        """
+        told = (
+            f"{self.first:.4f} for {one} against {self.second:.4f} for {other}, difference "
+            f"{self.first - self.second:+.4f}, 95 % interval {self.low:+.4f} to {self.high:+.4f}"
+        )
+        outcome = {-1: f"{one} is closer", 0: "not resolved", 1: f"{other} is closer"}
+        groups = "; ".join(
+            f"{'Table 1' if name == 'table1' else name}: {outcome[each.sign]}" for name, each in self.by_group.items()
+        )
+        return f"{outcome[self.sign]} ({told}{'; by group: ' if groups else ''}{groups})"
+
+
+def compare(data: DataSet, one: FloatArray, other: FloatArray, measure: str = "r") -> Comparison:
+    """Compare the predictions of two models.
+
+    Parameters
+    ----------
+    data : DataSet
+        The measurements.
+    one, other : ndarray, shape (n,)
+        Predicted coefficients [-].
+    measure : str
+        One of `MEASURES`.
+
+    Returns
+    -------
+    Comparison
+        Exchanging the models changes its signs and nothing else.
+    """
+    of = MEASURES[measure]
+    with np.errstate(divide="ignore"):
+        squares = [(of(np.asarray(r)) - of(data.coefficient)) ** 2 for r in (one, other)]
+    names = tuple(dict.fromkeys(data.group))
+    groups = {name: np.array([group == name for group in data.group]) for name in names} if len(names) > 1 else {}
+    return _compared(squares, drawn(data), {name: (rows, drawn(data.rows(rows))) for name, rows in groups.items()})
+
+
+def _compared(
+    squares: list[FloatArray], weight: FloatArray, groups: dict[str, tuple[FloatArray, FloatArray]]
+) -> Comparison:
+    first, second = (float(np.sqrt(each.mean())) for each in squares)
+    one, other = (resampled(each, weight) for each in squares)
+    with np.errstate(invalid="ignore"):
+        low, high = np.nanquantile(one - other, [0.025, 0.975]).tolist()
+    if np.unique(weight, axis=1).shape[1] < _FEWEST:
+        low, high = -np.inf, np.inf
+    parts = {name: _compared([each[rows] for each in squares], own, {}) for name, (rows, own) in groups.items()}
+    return Comparison(first, second, low, high, parts)
+
+
+def resampled(squares: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return root mean squares of the resamples.
+
+    Parameters
+    ----------
+    squares : ndarray, shape (n,)
+        Squared errors.
+    weight : ndarray, shape (resamples, n)
+        From `drawn`.
+
+    Returns
+    -------
+    ndarray, shape (resamples,)
+        Root mean square errors.
+    """
+    # a sum and no product of matrices: the same on every processor
+    return np.asarray(np.sqrt((weight * squares).sum(axis=1) / weight.sum(axis=1)))
+
+
+def drawn(data: DataSet) -> FloatArray:
+    """Return how often each row is in each resample: specimens drawn within their data sets, by a fixed seed.
+
+    Parameters
+    ----------
+    data : DataSet
+        The measurements.
+
+    Returns
+    -------
+    ndarray, shape (resamples, n)
+        Counts.
+    """
+    return _drawn(data.group, data.labels)
+
+
+@lru_cache(maxsize=32)
+def _drawn(group: tuple[str, ...], label: tuple[str, ...]) -> FloatArray:
+    random, weight = np.random.default_rng(_SEED), np.zeros((_RESAMPLES, len(group)))
+    for name in dict.fromkeys(group):
+        rows = [i for i in range(len(group)) if group[i] == name]
+        specimens = list(dict.fromkeys(label[i] for i in rows))
+        count = random.multinomial(len(specimens), np.full(len(specimens), 1.0 / len(specimens)), size=_RESAMPLES)
+        weight[:, rows] = count[:, [specimens.index(label[i]) for i in rows]]
+    return weight
