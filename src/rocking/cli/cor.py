@@ -13,7 +13,7 @@ _OUTPUT = "Output"
 def cor(
     body: Annotated[
         Path | None,
-        typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --unit, or GLB."),
+        typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --units, or GLB."),
     ] = None,
     width: shared.Width = None,
     height: shared.Height = None,
@@ -21,7 +21,7 @@ def cor(
     density: shared.Density = None,
     angle: shared.Angle = None,
     semi_diagonal: shared.SemiDiagonal = None,
-    unit: shared.Unit = None,
+    units: shared.Units = None,
     up: shared.Up = None,
     fill_holes: shared.FillHoles = False,
     base_tolerance: shared.BaseTolerance = None,
@@ -48,9 +48,11 @@ def cor(
     """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
     from rocking.cli import cor_of_plane_body, cor_of_solid
     from rocking.cli.solid_options import is_solid
+    from rocking.conventions import LENGTH_UNITS
 
     sizes = {"width": width, "height": height, "depth": depth, "angle": angle, "semi_diagonal": semi_diagonal}
     mesh = {"up": up, "fill_holes": fill_holes, "base_tolerance": base_tolerance}
+    (unit,) = shared.units_of(units, LENGTH_UNITS)
     told = {"density": density, "unit": unit}
     files = {"csv": csv, "picture": picture, "stages": stages}
     asked = {"onto": onto, "eta": eta, "identities": identities}

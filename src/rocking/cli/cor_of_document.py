@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking.bodies import Body
+from rocking.cli.solid_options import spelt
 from rocking.errors import InvalidValueError
 from rocking.studies.job.inputs import Inputs
 from rocking.studies.job.parts import body_of
@@ -44,7 +45,7 @@ def body_and_gravity(path: Path, size: dict[str, object]) -> tuple[Body, float |
     InvalidValueError
         If the file is no such document, its body cannot be made, or an option says a body as well.
     """
-    given = [f"--{name.replace('_', '-')}" for name, value in size.items() if value is not None]
+    given = [name for name, value in spelt(size).items() if value is not None]
     if given:
         raise InvalidValueError(f"{path} has a table [body] and says everything itself, so it takes no {given[0]}")
     with located(str(path)):

@@ -13,7 +13,7 @@ _OUTPUT = "Output"
 
 def fragility(
     body: Annotated[
-        Path | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --unit; left out with --width.")
+        Path | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --units; left out with --width.")
     ] = None,
     record: Annotated[
         list[str] | None,
@@ -59,7 +59,6 @@ def fragility(
     density: shared.Density = None,
     angle: shared.Angle = None,
     semi_diagonal: shared.SemiDiagonal = None,
-    unit: shared.Unit = None,
     format: shared.Format = None,
     units: shared.Units = None,
     time_step: shared.TimeStep = None,
@@ -99,7 +98,9 @@ def fragility(
     from rocking.cli.body_options import body_from
     from rocking.cli.fragility_question import FragilityQuestion
     from rocking.cli.study_output import settings_from
+    from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 
+    unit, units = shared.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
     size = {"width": width, "height": height, "depth": depth, "density": density}
     files = fragility_output.Files(picture, csv, p58, nrml, excel, mat, netcdf, common_dispersion)
     question = FragilityQuestion.of(

@@ -33,7 +33,6 @@ def map(
     density: shared.Density = None,
     angle: shared.Angle = None,
     semi_diagonal: shared.SemiDiagonal = None,
-    unit: shared.Unit = None,
     format: shared.Format = None,
     units: shared.Units = None,
     time_step: shared.TimeStep = None,
@@ -57,8 +56,10 @@ def map(
     from rocking.cli import map_output, map_page_output
     from rocking.cli.files_output import check_files
     from rocking.cli.study_output import body_and_motion_of, settings_from
+    from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 
     check_files(picture, csv, netcdf)
+    unit, units = shared.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
     size = {"width": width, "height": height, "depth": depth, "density": density}
     told = {"format": format, "units": units, "time_step": time_step, "component": component}
     question = map_output.MapQuestion.of(

@@ -32,7 +32,6 @@ def minimum(
     density: shared.Density = None,
     angle: shared.Angle = None,
     semi_diagonal: shared.SemiDiagonal = None,
-    unit: shared.Unit = None,
     format: shared.Format = None,
     units: shared.Units = None,
     time_step: shared.TimeStep = None,
@@ -53,8 +52,10 @@ def minimum(
     from rocking.cli import minimum_output
     from rocking.cli.files_output import check_files
     from rocking.cli.study_output import body_and_motion_of, settings_from
+    from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 
     check_files(picture, csv)
+    unit, units = shared.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
     size = {"width": width, "height": height, "depth": depth, "density": density}
     told = {"format": format, "units": units, "time_step": time_step, "component": component}
     answer = minimum_output.MinimumAnswer.of(

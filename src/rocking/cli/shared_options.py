@@ -1,5 +1,6 @@
 """Options that several commands share: body and motion, what a record file leaves open, how it is computed."""
 
+from collections.abc import Mapping
 from typing import Annotated
 
 import typer
@@ -10,18 +11,15 @@ _MESH = "What a mesh file leaves open"
 _HOW = "How it is computed"
 _OUTPUT = "Output"
 
-Width = Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --unit].", rich_help_panel=_BODY)]
-Height = Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --unit].", rich_help_panel=_BODY)]
-Depth = Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --unit].", rich_help_panel=_BODY)]
+Width = Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --units].", rich_help_panel=_BODY)]
+Height = Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --units].", rich_help_panel=_BODY)]
+Depth = Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --units].", rich_help_panel=_BODY)]
 Density = Annotated[float | None, typer.Option(help=r"Density \[kg/m3].", rich_help_panel=_BODY)]
 Angle = Annotated[
     float | None, typer.Option(help=r"Slenderness angle alpha = atan(b/h) \[rad].", rich_help_panel=_BODY)
 ]
 SemiDiagonal = Annotated[
-    float | None, typer.Option(help=r"Semi-diagonal R, with --angle \[m, or --unit].", rich_help_panel=_BODY)
-]
-Unit = Annotated[
-    str | None, typer.Option(help="Unit of all lengths: m (default), cm, mm, ft, in.", rich_help_panel=_BODY)
+    float | None, typer.Option(help=r"Semi-diagonal R, with --angle \[m, or --units].", rich_help_panel=_BODY)
 ]
 Up = Annotated[
     str | None, typer.Option(help="Axis of a mesh that points up: z, or y as in GLB files.", rich_help_panel=_MESH)
@@ -32,13 +30,18 @@ FillHoles = Annotated[
 BaseTolerance = Annotated[
     float | None,
     typer.Option(
-        help=r"Points this close to the lowest one stand on the ground \[m, or --unit].", rich_help_panel=_MESH
+        help=r"Points this close to the lowest one stand on the ground \[m, or --units].", rich_help_panel=_MESH
     ),
 ]
 Format = Annotated[
     str | None, typer.Option(help="Format, if not found by content: see rocking formats.", rich_help_panel=_FILE)
 ]
-Units = Annotated[str | None, typer.Option(help="Unit: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.", rich_help_panel=_FILE)]
+Units = Annotated[
+    str | None,
+    typer.Option(
+        help="Units: of lengths m, cm, mm, ft, in; of a record m/s2, cm/s2, mm/s2, gal, g, g/10, mg; or mm,g."
+    ),
+]
 TimeStep = Annotated[float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)]
 Component = Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)]
 Vertical = Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)]
@@ -48,7 +51,7 @@ VerticalFile = Annotated[
 BodyFile = Annotated[
     str | None,
     typer.Argument(
-        help="Body file: TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --unit; left out with --width."
+        help="Body file: TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --units; left out with --width."
     ),
 ]
 Record = Annotated[str | None, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")]
@@ -59,3 +62,42 @@ Engine = Annotated[str, typer.Option(help="auto, fast or reference.", rich_help_
 Gravity = Annotated[float | None, typer.Option(help=r"Acceleration of gravity \[m/s2].", rich_help_panel=_HOW)]
 Threads = Annotated[int | None, typer.Option(help="Threads; the results do not depend on them.", rich_help_panel=_HOW)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_panel=_OUTPUT)]
+
+
+def units_of(word: str | None, *kinds: Mapping[str, float]) -> tuple[str | None, ...]:
+    """Return the unit of every kind in a word such as ``mm,g``; no unit is of two kinds.
+
+    Parameters
+    ----------
+    word : str, optional
+        What was given.
+    *kinds : mapping
+        The units of each kind.
+
+    Returns
+    -------
+    tuple of str
+        One of each kind, None where none was given.
+
+    Raises
+    ------
+    InvalidValueError
+        If a unit is of none of these kinds, or there are two of one kind.
+
+    Examples
+    --------
+    >>> from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
+    >>> units_of("g, mm", LENGTH_UNITS, ACCELERATION_UNITS), units_of(None, LENGTH_UNITS)
+    (('mm', 'g'), (None,))
+    """
+    from rocking import checks
+    from rocking.errors import InvalidValueError
+
+    found: list[str | None] = [None] * len(kinds)
+    for part in [] if word is None else word.split(","):
+        name = checks.one_of("--units", part.strip(), [each for kind in kinds for each in kind])
+        place = next(k for k, kind in enumerate(kinds) if name in kind)
+        if found[place] is not None:
+            raise InvalidValueError(f"--units must have one unit of a kind, got {found[place]} and {name}")
+        found[place] = name
+    return tuple(found)

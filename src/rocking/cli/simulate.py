@@ -50,7 +50,6 @@ def simulate(
     density: shared.Density = None,
     angle: shared.Angle = None,
     semi_diagonal: shared.SemiDiagonal = None,
-    unit: shared.Unit = None,
     format: shared.Format = None,
     units: shared.Units = None,
     time_step: shared.TimeStep = None,

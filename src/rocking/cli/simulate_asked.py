@@ -8,8 +8,10 @@ import typer
 
 from rocking.cli import simulate_document
 from rocking.cli.body_options import body_from
+from rocking.cli.shared_options import units_of
 from rocking.cli.simulate_question import Question, body_and_motion, motion_asked, question_of
 from rocking.cli.solid_options import is_solid, refuse, spelt
+from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 
 _SIZE = ("width", "height", "depth", "density", "angle", "semi_diagonal", "unit")
 _RECORD = ("format", "units", "time_step", "component", "vertical", "vertical_file")
@@ -51,7 +53,8 @@ class Asked:
         """
         document = simulate_document.path_of(context)
         typed = frozenset(name for name in context.params if simulate_document.typed(context, name))
-        return cls(dict(context.params), typed, document)
+        unit, units = units_of(context.params["units"], LENGTH_UNITS, ACCELERATION_UNITS)
+        return cls({**context.params, "unit": unit, "units": units}, typed, document)
 
     @property
     def solid(self) -> str | None:

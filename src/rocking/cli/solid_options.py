@@ -9,7 +9,7 @@ from rocking.checks import length_unit
 from rocking.errors import RockingError
 
 _WORDS = (
-    (re.compile(r"\bunits="), "--unit"),
+    (re.compile(r"\bunits="), "--units"),
     (re.compile(r"\bfill_holes\b(=True)?"), "--fill-holes"),
     (re.compile(r"\bbase_tolerance\b=?"), "--base-tolerance"),
     (re.compile(r"\bup must be"), "--up must be"),
@@ -114,7 +114,7 @@ def spelt(options: dict[str, Any]) -> dict[str, Any]:
     >>> spelt({"semi_diagonal": None})
     {'--semi-diagonal': None}
     """
-    return {f"--{name.replace('_', '-')}": value for name, value in options.items()}
+    return {"--units" if name == "unit" else f"--{name.replace('_', '-')}": value for name, value in options.items()}
 
 
 def _in_options(words: str) -> str:

@@ -57,7 +57,7 @@ def test_cor_options(capsys, tmp_path):
     picture = tmp_path / "body.svg"
     words = ["--model", f"{own}:Mine", "--model", "ked", "--identities", "--eta", "0.9", "--picture", picture]
     words += ["--stages", tmp_path / "stages.png"]
-    code, out, err = run(capsys, "cor", "--width", 100, "--height", 400, "--unit", "cm", "--onto", "left", *words)
+    code, out, err = run(capsys, "cor", "--width", 100, "--height", 400, "--units", "cm", "--onto", "left", *words)
     assert (code, err) == (0, "")
     assert "0.450000" in out
     assert f"{0.9 * 0.9473668350323697:.6f}" in out
@@ -78,7 +78,7 @@ REFUSED = {
     "nothing": (["cor"], "got none of them"),
     "both": (["cor", "x.toml", "--width", "1"], "not both"),
     "unknown model": (["cor", "--width", "1", "--height", "4", "--model", "kde"], "no restitution model named 'kde'"),
-    "unknown unit": (["cor", "--width", "1", "--height", "4", "--unit", "gal"], "one of m, cm, mm, ft, in"),
+    "unknown unit": (["cor", "--width", "1", "--height", "4", "--units", "gal"], "one of m, cm, mm, ft, in"),
     "missing file": (["cor", "missing.toml"], "missing.toml: there is no such file"),
     "eta": (["cor", "--width", "1", "--height", "4", "--eta", "1.5"], "eta must be in (0, 1]"),
     "onto": (["cor", "--width", "1", "--height", "4", "--onto", "up"], 'onto must be "left"'),

@@ -66,7 +66,7 @@ def test_its_gravity_holds_unless_another_is_given(capsys, tmp_path):
     ("text", "words", "said"),
     [
         (TAKEN, ["--width", "1"], "takes no --width"),
-        (TAKEN, ["--unit", "cm"], "takes no --unit"),
+        (TAKEN, ["--units", "cm"], "takes no --units"),
         (TAKEN.replace("width = 50", "width = -50"), [], "width"),
         (TAKEN.replace("height = 200\n", ""), [], "height"),
         (TAKEN + "[campaign]\n", [], "campaign"),

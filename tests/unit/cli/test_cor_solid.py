@@ -152,12 +152,12 @@ def test_options(capsys, file, tmp_path):
 def test_meshes_and_their_repairs(capsys, mesh):
     """A scaled mesh with a flipped face has the prism's values, and says what was repaired."""
     path = mesh("prism.stl", scale=1000.0, turn=3)
-    answer = answered(capsys, path, "--unit", "mm", "--density", "2700")
+    answer = answered(capsys, path, "--units", "mm", "--density", "2700")
     assert answer["body"]["mass_kg"] == pytest.approx(10800.0, rel=1e-6)
     assert any("turned round 1 of 12 faces" in sentence for sentence in answer["repairs"])
     r = answer["edges"][0]["coefficients"]["ked-3d"]["coefficient"]
     assert r == pytest.approx(0.947366835032369679, rel=1e-6)
-    assert "! turned round 1 of 12 faces" in run(capsys, path, "--unit", "mm")[1]
+    assert "! turned round 1 of 12 faces" in run(capsys, path, "--units", "mm")[1]
 
 
 def test_edges_that_files_round_are_still_parallel(capsys, mesh):
@@ -165,7 +165,7 @@ def test_edges_that_files_round_are_still_parallel(capsys, mesh):
     turned = box(1.0, 1.0, 4.0)
     c, s = math.cos(0.3), math.sin(0.3)
     shape = extrusion(turned.vertices[[0, 1, 3, 2], :2] @ np.array([[c, s], [-s, c]]), 4.0)
-    answer = answered(capsys, mesh("turned.stl", shape=shape), "--unit", "m")
+    answer = answered(capsys, mesh("turned.stl", shape=shape), "--units", "m")
     assert [edge["lands_on"] for edge in answer["edges"]] == ["edge 2", "edge 3", "edge 0", "edge 1"]
     for edge in answer["edges"]:
         assert edge["coefficients"]["housner-3d"]["coefficient"] == pytest.approx(31 / 34, rel=1e-5)
@@ -183,24 +183,24 @@ def test_bases_of_many_corners_keep_the_most_slender_edges(capsys, file):
 
 
 REFUSED = {
-    "no unit": (["a.stl"], "a.stl: STL files do not state their unit; give --unit, one of m, cm, mm, ft, in"),
-    "unit": (["a.stl", "--unit", "km"], "length unit"),
-    "wrong unit": (["a.stl", "--unit", "m", "--density", "1"], "is that the file's unit?"),
-    "axis": (["a.stl", "--unit", "mm", "--up", "x"], '--up must be "z" or "y"'),
-    "hole": (["hole.obj", "--unit", "m"], "pass --fill-holes if together they are below 1 %"),
-    "large hole": (["hole.obj", "--unit", "m", "--fill-holes"], "only up to 1 % is filled"),
-    "empty": (["empty.ply", "--unit", "m"], "empty.ply: "),
-    "no file": (["none.stl", "--unit", "m"], "none.stl: there is no such file"),
-    "density nan": (["a.stl", "--unit", "mm", "--density", "nan"], "density must be finite"),
-    "tolerance": (["a.stl", "--unit", "mm", "--base-tolerance", "-1"], "--base-tolerance must be > 0 m"),
-    "size": (["a.stl", "--unit", "mm", "--width", "1"], "it takes no --width"),
-    "foot": (["a.stl", "--unit", "mm", "--onto", "left"], "it takes no --onto"),
-    "eta": (["a.stl", "--unit", "mm", "--eta", "0.9"], "it takes no --eta"),
-    "stages": (["a.stl", "--unit", "mm", "--identities", "--stages", "s.png"], "it takes no --identities, --stages"),
-    "model": (["a.stl", "--unit", "mm", "--model", "best"], "no restitution model in space is called 'best'"),
-    "gravity": (["a.stl", "--unit", "mm", "--gravity", "0"], "gravity must be > 0"),
-    "picture": (["a.stl", "--unit", "mm", "--picture", "a.bmp"], ".png, .svg or .pdf"),
-    "folder": (["a.stl", "--unit", "mm", "--csv", "none/a.csv"], "no folder"),
+    "no unit": (["a.stl"], "a.stl: STL files do not state their unit; give --units, one of m, cm, mm, ft, in"),
+    "unit": (["a.stl", "--units", "km"], "--units must be one of m, cm"),
+    "wrong unit": (["a.stl", "--units", "m", "--density", "1"], "is that the file's unit?"),
+    "axis": (["a.stl", "--units", "mm", "--up", "x"], '--up must be "z" or "y"'),
+    "hole": (["hole.obj", "--units", "m"], "pass --fill-holes if together they are below 1 %"),
+    "large hole": (["hole.obj", "--units", "m", "--fill-holes"], "only up to 1 % is filled"),
+    "empty": (["empty.ply", "--units", "m"], "empty.ply: "),
+    "no file": (["none.stl", "--units", "m"], "none.stl: there is no such file"),
+    "density nan": (["a.stl", "--units", "mm", "--density", "nan"], "density must be finite"),
+    "tolerance": (["a.stl", "--units", "mm", "--base-tolerance", "-1"], "--base-tolerance must be > 0 m"),
+    "size": (["a.stl", "--units", "mm", "--width", "1"], "it takes no --width"),
+    "foot": (["a.stl", "--units", "mm", "--onto", "left"], "it takes no --onto"),
+    "eta": (["a.stl", "--units", "mm", "--eta", "0.9"], "it takes no --eta"),
+    "stages": (["a.stl", "--units", "mm", "--identities", "--stages", "s.png"], "it takes no --identities, --stages"),
+    "model": (["a.stl", "--units", "mm", "--model", "best"], "no restitution model in space is called 'best'"),
+    "gravity": (["a.stl", "--units", "mm", "--gravity", "0"], "gravity must be > 0"),
+    "picture": (["a.stl", "--units", "mm", "--picture", "a.bmp"], ".png, .svg or .pdf"),
+    "folder": (["a.stl", "--units", "mm", "--csv", "none/a.csv"], "no folder"),
     "plane": (["--width", "1", "--height", "2", "--up", "z"], "a plane body is no mesh, so it takes no --up"),
     "options": (["body.toml", "--up", "z"], "states up itself"),
     "bad toml": (["bad.toml"], "bad.toml: solid.part[0].box.width must be a number > 0 [m], got -1.0"),

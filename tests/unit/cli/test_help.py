@@ -10,7 +10,7 @@ from rocking.cli import main
 from rocking.cli.application import application
 
 COMMANDS = typer.main.get_command(application()).commands
-LENGTH = "[m, or --unit]"
+LENGTH = "[m, or --units]"
 SIZES = {
     **dict.fromkeys(("--width", "--height", "--depth", "--semi-diagonal"), LENGTH),
     "--density": "[kg/m3]",

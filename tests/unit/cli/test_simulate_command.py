@@ -96,7 +96,7 @@ def test_json_is_python_to_the_last_digit(capsys, body):
         assert answer["motion"]["peak_acceleration_m_s2"] == pytest.approx(3.2, rel=1e-12)
     angle = answered(capsys, "--angle", ALPHA, "--semi-diagonal", 0.5 * math.hypot(0.5, 2.0), PULSE)
     assert angle["peak_rotation_rad"] == pytest.approx(expected.peak_rotation, rel=1e-9)
-    assert same(answered(capsys, "--width", 50, "--height", 200, "--unit", "cm", PULSE), expected)
+    assert same(answered(capsys, "--width", 50, "--height", 200, "--units", "cm", PULSE), expected)
     # negative control: another pulse is another response
     assert not same(answered(capsys, *SIZE, "sine:amplitude=3.3,period=0.8"), expected)
 

@@ -132,7 +132,7 @@ def test_meshes_rock_too(capsys, tmp_path):
     faces = rk.solid.box(0.5, 0.5, 2.0)
     path = tmp_path / "prism.stl"
     trimesh.Trimesh(faces.vertices * 1000.0, faces.faces, process=False).export(path)
-    answer = answered(capsys, path, SINE, "--unit", "mm", "--density", "1000")
+    answer = answered(capsys, path, SINE, "--units", "mm", "--density", "1000")
     assert answer["body"]["mass_kg"] == pytest.approx(500.0)
     plane = rk.simulate(rk.Block(width=0.5, height=2.0), MOTION, "housner")
     assert answer["peak_tilt_rad"] == pytest.approx(plane.peak_rotation, rel=1e-9)
@@ -178,7 +178,7 @@ REFUSED = {
     "component alone": ([SINE, "--component-z", "UP"], "names a component of --motion-z, which is not given"),
     "component unknown": (["record.txt", "--units", "m/s2", "--component", "up"], "'up'"),
     "components": (["--motion-y", "record.txt", "--units", "m/s2"], "--component-y"),
-    "unit": ([SINE, "--unit", "cm"], 'states units = "m"'),
+    "unit": ([SINE, "--units", "cm"], 'states units = "m"'),
     "picture": ([SINE, "--picture", "a.bmp"], ".png, .svg or .pdf"),
     "folder": ([SINE, "--netcdf", "none/a.nc"], "no folder"),
 }

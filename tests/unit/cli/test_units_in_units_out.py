@@ -83,3 +83,29 @@ def test_ticks_on_a_logarithmic_axis():
     shown_in(axes, "x", "g", 9.80665)
     assert axes.get_xlabel() == "level [g]"
     assert set(numbers(axes.xaxis).values()) >= {0.1, 1.0, 10.0}
+
+
+def test_one_option_for_units(capsys, tmp_path):
+    """`--units mm,g` says the unit of the lengths and that of the record: as metres and m/s2 would be."""
+    record = tmp_path / "record.txt"
+    record.write_text("".join(f"{0.01 * k:.2f} {0.4 * ((k // 30) % 2) - 0.2:.3f}\n" for k in range(200)))
+    same = run(capsys, "simulate", *SIZE, str(record), "--units", "g", "--json")
+    sizes = ("--width", "500", "--height", "2000", "--density", "500")
+    assert run(capsys, "simulate", *sizes, str(record), "--units", "mm,g", "--json") == same
+    assert run(capsys, "simulate", *sizes, str(record), "--units", "G, MM", "--json") == same
+
+
+@pytest.mark.parametrize(
+    ("units", "said"),
+    [
+        ("mm,cm", "one unit of a kind, got mm and cm"),
+        ("milimeter", "--units must be one of m, cm, mm"),
+        ("", "--units"),
+    ],
+)
+def test_units_that_are_none(units, said, capsys):
+    """Two units of one kind, and what is no unit, are refused."""
+    with pytest.raises(SystemExit) as end:
+        main(("cor", "--width", "5", "--height", "20", "--units", units))
+    assert end.value.code == 2
+    assert said in capsys.readouterr().err

@@ -27,13 +27,23 @@ def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str 
     --------
     >>> block = {"units": "cm", "width": 50.0, "height": 200.0}
     >>> simulate_words({"body": block, "motion": {"pulse": "sine:amplitude=3,period=0.8"}})
-    'rocking simulate --width 50.0 --height 200.0 --unit cm --motion sine:amplitude=3,period=0.8 --restitution ked'
+    'rocking simulate --width 50.0 --height 200.0 --units cm --motion sine:amplitude=3,period=0.8 --restitution ked'
     """
     parts = [_body(inputs["body"]), _start(inputs, record), _restitution(inputs), _how(inputs)]
     if any(part is None for part in parts):
         return None
-    words = [word for part in parts if part is not None for word in part]
+    words = _one_of_units([word for part in parts if part is not None for word in part])
     return " ".join(["rocking simulate", *(quote(word) for word in words)])
+
+
+def _one_of_units(words: list[str]) -> list[str]:
+    """Return the words with the units of body and record in one option, as the command takes them."""
+    places = [k for k, word in enumerate(words) if word == "--units"]
+    if len(places) < 2:
+        return words
+    first, second = places
+    joined = f"{words[first + 1]},{words[second + 1]}"
+    return [*words[: first + 1], joined, *words[first + 2 : second], *words[second + 2 :]]
 
 
 def _body(body: Mapping[str, Any]) -> list[str] | None:
@@ -41,7 +51,7 @@ def _body(body: Mapping[str, Any]) -> list[str] | None:
     if "width" not in table or "feet" in table:
         return None
     sizes = {name: table[name] for name in ("width", "height", "depth", "density") if table.get(name) is not None}
-    return [*_options(sizes), "--unit", str(body["units"])]
+    return [*_options(sizes), "--units", str(body["units"])]
 
 
 def _start(inputs: Mapping[str, Any], record: str | None) -> list[str] | None:

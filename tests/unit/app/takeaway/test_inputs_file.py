@@ -113,7 +113,7 @@ def test_the_words_are_one_line_of_a_shell():
     words = commands(Inputs.model_validate(EXAMPLE))
     assert words[0] == "rocking simulate response.toml"
     assert shlex.split(words[1]) == [
-        "rocking", "simulate", "--width", "50.0", "--height", "200.0", "--unit", "cm",
+        "rocking", "simulate", "--width", "50.0", "--height", "200.0", "--units", "cm",
         "--motion", "sine:amplitude=3,period=0.8", "--scale", "1.05", "--friction", "0.4", "--restitution", "ked",
     ]  # fmt: skip
 

@@ -81,7 +81,7 @@ def test_cor_of_a_bow_is_one_sentence(capsys, tmp_path):
     """The command line refuses the bow in words."""
     path = saved(tmp_path / "bow.obj", bow(), COLUMN.faces)
     with pytest.raises(SystemExit) as stop:
-        main(["cor", str(path), "--unit", "m"])
+        main(["cor", str(path), "--units", "m"])
     printed = capsys.readouterr()
     assert stop.value.code not in (0, None)
     assert "passes through itself" in printed.err
