@@ -49,6 +49,7 @@ def test_cited_documents_are_shipped(folder):
             assert set(re.findall(r"\d+", listed)) <= set(sections), (path, listed)
 
 
+@pytest.mark.filterwarnings("error:check the input")  # what examples show was meant
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
 def test_examples_run(path, tmp_path, monkeypatch, capsys):
     """Every example of the gallery runs and its assertions hold."""
