@@ -155,7 +155,7 @@ class MotionView {
 
   show(answer) {
     this.answer = answer;
-    fill(this.refusal);
+    fill(this.refusal, ...(answer.warnings ?? []).map((each) => note(each, "warning")));
     this.result.show(answer);
   }
 
