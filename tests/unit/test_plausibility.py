@@ -19,6 +19,7 @@ from rocking.restitution import model
 pytestmark = pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWarning")
 BLOCK = rk.Block(width=0.5, height=2.0, density=500.0)
 PULSE = rk.pulses.sine(amplitude=3.0, period=0.8)
+TOWER = rk.Block(width=12.0, height=95.0, density=1800.0)
 STATUE_2_CM = [(0.0, 0.0), (0.008, 0.0), (0.005, 0.02)]
 
 DOUBTFUL = {
@@ -62,7 +63,8 @@ MEANT = {
     "a squat block": lambda: rk.coefficient_of_restitution(rk.Block(width=4.0, height=2.0, density=2400.0), "ked"),
     "stops at once": lambda: rk.simulate(BLOCK, PULSE, 0.0),
     "everyday": lambda: rk.simulate(BLOCK, PULSE, 0.9, scale=-1.5),
-    "dimensionless map": lambda: rk.simulate_many(BLOCK, PULSE, "ked", scale=[0.5, 2.0]),
+    "bodies that identities try": lambda: rk.restitution.identity_report(TOWER, rk.restitution.Ked()),
+    "several scales": lambda: rk.simulate_many(BLOCK, PULSE, "ked", scale=[0.5, 2.0]),
 }
 
 
