@@ -170,6 +170,8 @@ class SpatialReference:
         if self.stretch < self.ground.count:
             left = float(self.ground.times[self.stretch + 1]) - self.time
             length, last = min(length, left), length >= left
+        elif self.time < self.horizon:
+            length = min(length, self.horizon - self.time)
         field = -self.ground.part(self.stretch, self.time, length)
         field[2, 0] -= self.settings.gravity
         order = min(max(flow.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
@@ -292,7 +294,10 @@ class SpatialReference:
         self.moment = self.time
         if self.at_once > _STUCK or len(self.course.events) > self.settings.most_events:
             return Outcome.FAILED, Status.TOO_MANY_EVENTS
-        return None
+        # a base of many corners may have no step without an impact; whether it still can fall is asked here too
+        if self._final is False or self.stance.contact is Contact.REST:
+            return None
+        return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
 
     # ---- small parts ------------------------------------------------------------------------------------------------
 
