@@ -161,7 +161,9 @@ def test_energy_and_vertical_momentum_about_a_vertex_stay():
 
 
 @pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize(("space", "plane"), [("housner-3d", "housner"), ("ked-3d", "ked"), ("ked-3d-point", "ked"), (0.93, 0.93)])
+@pytest.mark.parametrize(
+    ("space", "plane"), [("housner-3d", "housner"), ("ked-3d", "ked"), ("ked-3d-point", "ked"), (0.93, 0.93)]
+)
 def test_a_prism_in_a_plane_is_the_plane_solution(axis, space, plane):
     """Impacts of two components of a record, along and up, against the planar engine: times to 1e-9 s, peak to 1e-9."""
     time = np.arange(300) * 0.02

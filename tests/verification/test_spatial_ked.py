@@ -25,7 +25,12 @@ TRAPEZOID = rk.Section.from_trapezoid(1.0, 0.4, 2.5)
 ANGLE = st.floats(-math.pi, math.pi)
 SPIN = st.tuples(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4))
 LAWS = sorted(spatial_models())
-PLANE = {"ked-3d": "ked", "ked-3d-point": "ked", "housner-3d": "housner", "horizontal-momentum-3d": "horizontal-momentum"}
+PLANE = {
+    "ked-3d": "ked",
+    "ked-3d-point": "ked",
+    "housner-3d": "housner",
+    "horizontal-momentum-3d": "horizontal-momentum",
+}
 
 
 def left_of_points(body, pivot, landing, velocity, up):

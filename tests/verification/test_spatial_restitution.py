@@ -27,7 +27,12 @@ from rocking.restitution.spatial.moments import kept_moments
 
 PRISM = Solid(Part(box(1.0, 1.0, 4.0)).moved(0.5, 0.5, 0.0))
 MODELS = sorted(spatial_models())
-PLANE = {"ked-3d": "ked", "ked-3d-point": "ked", "housner-3d": "housner", "horizontal-momentum-3d": "horizontal-momentum"}
+PLANE = {
+    "ked-3d": "ked",
+    "ked-3d-point": "ked",
+    "housner-3d": "housner",
+    "horizontal-momentum-3d": "horizontal-momentum",
+}
 ALONG = np.array([0.0, 1.0, 0.0])
 
 # --- values of the physics specification, section 1.6 ----------------------------------------------

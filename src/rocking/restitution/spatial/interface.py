@@ -184,8 +184,10 @@ def _nearest(solid: Solid, start: Corner | Edge, onto: Corner | Edge) -> FloatAr
     target = onto.point if isinstance(onto, Corner) else sum(_ends(solid, onto), np.zeros(3)) / 2.0
     first, last = _ends(solid, start)
     along = (target - start.point) * start.direction
-    low, high, share = (float(value.sum()) for value in ((first - start.point) * start.direction,
-                        (last - start.point) * start.direction, along))
+    low, high, share = (
+        float(value.sum())
+        for value in ((first - start.point) * start.direction, (last - start.point) * start.direction, along)
+    )
     nearest: FloatArray = start.point + min(max(share, low), high) * start.direction
     return nearest
 
