@@ -11,7 +11,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.batch import PIECE
+from rocking.dynamics.batch import PIECE, SIDES
 from rocking.dynamics.engine import Arrays, empty_results
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.response import Motion
@@ -145,7 +145,7 @@ class Subject:
     def _sides(self) -> dict[str, float]:
         return {
             f"{short}_{foot}": getattr(getattr(self.rocker, foot), name)
-            for short, name in (("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"))
+            for short, name in SIDES
             for foot in ("right", "left")
         }
 

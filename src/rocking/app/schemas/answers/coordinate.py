@@ -23,3 +23,4 @@ class Result(Answer):
     id: str
     name: str
     restitutions: list[str]
+    contact: str = Field("", description="in how many histories the ground would have to pull; empty if in none")

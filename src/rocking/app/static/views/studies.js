@@ -46,6 +46,7 @@ export function mount(section, app) {
       result.replaceChildren();
       const chosen = { restitution: 0 };
       undo = (SHOW[study.kind] || showCounts)(result, app, study, found, chosen) || undo;
+      if (found.contact) result.prepend(el("p", { class: "note", "data-testid": "study-contact" }, found.contact));
       result.append(exportsOf(app, study, found, chosen));
       heading.focus();
     } catch (error) {

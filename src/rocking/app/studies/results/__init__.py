@@ -9,6 +9,10 @@ from rocking.app.studies.results.maps import map_result
 from rocking.app.studies.results.products import product_result
 from rocking.app.studies.results.spectra import spectrum_result
 from rocking.app.studies.results.tables import minimum_result
+from rocking.dynamics.lost_contact import contact_words, lost_contact
+
+_SEARCHES = ("minimum-acceleration", "incremental")
+"""Kinds whose histories are asked for round by round: their campaign does not keep them as one array."""
 
 _BY_KIND: dict[str, Callable[[OpenStudy], dict[str, Any]]] = {
     "overturning-map": map_result,
@@ -36,5 +40,10 @@ def result_of(study: OpenStudy) -> dict[str, Any]:
     """
     document = study.job.job.document
     kind = str(document.campaign.kind)
-    head = {"id": study.id, "kind": kind, "name": str(document.campaign.name)}
+    head = {"id": study.id, "kind": kind, "name": str(document.campaign.name), "contact": _contact(study, kind)}
     return {**head, "restitutions": list(study.job.job.parts.choices), **_BY_KIND[kind](study)}
+
+
+def _contact(study: OpenStudy, kind: str) -> str:
+    """In how many histories the ground would have to pull; empty if in none."""
+    return "" if kind in _SEARCHES else contact_words(lost_contact(study.raw))
