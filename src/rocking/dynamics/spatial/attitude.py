@@ -71,7 +71,7 @@ def matrix(quaternion: FloatArray) -> FloatArray:
     [0.0, 1.0, 0.0]
     """
     q = quaternion.tolist() if quaternion.ndim == 1 else list(np.moveaxis(quaternion, -1, 0))
-    made = np.array(rows_of([[a * b for b in q] for a in q]))
+    made: FloatArray = np.array(rows_of([[a * b for b in q] for a in q]))
     return made if quaternion.ndim == 1 else np.moveaxis(made, (0, 1), (-2, -1))
 
 

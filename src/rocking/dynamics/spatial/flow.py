@@ -77,7 +77,8 @@ def carried(quaternion: FloatArray, field: FloatArray) -> list[float]:
         The components of the vertical, of G, and of its derivatives.
     """
     back, factorials = matrix(quaternion).T, np.multiply.accumulate([1.0, *range(1, field.shape[1])])
-    return np.concatenate([back[:, 2], *[applied(back, g) for g in (field * factorials).T]]).tolist()
+    vectors = [back[:, 2], *[applied(back, g) for g in (field * factorials).T]]
+    return [float(x) for vector in vectors for x in vector.tolist()]
 
 
 class PivotFlow:

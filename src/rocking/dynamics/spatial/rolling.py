@@ -28,7 +28,7 @@ Terms = list[float]
 
 def _term(left: Terms, right: Terms, k: int) -> float:
     """Coefficient k of the product of two series."""
-    return sum(map(mul, left, right[k::-1]))
+    return float(sum(map(mul, left, right[k::-1])))
 
 
 def _back(vector: list[Terms], k: int) -> list[Terms]:
