@@ -22,11 +22,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
     from rocking.checks import decimal_comma
     from rocking.cli.application import application
-    from rocking.errors import RockingError
+    from rocking.errors import RockingError, SlowEngineWarning
 
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         with warnings.catch_warnings():
+            warnings.simplefilter("always", SlowEngineWarning)
             warnings.showwarning = _Said()
             # without arguments the help is the answer
             code = application()(args=words or ["--help"], prog_name="rocking", standalone_mode=False)
