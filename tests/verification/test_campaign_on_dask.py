@@ -15,15 +15,15 @@ from rocking.dynamics import engine
 from rocking.studies import SyntheticSet
 from rocking.studies.campaign import Campaign, DaskExecutor, Progress
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "unit" / "studies" / "campaign"))  # for the workers, too
+from slow import Motions, product
+
 pytest.importorskip("distributed")
 pytestmark = [
     pytest.mark.timed,
     pytest.mark.skipif(not engine.available(), reason="the fast engine was not built"),
     pytest.mark.filterwarnings("default"),  # those of the cluster are not ours
 ]
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "unit" / "studies" / "campaign"))  # for the workers, too
-from slow import Motions, product
 
 MOTIONS = int(os.environ.get("ROCKING_DASK_MOTIONS", "0"))
 """Synthetic motions of a job that takes minutes: 4000 make 48,000 histories."""
