@@ -41,7 +41,9 @@ class ForeignReader:
         Memory for one file, beyond that of the loaded reader; kept on Linux alone [bytes].
     """
 
-    def __init__(self, script: Path, needs: str, module: str, *, seconds: float = 30.0, memory: int = 4 * 2**30) -> None:
+    def __init__(
+        self, script: Path, needs: str, module: str, *, seconds: float = 30.0, memory: int = 4 * 2**30
+    ) -> None:
         self.script, self.needs, self.module = script, needs, module
         self.seconds, self.memory = seconds, memory
         # by process: one that was forked must not talk to its parent's reader
