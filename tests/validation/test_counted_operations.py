@@ -30,6 +30,7 @@ def by_hand(order: int) -> int:
     ends = (2 + 1) + 1 + (1 + 2) + 1  # rotation, u1, v1, v1 h
     ground = 1 + 3 + 4 + 1 + 1 + 2  # -V0, what is left of v1 h, sag, y0, y1, the bound
     force = 1 + 2 + 2 + 1 + 1  # of the ground: horizontal, vertical, against the largest demand and the least force
+    force += 2  # of a block that falls back, every step has a force beyond those before: two quotients
     rest = 2 + 2 + 1 + 1  # the highest point, beyond the top, time, error
     return forcing + sines + start + first + others + sums + series + ends + ground + force + rest
 

@@ -214,7 +214,7 @@ class Response(Exportable):
             found = self.with_contact(friction)
         except InvalidValueError as error:
             return f"{lost}nothing is known: {error}"
-        why = "enough not to slide" if friction is None else "as given"
+        why = "since none was given" if friction is None else "as given"
         return f"{lost}with a coefficient of friction of {found.law.friction:g}, {why}: {found.summary}"
 
     @property

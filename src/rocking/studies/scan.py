@@ -201,7 +201,7 @@ class Scan:
         values = {name: array[body] for name, array in self.sides.items()}
         found = self.run({**values, "scale": scale}, body)
         names = ("mode", "side", "peak_ratio", "overturning_time")
-        return Samples(body, scale, *(found[n] for n in names), lost_contact(found))
+        return Samples(body, scale, *(found[n] for n in names), lost=lost_contact(found))
 
     def zoom(self) -> None:
         """Halve the intervals in which a change of verdict may hide between ends that agree."""

@@ -114,6 +114,7 @@ def test_warnings_of_friction() -> None:
     assert not contact.loses_contact
 
 
+@pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
 @pytest.mark.parametrize(("drop", "flies"), [(-1.02 * g, True), (-0.9 * g, False)])
 def test_loss_of_contact(drop: float, flies: bool) -> None:
     """Ground that falls faster than g leaves the body: the force vanishes and a warning says so; slower does not."""

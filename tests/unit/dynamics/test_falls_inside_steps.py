@@ -43,6 +43,7 @@ def test_let_go_beyond_the_top(name: str, share: float, linear: bool) -> None:
     assert response.energy.closure < 1e-10
 
 
+@pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
 @every_engine
 def test_lies_within_the_first_step(name: str) -> None:
     """A constant push does the work m a b up to the top; there f_x = m a / 4, f_z = m g - m R theta'^2."""
@@ -76,6 +77,7 @@ def test_beyond_the_top_and_lying_within_the_first_step(name: str) -> None:
     assert response.contact.friction_demand < 0.05
 
 
+@pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
 @every_engine
 def test_a_fall_inside_a_step_counts(name: str) -> None:
     """Lifted by a ramp and thrown over within the same step: at the top f_x = m a / 4, and a warning is given.
