@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from rocking.evidence.comparison import MEASURES, compare
 from rocking.evidence.league import LeagueRow
 from rocking.evidence.measurements import all_measurements
@@ -37,7 +39,7 @@ def verdict(rows: Sequence[LeagueRow]) -> tuple[str, ...]:
 
 def _between(one: LeagueRow, other: LeagueRow, measure: str, above: float = 0.0) -> str:
     data = all_measurements()
-    data = data.rows(data.slenderness > above)
+    data = data.rows(np.flatnonzero(data.slenderness > above).tolist())
     first, second = (row.model.of_slenderness(data.slenderness) for row in (one, other))
     return compare(data, first, second, measure).sentence(one.name, other.name)
 

@@ -200,8 +200,8 @@ class Scan:
         """
         values = {name: array[body] for name, array in self.sides.items()}
         found = self.run({**values, "scale": scale}, body)
-        names = ("mode", "side", "peak_ratio", "overturning_time")
-        return Samples(body, scale, *(found[n] for n in names), lost=lost_contact(found))
+        mode, side, peak, time = (found[name] for name in ("mode", "side", "peak_ratio", "overturning_time"))
+        return Samples(body, scale, mode, side, peak, time, lost_contact(found))
 
     def zoom(self) -> None:
         """Halve the intervals in which a change of verdict may hide between ends that agree."""
