@@ -200,7 +200,8 @@ class Scan:
         """
         values = {name: array[body] for name, array in self.sides.items()}
         found = self.run({**values, "scale": scale}, body)
-        mode, side, peak, time = (found[name] for name in ("mode", "side", "peak_ratio", "overturning_time"))
+        names = ("mode", "side", "peak_ratio", "overturning_time")
+        mode, side, peak, time = (found[name] for name in names)
         return Samples(body, scale, mode, side, peak, time, lost_contact(found))
 
     def zoom(self) -> None:
