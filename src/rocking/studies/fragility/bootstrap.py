@@ -1,6 +1,6 @@
 """Bootstrap: the study repeated many times on the computer, all repetitions fitted at once."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -20,9 +20,9 @@ from rocking.studies.fragility.estimate import (
 )
 from rocking.studies.fragility.robust import with_cluster_errors
 
-Resampling = Literal["parametric", "cases", "clusters"]
+Resampling = Literal["parametric", "cases", "clusters", "capacities"]
 Ends = Literal["studentised", "percentile", "basic"]
-RESAMPLING: tuple[Resampling, ...] = ("parametric", "cases", "clusters")
+RESAMPLING: tuple[Resampling, ...] = ("parametric", "cases", "clusters", "capacities")
 Pair = tuple[FloatArray, FloatArray]
 ENDS: tuple[Ends, ...] = ("studentised", "percentile", "basic")
 
@@ -82,8 +82,8 @@ def resample(
 
 def _drawn_clusters(counts: Counts, repetitions: int, seed: int) -> FloatArray:
     """Return how often each distinct cluster is drawn: a hundred thousand cost no more than their distinct outcomes."""
-    share = counts.distinct_clusters[1] / counts.clusters
-    drawn = np.random.default_rng(seed).multinomial(counts.clusters, share, size=repetitions)
+    share, number = counts.distinct_clusters[1], round(counts.distinct_clusters[1].sum())
+    drawn = np.random.default_rng(seed).multinomial(number, share / share.sum(), size=repetitions)
     return drawn.astype(np.float64)
 
 
@@ -102,7 +102,7 @@ class BootstrapSample:
         The curve of the study: one row.
     scale : Scale
         Scale of the coefficients.
-    kind : {"parametric", "cases", "clusters"}
+    kind : {"parametric", "cases", "clusters", "capacities"}
         How the repetitions were drawn.
     """
 
@@ -216,8 +216,8 @@ def bootstrap(
         The curve of the study: one row.
     scale : Scale
         Scale of the coefficients.
-    kind : {"parametric", "cases", "clusters"}
-        How to draw the repetitions.
+    kind : {"parametric", "cases", "clusters", "capacities"}
+        How to draw the repetitions; the last draws one capacity from the curve for each cluster.
     repetitions : int
         How many.
     seed : int
@@ -228,14 +228,36 @@ def bootstrap(
     BootstrapSample
         Their curves.
     """
-    failures, trials = resample(counts, curve_probability(original, scale, counts.levels), kind, repetitions, seed)
+    probability, source = curve_probability(original, scale, counts.levels), counts
+    if kind == "capacities":
+        source = _capacities(counts, probability)
+        drawn = _drawn_clusters(source, repetitions, seed)
+        failures, trials = np.split(drawn @ source.distinct_clusters[0], 2, axis=1)
+    else:
+        failures, trials = resample(counts, probability, kind, repetitions, seed)
     curves = find_curves(counts.levels, scale, failures, trials, penalised=bool(original.penalised[0]))
     if kind == "clusters":
-        drawn, whole = _drawn_clusters(counts, repetitions, seed), counts.distinct_clusters[1][None]
-        curves, original = (
-            with_cluster_errors(counts, scale, one, of) for one, of in ((curves, drawn), (original, whole))
-        )
+        drawn = _drawn_clusters(counts, repetitions, seed)
+    if kind in {"clusters", "capacities"}:
+        curves = with_cluster_errors(source, scale, curves, drawn)
+        original = with_cluster_errors(counts, scale, original, counts.distinct_clusters[1][None])
     return BootstrapSample(curves, original, scale, kind)
+
+
+def _capacities(counts: Counts, probability: FloatArray) -> Counts:
+    """Return clusters that fail from a level of their own on, as many of each kind as the curve expects."""
+    # Few clusters drawn again repeat one another, and 11 cover 92 %, 7 some 84 % at nominal 95. A record that serves at
+    # every level has one capacity: the pivot of the studentised bootstrap is then that of a sample of capacities, with
+    # levels close together Student's t for the median.
+    levels = counts.levels.size
+    failures = (np.arange(levels + 1)[:, None] <= np.arange(levels)).astype(np.float64)
+    share = np.diff(np.concatenate([[0.0], probability, [1.0]]))
+    return replace(
+        counts,
+        cluster_failures=failures,
+        cluster_trials=np.ones_like(failures),
+        cluster_weights=counts.clusters * np.clip(share, 0.0, 1.0),
+    )
 
 
 def curve_probability(curves: Curves, scale: Scale, levels: FloatArray) -> FloatArray:

@@ -17,6 +17,9 @@ NARROWEST = 1e-9
 LEAST_CLUSTERS = 5
 """Distinct clusters below which drawing them again says nothing about clusters that were not seen."""
 
+MANY_CLUSTERS = 30
+"""Clusters from which drawing them again covers as often as it says, whatever their outcomes have in common."""
+
 
 @dataclass(frozen=True, eq=False)
 class Counts:
@@ -64,6 +67,13 @@ class Counts:
         return self.cluster_trials is not None and bool(self.cluster_trials.sum(axis=1).max() > 1.0)
 
     @cached_property
+    def draws_capacities(self) -> bool:
+        """Whether few clusters were each tried once at every level, as records that are raised level by level."""
+        if self.cluster_trials is None or not LEAST_CLUSTERS <= self.clusters < MANY_CLUSTERS:
+            return False
+        return self.levels.size > 1 and bool((self.cluster_trials == 1.0).all())
+
+    @cached_property
     def distinct_clusters(self) -> tuple[FloatArray, FloatArray]:
         """Distinct rows of failures and trials by level, side by side, and how many clusters have each [-]."""
         if self.cluster_failures is None or self.cluster_trials is None:
@@ -76,9 +86,12 @@ class Counts:
     def scarcity(self) -> str:
         """Why the clusters are too few to be drawn again; empty if they are not.
 
-        Five must differ in name and in outcome; at fewer than four levels as many outcomes as can differ there while
+        Few records that serve at every level need only be five, since their capacities are drawn from the curve. Else
+        five must differ in name and in outcome; at fewer than four levels as many outcomes as can differ there while
         they grow with the level: one more than there are levels.
         """
+        if self.draws_capacities:
+            return ""
         found, wanted = self.distinct_clusters[1].size, min(LEAST_CLUSTERS, self.levels.size + 1)
         if self.clusters >= LEAST_CLUSTERS and found >= wanted:
             return ""

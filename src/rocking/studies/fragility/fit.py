@@ -231,8 +231,9 @@ class LognormalFit:
 
         Parameters
         ----------
-        kind : {"parametric", "cases", "clusters"}, optional
-            How to draw; whole clusters where they were named, else parametric, by default.
+        kind : {"parametric", "cases", "clusters", "capacities"}, optional
+            How to draw. By default capacities from the curve where every cluster was tried once at every level and
+            fewer than 30 of them, whole clusters where they were named otherwise, else parametric.
         repetitions : int
             How many.
         seed : int
@@ -245,6 +246,8 @@ class LognormalFit:
         """
         own = self.intervals
         usual: Resampling = "parametric" if self.counts.cluster_trials is None else "clusters"
+        if self.counts.draws_capacities:
+            usual = "capacities"
         return bootstrap(self.counts, own.curves, own.scale, kind or usual, repetitions, seed)
 
     def goodness(self, *, groups: int = 10, repetitions: int = 1000, seed: int = 0) -> Goodness:

@@ -38,9 +38,9 @@ def test_one_cluster_gives_no_bootstrap_and_no_certainty():
     assert "are from the bootstrap" not in fit.verdict
 
 
-@pytest.mark.parametrize("capacities", [[0.4, 0.6, 0.8, 1.2], [1.0] * 20 + [0.5, 0.7, 1.4]])
+@pytest.mark.parametrize("capacities", [[0.4, 0.6, 0.8, 1.2], [1.0] * 40 + [0.5, 0.7, 1.4]])
 def test_fewer_than_five_distinct_clusters_are_refused(capacities):
-    """Four motions, or twenty-three of four distinct outcomes: both are flagged and keep the likelihood's interval."""
+    """Four motions, or forty-three of four distinct outcomes: both are flagged and keep the likelihood's interval."""
     fit = study(capacities)
     assert fit.counts.scarcity
     assert fit.interval_method == "profile"
