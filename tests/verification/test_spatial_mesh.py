@@ -83,7 +83,7 @@ def test_the_law_by_points_does_not_converge(rim):
 
 
 def test_two_hundred_corners_are_nearly_the_rim(rim):
-    """128 and 200 corners, reference engine: peak within .8 and .5 %, energy within 1.5 and 1 %, C/n from 64 on."""
+    """128 and 200 corners, reference engine: peak within .8 and .5 %, energy within 1.5 and 1 %."""
     for corners, near in ((128, 1.5), (200, 1.0)):
         run = shaken(corners, "ked-3d")
         assert 0.0 < 1.0 - run.peak_tilt / rim[0] < 0.006 * near
@@ -93,7 +93,7 @@ def test_two_hundred_corners_are_nearly_the_rim(rim):
 
 
 def test_the_coefficient_converges_to_that_of_the_drum():
-    """Over a diameter, edge to opposite edge: r of 8 to 200 corners tends to the drum's with the square of their number.
+    """Over a diameter, edge to opposite edge: r tends to that of the drum with the square of n.
 
     The base is narrower than the drum by the square of 1/n.
     """
@@ -127,7 +127,7 @@ def test_what_comes_to_rest_is_not_still_rocking():
 
 @built
 def test_batches_say_what_is_still_rocking():
-    """Both engines: cut short 1, come to rest 0, overturned 0, never lifted 0; the column has its words in the files."""
+    """Both engines: cut short 1, come to rest 0, overturned 0, never lifted 0; files have the column."""
     tower = SpatialBody.box(1.0, 1.3, 4.0)
     starts = [SpatialStart(0.05, 0.4), SpatialStart(), SpatialStart(angular_velocity=(0.0, 5.0, 0.0))]
     for name in ("fast", "reference"):

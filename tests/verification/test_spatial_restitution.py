@@ -282,7 +282,7 @@ def test_housner_is_a_projection():
 
 
 def test_same_pivot_is_no_impact_for_housner():
-    """Identity of rigid bodies: with the new corner where the old one was Housner and KED lose nothing, KED by points does."""
+    """With the new corner where the old one was Housner and KED lose nothing, KED by points does."""
     case = {"velocity": [0.3, 1.0, 0.1], "pivot": (0.0, 0.0), "onto": (0.0, 0.0)}
     for model in ("housner", "ked"):
         assert impact_in_space(PRISM, model=model, **case).energy_ratio == pytest.approx(1.0, rel=1e-13)

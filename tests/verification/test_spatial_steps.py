@@ -60,7 +60,7 @@ def test_no_distance_costs_nothing():
     [(1, 0.1024960798807509), (2, 0.0514677585548414), (4, 0.0259341370573942), (256, 0.0004097494607067)],
 )
 def test_a_landing_in_steps(steps, lost):
-    """REF 7.2: a rectangle h/b = 4 whose landing is split into n equal steps, to 1e-9; the k of physics 1.4 likewise."""
+    """REF 7.2: a rectangle h/b = 4 whose landing is split into n equal steps, to 1e-8; k likewise."""
     solid = Solid.from_section(rk.Section.from_rectangle(1.0, 4.0))
     assert impulse_position(solid).at(np.array([1.0, 0.0])) == pytest.approx(0.5856037087878, rel=1e-10)
     places, kept, along = np.linspace(-0.5, 0.5, steps + 1), 1.0, np.array([0.0, 1.0, 0.0])

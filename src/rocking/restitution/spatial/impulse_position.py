@@ -10,10 +10,11 @@ k is analytic as long as neither foot changes, so that few exact values give it 
 import math
 from bisect import bisect_right
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
-from rocking.bodies.solid import Edge, RoundBase, Solid, SupportPolygon
+from rocking.bodies.solid import RoundBase, Solid, SupportPolygon
 from rocking.bodies.solid.sampling import samples
 from rocking.conventions import FloatArray
 from rocking.restitution.spatial.integrals import extruded_moment
@@ -26,7 +27,7 @@ _ARCS = 8
 
 
 class ImpulsePosition:
-    """k of a landing of the whole base, for every direction in which a solid may land.
+    """Position k of a landing of the whole base, for every direction in which a solid may land.
 
     Parameters
     ----------
@@ -125,7 +126,7 @@ class ImpulsePosition:
             every = [new[share] if j % 2 else old for j, (share, old) in enumerate(_paired(shares, values))]
             values = dict(zip(shares, every, strict=True))
             found = _coefficients(every)
-            if error <= _CONVERGED * max(1.0, max(map(abs, every))):
+            if error <= _CONVERGED * max(1.0, *map(abs, every)):
                 break
         return found
 
@@ -162,7 +163,7 @@ def _breaks(solid: Solid) -> list[float]:
     else:
         both = [2.0 * math.pi * (j / _ARCS - 0.5) for j in range(_ARCS)]
     found = [both[0]]
-    found += [angle for last, angle in zip(both, both[1:], strict=False) if angle - last > _SAME]
+    found += [angle for last, angle in pairwise(both) if angle - last > _SAME]
     if found[0] + 2.0 * math.pi - found[-1] <= _SAME:
         found.pop()
     return [*found, found[0] + 2.0 * math.pi]
@@ -179,10 +180,7 @@ def _reach(solid: Solid, x: float, y: float) -> float:
 
 @lru_cache(maxsize=2)
 def _clouds(solid: Solid) -> list[FloatArray]:
-    """Of each part points of its surface and their areas times density, six columns, finer towards the ground.
-
-    z^4/(t^2 + z^2) is homogeneous about any line on the ground, and rough only where z is small, at any direction.
-    """
+    # z^4/(t^2 + z^2) is homogeneous about any line on the ground, and rough only where z is small, at any direction
     made = []
     for part in solid.local_parts:
         shape, top = part.shape, float(part.box()[1][2])

@@ -18,7 +18,8 @@ class SpatialKed(SpatialModel):
     """Kinetic energy distribution with a place for its impulse: steps of any size, from any pivot to any other.
 
     Of the paper is what a landing of the whole base costs, and with that where its impulse acts: k of the half distance
-    between the feet (`ImpulsePosition`), cut at 1, the new foot, beyond which the ground would have to pull. That k, not
+    between the feet (`ImpulsePosition`), cut at 1, the new foot, beyond which the ground
+    would have to pull. That k, not
     the coefficient, is taken over to a step from any pivot P to any pivot Q: the impulse acts at
     ``X = (P + Q)/2 + k (Q - P)/2``, and angular momentum about X is kept,
     ``I_C w+ + m rho_X x (w+ x rho_Q) = I_C w- + m rho_X x (w- x rho_P)``; about an edge its component along the edge.
@@ -43,8 +44,8 @@ class SpatialKed(SpatialModel):
         "every impact on one corner or edge, in any attitude; the paper publishes homogeneous rectangles in the plane"
     )
     known_defects = (
-        "of a landing of the whole base all defects of KED in the plane; on feet so narrow that k exceeds 1 the paper's "
-        "coefficient is not reached, and said so",
+        "of a landing of the whole base all defects of KED in the plane; on feet so narrow that k exceeds 1 the "
+        "paper's coefficient is not reached, and said so",
         "that the share of the way is the same for small steps and large ones is assumed, and so is that the lean at "
         "the landing does not matter",
         "very squat bodies (k below 0.3) would gain energy in rare steps; the velocity is then cut at the energy",
@@ -112,7 +113,7 @@ def _across(impact: RigidImpact, direction: FloatArray) -> FloatArray:
 
 
 def _position(impact: RigidImpact, step: FloatArray) -> float:
-    """k of a step, not cut; 1 where there is no step."""
+    """Position k of a step, not cut; 1 where there is no step."""
     solid = impact.placed_solid[0]
     if not float(np.abs(step).max()) > _ROUNDING * solid.size:
         return 1.0

@@ -136,7 +136,7 @@ class SpatialModel(ABC):
             Angular velocity along the direction [rad/s].
         """
 
-    def flags(self, impact: RigidImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:  # noqa: ARG002, PLR6301
+    def flags(self, impact: RigidImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
         """Return what a user must know of this model's answer.
 
         Parameters
