@@ -90,7 +90,7 @@ def kept_table(bodies: Sequence[SpatialBody | None]) -> FloatArray:
     for body in bodies:
         if body is not None and body.round:
             raise InvalidValueError(
-                "ked-3d-point on a round base lands on any point of its rim, for which there are no moments; take ked-3d, or "
+                "ked-3d-point on a round base lands on any point of its rim: no moments there; take ked-3d, or "
                 'engine="reference" takes it'
             )
         if body is None:

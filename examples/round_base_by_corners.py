@@ -1,0 +1,58 @@
+"""A round base cut into corners: what it lacks of the rolling rim is halved with every doubling of their number."""
+
+from pathlib import Path
+
+import numpy as np
+
+import rocking as rk
+from rocking.bodies.solid import Part, RoundBase, Solid, box, revolution
+from rocking.dynamics.spatial import simulate_spatial
+from rocking.plots import write
+from rocking.plots.style import DOUBLE, new_figure
+from rocking.restitution.spatial import edge_coefficient
+
+profile = [(0.30, 0.0), (0.30, 0.15), (0.18, 0.25), (0.15, 1.2), (0.22, 1.5), (0.10, 1.75)]
+parts = [Part(revolution(profile), 2600.0), Part(box(0.25, 0.2, 0.3), 2600.0).moved(0.35, 0.05, 1.1)]
+time = np.arange(101) * 0.01
+along = rk.GroundMotion(0.30 * np.sin(2.0 * np.pi * time / 0.9), 0.01)
+across = rk.GroundMotion(0.225 * np.sin(2.0 * np.pi * time / 0.7 + 0.8), 0.01)
+start = {"tilt": 0.04, "azimuth": 0.4, "angular_velocity": (0.15, 0.1, 0.1), "duration": 1.2}
+
+
+def on_corners(count: int) -> Solid:
+    """Return the statue on a polygon in its round foot, one edge across the motion."""
+    angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+    return Solid(parts, base=0.3 * np.column_stack([np.cos(angle), np.sin(angle)]))
+
+
+drum = Solid(parts, base=RoundBase(np.zeros(2), 0.3))
+rim = simulate_spatial(drum, along, across, **start)
+energy = rim.energy.kinetic[-1] + rim.energy.potential[-1]
+counts = np.array([8, 16, 32, 64, 128, 200])
+lacking = {}
+for law in ("housner-3d", "ked-3d"):
+    rows = []
+    for count in counts:
+        solid = on_corners(count)
+        edge = int(np.argmin([abs(e.direction[0]) - e.point[0] for e in solid.base.edges]))
+        run = simulate_spatial(solid, along, across, restitution=law, **start)
+        landing = edge_coefficient(solid, law, start=edge) - edge_coefficient(drum, law, start=0.0)
+        rows.append((abs(landing), 1.0 - run.peak_tilt / rim.peak_tilt, run.energy.lost[-1] / energy))
+    lacking[law] = np.array(rows)
+    print(law, *(f"{n}: peak -{peak:.2%}, lost {lost:.2%}" for n, (_, peak, lost) in zip(counts, rows, strict=True)))
+    assert (np.diff(lacking[law], axis=0) < 0.0).all()  # ever nearer to the rim
+    assert lacking[law][-1, 1:].max() < 0.02
+assert rim.still_rocking
+
+figure, axes = new_figure(DOUBLE, 2.4, columns=3)
+for panel, k, name in zip(axes, range(3), ("coefficient of a landing", "peak tilt", "energy lost"), strict=True):
+    for law, marker in (("housner-3d", "s"), ("ked-3d", "o")):
+        panel.loglog(counts, lacking[law][:, k], marker=marker, markersize=3, linewidth=0.8, label=law)
+    panel.set_xlabel("corners of the base [-]", fontsize=7)
+    panel.tick_params(labelsize=7)
+    panel.set_ylabel("distance from the rim [-]", fontsize=7)
+    panel.set_title(name, fontsize=8)
+axes[0].legend(fontsize=7)
+folder = Path("gallery-output")
+folder.mkdir(exist_ok=True)
+write(figure, folder / "round_base_by_corners.png")
