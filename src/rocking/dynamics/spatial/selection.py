@@ -7,8 +7,9 @@ another touching point, and the ground must not pull. This is the linear complem
 (physics: plastic impact as a projection in the kinetic metric, forces by Euler's equations), solved by listing.
 """
 
+import dataclasses
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -46,7 +47,7 @@ class State:
     velocity: FloatArray
     up: FloatArray
     field: FloatArray
-    along: FloatArray = field(default_factory=lambda: np.zeros(3))
+    along: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(3))
 
     def nearest(self, stance: Stance) -> FloatArray:
         """Return the point at rest that is nearest to a new stance: from there laws measure the step.

@@ -117,7 +117,8 @@ def position_table(bodies: Sequence[SpatialBody | None]) -> tuple[IntArray, Floa
     positions : ndarray, shape (m, 3 + HIGHEST)
         First and last azimuth of an interval [rad], and the coefficients of k over it [-].
     """
-    places, rows = np.zeros((len(bodies), 2), np.int64), []
+    places = np.zeros((len(bodies), 2), np.int64)
+    rows: list[list[float]] = []
     for number, body in enumerate(bodies):
         if body is None or body.matter is None:
             continue

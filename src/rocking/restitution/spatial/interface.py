@@ -195,7 +195,8 @@ def _nearest(solid: Solid, start: Corner | Edge, onto: Corner | Edge) -> FloatAr
 def _ends(solid: Solid, edge: Edge) -> tuple[FloatArray, FloatArray]:
     """Return the ends of the stretch of a line that the base touches."""
     base, along = solid.local_base, edge.direction
-    points = base.vertices if isinstance(base, SupportPolygon) else np.zeros((1, 2)) + base.centre
+    assert isinstance(base, (SupportPolygon, RoundBase))
+    points = np.atleast_2d(base.vertices if isinstance(base, SupportPolygon) else base.centre)
     arm = points - edge.point[:2]
     aside = np.abs(along[0] * arm[:, 1] - along[1] * arm[:, 0])
     shares = (arm[:, 0] * along[0] + arm[:, 1] * along[1])[aside <= aside.min() + 1e-9 * solid.size]
