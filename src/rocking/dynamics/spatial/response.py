@@ -187,7 +187,7 @@ class SpatialResponse(Exportable):
     @cached_property
     def still_rocking(self) -> bool:
         """Whether it stands, but does not yet rest where the response ends; later impacts are not among `impacts`."""
-        return self.outcome is Outcome.ROCKED and self._last.contact[0] != Contact.REST.code
+        return self.outcome is Outcome.ROCKED and int(self._last.contact[0]) != Contact.REST.code
 
     @property
     def unfinished(self) -> str:
