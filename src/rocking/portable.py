@@ -8,8 +8,9 @@ those of the C library.
 """
 
 import math
-from collections.abc import Callable
-from operator import mul
+from collections.abc import Callable, Iterable
+from functools import reduce
+from operator import add, mul
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,11 @@ import numpy as np
 from rocking.conventions import FloatArray
 
 _FEW, _SHORT = 16, 4
+
+
+def _sum(terms: Iterable[float]) -> float:
+    """First terms first; Python's own sum rounds in another way from 3.12 on."""
+    return reduce(add, terms, 0.0)
 
 
 def dot(left: FloatArray, right: FloatArray) -> float:
@@ -32,7 +38,7 @@ def dot(left: FloatArray, right: FloatArray) -> float:
     float
         Their product, first terms first.
     """
-    return float(sum(map(mul, left.tolist(), right.tolist())))
+    return float(_sum(map(mul, left.tolist(), right.tolist())))
 
 
 def norm(vector: FloatArray) -> float:
@@ -73,7 +79,7 @@ def applied(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """
     if matrix.ndim == 2 and vector.ndim == 1 and len(matrix) <= _FEW:
         other = vector.tolist()
-        return np.array([sum(map(mul, row, other)) for row in matrix.tolist()], dtype=np.float64)
+        return np.array([_sum(map(mul, row, other)) for row in matrix.tolist()], dtype=np.float64)
     return np.asarray((matrix * vector[..., None, :]).sum(axis=-1))
 
 
@@ -138,7 +144,7 @@ def convolved(left: FloatArray, right: FloatArray) -> FloatArray:
     [1.0, 2.0, 3.0, 6.0]
     """
     terms, other = left.tolist(), [*right.tolist(), *[0.0] * (len(left) - 1)]
-    return np.array([sum(map(mul, terms, other[k::-1])) for k in range(len(other))])
+    return np.array([_sum(map(mul, terms, other[k::-1])) for k in range(len(other))])
 
 
 def solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:

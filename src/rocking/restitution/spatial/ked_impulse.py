@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.portable import applied, dot
 from rocking.restitution.spatial.impulse_position import impulse_position
 from rocking.restitution.spatial.model import SpatialFlag, SpatialModel
 from rocking.restitution.spatial.rigid import RigidImpact
@@ -18,9 +19,8 @@ class SpatialKed(SpatialModel):
     """Kinetic energy distribution with a place for its impulse: steps of any size, from any pivot to any other.
 
     Of the paper is what a landing of the whole base costs, and with that where its impulse acts: k of the half distance
-    between the feet (`ImpulsePosition`), cut at 1, the new foot, beyond which the ground
-    would have to pull. That k, not
-    the coefficient, is taken over to a step from any pivot P to any pivot Q: the impulse acts at
+    between the feet (`ImpulsePosition`), cut at 1, the new foot, beyond which the ground would have to pull. That k,
+    not the coefficient, is taken over to a step from any pivot P to any pivot Q: the impulse acts at
     ``X = (P + Q)/2 + k (Q - P)/2``, and angular momentum about X is kept,
     ``I_C w+ + m rho_X x (w+ x rho_Q) = I_C w- + m rho_X x (w- x rho_P)``; about an edge its component along the edge.
     A rectangle that lands on its edge has the paper's coefficient, no step costs nothing, n small steps cost 1/n of a
@@ -82,7 +82,7 @@ class SpatialKed(SpatialModel):
         float
             Angular velocity [rad/s].
         """
-        return _dot(_stepped(impact, _across(impact, direction), direction), direction)
+        return dot(_stepped(impact, _across(impact, direction), direction), direction)
 
     def flags(self, impact: RigidImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
         """Return whether k was cut, and whether the ground would have to pull.
@@ -108,7 +108,7 @@ class SpatialKed(SpatialModel):
 
 def _across(impact: RigidImpact, direction: FloatArray) -> FloatArray:
     step = impact.onto.point - impact.pivot
-    across: FloatArray = step - _dot(step, direction) * direction
+    across: FloatArray = step - dot(step, direction) * direction
     return across
 
 
@@ -125,7 +125,7 @@ def _stepped(impact: RigidImpact, step: FloatArray, axis: FloatArray | None) -> 
     made = _kept(impact, step, k, axis)
     if k < 1.0 and _push(impact, made) < 0.0:
         made = _kept(impact, step, 1.0, axis)
-    after = 0.5 * _dot(made, _times(impact.inertia, made))
+    after = 0.5 * dot(made, applied(impact.inertia, made))
     if after > impact.energy:
         made = made * math.sqrt(impact.energy / after)
     return made
@@ -135,9 +135,9 @@ def _kept(impact: RigidImpact, step: FloatArray, k: float, axis: FloatArray | No
     """Velocity with the angular momentum about X, which lies behind the landing point by (1 - k)/2 of the step."""
     arm, back = impact.moments.centre, 0.5 * (1.0 - k) * impact.moments.mass * step
     momentum = impact.angular_momentum + _cross(back, _centre_velocity(impact))
-    inertia = impact.inertia + _dot(back, arm) * np.eye(3) - arm[:, None] * back
+    inertia = impact.inertia + dot(back, arm) * np.eye(3) - arm[:, None] * back
     if axis is not None:
-        return axis * (_dot(axis, momentum) / _dot(axis, _times(inertia, axis)))
+        return axis * (dot(axis, momentum) / dot(axis, applied(inertia, axis)))
     return _solved(inertia, momentum)
 
 
@@ -148,24 +148,14 @@ def _centre_velocity(impact: RigidImpact) -> FloatArray:
 def _push(impact: RigidImpact, velocity: FloatArray) -> float:
     """Vertical impulse of the ground [N s]."""
     change = _cross(velocity, impact.moments.centre) - _centre_velocity(impact)
-    return impact.moments.mass * _dot(impact.up, change)
+    return impact.moments.mass * dot(impact.up, change)
 
 
 def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
     """Cramer's rule: the same on every processor."""
     a, b, c = matrix.T
-    volume = _dot(a, _cross(b, c))
-    return np.array([_dot(right, _cross(b, c)), _dot(right, _cross(c, a)), _dot(right, _cross(a, b))]) / volume
-
-
-def _times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
-    return np.array([_dot(row, vector) for row in matrix])
-
-
-def _dot(a: FloatArray, b: FloatArray) -> float:
-    x, y, z = a.tolist()
-    u, v, w = b.tolist()
-    return float(x * u + y * v + z * w)
+    volume = dot(a, _cross(b, c))
+    return np.array([dot(right, _cross(b, c)), dot(right, _cross(c, a)), dot(right, _cross(a, b))]) / volume
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
