@@ -17,7 +17,7 @@ from scipy.special import ellipk, ellipkinc
 
 from rocking.conventions import g
 from rocking.dynamics import engine
-from rocking.dynamics.batch import ROWS, Batch, Rows
+from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.impact_law import ConstantRestitution
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
@@ -194,7 +194,7 @@ KINDS: dict[str, Callable[[Maker], Case]] = {
 
 def results(cases: list[Case], settings: Settings, name: str) -> dict[str, Any]:
     batch = Batch([case.segments() for case in cases], ConstantRestitution(), settings, 1, name)
-    table = {key: np.array([case.row[key] for case in cases]) for key in ROWS}
+    table = {key: np.array([case.row[key] for case in cases]) for key in cases[0].row}
 
     def rows(first: int, last: int) -> Rows:
         return Rows.of(last - first, np.arange(first, last), **{k: v[first:last] for k, v in table.items()})
@@ -204,7 +204,7 @@ def results(cases: list[Case], settings: Settings, name: str) -> dict[str, Any]:
 
 def moved(case: Case, random: np.random.Generator) -> Case:
     """The same case with every number off by 1e-12 of itself, up or down."""
-    signs = dict(zip(ROWS, 1.0 + 1e-12 * random.choice([-1.0, 1.0], len(ROWS)), strict=True))
+    signs = dict(zip(case.row, 1.0 + 1e-12 * random.choice([-1.0, 1.0], len(case.row)), strict=True))
     jitter = 1.0 + 1e-12 * random.choice([-1.0, 1.0], np.size(case.push))
     lift = None if case.lift is None else np.asarray(case.lift) * (1.0 + 1e-12 * random.choice([-1.0, 1.0]))
     row = {key: value * signs[key] for key, value in case.row.items()}

@@ -16,13 +16,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rocking.dynamics import Outcome, Status, engine
-from rocking.dynamics.batch import ROWS, Batch, Rows
+from rocking.dynamics import Outcome, Status, batch, engine
+from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.impact_law import ConstantRestitution
 from rocking.dynamics.settings import Settings
 from rocking.errors import RockingError
 from rocking.motions.segments import Segments
 
+# how the mass is spread may be unknown
+ROWS = tuple(name for name in batch.ROWS if not name.startswith("q_"))
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 INJECTIONS = 1_000
 PATHOLOGICAL = {"fast": 10_000, "reference": 10_000 if CAMPAIGN else 500}

@@ -11,7 +11,7 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics import Rocker, RockingSide, batch, engine
-from rocking.dynamics.batch import ROWS, Batch, Rows
+from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.fast import run_fast
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
 from rocking.dynamics.settings import Settings
@@ -128,7 +128,7 @@ def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
     whole = table.run()
     columns = {"peak_velocity": "peak_angular_velocity"}
     for k in range(0, COUNT, 4):
-        row = {name: float(table.values[name][k]) for name in ROWS}
+        row = {name: float(values[k]) for name, values in table.values.items()}
         right, left = (RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"]) for s in ("right", "left"))
         one = run_fast(
             Rocker(right, left, ConstantRestitution(), ""), table.motions[table.motion[k]], Settings(),

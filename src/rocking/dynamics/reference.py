@@ -294,7 +294,8 @@ class Reference:
         """Force of the ground over the weight: (1 + a_z / g) + z'' / g upwards, a_x / g + x'' / g along it."""
         sine, cosine = math.sin(u), math.cos(u)
         moment = weight * u + push if self.settings.linear else weight * sine + push * cosine  # u'' / p^2
-        share, spin = self.rocker.side(self.side).inertia_ratio, (rate / self._p) ** 2
+        share, spin = self.rocker.side(self.side).inertia_ratio, rate / self._p
+        spin *= spin  # a power would raise where this is infinite
         up = weight - share * (moment * sine + spin * cosine)
         along = push - share * (moment * cosine - spin * sine)
         least, demand = self.forces

@@ -305,7 +305,8 @@ class Product(Histories):
     motions : MotionSet
         The motions.
     sides : dict of str to ndarray, shape (bodies, choices)
-        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left [-].
+        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-]; and q_right, q_left
+        (m R^2 / I_O), without which the forces of the ground are not known [-].
     scales : ndarray, shape (scales,) or (motions, scales)
         Factors on the motions, the same for all or for each its own [-].
     """
@@ -316,6 +317,9 @@ class Product(Histories):
     def __post_init__(self) -> None:
         """Check the shapes."""
         wanted = {name for name in ROWS if name[-5:] in {"right", "_left"}}
+        # without them the forces of the ground are not known
+        unknown = dict.fromkeys(("q_right", "q_left"), np.full(np.shape(next(iter(self.sides.values()), ())), np.nan))
+        object.__setattr__(self, "sides", unknown | self.sides)
         shapes = {np.shape(values) for values in self.sides.values()}
         if set(self.sides) != wanted or len(shapes) != 1 or len(next(iter(shapes))) != 2:
             raise InvalidValueError(f"sides must be {', '.join(sorted(wanted))}, each of shape (bodies, choices)")

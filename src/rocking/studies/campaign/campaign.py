@@ -244,7 +244,7 @@ class Campaign:
             yield from reading.pieces(self.folder, self.plan)
 
     def results(self, *names: str) -> Arrays:
-        """Return results of all histories at once: 75 bytes a history, less if only some are wanted.
+        """Return results of all histories at once: 83 bytes a history, less if only some are wanted.
 
         Parameters
         ----------

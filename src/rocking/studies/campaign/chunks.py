@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from rocking.errors import InvalidValueError
 
-FORMAT = 1
+FORMAT = 2
 """Version of the files of a campaign."""
 
 DEFAULT_CHUNK = 65536

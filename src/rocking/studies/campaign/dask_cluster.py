@@ -158,7 +158,7 @@ def _compute(job: Job, chunk: Chunk) -> tuple[bytes, float, str]:
     data = job.compute(chunk)
     return (
         data or b"",
-        time.perf_counter() - start - job.pace.startup(),
+        job.pace.settled(time.perf_counter() - start),
         f"process {os.getpid()} on {socket.gethostname()}",
     )
 

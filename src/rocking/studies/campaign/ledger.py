@@ -179,7 +179,7 @@ class Ledger:
         (found,) = self._database.execute("PRAGMA integrity_check(1)").fetchone()
         (version,) = self._database.execute("PRAGMA user_version").fetchone()
         if found != "ok" or version != FORMAT:
-            why = f"it says version {version}, not {FORMAT}" if found == "ok" else str(found)
+            why = f"it is of version {version} of these files, not {FORMAT}" if found == "ok" else str(found)
             raise CampaignDamagedError(ledger_damaged(self._folder, " ".join(why.split())[:120]))
         whole = set()
         for record in self.records():
@@ -271,8 +271,7 @@ def _writable(path: Path) -> sqlite3.Connection:
     database.execute("PRAGMA synchronous = FULL")
     database.execute("PRAGMA fullfsync = ON")
     (version,) = database.execute("PRAGMA user_version").fetchone()
-    (pieces,) = database.execute("SELECT count(*) FROM sqlite_schema WHERE name = 'pieces'").fetchone()
-    if version == 0 or (version == FORMAT and not pieces):  # an earlier version knew whole chunks only
+    if version == 0:
         database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {FORMAT}; COMMIT;")
     if fresh:
         sync_folder(path.parent)
@@ -293,9 +292,7 @@ def _readable(path: Path) -> sqlite3.Connection:
 
 def _connected(address: str) -> sqlite3.Connection:
     database = sqlite3.connect(address, timeout=5.0, isolation_level=None, uri=True)
-    found = {name for (name,) in database.execute("SELECT name FROM sqlite_schema")}
-    if "chunks" in found and "pieces" not in found:  # of an earlier version, which knew whole chunks only
-        database.execute("CREATE TEMP TABLE pieces AS SELECT * FROM chunks WHERE 0")
+    database.execute("SELECT name FROM sqlite_schema")
     return database
 
 

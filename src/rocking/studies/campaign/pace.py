@@ -71,16 +71,21 @@ class Pace:
         if wanted < self.step or 2 * count >= self.step:  # the end of a piece says nothing about longer steps
             self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
 
-    def startup(self) -> float:
-        """Return what the first step took beyond its histories: code is loaded, motions are laid out; asked once.
+    def settled(self, seconds: float) -> float:
+        """Return what a piece took without what its first step took beyond its histories: code, motions laid out.
+
+        Parameters
+        ----------
+        seconds : float
+            What it took [s].
 
         Returns
         -------
         float
-            Time that says nothing of those that follow [s].
+            The rest; all of it where the first step was in an earlier piece [s].
         """
         found, self._startup = self._startup, 0.0
-        return found
+        return seconds - found if found < seconds else seconds
 
 
 class Watch:

@@ -71,7 +71,7 @@ def results(folder: Path, plan: Plan, names: Collection[str] = ()) -> Arrays:
     Returns
     -------
     dict of str to ndarray
-        One entry a history: 75 bytes each of all keys.
+        One entry a history: 83 bytes each of all keys.
 
     Raises
     ------

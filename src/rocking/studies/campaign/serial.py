@@ -102,4 +102,4 @@ class _Ahead:
     def _compute(self, results: Arrays, chunk: Chunk) -> tuple[int, float] | None:
         start = time.perf_counter()
         last = self._job.fill(results, chunk, self._threads, lambda: self._over.is_set() or self._stop())
-        return None if last is None else (last, time.perf_counter() - start - self._job.pace.startup())
+        return None if last is None else (last, self._job.pace.settled(time.perf_counter() - start))

@@ -136,7 +136,7 @@ def _payload_at(data: bytes) -> int:
     if magic != MAGIC:
         raise CampaignDamagedError("it does not start as a shard does")
     if version != FORMAT:
-        raise CampaignDamagedError(f"it says format {version}, not {FORMAT}")
+        raise CampaignDamagedError(f"it says format {version}, not {FORMAT}; of another version of this package?")
     place = _LENGTHS.size + int(length)
     if place + _SEAL > len(data):
         raise CampaignDamagedError(f"it was cut short within its header: {len(data)} bytes")

@@ -65,7 +65,7 @@ def answer(job: Job, chunk: Chunk, stop: Callable[[], bool] = lambda: False) -> 
         data = job.compute(chunk, 1, stop)
         if data is None:
             return Failure(chunk, "stopped", None)
-        return job.keep(chunk, data, time.perf_counter() - start - job.pace.startup())
+        return job.keep(chunk, data, job.pace.settled(time.perf_counter() - start))
     except OSError as error:
         return Failure(chunk, error.strerror or str(error), error.errno)
     except Exception as error:  # noqa: BLE001 (it is raised where the campaign runs)

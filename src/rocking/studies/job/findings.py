@@ -12,7 +12,7 @@ from rocking.studies.job.rounds import replayed
 if TYPE_CHECKING:
     from rocking.studies.inventory.verdict import Assessment
 
-READ = ("outcome", "peak_rotation")
+READ = ("outcome", "peak_rotation", "least_force")
 """All that analyses and assessments read of a history: 9 bytes."""
 
 

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
+from rocking.dynamics.engine import RESULTS
 from rocking.motions.pulse import Pulse
 from rocking.studies.campaign.forecast import trial
 from rocking.studies.campaign.identity import usual_chunk
 from rocking.studies.histories import MOTIONS_AT_ONCE
 from rocking.studies.job.job import Job
 
-BYTES = 75
+BYTES = sum(np.dtype(kind).itemsize for kind in RESULTS.values())
 """Results of one history [bytes]."""
 
 _KEPT = 100

@@ -30,7 +30,7 @@ from rocking.studies.job.answer import Answer
 from rocking.studies.job.asked import Compute, first_round
 from rocking.studies.job.round_status import FINISHED, finished_rounds, resume, round_folder, way_out
 
-NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time")
+NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time", "least_force")
 """What studies decide on: no more of a round is held in memory."""
 
 _SAFE = "nothing that was recorded before is lost"
