@@ -107,17 +107,15 @@ def test_pieces_of_processes_are_the_same_files(
             assert shards(campaign) == shards(finished)
 
 
-def test_folder_of_an_earlier_version_goes_on(tmp_path: Path, work: Table, finished: Campaign, shards: Any) -> None:
-    """A ledger that knows whole chunks only is read, counted, and gone on with to the same files."""
+def test_folder_of_an_earlier_version_is_refused(tmp_path: Path, work: Table) -> None:
+    """Its rows have other columns, and it is told apart from a damaged one."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     stopped_after(campaign, 3)
-    (campaign.folder / "pieces").rmdir()
     with sqlite3.connect(campaign.folder / "ledger.sqlite") as database:
-        database.execute("DROP TABLE pieces")
+        database.execute("PRAGMA user_version = 1")
     database.close()
-    assert campaign.status().histories_done == 150
-    assert campaign.run(workers=1).resumed == 3
-    assert shards(campaign) == shards(finished)
+    with pytest.raises(CampaignDamagedError, match="of version 1 of these files, not 2"):
+        campaign.run(workers=1)
 
 
 @pytest.mark.parametrize("harm", ["flip", "cut", "lose", "swap"])

@@ -40,7 +40,7 @@ def test_format_is_what_the_page_says() -> None:
     assert hashlib.sha256(data[:-32]).digest() == data[-32:]
     magic, version, length = struct.unpack("<8sII", data[:16])
     header = json.loads(data[16 : 16 + length])
-    assert (magic, version, header["first"], header["last"]) == (b"ROCKSHRD", 1, 120, 160)
+    assert (magic, version, header["first"], header["last"]) == (b"ROCKSHRD", 2, 120, 160)
     place = 16 + length
     for name, kind in header["columns"]:
         values = np.frombuffer(data, kind, 40, place)
@@ -50,7 +50,7 @@ def test_format_is_what_the_page_says() -> None:
     assert place == len(data) - 32
 
 
-def test_bytes_are_those_of_the_first_version() -> None:
+def test_bytes_are_those_of_the_second_version() -> None:
     """Campaigns that were begun long ago go on: the shard made by hand, of whatever arrays the numbers stand in."""
     plain = arrays()
     columns = {name: plain[name].astype(np.dtype(kind).newbyteorder("<")) for name, kind in RESULTS.items()}
@@ -62,7 +62,7 @@ def test_bytes_are_those_of_the_first_version() -> None:
         "name": CHUNK.name,
     }
     header = json.dumps(content, separators=(",", ":"), sort_keys=True).encode()
-    body = struct.pack("<8sII", b"ROCKSHRD", 1, len(header)) + header
+    body = struct.pack("<8sII", b"ROCKSHRD", 2, len(header)) + header
     body += b"".join(values.tobytes() for values in columns.values())
     made = body + hashlib.sha256(body).digest()
     assert shard.pack(CHUNK, plain) == made
@@ -129,9 +129,9 @@ def test_whole_shards_elsewhere_are_refused() -> None:
 def test_damage_is_named() -> None:
     """The sentence says which column changed, or that the file was cut short."""
     data = shard.pack(CHUNK, arrays())
-    with pytest.raises(CampaignDamagedError, match="column uplifts has changed"):
+    with pytest.raises(CampaignDamagedError, match="column friction_demand has changed"):
         shard.unpack(flipped(data, 8 * (len(data) - 40)), CHUNK)
     with pytest.raises(CampaignDamagedError, match="are due: cut short"):
         shard.unpack(data[:-100], CHUNK)
-    with pytest.raises(CampaignDamagedError, match="format 2, not 1"):
+    with pytest.raises(CampaignDamagedError, match="format 1, not 2"):
         shard.unpack(flipped(flipped(data, 64), 65), CHUNK)
