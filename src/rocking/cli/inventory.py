@@ -45,7 +45,7 @@ def inventory(
         str, typer.Option(help="Encoding of the CSV file; cp1252 for some spreadsheets.")
     ] = "utf-8-sig",
     format: shared.Format = None,
-    units: shared.Units = None,
+    units: shared.RecordUnits = None,
     time_step: shared.TimeStep = None,
     component: shared.Component = None,
     out: Annotated[

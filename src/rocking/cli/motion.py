@@ -13,7 +13,7 @@ _OUTPUT = "Output"
 def motion(
     record: Annotated[str, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")],
     format: shared.Format = None,
-    units: shared.Units = None,
+    units: shared.RecordUnits = None,
     time_step: shared.TimeStep = None,
     component: shared.Component = None,
     vertical: shared.Vertical = None,

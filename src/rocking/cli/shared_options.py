@@ -42,6 +42,9 @@ Units = Annotated[
         help="Units: of lengths m, cm, mm, ft, in; of a record m/s2, cm/s2, mm/s2, gal, g, g/10, mg; or mm,g."
     ),
 ]
+RecordUnits = Annotated[
+    str | None, typer.Option("--units", help="Unit of the record: m/s2, cm/s2, mm/s2, gal, g, g/10, mg.")
+]
 TimeStep = Annotated[float | None, typer.Option(help=r"Step between samples \[s].", rich_help_panel=_FILE)]
 Component = Annotated[str | None, typer.Option(help="Horizontal component, by name.", rich_help_panel=_FILE)]
 Vertical = Annotated[str | None, typer.Option(help="Vertical component, by name.", rich_help_panel=_FILE)]

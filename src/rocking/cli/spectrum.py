@@ -24,7 +24,7 @@ def spectrum(
     restitution: shared.Restitution = "ked",
     scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
     format: shared.Format = None,
-    units: shared.Units = None,
+    units: shared.RecordUnits = None,
     time_step: shared.TimeStep = None,
     component: shared.Component = None,
     vertical: shared.Vertical = None,

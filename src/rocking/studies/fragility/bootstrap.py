@@ -251,12 +251,12 @@ def _capacities(counts: Counts, probability: FloatArray) -> Counts:
     # levels close together Student's t for the median.
     levels = counts.levels.size
     failures = (np.arange(levels + 1)[:, None] <= np.arange(levels)).astype(np.float64)
-    share = np.diff(np.concatenate([[0.0], probability, [1.0]]))
+    share = np.clip(np.diff(np.concatenate([[0.0], probability, [1.0]])), 0.0, 1.0)
     return replace(
         counts,
         cluster_failures=failures,
         cluster_trials=np.ones_like(failures),
-        cluster_weights=counts.clusters * np.clip(share, 0.0, 1.0),
+        cluster_weights=counts.clusters * share / share.sum(),
     )
 
 
