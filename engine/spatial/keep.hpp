@@ -43,8 +43,7 @@ void Run<D>::follow(double start, double at, Vec before) {
 
 // Whether the history has ended.
 template <int D>
-void Run<D>::finish_step() {
-    touching_ = 0;
+void Run<D>::look_for_end() {
     if (z_.z <= 0.0) {
         if (std::isnan(over_time_)) over_time_ = time_;
         return stop(kOverturned, kGood);
@@ -53,6 +52,12 @@ void Run<D>::finish_step() {
     const bool tired = time_ > horizon_ + kPatience / body_.p;
     const bool inside = !(leaning_over(body_, z_, stance_->at) > 0.0);
     if (tired || (inside && kinetic() + potential() < body_.mass * set_.gravity * body_.lift)) stop(kRocked, kGood);
+}
+
+template <int D>
+void Run<D>::finish_step() {
+    touching_ = 0;
+    look_for_end();
 }
 
 }  // namespace ROCKING_ISA

@@ -67,6 +67,7 @@ private:
     void arrive(double at, bool whole);
     void keep(double start, double at, Vec before, Vec spin);
     void follow(double start, double at, Vec before);
+    void look_for_end();
     void finish_step();
 
     // ---- events -----------------------------------------------------------------------------------------------------
@@ -84,7 +85,9 @@ private:
     void guard() {
         at_once_ = time_ <= moment_ ? at_once_ + 1 : 0;
         moment_ = time_;
-        if (at_once_ > kStuck || made_.events > set_.most_events) stop(kFailed, kTooManyEvents);
+        if (at_once_ > kStuck || made_.events > set_.most_events) return stop(kFailed, kTooManyEvents);
+        // a base of many corners may have no step without an impact; whether it still can fall is asked here too
+        if (!done_ && time_ >= horizon_ && stance_->contact != kRest) look_for_end();
     }
 
     // ---- small parts ------------------------------------------------------------------------------------------------
