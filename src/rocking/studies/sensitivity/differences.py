@@ -191,7 +191,7 @@ def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.D
     names = sorted(str(k) for k, v in first.data_vars.items() if v.dtype.kind in "if" and k in second)
     if name not in names:
         raise InvalidValueError(f"name must be verdict or one of {', '.join(names)}, got {name!r}")
-    stood = [result["outcome"].isin([Outcome.NO_UPLIFT.code, Outcome.ROCKED.code]) for result in (first, second)]
+    stood = [~result["outcome"].isin([Outcome.OVERTURNED.code, Outcome.FAILED.code]) for result in (first, second)]
     before, after = (result[name].astype(np.float64) for result in (first, second))
     words = name
     if name == _SIGNED:  # 0.1 to the right and 0.1 to the left are no difference of 0.2

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
 from rocking.studies.sensitivity.differences import Flips, difference_of, flip_map, flips_of, share_interval
 
@@ -76,7 +77,8 @@ def test_one_motion_is_no_sample_of_motions():
     ("first", "second", "message"),
     [
         ([0, 1], [0, 1, 2], "one shape"),
-        ([0, 4], [0, 1], "codes"),
+        ([0, len(Outcome)], [0, 1], "codes"),
+        ([0, -1], [0, 1], "codes"),
         ([0.5, 1.0], [0, 1], "codes"),
         ([3, 3], [1, 2], "all 2 histories failed"),
     ],
@@ -98,6 +100,10 @@ def test_values_are_compared_where_both_stood():
     second = result([ROCKED, ROCKED, ROCKED, OVER], [0.25, 0.25, 0.75, np.inf])
     assert difference_of(first, second, "ratio").values.tolist()[:2] == [0.25, -0.25]
     assert np.isnan(difference_of(first, second, "ratio").values[2:]).all()
+    moved = result([Outcome.SLID.code, Outcome.FLEW.code, FAILED, OVER], [0.25, 0.5, 0.5, 0.5])
+    found = difference_of(first, moved, "ratio").values
+    assert found[:2].tolist() == [0.25, 0.0]  # what slid or flew and did not overturn stood as well
+    assert np.isnan(found[2:]).all()
     assert difference_of(first, second, "verdict").values.tolist() == [0, 0, -1, 0]
     with pytest.raises(InvalidValueError, match="verdict or one of outcome, ratio"):
         difference_of(first, second, "word")
