@@ -22,6 +22,8 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
 
 from rocking.app.application import create_app
 from rocking.app.settings import Settings
+from rocking.plots.animation_scene import Shape
+from rocking.plots.lying import fall_of
 
 STATUE = [[0.0, 0.0], [0.5, 0.0], [0.5, 0.6], [0.4, 0.6], [0.3, 1.9], [0.15, 1.9], [0.1, 0.6], [0.0, 0.6]]
 CABINET = {"units": "cm", "width": 50, "height": 200, "depth": 40, "density": 700}
@@ -236,6 +238,12 @@ def test_three_doors_agree_to_the_last_digit(case, inside, record, tmp_path):
     for answer, response in zip(answers.values(), in_python(case, record), strict=True):
         assert numbers_in(answer) == numbers_of(response)
         assert answer["outcome"] == response.outcome.name.lower()
+        lying = Shape.of(response.body).lying
+        fall = fall_of(response, lying)
+        # drawn, as the series are, and not among the facts that the command prints
+        assert answer.pop("fall") == {
+            "time": fall.time[1:].tolist(), "rotation": fall.rotation[1:].tolist(), "lying": list(lying),
+        }  # fmt: skip
     printed = command_line(inside, document, tmp_path)
     others = printed.pop("other_models")
     # the application does not tell this one

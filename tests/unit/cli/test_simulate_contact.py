@@ -123,7 +123,7 @@ REFUSED = {
     "bounce alone": ([*SQUAT, SINE, "--bounce", "0.1"], "takes no --bounce"),
     "restitution": ([*SQUAT, SINE, "--contact", "--restitution", "best"], "no restitution model named 'best'"),
     "percent": ([*SQUAT, SINE, "--contact", "--restitution", "90"], "90"),
-    "free far": ([*SLENDER, "--contact", "--free", "9"], "rotation must be in"),
+    "free far": ([*SLENDER, "--contact", "--free", "9"], "--free is a share of the slenderness angle"),
     "no motion": ([*SQUAT, "--contact"], "what moves the ground?"),
     "mesh": ([*SQUAT, SINE, "--contact", "--up", "z"], "takes no --up"),
     "space": ([*SQUAT, SINE, "--motion-y", SINE], "takes no --motion-y"),

@@ -40,7 +40,7 @@ def test_a_history_without_a_result_is_refused(capsys, monkeypatch):
     monkeypatch.setattr(Question, "answered_with", lambda self, restitution: few)
     code, out, err = run(capsys, *SIZE, "--free", "0.5")
     assert (code, out) == (2, "")
-    assert err == "rocking: there is no response: stopped: more impacts than allowed\n"
+    assert err == "rocking: there is no response: stopped: more impacts and changes of contact than allowed\n"
 
 
 def test_a_rival_that_creates_energy_is_told_and_left_out(capsys, monkeypatch):

@@ -175,7 +175,7 @@ def test_stopped(name: str) -> None:
     """A history that is stopped has no outcome, says why, and its samples end where it was stopped."""
     response = let_go(name, most_impacts=3)
     assert (response.outcome, response.status) == (Outcome.FAILED, Status.TOO_MANY_EVENTS)
-    assert response.summary == "no result: stopped: more impacts than allowed"
+    assert response.summary == "no result: stopped: more impacts and changes of contact than allowed"
     assert math.isnan(response.peak_rotation)
     assert response.impacts.size == 3
     assert response.time[-1] <= response.impacts["time"][-1]
