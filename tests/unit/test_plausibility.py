@@ -42,14 +42,16 @@ DOUBTFUL = {
 }
 
 
+# what is scaled to 2750 g throws the block as well, and that is another warning
+@pytest.mark.filterwarnings("ignore:the ground would have to pull")
 @pytest.mark.parametrize("name", DOUBTFUL)
 def test_doubts(name):
     """One warning of our class, at the user's own line, with the value, the limit and the likely cause."""
     make, words = DOUBTFUL[name]
     with pytest.warns(PlausibilityWarning, match=f"check the input: .*{words}") as caught:
         make()
-    assert len(caught) == 1
-    assert caught[0].filename == __file__
+    (doubt,) = (each for each in caught if issubclass(each.category, PlausibilityWarning))
+    assert {each.filename for each in caught} == {__file__} == {doubt.filename}
 
 
 MEANT = {
