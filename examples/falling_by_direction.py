@@ -48,7 +48,7 @@ assert not over[:, 0].any()  # the weakest shaking overturns from no direction
 assert (share.max(axis=0) > 1.15 * share.min(axis=0)).all()
 assert differs.mean() > 0.05
 # it falls over its long sides, y, far more often than over its short ones
-along_y = np.abs(np.sin(batch.direction[batch.overturned])) > np.sqrt(0.5)
+along_y = np.abs(np.sin(batch.direction[batch.overturned == 1.0])) > np.sqrt(0.5)
 print(f"{along_y.mean():.1%} of the falls are over the long sides of the base")
 assert along_y.mean() > 0.6
 

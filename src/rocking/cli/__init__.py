@@ -20,7 +20,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     from typer.exceptions import TyperException
 
-    from rocking.checks import decimal_comma
     from rocking.cli.application import application
     from rocking.errors import RockingError, SlowEngineWarning
 
@@ -35,6 +34,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         print(f"rocking: {error}", file=sys.stderr)
         sys.exit(2)
     except TyperException as error:
+        from rocking.checks import decimal_comma  # numpy with it, which help does not need
+
         message = error.format_message() if hasattr(error, "format_message") else str(error)
         hints = [decimal_comma(word) for word in words if not word.partition("=")[2].strip("+-,0123456789")]
         hint = next(filter(None, hints), "") if "valid number" in message else ""

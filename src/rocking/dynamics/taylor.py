@@ -192,6 +192,8 @@ def _slopes(polynomial: Sequence[float]) -> list[float]:
 def _zeros(polynomial: Sequence[float]) -> list[float]:
     """Where on [0, 1], and a little beyond, the sign changes: at most once between two zeros of the slope (Rolle)."""
     start, rest = polynomial[0], polynomial[1:]
+    if start == 0.0 and rest:  # a zero at 0 itself is no change of sign after it
+        return _zeros(rest)
     if not rest or start + sum(min(c, 0.0) for c in rest) > 0.0 or start + sum(max(c, 0.0) for c in rest) < 0.0:
         return []
     stops = [0.0, *_zeros(_slopes(polynomial)), 1.0 + _NEAR]

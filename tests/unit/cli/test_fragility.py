@@ -86,9 +86,8 @@ def test_keys_are_stable(capsys):
             "levels", "results", "comparison"]  # fmt: skip
     assert list(many) == list(none) == keys
     first, second = many["results"][0], none["results"][0]
-    assert (
-        list(first) == list(second) == ["restitution", "definition", "uplift", "failed", "trials", "reached", "curves"]
-    )
+    wanted = ["restitution", "definition", "uplift", "failed", "contact", "trials", "reached", "curves"]
+    assert list(first) == list(second) == wanted
     assert list(first["curves"]["overturned"]) == list(second["curves"]["overturned"])
     assert second["curves"]["overturned"]["median"] is None
     assert second["curves"]["overturned"]["median_95"] == [None, None]
