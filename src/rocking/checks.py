@@ -377,7 +377,7 @@ def one_of(name: str, value: Any, known: Iterable[str]) -> str:
     'fast'
     """
     words = list(known)
-    found: str = spelling(value, words)
+    found = spelling(value, words)
     if not isinstance(found, str) or found not in words:  # an array has no truth value
         raise InvalidValueError(f"{name} must be one of {', '.join(words)}, got {value!r:.60}{nearest(value, words)}")
     return found
