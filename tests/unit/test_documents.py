@@ -42,7 +42,8 @@ def test_cited_documents_are_shipped(folder):
     """A document that code cites is in the repository, and where it names a section of one, the section is there."""
     sections = re.findall(r"^## (\d+)\.", (ROOT / "docs/theory.md").read_text(encoding="utf-8"), flags=re.M)
     for path in [p for p in (ROOT / folder).rglob("*") if p.suffix in {".py", ".hpp", ".cpp"}]:
-        text = path.read_text(encoding="utf-8")
+        # a page that a benchmark writes is there once that has run
+        text = re.sub(r'table\.keep\("[^"]+"', "", path.read_text(encoding="utf-8"))
         for cited in re.findall(r"[\w./-]+\.md\b", text):
             assert any((place / cited).exists() for place in (ROOT, ROOT / "benchmarks")), (path, cited)
         for listed in re.findall(r"theory\.md, Sections? ([\d, and]+)", text):

@@ -84,6 +84,9 @@ def test_zeros_of_polynomials() -> None:
     assert turning_points(slope, 1.0) == pytest.approx([0.3, 0.6, 0.7], rel=1e-12)
     assert turning_points(slope, 0.65) == pytest.approx([0.3, 0.6], rel=1e-12)
     assert turning_points([0.0, 1.0, -0.4], 1.0) == turning_points([0.0, -1.0, 0.4], 1.0) == []
+    # let go at rest: the slope is zero at the start, which is no turning point after it
+    assert turning_points([1e-12, 0.0, -0.5], 1.0) == []
+    assert turning_points([1.0, 0.0, -1.0, 1.0], 1.0) == pytest.approx([2.0 / 3.0], rel=1e-12)
 
 
 def time_to_fall(start: float) -> float:

@@ -245,9 +245,9 @@ print(folder.campaign.plan.count, running, before, peak())
 
 
 @pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="the peak of memory is read from /proc")
-@pytest.mark.parametrize(("end", "most"), [(".nc", 40e6), (".parquet", 150e6)])
+@pytest.mark.parametrize(("end", "most"), [(".nc", 50e6), (".parquet", 200e6)])
 def test_memory_stays_bounded(tmp_path, text, end, most):
-    """A million histories, 91 MB as arrays, are written piece by piece."""
+    """A million histories, 115 MB as arrays, are written piece by piece."""
     if end == ".parquet":
         pytest.importorskip("pyarrow")
     words = text("overturning-map").replace("count = 9", "count = 1000").replace("count = 7", "count = 1000")
@@ -259,6 +259,6 @@ def test_memory_stays_bounded(tmp_path, text, end, most):
     count, running, before, after = (int(word) for word in found.stdout.split())
     assert count == 1_000_000
     assert Path(arguments[2]).stat().st_size > 1_000_000
-    # libraries and a few pieces; Arrow keeps 100 MB to itself, for 10^6 histories as for 10^7
+    # libraries and a few pieces: 44 and 167 MB, for four times the histories too; Arrow keeps 100 MB of that to itself
     assert 1024 * (after - before) < most
     assert 1024 * max(running, after) < 300_000_000
