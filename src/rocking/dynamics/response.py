@@ -142,8 +142,9 @@ class Response(Exportable):
     def least_force(self) -> float:
         """Smallest normal force of the ground while rocking over the weight; NaN if it never rocked [-].
 
-        Below zero the ground would have to pull. At the samples, uplifts and impacts, up to where a body that
-        overturns passes over its foot for good; the same number as of `simulate_many`.
+        Below zero the ground would have to pull. At the samples, uplifts and impacts; of a body that overturns,
+        those before it passes over its foot for good, so that a pull in between is seen by `contact` alone. The same
+        number as of `simulate_many`.
         """
         return self.trajectory.least_force
 
