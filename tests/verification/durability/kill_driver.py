@@ -18,6 +18,7 @@ import time
 import traceback
 from collections import Counter
 from pathlib import Path
+from typing import BinaryIO
 
 from workload import histories
 
@@ -95,9 +96,9 @@ class Kills:
             reading, writing = os.pipe()
             process = self.start(folder, writing)
             os.close(writing)
-            killed = self.kill_later(process)
-            with os.fdopen(reading) as told:
-                for line in told.read().split("\n")[:-1]:  # a line that was cut short was not said
+            with os.fdopen(reading, "rb", buffering=0) as told:
+                killed, records = self.kill_later(process, told)
+                for line in (records + told.read()).decode().split("\n")[:-1]:  # a line that was cut short was not said
                     number, first, last, seal = line.split()
                     chunk = self.plan.chunk(int(number)).piece(int(first), int(last))
                     self.known[chunk.name] = chunk
@@ -107,17 +108,23 @@ class Kills:
                 self.finish(folder)
                 return
 
-    def kill_later(self, process: int) -> bool:
-        """Wait for a random time, then kill the whole group; whether it was still at work."""
-        low = 0.4 if self.how == "spawn" else 0.0  # spawned workers spend the first half on imports
-        end = time.perf_counter() + self.random.uniform(low, low + 0.7) * self.duration
-        while time.perf_counter() < end:
+    def kill_later(self, process: int, told: BinaryIO) -> tuple[bool, bytes]:
+        """Wait for a random number of records, then a random time, and kill the group; was it at work, what it told."""
+        wanted, records = self.random.choice((0, 1, 1, 2)), b""
+        while records.count(b"\n") < wanted and (more := told.read(4096)):
+            records += more
+        low = 0.4 if self.how == "spawn" and not wanted else 0.0  # spawned workers spend the first half on imports
+        share = 1 / self.plan.chunks if wanted else 1.0
+        end = time.perf_counter() + self.random.uniform(low, low + 0.7) * share * self.duration
+        while True:
             found, status = os.waitpid(process, os.WNOHANG)
             if found:
                 self.counts["ended by themselves"] += 1
                 if status:
                     self.wrong.append(f"a campaign ended with status {status}")
-                return False
+                return False, records
+            if time.perf_counter() >= end:
+                break
             time.sleep(0.001)
         try:
             os.killpg(process, signal.SIGKILL)
@@ -125,7 +132,7 @@ class Kills:
             os.kill(process, signal.SIGKILL)
         os.waitpid(process, 0)
         self.counts["kills"] += 1
-        return True
+        return True, records
 
     def compare(self, folder: Path, acknowledged: dict[str, str]) -> None:
         """What was acknowledged is in the ledger and on disk, and what is on disk under its name is whole."""
