@@ -8,10 +8,12 @@ verdict is a line in build/mutants/.
 
 import argparse
 import ast
+import hashlib
 import json
 import math
 import os
 import random
+import resource
 import shutil
 import subprocess
 import sys
@@ -77,7 +79,7 @@ OPERATORS = (
     *(f"core/{change}" for change in ("NumberReplacer", "AddNot", "ReplaceBreakWithContinue", "ZeroIterationForLoop")),
 )
 STAGES = (4.0, 15.0, 60.0)  # seconds of tests: most errors die in the first
-WALLS = 6.0  # a mutant that takes this many times as long as the tests do hangs
+HANGS = 6.0  # a mutant that takes this many times the processor's time that the tests take hangs
 
 
 class Mutant(NamedTuple):
@@ -92,8 +94,9 @@ class Mutant(NamedTuple):
 
     @property
     def key(self) -> str:
-        """What it is called in the ledger."""
-        return f"{self.path}:{self.first} {self.operator} {self.occurrence}"
+        """What it is called in the ledger: a file that has changed since is judged again."""
+        seal = hashlib.sha256((ROOT / self.path).read_bytes()).hexdigest()[:8]
+        return f"{self.path}:{self.first} {self.operator} {self.occurrence} {seal}"
 
     def code(self) -> str:
         """The module with the error in it."""
@@ -176,7 +179,7 @@ class Worker:
         os.utime(target, (2e9 + self._writes, 2e9 + self._writes))
 
     def passes(self, tests: list[str], limit: float) -> bool:
-        """Whether these tests pass within a limit of time [s]."""
+        """Whether these tests pass within a limit of the processor's time [s]: a neighbour's load kills no mutant."""
         listed = self.folder / "tests.txt"
         listed.write_text("\n".join(tests) + "\n", encoding="utf-8")
         command = [
@@ -197,7 +200,8 @@ class Worker:
                 command,
                 cwd=self.folder,
                 env=os.environ | {"PYTHONPATH": paths},
-                timeout=limit,
+                timeout=20.0 * limit,
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (round(limit), round(limit))),
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
                 check=False,
@@ -229,7 +233,7 @@ def verdict(mutant: Mutant, worker: Worker, covering: Covering) -> dict[str, obj
     killed, asked = False, 0
     for batch in staged(tests, covering.durations):
         asked += len(batch)
-        if not worker.passes(batch, 20.0 + WALLS * sum(covering.durations[test] for test in batch)):
+        if not worker.passes(batch, 20.0 + HANGS * sum(covering.durations[test] for test in batch)):
             killed = True
             break
     worker.write(mutant.path, (ROOT / mutant.path).read_text(encoding="utf-8"))

@@ -80,7 +80,7 @@ def bed_coefficients(
     flatness = 1.0 / (1.0 + geometry.base_gyration / share**2)
     table = bed_table()
     kappa = table.position(table.plane(points, damping, hardness), flatness, np.zeros_like(flatness))
-    return shifted(geometry, np.clip(kappa + shift, 0.0, 1.0))
+    return shifted(geometry, np.minimum(np.maximum(kappa + shift, 0.0), 1.0))
 
 
 def relative_width(data: DataSet) -> FloatArray:

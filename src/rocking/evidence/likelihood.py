@@ -26,14 +26,20 @@ def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray,
     ndarray
         Logarithms, of the common shape.
     """
-    from scipy.special import log_ndtr
+    from scipy.special import log_ndtr, ndtr
 
     a, b = (low - mean) / sd, (high - mean) / sd
     # both ends on the same side of zero keep their digits in the lower tail
     flip = a > 0.0
     a, b = np.where(flip, -b, a), np.where(flip, -a, b)
-    upper, lower = log_ndtr(b), log_ndtr(a)
-    return np.asarray(upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-300))))
+    probability = ndtr(b) - ndtr(a)
+    deep = ~(probability > 1e-290)  # where the tail itself is too small a number, its logarithm is not
+    if not deep.any():
+        return np.log(probability)
+    upper, lower = log_ndtr(b[deep]), log_ndtr(a[deep])
+    found = np.log(probability, where=~deep, out=np.empty_like(probability))
+    found[deep] = upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-300)))
+    return found
 
 
 def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib.resources import files
 from typing import Final
 
@@ -131,11 +131,15 @@ class BedTable:
         ndarray
             By flatness and offset [-].
         """
-        found = self.positions[POINTS.index(points)]
-        for nodes, value in ((self.hardness, hardness), (self.damping, damping)):
-            low, share = _between(each(math.log, nodes), each(math.log, value))
-            found = (1.0 - share) * found[..., int(low)] + share * found[..., int(low) + 1]
-        return np.asarray(found)
+        i, along = _between(self._logarithms[0], math.log(damping))
+        j, across = _between(self._logarithms[1], math.log(hardness))
+        corners = self.positions[POINTS.index(points), ..., i : i + 2, j : j + 2]
+        found = (1.0 - across) * corners[..., 0] + across * corners[..., 1]
+        return np.asarray((1.0 - along) * found[..., 0] + along * found[..., 1])
+
+    @cached_property
+    def _logarithms(self) -> tuple[FloatArray, FloatArray]:
+        return each(math.log, self.damping), each(math.log, self.hardness)
 
     def position(self, plane: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
         """Return the positions for bodies; those outside the table are given the value at its edge.
@@ -202,7 +206,9 @@ def bed_table() -> BedTable:
     return BedTable(*nodes(), stored.astype(np.float64) * STEP)
 
 
-def _between(axis: FloatArray, value: FloatArray) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.intp]], FloatArray]:
-    held = np.clip(value, axis[0], axis[-1])
-    low = np.clip(np.searchsorted(axis, held, side="right") - 1, 0, axis.size - 2)
+def _between(
+    axis: FloatArray, value: FloatArray | float
+) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.intp]], FloatArray]:
+    held = np.minimum(np.maximum(value, axis[0]), axis[-1])
+    low = np.searchsorted(axis[1:-1], held, side="right")
     return low, np.asarray((held - axis[low]) / (axis[low + 1] - axis[low]))
