@@ -127,7 +127,7 @@ class Campaign:
             nothing = Status(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software, None)
             if not (path / LEDGER).exists():
                 return nothing
-            with Ledger(path) as ledger:
+            with Ledger(path) as ledger, ledger.instant():
                 if not ledger.begun:
                     return nothing
                 chunks, histories = ledger.finished()

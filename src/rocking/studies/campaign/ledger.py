@@ -3,6 +3,7 @@
 import hashlib
 import sqlite3
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -70,6 +71,15 @@ class Ledger:
         """Whether its tables are there: for an instant after its file is made they are not."""
         (tables,) = self._database.execute("SELECT count(*) FROM sqlite_schema").fetchone()
         return bool(tables)
+
+    @contextmanager
+    def instant(self) -> Iterator[None]:
+        """Read as of one instant: between two questions another process may make a chunk of its pieces."""
+        self._database.execute("BEGIN")
+        try:
+            yield
+        finally:
+            self._database.execute("COMMIT")
 
     def record(self, record: Record) -> None:
         """Acknowledge a chunk, which takes the place of its pieces; on return this is on disk.
@@ -203,8 +213,8 @@ class Ledger:
         chunks, histories : int
             Their numbers; of histories also those in pieces.
         """
-        (chunks,) = self._database.execute("SELECT count(*) FROM chunks").fetchone()
-        (histories,) = self._database.execute(f"SELECT coalesce(sum(last - first), 0) FROM {_ALL}").fetchone()
+        asked = f"SELECT (SELECT count(*) FROM chunks), (SELECT coalesce(sum(last - first), 0) FROM {_ALL})"
+        chunks, histories = self._database.execute(asked).fetchone()
         return int(chunks), int(histories)
 
     def effort(self) -> tuple[float, int]:

@@ -210,7 +210,7 @@ def _records(folder: Path, plan: Plan) -> list[tuple[Chunk, str]]:
     """Return the chunks and pieces that the ledger has, with their seals; it refuses those that overlap."""
     if not (folder / NAME).exists():
         return []
-    with Ledger(folder) as ledger:
+    with Ledger(folder) as ledger, ledger.instant():
         if not ledger.begun:
             return []
         ledger.check(plan)

@@ -208,7 +208,7 @@ class Meter:
         total = self._plan.chunks
         if self.chunks == total:
             return f"all {total} chunks are safe"
-        pieces = self.histories % self._plan.size != 0
+        pieces = self.histories > self.chunks * self._plan.size
         share = f"{self.histories} of {self._plan.count} histories" if pieces else f"{self.chunks} of {total} chunks"
         return f"{share} are safe"
 

@@ -11,6 +11,7 @@ import pytest
 
 from rocking.studies.campaign import Campaign, CampaignDamagedError
 from rocking.studies.campaign.ledger import Ledger, Record
+from rocking.studies.campaign.status import Meter
 
 FLIPS = 400
 Shards = Callable[[Campaign], dict[str, str]]
@@ -106,3 +107,45 @@ def test_a_ledger_that_is_just_being_made_says_nothing_is_done(tmp_path: Path, w
     campaign = Campaign.create(tmp_path / "c", work)
     (campaign.folder / "ledger.sqlite").touch()
     assert Campaign.status_of(campaign.folder).chunks_done == 0
+
+
+def told(ledger: Ledger, between: Callable[[], None]) -> int:
+    """Histories that the ledger has, with something that happens between its two tables."""
+    chunks = [record.last - record.first for record in ledger.records()]
+    between()
+    return sum(chunks) + sum(record.last - record.first for record in ledger.pieces())
+
+
+def test_what_is_read_is_of_one_instant(tmp_path: Path, work: Any) -> None:
+    """While a reader goes from chunks to pieces, these become a chunk: it still sees every history once."""
+    campaign = Campaign.create(tmp_path / "c", work)
+    whole = campaign.plan.chunk(0)
+    half = whole.piece(whole.first, whole.first + 10)
+    rest = "seal", 1, 1, 0.1, "worker", "now"
+    with Ledger(campaign.folder, writable=True) as writer, Ledger(campaign.folder) as reader:
+
+        def becomes_whole() -> None:
+            writer.record(Record(whole.number, whole.first, whole.last, whole.name, *rest))
+
+        def in_pieces() -> None:
+            writer.forget(whole.name)
+            writer.record_piece(Record(half.number, half.first, half.last, half.name, *rest))
+
+        in_pieces()
+        with reader.instant():
+            assert told(reader, becomes_whole) == 10
+        in_pieces()
+        assert told(reader, becomes_whole) == 0  # negative control: as of two instants there is nothing
+        assert told(reader, lambda: None) == whole.last - whole.first
+
+
+def test_pieces_that_make_up_a_chunk_are_counted_as_histories(tmp_path: Path, work: Any) -> None:
+    """As many histories as a chunk has, in pieces of two chunks, are not "0 chunks"."""
+    plan = Campaign.create(tmp_path / "c", work, 50).plan
+    meter = Meter(tmp_path, plan, None)
+    first, second = plan.chunk(0), plan.chunk(1)
+    half = plan.size // 2
+    meter.begin(0, [(first.first, first.first + half), (second.first, second.first + plan.size - half)])
+    assert meter.sentence() == f"{plan.size} of {plan.count} histories are safe"
+    meter.begin(2, [first[1:3], second[1:3]])
+    assert meter.sentence() == f"2 of {plan.chunks} chunks are safe"
