@@ -164,7 +164,7 @@ def _draw(answer: FragilityAnswer, path: Path) -> None:
     if answer.compared is not None:
         from rocking.plots.sensitivity import sensitivity_picture
 
-        figure = sensitivity_picture(answer.compared)
+        figure = sensitivity_picture(answer.compared, unit=answer.question.unit)
     elif answer.question.analysis == "incremental":
         from rocking.plots.incremental import incremental_picture
 

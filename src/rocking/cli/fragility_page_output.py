@@ -190,7 +190,7 @@ def _sentences(answer: FragilityAnswer) -> list[str]:
     if isinstance(found, IncrementalAnalysis):
         told += _crossings(answer, found)
     if answer.compared is not None:
-        told.append(answer.compared.verdict)
+        told.append(answer.compared.told(answer.question.unit))
     return told
 
 

@@ -23,7 +23,7 @@ _MOST = 6
 
 
 @in_journal_style
-def sensitivity_picture(found: Sensitivity) -> "Figure":
+def sensitivity_picture(found: Sensitivity, *, unit: tuple[str, float] | None = None) -> "Figure":
     """Draw a comparison of restitutions.
 
     Maps stand beside one another, the baseline first; below each other one is the map of the verdicts that differ,
@@ -34,6 +34,8 @@ def sensitivity_picture(found: Sensitivity) -> "Figure":
     found : Sensitivity
         As of `map_sensitivity`, `spectrum_sensitivity`, `fragility_sensitivity` or `sensitivity`; of 6 choices at
         most.
+    unit : tuple of str and float, optional
+        In which medians of a fragility are told, and its size [unit of the measure]; otherwise that of the measure.
 
     Returns
     -------
@@ -60,7 +62,7 @@ def sensitivity_picture(found: Sensitivity) -> "Figure":
     if not 2 <= len(found.labels) <= _MOST:
         raise InvalidValueError(f"a picture holds 2 to {_MOST} choices, got {len(found.labels)}")
     if found.states:
-        return _of_fragility(found)
+        return _of_fragility(found, unit)
     base = found.datasets[found.baseline]
     if "mode" in base and base["mode"].ndim == 2:
         return _of_maps(found)
@@ -159,7 +161,7 @@ def _flipped(found: Sensitivity, place: int) -> str:
     return "flips " + ", ".join(f"{int(n):,}" for n in counts.values) + f" of {total:,}"
 
 
-def _of_fragility(found: Sensitivity) -> "Figure":
+def _of_fragility(found: Sensitivity, unit: tuple[str, float] | None) -> "Figure":
     from rocking.plots.fragility_words import symbol
 
     states = found.states
@@ -177,7 +179,7 @@ def _of_fragility(found: Sensitivity) -> "Figure":
             panel.plot(levels, share, "osv^D<"[number], markersize=2.6, color=look(number)["color"], alpha=0.8)
             panel.plot([], [], marker="osv^D<"[number], markersize=2.6, label=words, **look(number))
         panel.set_ylim(-0.03, 1.03)
-        panel.set_title(f"{symbol(state)}: {_medians(found, state)}", loc="left", fontsize=7)
+        panel.set_title(f"{symbol(state)}: {_medians(found, state, unit)}", loc="left", fontsize=7)
     figure.supylabel("probability [-]", fontsize=8)
     measure = results[0].subject.measure
     axes[-1].set_xlabel(axis_label(measure.name, measure.unit, linear=results[0].subject.settings.linear))
@@ -185,9 +187,9 @@ def _of_fragility(found: Sensitivity) -> "Figure":
     return figure
 
 
-def _medians(found: Sensitivity, state: str) -> str:
+def _medians(found: Sensitivity, state: str, unit: tuple[str, float] | None) -> str:
     """Return the medians of all choices in words, in the order of the legend."""
     medians = [found.results[label].fits[state].median for label in found.labels]
-    unit = found.results[found.baseline].subject.measure.unit
-    words = ", ".join("none" if value is None else f"{value:.3g}" for value in medians)
-    return f"medians {words} {unit}".removesuffix(" -").replace("m/s2", "m/s$^2$")
+    name, size = unit or (found.results[found.baseline].subject.measure.unit, 1.0)
+    words = ", ".join("none" if value is None else f"{value / size:.3g}" for value in medians)
+    return f"medians {words} {name}".removesuffix(" -").replace("m/s2", "m/s$^2$")

@@ -182,6 +182,9 @@ def test_page_in_the_unit_of_the_levels(capsys):
     assert code == 0
     assert "median [g]" in out
     assert f" {median / G:.4g} " in row
+    both = run(capsys, *words, *LEVELS, "--restitution", "0.95", "--restitution", "0.7")[1]
+    at = float(re.search(r"the probability by at most [^)]*\) at ([\d.]+) g", " ".join(both.split()))[1])
+    assert 0.1 <= at <= 0.9
     levels = ",".join(repr(float(x)) for x in np.linspace(0.1 * G, 0.9 * G, 9))
     out = run(capsys, *words, "--levels", levels)[1]
     assert "median [m/s2]" in out

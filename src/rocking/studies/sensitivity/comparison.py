@@ -211,9 +211,24 @@ class Sensitivity:
     @property
     def verdict(self) -> str:
         """The comparison in words, a sentence for every choice but the baseline."""
-        return "\n".join(self._sentence(label) for label in self.labels[1:])
+        return self.told()
 
-    def _sentence(self, label: str) -> str:
+    def told(self, unit: tuple[str, float] | None = None) -> str:
+        """Return the comparison in words, with intensities in another unit.
+
+        Parameters
+        ----------
+        unit : tuple of str and float, optional
+            Name, and size [unit of the intensity measure]; otherwise that of the measure.
+
+        Returns
+        -------
+        str
+            A sentence for every choice but the baseline.
+        """
+        return "\n".join(self._sentence(label, unit) for label in self.labels[1:])
+
+    def _sentence(self, label: str, unit: tuple[str, float] | None) -> str:
         flips = self.flips_between(self.baseline, label)
         where = f"{flips.count:,}" if flips.count else "none"
         share = percent(flips.share)
@@ -228,8 +243,9 @@ class Sensitivity:
         if flips.unknown:
             words.append(f"{flips.unknown:,} could not be computed")
         changes = self._curve_changes.get(label, {})
+        unit = unit or ((self.results[label].subject.measure.unit, 1.0) if changes else ("-", 1.0))
         words += [
-            f"{state}: {change if isinstance(change, str) else change.words}" for state, change in changes.items()
+            f"{state}: {change if isinstance(change, str) else change.told(*unit)}" for state, change in changes.items()
         ]
         return "; ".join(words) + "."
 

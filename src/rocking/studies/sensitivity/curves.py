@@ -58,9 +58,21 @@ class CurveChange:
     repetitions: int
     without_curve: int
 
-    @property
-    def words(self) -> str:
-        """The changes in words."""
+    def told(self, unit: str, size: float = 1.0) -> str:
+        """Return the changes in words.
+
+        Parameters
+        ----------
+        unit : str
+            Of the intensity measure.
+        size : float
+            Its size in the unit of the levels.
+
+        Returns
+        -------
+        str
+            Part of a sentence.
+        """
         shown = "{:+.3f}".format
         ends = self.median.interval
         median = None if ends is None else (ends[0] - 1.0, ends[1] - 1.0)
@@ -68,7 +80,7 @@ class CurveChange:
             f"the median changes by {signed(self.median.value - 1.0)} ({_interval(median, signed)}), "
             f"the dispersion by {shown(self.dispersion.value)} ({_interval(self.dispersion.interval, shown)}), "
             f"the probability by at most {self.distance.value:.3f} "
-            f"({_interval(self.distance.interval, '{:.3f}'.format)}) at {self.level:.4g}"
+            f"({_interval(self.distance.interval, '{:.3f}'.format)}) at {self.level / size:.4g} {unit}"
         )
 
 
