@@ -2,7 +2,7 @@
 //     N = 1 + a_z / g - q (M S + e C),   s H = s a_x / g - q (M C - e S).
 // N below zero would be a ground that pulls: the body loses contact. Both are looked at where steps start, so at every
 // sample and after every uplift and impact, just before every impact, and where the motion ends, up to where a body that
-// overturns passes over its foot for good.
+// overturns passes over its foot for good, this instant included.
 #pragma once
 #include "kernel.hpp"
 
@@ -39,6 +39,24 @@ ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::touch(int i, double speed, double 
     double sine = here(i).sine, cosine = here(i).cosine;
     if (L) sine_cosine(here(i).alpha, sine, cosine);
     force_at(i, sine, cosine, speed, push, weight);
+}
+
+// Push s a_x / g and weight 1 + a_z / g at a place within the stretch.
+ROCKING_KERNEL
+ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::ground_at(int i, double to, double& push, double& weight) const {
+    const double* a = motions.data + idx[i];
+    constexpr int hop = D == 1 ? stride : 0;
+    push = ca[i] * (D == 1 ? a[0] + (a[hop] - a[0]) * to : value_of<D>(a, to));
+    weight = Z ? 1.0 + lanes[i].az * (a[1] + (a[hop + 1] - a[1]) * to) : 1.0;
+}
+
+// Where a body passes over its foot, at a place within the stretch: all that counts if it does so for good.
+ROCKING_KERNEL
+void Kernel<G, U, N, D, Z, L>::pass_over(int i, double speed, double to) {
+    double push, weight;
+    ground_at(i, to, push, weight);
+    force_at(i, 0.0, 1.0, speed, push, weight);
+    forces_up_to_here(i);
 }
 
 // The last sample, where no step starts.

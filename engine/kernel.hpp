@@ -165,6 +165,8 @@ class Kernel {
     void force_at_end(int i);
     ROCKING_APART void note_force(int i, double up, double along, double square);
     ROCKING_INLINE void touch(int i, double speed, double push, double weight);
+    ROCKING_INLINE void ground_at(int i, double to, double& push, double& weight) const;
+    void pass_over(int i, double speed, double to);
     void forces_up_to_here(int i);
     ROCKING_INLINE bool bounce(int i, double at, double speed);
     void settle(int i);

@@ -61,8 +61,14 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
     const double speed = v[i] / lane.step;
     const double e = energy(here(i), u[i], speed);
     const bool inward = speed > 0.0, passes = e > energy(here(i), 0.0, 0.0);
-    if (u[i] < 0.0 && !(inward && passes)) return falls(i, lane.over_time >= 0.0 ? lane.over_time : now(i, 0.0));
-    if (!inward && passes) {
+    if (u[i] < 0.0 && !(inward && passes)) {
+        if (!(lane.over_time >= 0.0)) forces_up_to_here(i);
+        return falls(i, lane.over_time >= 0.0 ? lane.over_time : now(i, 0.0));
+    }
+    if (!inward && passes) {  // on resting ground the force grows from here to the top, unless it pulls
+        double s, c;
+        sine_cosine(u[i], s, c);
+        force_at(i, s, c, v[i], 0.0, 1.0);
         forces_up_to_here(i);
         return falls(i, now(i, 0.0));
     }
@@ -76,6 +82,7 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
         arrival *= coefficient(i, arrival * lane.step);
         ++lane.impacts;
         const double f = 0.5 * arrival * arrival / (here(i).p * here(i).p);
+        touch(i, arrival * lane.step, 0.0, 1.0);
         if (f > energy(here(i), 0.0, 0.0)) {
             forces_up_to_here(i);
             return falls(i, now(i, 0.0));

@@ -112,11 +112,9 @@ bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     const int old = lane.side;
     fastest[i] = std::max(fastest[i], speed);
     const double to = tau[i] + at * length(i);
-    const double* ground = motions.data + idx[i];
-    constexpr int hop = D == 1 ? stride : 0;
-    const double push = D == 1 ? ground[0] + (ground[hop] - ground[0]) * to : value_of<D>(ground, to);
-    const double weight = Z ? 1.0 + lane.az * (ground[1] + (ground[hop + 1] - ground[1]) * to) : 1.0;
-    touch(i, speed, ca[i] * push, weight);
+    double push, weight;
+    ground_at(i, to, push, weight);
+    touch(i, speed, push, weight);
     lane.side = -old;
     const Side& s = here(i);
     const double r = law.kind == LawKind::constant ? s.r : coefficient(i, speed), after = r * speed;
@@ -197,13 +195,17 @@ void Kernel<G, U, N, D, Z, L>::advance(int i, Step made) {
     Lane& lane = lanes[i];
     const double u1 = u_end[i], v1 = v_end[i];
     if (u1 < 0.0) {
-        double c[N + 2];
+        double c[N + 2], slopes[N + 1], passing = u[i] == 0.0 ? 0.0 : -1.0;
         c[0] = u[i];
-        for (int k = 0; k <= N; ++k) c[k + 1] = made[k] / (k + 1);
-        const double before = lane.over_time;
-        if (c[0] == 0.0) lane.over_time = now(i, 0.0);
-        each_fall<N + 1>(c, [&](double at) { lane.over_time = now(i, at); });
-        if (lane.over_time != before) forces_up_to_here(i);
+        for (int k = 0; k <= N; ++k) {
+            slopes[k] = made[k];
+            c[k + 1] = slopes[k] / (k + 1);
+        }
+        each_fall<N + 1>(c, [&](double at) { passing = at; });
+        if (passing >= 0.0) {
+            lane.over_time = now(i, passing);
+            pass_over(i, value_of<N>(slopes, passing) / length(i), tau[i] + passing * length(i));
+        }
     }
     u[i] = u1;
     v[i] = v1;

@@ -52,8 +52,8 @@ class Contact:
 
     @property
     def loses_contact(self) -> bool:
-        """Whether the vertical force falls to zero somewhere: the body would fly, which pure rocking cannot do."""
-        return self.least_vertical <= 0.0
+        """Whether the ground would have to pull, as `Response.lost_contact`: the body would fly instead."""
+        return self.least_vertical < 0.0
 
     def warnings(self, friction: float = 0.5) -> list[str]:
         """Return why pure rocking is not credible, in plain words; empty if it is.
@@ -69,7 +69,7 @@ class Contact:
             Loss of contact, and what `slips` says.
         """
         slips = self.slips(friction)
-        return [f"the vertical force falls to zero: {LEAVES}; {_FOLLOWS}", *slips] if self.loses_contact else slips
+        return [f"the ground would have to pull: {LEAVES}; {_FOLLOWS}", *slips] if self.loses_contact else slips
 
     def slips(self, friction: float = 0.5) -> list[str]:
         """Return why feet that do not slip are not credible, in plain words; empty if they are.

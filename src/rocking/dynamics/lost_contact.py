@@ -12,7 +12,7 @@ FORCES: dict[str, tuple[str, str]] = {
     "friction_demand": ("1", "largest horizontal over normal force while rocking; infinite where contact is lost"),
     "lost_contact": ("1", "1 where the ground would have to pull, so that the verdict assumes contact; NaN no result"),
 }
-"""Unit and meaning of what is known of the forces of the ground; at samples, uplifts and impacts."""
+"""Unit and meaning of what is known of the forces of the ground: at samples, uplifts, impacts and overturning."""
 
 
 def lost_contact(results: Any) -> FloatArray:

@@ -197,7 +197,10 @@ class Reference:
         start, end = self.u, value(terms, 1.0)
         passing = last_fall(terms) if end < 0.0 else None
         if passing is not None or start >= 0.0 > end:
-            self.over_time, self.forces_before = self._now + (passing or 0.0) * length, self.forces
+            at = (passing or 0.0) * length
+            ground = self._ground_at(self.stretch, self.tau + at / self.push.step)
+            self._note_force(0.0, slope(terms, passing or 0.0) / length, *ground)
+            self.over_time, self.forces_before = self._now + at, self.forces
         self.u, self.rate = end, slope(terms, 1.0) / length
         self.fastest = max(self.fastest, abs(self.rate))
         if tau >= _WHOLE:  # before a jump to rest, where there is one
@@ -239,10 +242,12 @@ class Reference:
         e = float(equations.energy(self._alpha - self.u, self.rate, self._alpha, self._p, linear=linear))
         inward, passes = self.rate > 0.0, e > top
         if self.u < 0.0 and not (inward and passes):
-            self.over_time = self.over_time if self.over_time >= 0.0 else self._now
+            if not self.over_time >= 0.0:
+                self.over_time, self.forces_before = self._now, self.forces
             return _Ended(Outcome.OVERTURNED)
         if not inward:
-            if passes:
+            if passes:  # on resting ground the force grows from here to the top, unless it pulls
+                self._note_force(self.u, self.rate, 0.0, 1.0)
                 self.over_time, self.forces_before = self._now, self.forces
                 return _Ended(Outcome.OVERTURNED)
             self._raise_peak(float(equations.turning_rotation(e, self._alpha, linear=linear)), self._now)

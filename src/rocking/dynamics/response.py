@@ -142,9 +142,10 @@ class Response(Exportable):
     def least_force(self) -> float:
         """Smallest normal force of the ground while rocking over the weight; NaN if it never rocked [-].
 
-        Below zero the ground would have to pull. At the samples, uplifts and impacts; of a body that overturns,
-        those before it passes over its foot for good, so that a pull in between is seen by `contact` alone. The same
-        number as of `simulate_many`.
+        Below zero the ground would have to pull. At the samples, uplifts and impacts; of a body that overturns, up to
+        the instant at which it passes over its foot for good. Between them the force is curved to second order in the
+        step of the motion: of 24 random records at .005 s two have a smaller one inside a step, by 1e-4 of the
+        weight. The same number as of `simulate_many`.
         """
         return self.trajectory.least_force
 
