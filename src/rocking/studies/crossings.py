@@ -1,10 +1,13 @@
 """All accelerations at which the verdict changes, in order: stronger is not always worse."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
+import numpy as np
+
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.lost_contact import contact_words
 
 Interval = tuple[float, float]
 
@@ -42,8 +45,8 @@ class Crossings:
         Histories that were computed, and those that have no result; a bracket stays wide where one failed.
     resolution_below : float
         Widest relative gap between samples below the minimum; NaN if there is no minimum [-].
-    contact : str
-        In how many of the histories the ground would have to pull, as a sentence; empty if in none.
+    lost_contact : ndarray
+        1 for histories in which the ground would have to pull, 0 for others, NaN for those that have no result [-].
     """
 
     acceleration: FloatArray
@@ -59,11 +62,16 @@ class Crossings:
     samples: int
     failed: int
     resolution_below: float = math.nan
-    contact: str = ""
+    lost_contact: FloatArray = field(default_factory=lambda: np.empty(0), repr=False)
 
     def __len__(self) -> int:
         """Return the number of crossings."""
         return int(self.acceleration.size)
+
+    @property
+    def contact(self) -> str:
+        """In how many of the histories the ground would have to pull, as a sentence; empty if in none."""
+        return contact_words(self.lost_contact)
 
     @property
     def minimum(self) -> float | None:

@@ -8,7 +8,6 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.lost_contact import contact_words
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
@@ -218,7 +217,7 @@ def _crossings(scan: Scan, cases: Cases, effort: Effort) -> tuple[Crossings | No
                 scale * peak, scale * peak / uplift, scale, found.modes[own], np.diff(found.ends[own])[:, 0] * peak,
                 *ends, uplift, (high / low) ** (1.0 / (effort.points - 1)) - 1.0, bool(good[0] >= 0),
                 int(modes.size), int(np.sum(modes == FAILED)), gaps.get(k, math.nan),
-                contact_words(scan.samples.lost[mine]),
+                scan.samples.lost[mine],
             )
         )  # fmt: skip
     return tuple(made)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.studies.job import JobFolder
+    from rocking.studies.job.answer import Answer
 
 _HELD = 256 * 2**20
 _ANSWERS = 64 * 2**20
@@ -105,6 +106,13 @@ class OpenStudy:
         """Fragility analyses by restitution."""
         finish = self.job.job.study.finish
         return {} if finish is None else finish(self.raw)
+
+    @cached_property
+    def answer(self) -> "Answer":
+        """What an adaptive study has found, from all of its rounds."""
+        from rocking.studies.job import answer
+
+        return answer(self.job)
 
     def dataset(self, restitution: int = 0) -> "xr.Dataset":
         """Return the results with one restitution as the pictures take them.

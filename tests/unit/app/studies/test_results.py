@@ -1,6 +1,7 @@
 """What the browser is told of finished studies, against the Python calls that compute the same."""
 
 import json
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -165,6 +166,28 @@ def test_minimum_accelerations_are_tables(
     """What an adaptive search found comes as tables."""
     job = map_job(campaign={"name": "x", "kind": "minimum-acceleration"}, map=None, minimum={"points": 20})
     assert set(_json(computed(job))["tables"]) == {"crossings", "minima"}
+
+
+@pytest.mark.parametrize("kind", ["stripes", "incremental", "minimum-acceleration"])
+def test_lost_contact_stands_beside_the_verdicts(
+    kind: str, computed: Callable[[Tables], OpenStudy], map_job: Callable[..., Tables]
+) -> None:
+    """Pulses of many g tear the body off the ground, in every kind of study; weak ones do not, and nothing is said."""
+    pulses = ["sine:amplitude=3,period=0.6", "sine:amplitude=3,period=0.8"]
+    for strong in (False, True):
+        levels = [30.0, 60.0] if strong else [2.0, 2.2]
+        own = {"fragility": {"levels": levels}} if kind != "minimum-acceleration" else {
+            "minimum": {"points": 20, "levels": 1, "lowest": levels[0], "highest": levels[1]}
+        }  # fmt: skip
+        job = map_job(campaign={"name": "x", "kind": kind}, map=None, motions={"pulse": pulses}, **own)
+        words = _json(computed(job))["contact"]
+        if not strong:
+            assert words == ""
+            continue
+        lost, of = map(int, re.findall(r"\d+", words)[:2])
+        assert 0 < lost <= of
+        assert f"histories ({100.0 * lost / of:.2g} %) the ground would have to pull" in words
+        assert of == 8 if kind != "minimum-acceleration" else of >= 4 * 20
 
 
 def test_what_was_looked_at_is_kept_until_it_is_deleted(

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from rocking.app.studies.opened import OpenStudy
 from rocking.app.studies.results.fragility import fragility_result
 from rocking.app.studies.results.maps import map_result
@@ -10,9 +12,6 @@ from rocking.app.studies.results.products import product_result
 from rocking.app.studies.results.spectra import spectrum_result
 from rocking.app.studies.results.tables import minimum_result
 from rocking.dynamics.lost_contact import contact_words, lost_contact
-
-_SEARCHES = ("minimum-acceleration", "incremental")
-"""Kinds whose histories are asked for round by round: their campaign does not keep them as one array."""
 
 _BY_KIND: dict[str, Callable[[OpenStudy], dict[str, Any]]] = {
     "overturning-map": map_result,
@@ -46,4 +45,7 @@ def result_of(study: OpenStudy) -> dict[str, Any]:
 
 def _contact(study: OpenStudy, kind: str) -> str:
     """In how many histories the ground would have to pull; empty if in none."""
-    return "" if kind in _SEARCHES else contact_words(lost_contact(study.raw))
+    if kind != "minimum-acceleration":
+        return contact_words(lost_contact(study.raw))
+    searches = [found.lost_contact for found in study.answer.value if found is not None]
+    return contact_words(np.concatenate(searches or [np.empty(0)]))

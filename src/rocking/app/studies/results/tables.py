@@ -39,12 +39,10 @@ def tables_of(study: OpenStudy) -> dict[str, Any]:
     dict
         By name: a list of columns, each with name, unit, words and values.
     """
-    from rocking.studies.job import answer
-
     return {
         name: [
             {"name": title, "unit": each.unit, "words": each.words, "values": plain(each.values)}
             for title, each in sheet.columns.items()
         ]
-        for name, sheet in answer(study.job).sheets.items()
+        for name, sheet in study.answer.sheets.items()
     }
