@@ -71,5 +71,22 @@ def overturned(outcome: Any) -> FloatArray:
     >>> overturned([0, 1, 2, 3]).tolist()
     [0.0, 0.0, 1.0, nan]
     """
-    codes = np.asarray(outcome)
-    return np.where(codes == Outcome.FAILED.code, np.nan, codes == Outcome.OVERTURNED.code)
+    return of_results(outcome, np.asarray(outcome) == Outcome.OVERTURNED.code)
+
+
+def of_results(outcome: Any, flags: Any) -> FloatArray:
+    """Return flags of histories as numbers; no result is neither true nor false.
+
+    Parameters
+    ----------
+    outcome : array_like of int
+        Codes of `Outcome`.
+    flags : array_like of bool
+        What is true of the histories that have a result.
+
+    Returns
+    -------
+    ndarray
+        1 and 0, NaN for those without a result [-].
+    """
+    return np.where(np.asarray(outcome) == Outcome.FAILED.code, np.nan, flags)

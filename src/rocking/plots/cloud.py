@@ -57,7 +57,7 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
         raise InvalidValueError(f"there is no curve of overturning to draw: {analysis.fits['overturned'].verdict}")
     figure, (upper, lower) = new_figure(SINGLE, HEIGHT, rows=2, sharex=True, height_ratios=[1.5, 1.0])
     levels = analysis.motion_levels
-    acted = analysis.responses.overturned | clearly_lifted(analysis.responses, analysis.least)
+    acted = (analysis.responses.overturned == 1.0) | clearly_lifted(analysis.responses, analysis.least)
     upper.set_xlim(levels[acted].min() / 1.5, levels.max() * 1.08)
     _points(upper, analysis)
     _parts(lower, analysis)
@@ -93,7 +93,7 @@ def _points(axes: "Axes", analysis: CloudAnalysis) -> None:
     axes.set_ylim(0.7 * min(float(shown.min()), analysis.least), 2.2 * max(1.0, float(shown.max())))
     plain_log(axes, "y")
     axes.axhline(1.0, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)), zorder=0)
-    over = responses.overturned
+    over = responses.overturned == 1.0
     small = responses.good & ~over & ~rocked
     for chosen, height, color, words in (
         (over, 0.97, _FALLS, "overturned"), (small, 0.03, GREY, "barely lifted, or not"),

@@ -99,7 +99,7 @@ def test_cloud(cloudy):
     """Points and ticks are the motions by state; line and areas are those of the analysis."""
     figure = drawn(cloud_picture(cloudy))
     upper, lower = figure.axes
-    rotation, over = cloudy.responses.rotation, cloudy.responses.overturned
+    rotation, over = cloudy.responses.rotation, cloudy.responses.overturned == 1.0
     clear = cloudy.responses.rocked & (rotation >= 0.01)
     words = legend_of(figure)
     counts = (int(clear.sum()), int(over.sum()), int((~clear & ~over).sum()))

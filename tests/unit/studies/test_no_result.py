@@ -9,6 +9,7 @@ from rocking.dynamics.outcome import Outcome, Status, overturned
 from rocking.motions.pulses import sine
 from rocking.plots.falling import falling_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
+from rocking.studies.fragility.stripes import multiple_stripes
 from rocking.studies.minimum_search import Cases, Effort, searched
 
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])
@@ -41,10 +42,30 @@ def test_batches_and_maps_say_so():
     assert np.array_equal(mapped["overturned"] == 1.0, mapped["mode"] >= 0)
 
 
+@pytest.mark.parametrize("body", [LEANING, rk.Block(width=0.5, height=2.0)], ids=["leaning", "block"])
+def test_fragilities_say_so(body):
+    """Of failed histories it is not known whether they rocked or fell; counts, curves and shares leave them out."""
+    records = [rk.GroundMotion(np.sin(np.arange(200) * w), 0.01) for w in (0.05, 0.08, 0.11, 0.14, 0.2)]
+    levels = [1.0, 4.0, 6.0, 9.0, 14.0]
+    whole, cut = (multiple_stripes(body, records, levels, 0.9, states=(0.5,), **o) for o in ({}, {"most_impacts": 2}))
+    failed = cut.responses.outcome == NONE
+    assert 0 < failed.sum() == cut.failed < failed.size
+    for state in cut.states:
+        reached = cut.responses.exceed(state)
+        assert np.array_equal(np.isnan(reached), failed)
+        assert np.array_equal(reached[~failed], whole.responses.exceed(state)[~failed])
+        assert cut.counts[state.name].tolist() == np.nansum(reached, axis=0).tolist()
+    assert np.isnan(cut.responses.overturned).sum() == cut.failed
+    assert cut.trials.tolist() == (~failed).sum(axis=0).tolist()
+    assert cut.uplift.contradictions == 0
+    assert cut.uplift.checked == (0 if body is LEANING else (~failed).sum())  # a level decides of equal sides alone
+
+
 def spatial_batch(outcome):
     """A batch of one body, two motions, scales by outcome, two restitutions."""
     codes = np.broadcast_to(np.array(outcome)[None, None, :, None, None], (1, 2, len(outcome), 2, 1))
     values = {"outcome": codes.ravel(), "direction": np.zeros(codes.size)}
+    values |= {"still_rocking": (codes.ravel() == STANDS).astype(np.int64)}
     labels = {"motion": ["a", "b"], "scale": list(range(1, 1 + len(outcome))), "restitution": ["housner-3d", "ked-3d"]}
     return rk.SpatialBatch(codes.shape, values, "none", labels)
 
@@ -54,6 +75,10 @@ def test_space_says_so():
     batch = spatial_batch([FALLS, STANDS, NONE, NONE])
     assert np.isnan(batch.overturned[0, 0, 2:]).all()
     assert batch.overturned[0, 0, :2, 0, 0].tolist() == [1.0, 0.0]
+    assert batch.still_rocking[0, 0, :2, 0, 0].tolist() == [0.0, 1.0]
+    assert np.isnan(batch.still_rocking[0, 0, 2:]).all()
+    for found in (batch.to_xarray()["still_rocking"].to_numpy(), batch.exported().samples["still_rocking"].values):
+        assert np.array_equal(found.ravel(), batch.still_rocking.ravel(), equal_nan=True)
     figure = falling_picture(batch, np.array([0.0, np.pi]))
     assert figure.axes[0].lines[0].get_ydata().tolist() == [50.0] * 3
     assert "0.0 % differ" in figure.axes[2].get_title(loc="left")

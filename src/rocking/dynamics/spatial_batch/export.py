@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.dynamics.exported import Exported, Quantity, told
-from rocking.dynamics.outcome import overturned
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
 from rocking.dynamics.spatial_batch.start import SpatialStart
@@ -107,8 +106,7 @@ def exported(batch: "SpatialBatch") -> Exported:
         key = "motion_name" if name == "motion" else name
         rows[key] = Quantity(words[places[name]], words=f"name of the {name}")
     rows["scale"] = Quantity(np.array(batch.labels["scale"], dtype=np.float64)[places["scale"]], "1", "factor")
-    found = {**batch.values, "overturned": overturned(batch.values["outcome"])}
-    rows |= {name: Quantity(values, *UNITS[name]) for name, values in found.items()}
+    rows |= {name: Quantity(values, *UNITS[name]) for name, values in batch.results.items()}
     return Exported(rows, {}, stated(batch))
 
 

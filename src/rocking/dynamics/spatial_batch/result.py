@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.outcome import OVERTURNED, Outcome, Status, overturned
+from rocking.dynamics.outcome import OVERTURNED, Outcome, Status, of_results, overturned
 from rocking.dynamics.spatial.outcome import Contact
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ UNITS: dict[str, tuple[str, str]] = {
     "held": ("s", "for how long a corner, or a rim that is nearly flat, was held down though it should slip or hop"),
     "lost": ("J", "kinetic energy lost at impacts"),
     "impacts": ("1", "number of impacts"),
-    "still_rocking": ("1", "1 where it stands but does not yet rest when its history ends, else 0"),
+    "still_rocking": ("1", "1 where it stands but does not yet rest when its history ends, else 0; NaN no result"),
     "uplifts": ("1", "number of uplifts from rest"),
     "events": ("1", "number of impacts, uplifts and changes of contact"),
     "steps": ("1", "number of steps of the engine"),
@@ -106,9 +106,15 @@ class SpatialBatch(Exportable):
         return overturned(self.outcome)
 
     @property
-    def still_rocking(self) -> np.ndarray:
-        """Whether it stands, but does not yet rest when its history ends."""
-        return np.asarray(self["still_rocking"] == 1)
+    def still_rocking(self) -> FloatArray:
+        """1 where it stands, but does not yet rest when its history ends, 0 where not, NaN where there is no result."""
+        return of_results(self.outcome, self["still_rocking"])
+
+    @property
+    def results(self) -> dict[str, np.ndarray]:
+        """All results by name, one after another; of flags, no result is neither 1 nor 0."""
+        flags = {"overturned": self.overturned, "still_rocking": self.still_rocking}
+        return self.values | {name: flag.ravel() for name, flag in flags.items()}
 
     @property
     def peak_tilt(self) -> FloatArray:
@@ -146,7 +152,7 @@ class SpatialBatch(Exportable):
         xarray = extra("xarray", "a labelled dataset")
         data = {
             name: (DIMENSIONS, values.reshape(self.shape), {"units": UNITS[name][0], "long_name": UNITS[name][1]})
-            for name, values in {**self.values, "overturned": overturned(self.values["outcome"])}.items()
+            for name, values in self.results.items()
         }
         made: xr.Dataset = xarray.Dataset(
             data, coords={name: (name, row) for name, row in self.labels.items()}, attrs=stated(self)

@@ -223,7 +223,7 @@ def _score(analysis: CloudAnalysis, columns: Mapping[str, FloatArray]) -> Measur
         analysis.subject.measure.name, analysis.subject.measure.unit, line.scatter, line.slope, proficiency,
         line.determination, dispersion, verdict,
         {name: _sufficiency(line, values[rocked]) for name, values in columns.items()},
-        line.count, int(analysis.responses.overturned.sum()), analysis.barely_lifted,
+        line.count, int(np.nansum(analysis.responses.overturned)), analysis.barely_lifted,
     )  # fmt: skip
 
 

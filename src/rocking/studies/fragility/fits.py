@@ -32,6 +32,6 @@ def fits_of(
         By name of the state.
     """
     wanted = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
-    reached = [responses.exceed(state) for state in wanted]
+    reached = [responses.exceed(state) == 1.0 for state in wanted]
     counts = pooled(levels, responses.good, reached, subject.clusters)
     return {state.name: fit_counts(each) for state, each in zip(wanted, counts, strict=True)}

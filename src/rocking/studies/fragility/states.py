@@ -12,7 +12,7 @@ from rocking import checks
 from rocking.conventions import BoolArray, FloatArray
 from rocking.dynamics.engine import Arrays
 from rocking.dynamics.lost_contact import FORCES, contact_words, lost_contact
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import Outcome, of_results, overturned
 from rocking.errors import InvalidValueError
 
 
@@ -148,12 +148,12 @@ class Responses:
         return np.asarray(self.outcome == Outcome.ROCKED.code)
 
     @property
-    def overturned(self) -> BoolArray:
-        """Which histories overturned."""
-        return np.asarray(self.outcome == Outcome.OVERTURNED.code)
+    def overturned(self) -> FloatArray:
+        """1 where it overturned, 0 where it did not, NaN where there is no result [-]."""
+        return overturned(self.outcome)
 
-    def exceed(self, state: LimitState) -> BoolArray:
-        """Return which histories reached a limit state; failed ones did not.
+    def exceed(self, state: LimitState) -> FloatArray:
+        """Return which histories reached a limit state; no result is neither.
 
         Parameters
         ----------
@@ -162,15 +162,15 @@ class Responses:
 
         Returns
         -------
-        ndarray of bool
-            One entry a history.
+        ndarray
+            1 for those that did, 0 for those that did not, NaN for those without a result [-].
         """
         if state.level == 0.0:
-            return self.rocked | self.overturned
+            return of_results(self.outcome, self.rocked | (self.overturned == 1.0))
         if math.isinf(state.level):
             return self.overturned
         with np.errstate(invalid="ignore"):
-            return np.asarray(self.rotation > state.level)
+            return of_results(self.outcome, self.rotation > state.level)
 
     def labelled(self, dimensions: Any) -> dict[str, Any]:
         """Return outcome and rotation as variables of a labelled dataset.

@@ -70,7 +70,7 @@ class StripeAnalysis:
     @cached_property
     def counts(self) -> dict[str, IntArray]:
         """Number of motions that reach each state, by name of the state, at each level."""
-        return {s.name: self.responses.exceed(s).sum(axis=0, dtype=np.int64) for s in self.states}
+        return {s.name: np.sum(self.responses.exceed(s) == 1.0, axis=0, dtype=np.int64) for s in self.states}
 
     @property
     def _levels(self) -> FloatArray:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.studies.fragility.states import Responses
+from rocking.studies.fragility.states import LimitState, Responses
 from rocking.studies.fragility.subject import Subject
 
 
@@ -62,5 +62,5 @@ def uplift_check(subject: Subject, levels: FloatArray, responses: Responses) -> 
     if threshold is None:
         return UpliftCheck(None, 0, 0)
     clear = responses.good & (np.abs(levels / threshold - 1.0) > 1e-9)
-    rocked = responses.rocked | responses.overturned
+    rocked = responses.exceed(LimitState("rocking", 0.0))
     return UpliftCheck(threshold, int(clear.sum()), int((clear & (rocked != (levels > threshold))).sum()))

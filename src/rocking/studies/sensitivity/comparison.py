@@ -281,7 +281,7 @@ def _curve(fit: Any) -> tuple[float, float]:
 def _reached(analysis: Any, state: str) -> np.ndarray:
     """Return which histories reached a state; NaN for those that failed."""
     wanted = next(s for s in analysis.states if s.name == state)
-    return np.where(analysis.responses.good, analysis.responses.exceed(wanted), np.nan)
+    return np.asarray(analysis.responses.exceed(wanted))
 
 
 def _plain(state: str, change: CurveChange | str) -> dict[str, Any]:
