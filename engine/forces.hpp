@@ -9,21 +9,29 @@
 namespace rocking {
 namespace ROCKING_ISA {
 
-// Forces that are beyond those so far, times the square of p times the step.
+// Lanes of a group whose forces were beyond those so far where their last step started.
 ROCKING_KERNEL
-void Kernel<G, U, N, D, Z, L>::note_forces(int at, Mask where, Pack up, Pack along, Pack square) {
-    const Pack ratio = select(up > Pack(0.0), abs(along) / up, Pack(std::numeric_limits<double>::infinity()));
-    min(Pack::load(least + at), up / square).store_where(where, least + at);
-    max(Pack::load(demand + at), ratio).store_where(where, demand + at);
+void Kernel<G, U, N, D, Z, L>::note_forces(int base, Bits beats) {
+    const double *s = reinterpret_cast<double*>(sines), *c = reinterpret_cast<double*>(cosines);
+    const double *h = reinterpret_cast<double*>(spans), *push = reinterpret_cast<double*>(b[0]), *lift = reinterpret_cast<double*>(z[0]);
+    for (; beats; beats &= beats - 1) {
+        const int k = lowest(beats), i = base + k;
+        double sine = s[k], cosine = c[k];
+        if (L) sine_cosine(std::max(sine, -kHalfPi), sine, cosine);
+        const double square = kappa[i] * h[k] * h[k], spin = fresh[0][k] * fresh[0][k], half = 0.5 * lever[i];
+        const double up = fma(half, fma(fresh[1][k], sine, spin * cosine), Z ? fma(lift[k], square, square) : square);
+        const double along = fma(half, fma(fresh[1][k], cosine, -spin * sine), push[k] * square);
+        note_force(i, up, std::fabs(along), square);
+    }
 }
 
 // The same of one lane, at a speed per stretch, under a push s a_x / g and a weight 1 + a_z / g.
 ROCKING_KERNEL
 ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::force_at(int i, double sine, double cosine, double speed, double push, double weight) {
-    const double q = lanes[i].q[lanes[i].side < 0], square = kappa[i], spin = speed * speed;
-    const double moment = square * (L ? weight * std::asin(sine) + push : weight * sine + push * cosine);
-    const double up = square * weight - q * (moment * sine + spin * cosine);
-    const double along = std::fabs(square * push - q * (moment * cosine - spin * sine));
+    const double half = 0.5 * lever[i], square = kappa[i], spin = speed * speed;
+    const double moment = square * (L ? fma(weight, std::asin(sine), push) : fma(weight, sine, push * cosine));
+    const double up = fma(square, weight, half * fma(moment, sine, spin * cosine));
+    const double along = std::fabs(fma(square, push, half * fma(moment, cosine, -spin * sine)));
     if ((up < least[i] * square) | (along > demand[i] * up)) note_force(i, up, along, square);
 }
 
@@ -36,9 +44,7 @@ void Kernel<G, U, N, D, Z, L>::note_force(int i, double up, double along, double
 // Just before an impact.
 ROCKING_KERNEL
 ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::touch(int i, double speed, double push, double weight) {
-    double sine = here(i).sine, cosine = here(i).cosine;
-    if (L) sine_cosine(here(i).alpha, sine, cosine);
-    force_at(i, sine, cosine, speed, push, weight);
+    force_at(i, sine_of[i], cosine_of[i], speed, push, weight);
 }
 
 // Push s a_x / g and weight 1 + a_z / g at a place within the stretch.
@@ -47,7 +53,7 @@ ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::ground_at(int i, double to, double
     const double* a = motions.data + idx[i];
     constexpr int hop = D == 1 ? stride : 0;
     push = ca[i] * (D == 1 ? a[0] + (a[hop] - a[0]) * to : value_of<D>(a, to));
-    weight = Z ? 1.0 + lanes[i].az * (a[1] + (a[hop + 1] - a[1]) * to) : 1.0;
+    weight = Z ? 1.0 + cz[i] * (a[1] + (a[hop + 1] - a[1]) * to) : 1.0;
 }
 
 // Where a body passes over its foot, at a place within the stretch: all that counts if it does so for good.

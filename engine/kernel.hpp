@@ -42,10 +42,11 @@ class Kernel {
     // state of the lanes; unused ones stay at rest on stretch zero. `peak` is a height that the body has had: points that are
     // not above it are of no interest. It may lie below the highest point by what a step adds.
     alignas(64) double u[W], v[W], tau[W], sub[W], kappa[W], ca[W], cz[W], alpha[W], peak[W], err[W], fastest[W], gate[W];
-    // Forces of the ground so far: the least normal one over m g, the largest ratio of horizontal to normal; -2 m R^2 / I_o.
-    alignas(64) double least[W], demand[W], lever[W];
+    // Forces of the ground so far: the least normal one over m g, the largest ratio of horizontal to normal; of the foot on
+    // which it stands -2 m R^2 / I_o, and sine and cosine of alpha.
+    alignas(64) double least[W], demand[W], lever[W], sine_of[W], cosine_of[W];
     alignas(64) std::int64_t idx[W], last[W];
-    alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U];
+    alignas(64) Pack b[D + 1][U], z[2][U], sines[U], cosines[U], spans[U];  // of the steps of a group
     alignas(64) double u_end[W], v_end[W];   // where the last step ends
     alignas(64) double fresh[N + 1][U * P];  // terms of the steps that a group has just made
     alignas(64) double queued[N + 1][W + M * P] = {};  // the same of the lanes that may touch the ground
@@ -160,7 +161,7 @@ class Kernel {
     void raise_peak(const Top& top, double at, double y);
     void raise_peak(int i, double y, double time);
     bool has_tops(int i) const;
-    ROCKING_APART void note_forces(int at, Mask where, Pack up, Pack along, Pack square);
+    ROCKING_APART void note_forces(int base, Bits beats);
     ROCKING_INLINE void force_at(int i, double sine, double cosine, double speed, double push, double weight);
     void force_at_end(int i);
     ROCKING_APART void note_force(int i, double up, double along, double square);

@@ -61,8 +61,8 @@ void Kernel<G, U, N, D, Z, L>::close_ranks() {
 
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::move_lane(int from, int to) {
-    for (double* value : {u, v, tau, sub, kappa, ca, cz, alpha, peak, err, fastest, gate, least, demand, lever, least_before,
-                          demand_before})
+    for (double* value : {u, v, tau, sub, kappa, ca, cz, alpha, peak, err, fastest, gate, least, demand, lever, sine_of,
+                          cosine_of, least_before, demand_before})
         value[to] = value[from];
     for (std::int64_t* value : {idx, last}) value[to] = value[from];
     lanes[to] = lanes[from];

@@ -49,6 +49,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
         if (L) sines[r] = angle;
         else sine_cosine(angle, sines[r], cosines[r]);
     }
+    Bits beats = 0;
     flagged = near = 0;
     ROCKING_ROLLED
     for (int r = 0; r < count; r += Q) {
@@ -56,7 +57,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
         Pack more[Q], size[Q], sway[Q];  // sums over the terms from V2 on: of rotation, of its bows, of velocity
         ROCKING_SIDE_BY_SIDE {
             const int at = base + (r + j) * P;
-            h[j] = step_of(at);
+            h[j] = spans[r + j];
             qh[j] = Pack::load(kappa + at) * h[j] * h[j];
             V[0][j] = Pack::load(v + at) * h[j];
             V[0][j].store(&fresh[0][(r + j) * P]);
@@ -134,8 +135,8 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
                 up = fnma(minus, C[2][j], up);
                 along = fma(minus, S[2][j], along);
             }
-            const Mask beats = (up < Pack::load(least + at) * qh[j]) | (abs(along) > Pack::load(demand + at) * up);
-            if (beats.bits()) note_forces(at, beats, up, along, qh[j]);
+            const Mask beyond_so_far = (up < Pack::load(least + at) * qh[j]) | (abs(along) > Pack::load(demand + at) * up);
+            beats |= static_cast<Bits>(beyond_so_far.bits()) << col;
 
             const Pack t1 = t0 + h[j];
             const Mask done = t1 >= Pack(kWhole);
@@ -158,6 +159,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
         }
     }
     near &= flagged;
+    if (beats) note_forces(base, beats);
     if (trace && lanes[0].row >= 0 && !(flagged & 1) && tau[0] == 0.0) sample(0);
 }
 
@@ -167,6 +169,7 @@ void Kernel<G, U, N, D, Z, L>::forcing(int base, int j) {
     const double* data = motions.data;
     const std::int64_t* where = idx + base;
     const Pack c = Pack::load(ca + base + j * P), t0 = Pack::load(tau + base + j * P), h = step_of(base + j * P);
+    spans[j] = h;
     if (D == 1) {
         constexpr int hop = Z ? 2 : 1;
         Pack a, da, g, dg;

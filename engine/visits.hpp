@@ -164,6 +164,9 @@ void Kernel<G, U, N, D, Z, L>::stand(int i) {
     kappa[i] = s.kappa;
     ca[i] = s.push;
     lever[i] = -2.0 * lanes[i].q[lanes[i].side < 0];
+    sine_of[i] = s.sine;
+    cosine_of[i] = s.cosine;
+    if (L) sine_cosine(s.alpha, sine_of[i], cosine_of[i]);
 }
 
 ROCKING_KERNEL
