@@ -46,13 +46,13 @@ struct Motions {
     void find_ranges();
 };
 
-// How an impact changes the velocity: r = r_side * table(speed), or r_side * quantile(random number).
+// How an impact changes the velocity: r = r_side * table(speed), or r_side * quantile_side(share_side * random number).
 enum class LawKind : int { constant = 0, of_speed = 1, random = 2 };
 struct Law {
     LawKind kind = LawKind::constant;
-    std::vector<double> at, value;
+    std::vector<double> at, value[2];  // of landing on the right, on the left
     std::uint64_t seed = 0;
-    double largest = 1.0;
+    double largest[2] = {1.0, 1.0};
 };
 
 struct Event {
@@ -71,6 +71,7 @@ struct Trace {
 struct Rows {
     std::int64_t count;
     const double *alpha_right, *alpha_left, *p_right, *p_left, *r_right, *r_left, *q_right, *q_left;
+    const double* share[2];  // of the probability of a random law that a side draws from: what lies beyond creates energy
     const double *scale, *rotation, *velocity;
     const std::int64_t *motion, *key;
     // results

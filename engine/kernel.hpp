@@ -191,7 +191,7 @@ class Kernel {
     bool window(int i, std::int64_t stretches, double most_varies, Window& w) const;
     bool comes_to_rest(int i, double after) const;
 
-    double largest(const Side& s) const { return law.kind == LawKind::constant ? s.r : s.r * law.largest; }
+    double largest(int i, int side) const;
     void rest(int i);
     void await(int i, std::int64_t at);
     std::int64_t first_loud(std::int64_t at, std::int64_t end, double scale, double calm) const;

@@ -87,11 +87,15 @@ static Law law_of(int kind, In<double> at, In<double> value, std::uint64_t seed)
     Law law;
     law.kind = static_cast<LawKind>(kind);
     law.at.assign(at.data(), at.data() + at.size());
-    law.value.assign(value.data(), value.data() + value.size());
     law.seed = seed;
-    if (law.kind != LawKind::constant) {
-        if (law.at.empty() || law.at.size() != law.value.size()) throw std::invalid_argument("a law needs a table");
-        law.largest = *std::max_element(law.value.begin(), law.value.end());
+    if (law.kind == LawKind::constant) return law;
+    // one table serves both sides, or that of the right is followed by that of the left
+    const std::size_t size = law.at.size(), left = value.size() == 2 * size ? size : 0;
+    if (size == 0 || value.size() != left + size) throw std::invalid_argument("a law needs a table");
+    for (int side = 0; side < 2; ++side) {
+        const double* first = value.data() + (side ? left : 0);
+        law.value[side].assign(first, first + size);
+        law.largest[side] = *std::max_element(first, first + size);
     }
     return law;
 }
@@ -122,6 +126,8 @@ static Rows rows_of(const nb::dict& in, const nb::dict& out) {
     rows.r_left = number("r_left");
     rows.q_right = number("q_right");
     rows.q_left = number("q_left");
+    rows.share[0] = number("share_right");
+    rows.share[1] = number("share_left");
     rows.scale = number("scale");
     rows.rotation = number("rotation");
     rows.velocity = number("velocity");

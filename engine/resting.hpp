@@ -122,7 +122,7 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     if (after <= kNothing * unit) return true;  // what is left is below all digits that count
     if (!(after <= set.rest * unit)) return false;
     holding(i, -lane.side, at, d);
-    const double across = value_of<D>(d, tau[i]), r = largest(s), q = largest(o), lost = 1.0 - r * q;
+    const double across = value_of<D>(d, tau[i]), r = largest(i, lane.side < 0), q = largest(i, lane.side > 0), lost = 1.0 - r * q;
     const double one = s.p * s.p * lane.step * lane.step, other = o.p * o.p * lane.step * lane.step;
     // the flights under the moments of now, as a guess of the time they take
     const double flights = 2.0 * after * (other * across + q * one * held), rate = one * held * (other * across) * lost;

@@ -81,6 +81,8 @@ bool Kernel<G, U, N, D, Z, L>::valid(const Rows& r, std::int64_t k, std::size_t 
         if (q[k] <= 0.0 || q[k] > 1.000001) return false;  // NaN is not known: nor are the forces then
     for (const double* e : {r.r_right, r.r_left})
         if (!(e[k] >= 0.0 && e[k] <= 100.0)) return false;
+    for (const double* share : r.share)
+        if (!(share[k] > 0.0 && share[k] <= 1.0)) return false;
     return std::fabs(r.scale[k]) <= 1e9 && std::fabs(r.rotation[k]) < kHalfPi && std::fabs(r.velocity[k]) < 1e9 &&
            r.motion[k] >= 0 && r.motion[k] < static_cast<std::int64_t>(motions);
 }

@@ -150,10 +150,22 @@ ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::coefficient(int i, double speed) const {  // [rad per stretch]
     const Lane& lane = lanes[i];
     const double r = here(i).r;
-    if (law.kind == LawKind::of_speed) return r * interpolated(law.at, law.value, speed / lane.step);
-    if (law.kind == LawKind::random)
-        return r * interpolated(law.at, law.value, uniform(law.seed, rows.key[lane.row], lane.impacts));
+    const int side = lane.side < 0;
+    if (law.kind == LawKind::of_speed) return r * interpolated(law.at, law.value[side], speed / lane.step);
+    if (law.kind == LawKind::random) {
+        const double drawn = uniform(law.seed, rows.key[lane.row], lane.impacts);
+        return r * interpolated(law.at, law.value[side], rows.share[side][lane.row] * drawn);
+    }
     return r;
+}
+
+// Of all coefficients that landing on a side may meet.
+ROCKING_KERNEL
+double Kernel<G, U, N, D, Z, L>::largest(int i, int side) const {
+    const double r = lanes[i].sides[side].r;
+    if (law.kind == LawKind::constant) return r;
+    if (law.kind == LawKind::of_speed) return r * law.largest[side];
+    return r * interpolated(law.at, law.value[side], rows.share[side][lanes[i].row]);
 }
 
 // Lane variables of the side on which the body stands.

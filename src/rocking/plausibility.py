@@ -8,7 +8,7 @@ import sys
 import warnings
 from collections.abc import Iterable
 
-from rocking.errors import PlausibilityWarning
+from rocking.errors import InvalidValueError, PlausibilityWarning
 
 CENTRE_HEIGHTS = 0.025, 50.0
 """Half the heights of the smallest and largest things that are studied [m]: specimens 5 cm high; towers of 100 m."""
@@ -30,6 +30,9 @@ LONGEST_STEP = 0.2
 
 LEAST_COEFFICIENT = 0.25
 """Housner's coefficient of a block as wide as it is high; the least that was measured is 0.67, at h/b = 1.5 [-]."""
+
+MOST_CUT = 0.05, 0.999
+"""Probability of a distribution beyond the energy bound that is cut off without a word, and that is not refused [-]."""
 
 
 def of_body(centre_height: float, slenderness: float, densities: Iterable[float]) -> tuple[str, ...]:
@@ -150,6 +153,42 @@ def of_coefficient(value: float) -> tuple[str, ...]:
     return (
         f"a coefficient of restitution of {value:.4g} is less than {LEAST_COEFFICIENT:g}, that of a block as wide as "
         "high; is it what is lost, or a ratio of energies?",
+    )
+
+
+def of_truncation(cut: float, onto: str, most: float) -> tuple[str, ...]:
+    """Return the doubt about a distribution of the coefficient of which much would create energy.
+
+    Parameters
+    ----------
+    cut : float
+        Probability that is cut off [-].
+    onto : str
+        The foot on which the body lands.
+    most : float
+        The largest coefficient that creates no energy there [-].
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none.
+
+    Raises
+    ------
+    InvalidValueError
+        If next to nothing is left of it.
+    """
+    if not cut <= MOST_CUT[1]:
+        raise InvalidValueError(
+            f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], and {100.0 * cut:.4g} % "
+            "of the distribution that it is drawn from is outside: the impact would create energy; is it meant for "
+            "another body, or given in percent?"
+        )
+    if cut <= MOST_CUT[0]:
+        return ()
+    return (
+        f"{100.0 * cut:.3g} % of the distribution of the coefficient of restitution onto the {onto} foot lies outside "
+        f"[0, {most:.4g}], where an impact would create energy, and is cut off; is it meant for another body?",
     )
 
 

@@ -48,7 +48,7 @@ def _no_hang() -> Iterator[None]:
 def ordinary(count: int, seed: int) -> dict[str, Any]:
     """Rows that every engine can compute."""
     random = np.random.default_rng([77, seed])
-    ranges = {"alpha": (0.08, 0.6), "p": (0.8, 6.0), "r": (0.1, 0.97)}
+    ranges = {"alpha": (0.08, 0.6), "p": (0.8, 6.0), "r": (0.1, 0.97), "share": (0.3, 1.0)}
     values = {f"{name}_{side}": random.uniform(*ranges[name], count) for name in ranges for side in ("right", "left")}
     motion = {"scale": random.uniform(0.2, 2.0, count), "rotation": random.uniform(-0.05, 0.05, count)}
     return values | motion | {"velocity": random.uniform(-0.1, 0.1, count)}
@@ -149,12 +149,14 @@ def extreme(random: np.random.Generator, count: int) -> dict[str, Any]:
     angle = (1e-300, 1e-12, 1e-6, HALF_PI, np.nextafter(HALF_PI, 0.0), HALF_PI - 1e-9, 1.5, math.pi, 0.0, -0.1, 5e-324)
     speed = (1e-9, 1.0000001e-9, 1e9, 9.99e8, 0.0, -1.0, 1e300, 1e-300)
     ratio = (0.0, 1.0, 1.0 + 1e-15, 100.0, 100.1, -0.0, -1e-300, 2.0, 1e-300)
+    share = (0.0, 1.0, 1.0 + 1e-15, 5e-324, -0.0, -1.0)
     odd = {
         f"{key}_{side}": pick(*special, low=low, high=high)
         for key, special, low, high in (
             ("alpha", angle, -20.0, 0.3),
             ("p", speed, -10.0, 10.0),
             ("r", ratio, -9.0, 2.5),
+            ("share", share, -9.0, 0.3),
         )
         for side in ("right", "left")
     }
@@ -192,7 +194,8 @@ def test_pathological_parameters(name: str, linear: bool) -> None:
     valid = (which >= 0) & (which < len(motions)) & (np.abs(values["scale"]) <= 1e9)
     valid &= (np.abs(values["rotation"]) < HALF_PI) & (np.abs(values["velocity"]) < 1e9)
     for side in ("right", "left"):
-        alpha, p, r = (values[f"{key}_{side}"] for key in ("alpha", "p", "r"))
+        alpha, p, r, share = (values[f"{key}_{side}"] for key in ("alpha", "p", "r", "share"))
+        valid &= (share > 0.0) & (share <= 1.0)
         valid &= (alpha > 0.0) & (alpha < HALF_PI) & (p > 1e-9) & (p < 1e9) & (r >= 0.0) & (r <= 100.0)
     assert np.array_equal(found["status"] == Status.INVALID.code, ~valid)
     assert 0.15 < valid.mean() < 0.85

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import FEET, FloatArray
 from rocking.dynamics import engine as fast_engine
-from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
+from rocking.dynamics.impact_law import ConstantRestitution, DrawnRestitution, ImpactLaw
 from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.rocker import Rocker, RockingSide
 from rocking.dynamics.settings import Settings
@@ -22,15 +22,19 @@ PIECE = 1 << 16
 
 _CHUNK = 64
 ROWS = (
-    "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "q_right", "q_left", "scale",
-    "rotation", "velocity",
+    "alpha_right", "alpha_left", "p_right", "p_left", "r_right", "r_left", "q_right", "q_left",
+    "share_right", "share_left", "scale", "rotation", "velocity",
 )  # fmt: skip
 """Numbers that make a history, beside the number of its motion and its key."""
 
 SIDES = (
     ("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"), ("q", "inertia_ratio"),
+    ("share", "share"),
 )  # fmt: skip
 """What rows call the properties of a `RockingSide`."""
+
+SIDES_UNTOLD = {"q_right": np.nan, "q_left": np.nan, "share_right": 1.0, "share_left": 1.0}
+"""What is taken where a side is not told whole: forces of the ground are not known, draws are from all of a law."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +44,8 @@ class Rows:
     Parameters
     ----------
     values : dict of str to ndarray
-        The keys of `ROWS` [rad, rad/s, -, -, -, rad, rad/s]; q is m R^2 / I_o of a side.
+        The keys of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s]; q is m R^2 / I_o of a side, share the part of
+        a distribution that its coefficient is drawn from.
     motion : ndarray of int
         Number of the motion.
     key : ndarray of int
@@ -64,7 +69,7 @@ class Rows:
         key : array_like of int, optional
             Number of the history; 0, 1, ... if not given.
         **values
-            The keys of `ROWS`; scale is 1, rotation and velocity 0, q unknown if not given:
+            The keys of `ROWS`; scale and share are 1, rotation and velocity 0, q unknown if not given:
             forces of the ground are then not known either.
 
         Returns
@@ -77,7 +82,7 @@ class Rows:
         InvalidValueError
             If a key is missing or unknown, or an array does not fit the count.
         """
-        given = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0, "q_right": np.nan, "q_left": np.nan} | values
+        given = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0} | SIDES_UNTOLD | values
         if set(given) != set(ROWS):
             odd = sorted(set(given) ^ set(ROWS))
             raise InvalidValueError(f"rows have {', '.join(ROWS)}; missing or unknown: {', '.join(odd)}")
@@ -158,7 +163,7 @@ class Batch:
             raise InvalidValueError(f"progress must be a function of the histories done, or None, got {given!r:.60}")
         _check_threads(threads)
         if self.law.per_history:
-            return self._constant.run(count, lambda first, last: _drawn(rows(first, last), self.law), progress, threads)
+            return self._constant.run(count, lambda a, b: drawn_rows(rows(a, b), self.law), progress, threads)
         quick = fast_engine.chosen(self.engine, self.law) == "fast"
         self._check_order(quick=quick)
         results = fast_engine.empty_results(count)
@@ -213,7 +218,8 @@ class Batch:
         from rocking.dynamics.reference import Reference
 
         sides = [
-            RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"], row[f"q_{s}"]) for s in ("right", "left")
+            RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"], row[f"q_{s}"], row[f"share_{s}"])
+            for s in ("right", "left")
         ]
         reference = Reference(
             Rocker(sides[0], sides[1], self.law, ""), self.motions[motion], self.settings,
@@ -248,13 +254,32 @@ def valid_row(row: dict[str, float]) -> bool:
     frequencies = all(1e-9 < row[f"p_{s}"] < 1e9 for s in ("right", "left"))
     levers = not any(row[f"q_{s}"] <= 0.0 or row[f"q_{s}"] > 1.000001 for s in ("right", "left"))
     coefficients = all(0.0 <= row[f"r_{s}"] <= 100.0 for s in ("right", "left"))
+    shares = all(0.0 < row[f"share_{s}"] <= 1.0 for s in ("right", "left"))
     motion = abs(row["scale"]) <= 1e9 and abs(row["rotation"]) < half_pi and abs(row["velocity"]) < 1e9
-    return bool(angles and frequencies and levers and coefficients and motion)
+    return bool(angles and frequencies and levers and coefficients and shares and motion)
 
 
-def _drawn(rows: Rows, law: ImpactLaw) -> Rows:
-    factor = law.draws(rows.key)
-    return replace(rows, values=rows.values | {name: rows.values[name] * factor for name in ("r_right", "r_left")})
+def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:
+    """Return rows whose coefficients are multiplied by the draws of a law that draws once for every history.
+
+    Parameters
+    ----------
+    rows : Rows
+        With what the draws multiply.
+    law : ImpactLaw
+        The law.
+
+    Returns
+    -------
+    Rows
+        The same with the coefficients of the histories.
+    """
+    draws: Any = law.draws
+    drawn = {}
+    for foot in FEET:
+        where = (foot, rows.values[f"share_{foot}"]) if isinstance(law, DrawnRestitution) and law.truncates else ()
+        drawn[f"r_{foot}"] = rows.values[f"r_{foot}"] * draws(rows.key, *where)
+    return replace(rows, values=rows.values | drawn)
 
 
 def _check_threads(threads: object) -> None:

@@ -260,7 +260,7 @@ def common(settings: Settings, law: ImpactLaw) -> Arrays:
         Keyword arguments.
     """
     return {
-        "kind": law.kind, "at": law.at, "value": law.factors, "seed": law.seed,
+        "kind": law.kind, "at": law.at, "value": law.factors.ravel(), "seed": law.seed,
         "gravity": settings.gravity, "longest_step": settings.longest_step, "rest": settings.rest_speed,
         "most_impacts": settings.most_impacts, "linear": settings.linear, "isa": instruction_set(),
     }  # fmt: skip

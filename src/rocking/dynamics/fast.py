@@ -50,6 +50,7 @@ def run_fast(
         "p_right": rocker.right.frequency_parameter, "p_left": rocker.left.frequency_parameter,
         "q_right": rocker.right.inertia_ratio, "q_left": rocker.left.inertia_ratio,
         "r_right": rocker.right.coefficient, "r_left": rocker.left.coefficient,
+        "share_right": rocker.right.share, "share_left": rocker.left.share,
         "scale": scale, "rotation": rotation, "velocity": velocity,
     }  # fmt: skip
     rows = {name: np.array([value]) for name, value in values.items()}

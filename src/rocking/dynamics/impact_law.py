@@ -1,17 +1,20 @@
 """How the coefficient of restitution may change from impact to impact: not at all, with speed, or at random."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import FloatArray
+from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics.content import fields_of, hash_of
 from rocking.errors import InvalidValueError
 
 _MASK = (1 << 64) - 1
 _MOST_POINTS = 100_000
+# as of a coefficient: what exceeds the bound of a side is cut off, and that may be above 1 on one of two
+_MOST_BY_SIDE = 10.0
 
 
 class ImpactLaw:
@@ -189,51 +192,52 @@ class SpeedRestitution(ImpactLaw):
 
 
 @dataclass(frozen=True, eq=False)
-class RandomRestitution(ImpactLaw):
-    """A coefficient drawn anew for every impact from a distribution, the same for the same seed, history and impact.
+class DrawnRestitution(ImpactLaw):
+    """A coefficient drawn from a distribution that is known by its quantiles: what all such laws share.
+
+    Of a body on which the largest draws would create energy, a side draws from what lies within its bound:
+    the distribution is truncated, so that the draws are those of r on condition that r is at most the bound. Both
+    sides draw with the same number, so that a large draw on one side is a large one on the other.
 
     Parameters
     ----------
-    factors : array_like
-        Quantiles of the distribution at equally spaced probabilities from 0 to 1 [-].
+    factors : array_like, or mapping of foot to array_like
+        Quantiles of the distribution at equally spaced probabilities from 0 to 1, for both sides or by
+        ``{"left": .., "right": ..}``, each for landing on that foot [-].
     seed : int
         Seed of the draws.
     times : optional
         What they multiply: a coefficient, a model or its name; 1 if not given.
+    cut : (float, float)
+        Probability that the quantiles onto the left and the right foot leave out already, which is then said [-].
 
     Raises
     ------
     InvalidValueError
-        If the quantiles decrease or are outside [0, 1], or the seed is not a whole number from 0 to 2^64 - 1.
-
-    Examples
-    --------
-    >>> law = RandomRestitution.normal(0.9, 0.02, seed=1)
-    >>> law.factor(1.0, 0, 3) == law.factor(2.0, 0, 3) != law.factor(1.0, 0, 4)
-    True
+        If the quantiles decrease or are outside [0, 1], or by side [0, 10], or the seed is not a whole number from 0 to
+        2^64 - 1.
     """
 
     kind: ClassVar[int] = 2
-    factors: FloatArray
+    factors: Any  # an array once checked: a row, or those of the right and the left side
     seed: int
     times: Any = 1.0
-    at: FloatArray = field(default_factory=lambda: np.zeros(1))
+    cut: tuple[float, float] = (0.0, 0.0)
+    at: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
         """Check quantiles and seed."""
-        quantiles = _factors(self.factors, None)
+        quantiles = _by_side(self.factors)
         if np.any(np.diff(quantiles) < 0.0):
             raise InvalidValueError("factors must be quantiles, which never decrease")
         seed: object = self.seed
         if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed <= _MASK:
             raise InvalidValueError(f"seed must be a whole number in [0, 2^64), got {self.seed!r}")
         object.__setattr__(self, "factors", quantiles)
-        object.__setattr__(self, "at", np.linspace(0.0, 1.0, quantiles.size))
+        object.__setattr__(self, "at", np.linspace(0.0, 1.0, quantiles.shape[-1]))
 
     @classmethod
-    def normal(
-        cls, mean: float, deviation: float, *, seed: int, times: Any = 1.0, points: int = 1025
-    ) -> "RandomRestitution":
+    def normal(cls, mean: float, deviation: float, *, seed: int, times: Any = 1.0, points: int = 1025) -> Self:
         """Return draws from a normal distribution cut to [0, 1].
 
         Parameters
@@ -249,8 +253,8 @@ class RandomRestitution(ImpactLaw):
 
         Returns
         -------
-        RandomRestitution
-            The law.
+        DrawnRestitution
+            The law, of the class that is asked.
 
         Raises
         ------
@@ -271,13 +275,13 @@ class RandomRestitution(ImpactLaw):
         return cls(np.clip(mean + deviation * ndtri(inside), 0.0, 1.0), seed, times)
 
     @classmethod
-    def of_sample(cls, values: Any, *, seed: int, times: Any = 1.0) -> "RandomRestitution":
+    def of_sample(cls, values: Any, *, seed: int, times: Any = 1.0) -> Self:
         """Return draws from measured or simulated values, for instance a posterior.
 
         Parameters
         ----------
-        values : array_like
-            Values of the coefficient or factor [-].
+        values : array_like, or mapping of foot to array_like
+            Values of the coefficient or factor, for both sides or by foot [-].
         seed : int
             Seed of the draws.
         times : optional
@@ -285,14 +289,83 @@ class RandomRestitution(ImpactLaw):
 
         Returns
         -------
-        RandomRestitution
-            The law.
+        DrawnRestitution
+            The law, of the class that is asked.
         """
-        sample = _row("values", values, "-")
-        return cls(np.quantile(sample, np.linspace(0.0, 1.0, 1025)), seed, times)
+        if isinstance(values, Mapping):
+            return cls({foot: _quantiles_of(sample) for foot, sample in values.items()}, seed, times)
+        return cls(_quantiles_of(values), seed, times)
+
+    @property
+    def truncates(self) -> bool:
+        """Whether draws beyond an energy bound are cut off; a class of your own may draw otherwise, and is refused."""
+        return type(self).__module__.partition(".")[0] == "rocking"
+
+    def table(self, onto: Foot | None = None) -> FloatArray:
+        """Return the quantiles for landing on a foot.
+
+        Parameters
+        ----------
+        onto : {"left", "right"}, optional
+            The foot, which a law of two tables needs.
+
+        Returns
+        -------
+        ndarray
+            Quantiles at equally spaced probabilities from 0 to 1 [-].
+
+        Raises
+        ------
+        InvalidValueError
+            If the law depends on the foot and none is given.
+        """
+        if self.factors.ndim == 1:
+            return np.asarray(self.factors)
+        if onto is None:
+            raise InvalidValueError("this law draws for each foot from a table of its own: give onto=, left or right")
+        return np.asarray(self.factors[int(checks.foot("onto", onto) == "left")])
+
+    def quantile(self, probability: float, onto: Foot | None = None) -> float:
+        """Return what is not exceeded with a probability.
+
+        Parameters
+        ----------
+        probability : float
+            Probability [-].
+        onto : {"left", "right"}, optional
+            The foot, which a law of two tables needs.
+
+        Returns
+        -------
+        float
+            Coefficient or factor [-].
+        """
+        return interpolated(self.at, self.table(onto), probability)
+
+    def share_within(self, most: float, onto: Foot) -> float:
+        """Return the probability of draws up to a bound.
+
+        Parameters
+        ----------
+        most : float
+            The bound [-].
+        onto : {"left", "right"}
+            The foot on which the body lands.
+
+        Returns
+        -------
+        float
+            Probability [-].
+        """
+        table = self.table(onto)
+        k = int(np.searchsorted(table, most, side="right"))
+        if k in {0, table.size}:
+            return float(k > 0)
+        part = (most - table[k - 1]) / (table[k] - table[k - 1])
+        return float(self.at[k - 1] + (self.at[k] - self.at[k - 1]) * part)
 
     def factor(self, speed: float, key: int, impact: int) -> float:
-        """Return the draw for an impact.
+        """Return the draw for an impact, of a law that is the same for both sides.
 
         Parameters
         ----------
@@ -301,14 +374,66 @@ class RandomRestitution(ImpactLaw):
         key : int
             Number of the history.
         impact : int
-            Impacts that the history has had before.
+            Impacts that the history has had before; not used where all of them share the draw.
 
         Returns
         -------
         float
             Coefficient or factor [-].
         """
-        return interpolated(self.at, self.factors, uniform(self.seed, key, impact))
+        return self.draw(key, impact)
+
+    def draw(self, key: int, impact: int, onto: Foot | None = None, share: float = 1.0) -> float:
+        """Return the draw for an impact on a foot, from the lowest part of the distribution.
+
+        Parameters
+        ----------
+        key : int
+            Number of the history.
+        impact : int
+            Impacts that the history has had before; not used where all of them share the draw.
+        onto : {"left", "right"}, optional
+            The foot, which a law of two tables needs.
+        share : float
+            Probability of that part: 1 for the whole distribution [-].
+
+        Returns
+        -------
+        float
+            Coefficient or factor [-].
+        """
+        return self.quantile(share * uniform(self.seed, key, 0 if self.per_history else impact), onto)
+
+
+class RandomRestitution(DrawnRestitution):
+    """A coefficient drawn anew for every impact from a distribution, the same for the same seed, history and impact.
+
+    Draws that would create energy are cut off, for each side at its own bound: see `DrawnRestitution`.
+
+    Parameters
+    ----------
+    factors : array_like, or mapping of foot to array_like
+        Quantiles of the distribution at equally spaced probabilities from 0 to 1, for both sides or by
+        ``{"left": .., "right": ..}`` [-].
+    seed : int
+        Seed of the draws.
+    times : optional
+        What they multiply: a coefficient, a model or its name; 1 if not given.
+    cut : (float, float)
+        Probability that the quantiles onto the left and the right foot leave out already [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If the quantiles decrease or are outside [0, 1], or by side [0, 10], or the seed is not a whole number from 0 to
+        2^64 - 1.
+
+    Examples
+    --------
+    >>> law = RandomRestitution.normal(0.9, 0.02, seed=1)
+    >>> law.factor(1.0, 0, 3) == law.factor(2.0, 0, 3) != law.factor(1.0, 0, 4)
+    True
+    """
 
 
 def interpolated(at: FloatArray, values: FloatArray, x: float) -> float:
@@ -369,10 +494,35 @@ def _row(name: str, values: Any, unit: str) -> FloatArray:
     return row
 
 
-def _factors(values: Any, size: int | None) -> FloatArray:
+def _factors(values: Any, size: int | None, most: float = 1.0) -> FloatArray:
     row = _row("factors", values, "-")
     if size is not None and row.size != size:
         raise InvalidValueError(f"factors must be as many as the speeds, {size}, got {row.size}")
-    if row.min() < 0.0 or row.max() > 1.0:
-        raise InvalidValueError(f"factors must be in [0, 1], got {row.min():g} to {row.max():g}")
+    if row.min() < 0.0 or row.max() > most:
+        raise InvalidValueError(f"factors must be in [0, {most:g}], got {row.min():g} to {row.max():g}")
     return row
+
+
+def _by_side(values: Any) -> FloatArray:
+    """Quantiles as a row, or as two where the sides differ, that of the right first, of which one may exceed 1."""
+    if not isinstance(values, Mapping):
+        stacked = isinstance(values, np.ndarray) and values.ndim == 2 and len(values) == 2
+        return _two_rows(values) if stacked else _factors(values, None)
+    if set(values) != set(FEET):
+        raise InvalidValueError(f'factors by side are {{"left": .., "right": ..}}, got {values!r:.60}')
+    return _two_rows([values["right"], values["left"]])
+
+
+def _two_rows(values: Any) -> FloatArray:
+    right, left = (_factors(row, None, _MOST_BY_SIDE) for row in values)
+    if right.size != left.size:
+        raise InvalidValueError(f"factors must be as many for both sides, got {left.size} left and {right.size} right")
+    if np.array_equal(right, left):
+        return right
+    both = np.stack([right, left])
+    both.setflags(write=False)
+    return both
+
+
+def _quantiles_of(values: Any) -> FloatArray:
+    return np.quantile(_row("values", values, "-"), np.linspace(0.0, 1.0, 1025))

@@ -282,13 +282,7 @@ class Reference:
         return (self.stretch + self.tau) * self.push.step
 
     def _coefficient(self, speed: float) -> float:
-        law = self.rocker.law
-        factor = law.factor(speed, self.key, self.impacts)
-        if not 0.0 <= factor <= law.largest:
-            raise InvalidValueError(
-                f"{type(law).__name__}.factor must be in [0, {law.largest:g}], its largest, got {factor!r}"
-            )
-        return self.rocker.side(self.side).coefficient * factor
+        return self.rocker.coefficient(self.side, speed, self.key, self.impacts)
 
     def _ground_at(self, stretch: int, tau: float) -> tuple[float, float]:
         """Push towards the side on which it stands, and weight, over gravity."""

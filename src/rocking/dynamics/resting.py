@@ -50,7 +50,7 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     # all in units of stretches; the flights under the moments of now, as a guess of the time they take
     step = ground.push.step
     one, two = ((k.frequency_parameter * step) ** 2 for k in (side, other))
-    r, q = (k.coefficient * rocker.law.largest for k in (side, other))
+    r, q = rocker.largest(sign), rocker.largest(-sign)
     speed, lost = after * step, 1.0 - r * q
     flights, rate = 2.0 * speed * (two * across + q * one * held), one * held * (two * across) * lost
     if not flights < _LONGEST_WINDOW * rate:

@@ -1,19 +1,20 @@
 """A body as the equations of motion see it: angle, frequency parameter and coefficient on either side."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from rocking import checks, plausibility
 from rocking.bodies import Body
-from rocking.conventions import FEET
-from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
+from rocking.conventions import FEET, Foot
+from rocking.dynamics.impact_law import ConstantRestitution, DrawnRestitution, ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
+from rocking.restitution.implied import energy_bound
 
 # rounding in I_O and r together
 _ROUNDING = 1e-9
+_SAID = 1e-4
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,8 @@ class RockingSide:
         theta_dot_after / theta_dot_before when the body lands on this side [-].
     inertia_ratio : float
         m R^2 / I_o, with the moment of inertia I_o about the foot; 3/4 for a rectangle [-].
+    share : float
+        Lowest part of a distribution from which its law draws: 1, less where the rest would create energy [-].
     """
 
     slenderness_angle: float
@@ -39,6 +42,7 @@ class RockingSide:
     semi_diagonal: float
     coefficient: float
     inertia_ratio: float = 0.75
+    share: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -75,6 +79,58 @@ class Rocker:
         """
         return self.right if sign > 0.0 else self.left
 
+    def largest(self, sign: float) -> float:
+        """Return the largest coefficient that landing on a side can meet.
+
+        Parameters
+        ----------
+        sign : float
+            Above zero for the right, below for the left.
+
+        Returns
+        -------
+        float
+            Coefficient [-].
+        """
+        side, law = self.side(sign), self.law
+        if isinstance(law, DrawnRestitution) and law.truncates:
+            return side.coefficient * law.quantile(side.share, _foot(sign))
+        return side.coefficient * law.largest
+
+    def coefficient(self, sign: float, speed: float, key: int, impact: int) -> float:
+        """Return the coefficient of an impact.
+
+        Parameters
+        ----------
+        sign : float
+            Above zero for landing on the right, below for the left.
+        speed : float
+            Angular velocity before the impact, without its sign [rad/s].
+        key : int
+            Number of the history.
+        impact : int
+            Impacts that the history has had before.
+
+        Returns
+        -------
+        float
+            theta_dot_after / theta_dot_before [-].
+
+        Raises
+        ------
+        InvalidValueError
+            If a law of one's own gives a factor outside its range.
+        """
+        side, law = self.side(sign), self.law
+        if isinstance(law, DrawnRestitution) and law.truncates:
+            return side.coefficient * law.draw(key, impact, _foot(sign), side.share)
+        factor = law.factor(speed, key, impact)
+        if not 0.0 <= factor <= law.largest:
+            raise InvalidValueError(
+                f"{type(law).__name__}.factor must be in [0, {law.largest:g}], its largest, got {factor!r}"
+            )
+        return side.coefficient * factor
+
     @classmethod
     def of_body(cls, body: Body, restitution: Any, gravity: float) -> "Rocker":
         """Return a body with its coefficients of restitution.
@@ -104,20 +160,10 @@ class Rocker:
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients, label = coefficients_of(base, body)
-        if law.kind > 0:
-            how = ("", "of the speed", "at random")[law.kind]
-            label = f"{how}: {law.factors.min():.4g} to {law.largest:.4g} times {label}"
-        elif law.kind < 0:
-            label = f"{type(law).__name__} times {label}"
+        shares = {foot: _share(law, foot, coefficients[foot], energy_bound(body, foot)) for foot in FEET}
+        for foot, share in shares.items():
+            plausibility.warn(plausibility.of_truncation(1.0 - share, foot, energy_bound(body, foot)))
         sides = {foot: body.side(foot, gravity) for foot in FEET}
-        for foot, other in (("left", "right"), ("right", "left")):
-            most = math.sqrt(sides[other].moment_of_inertia / sides[foot].moment_of_inertia)  # type: ignore[index]
-            r = coefficients[foot] * law.largest
-            if r > most * (1.0 + _ROUNDING):
-                raise InvalidValueError(
-                    f"the coefficient of restitution onto the {foot} foot must be in [0, {most:.6g}], got {r:.6g}: "
-                    "the impact would create energy"
-                )
         made = {
             foot: RockingSide(
                 side.slenderness_angle,
@@ -125,10 +171,87 @@ class Rocker:
                 side.semi_diagonal,
                 float(coefficients[foot]),
                 body.mass * side.semi_diagonal**2 / side.moment_of_inertia,
+                shares[foot],
             )
             for foot, side in sides.items()
         }
-        return cls(made["right"], made["left"], law, label)
+        return cls(made["right"], made["left"], law, _label(law, shares, label))
+
+
+def cut_of(law: ImpactLaw, body: Body) -> dict[Foot, float]:
+    """Return what of a law's distribution is cut off for a body, where impacts would create energy.
+
+    Parameters
+    ----------
+    law : ImpactLaw
+        The law.
+    body : Body
+        The body.
+
+    Returns
+    -------
+    dict of str to float
+        Probability by foot; zero for a law that draws nothing [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If a law that cannot be cut would create energy.
+    """
+    coefficients, _ = coefficients_of(getattr(law, "times", 1.0), body)
+    return _cut(law, {foot: _share(law, foot, coefficients[foot], energy_bound(body, foot)) for foot in FEET})
+
+
+def cut_words(cut: Mapping[Foot, float]) -> str:
+    """Return what is cut off of a distribution, in words.
+
+    Parameters
+    ----------
+    cut : dict of str to float
+        Probability by foot [-].
+
+    Returns
+    -------
+    str
+        For the end of a label; nothing where less than a ten-thousandth is cut off.
+    """
+    said = [f"{100.0 * cut[foot]:.2g} % onto {foot}" for foot in FEET if cut[foot] > _SAID]
+    if said and cut["left"] == cut["right"]:
+        said = [f"{100.0 * cut['left']:.2g} %"]
+    return f" (of the distribution {' and '.join(said)} cut off, where impacts would create energy)" if said else ""
+
+
+def _foot(sign: float) -> Foot:
+    return "right" if sign > 0.0 else "left"
+
+
+def _share(law: ImpactLaw, onto: Foot, r: float, most: float) -> float:
+    """Part of a distribution within the energy bound of a side; what cannot be cut there is refused beyond it."""
+    largest = float(law.table(onto)[-1]) if isinstance(law, DrawnRestitution) else law.largest
+    if r * largest <= most * (1.0 + _ROUNDING):
+        return 1.0
+    if isinstance(law, DrawnRestitution) and law.truncates:
+        return law.share_within(most / r, onto)
+    raise InvalidValueError(
+        f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], got {r * largest:.6g}: "
+        "the impact would create energy"
+    )
+
+
+def _cut(law: ImpactLaw, shares: Mapping[Foot, float]) -> dict[Foot, float]:
+    before = law.cut if isinstance(law, DrawnRestitution) else (0.0, 0.0)
+    return {foot: 1.0 - (1.0 - cut) * shares[foot] for foot, cut in zip(FEET, before, strict=True)}
+
+
+def _label(law: ImpactLaw, shares: Mapping[Foot, float], base: str) -> str:
+    """Return the restitution in words, with what is cut off of its distribution."""
+    if law.kind <= 0:
+        return f"{type(law).__name__} times {base}" if law.kind < 0 else base
+    if not isinstance(law, DrawnRestitution):
+        return f"of the speed: {law.factors.min():.4g} to {law.largest:.4g} times {base}"
+    left, right = (f"{law.table(foot)[0]:.4g} to {law.quantile(shares[foot], foot):.4g}" for foot in FEET)
+    ends = left if left == right else f"left {left}, right {right},"
+    return f"at random: {ends} times {base}{cut_words(_cut(law, shares))}"
 
 
 def coefficients_of(restitution: Any, body: Body) -> tuple[dict[str, float], str]:

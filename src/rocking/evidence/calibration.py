@@ -18,10 +18,11 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import FloatArray, Foot, opposite
+from rocking.conventions import FloatArray, Foot
 from rocking.evidence.likelihood import fit_scatter, interval_log_likelihood, scatter
 from rocking.evidence.measurements import DataSet, all_measurements
 from rocking.restitution import Fixed, ImpactGeometry, Interface, RestitutionModel, ShiftedImpulse
+from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 
 CALIBRATED_RANGE = (1.5, 9.75)
@@ -339,9 +340,7 @@ def _fitted(predictions: bytes) -> tuple[float, float]:
 
 def _geometry(body: Body | Any, onto: Foot) -> tuple[ImpactGeometry, FloatArray]:
     if isinstance(body, Body):
-        old, new = body.side(opposite(checks.foot("onto", onto))), body.side(onto)
-        bound = np.sqrt(np.array([old.moment_of_inertia / new.moment_of_inertia]))
-        return ImpactGeometry.of_body(body, onto), bound
+        return ImpactGeometry.of_body(body, onto), np.array([energy_bound(body, onto)])
     ratios = np.atleast_1d(checks.positive_array("slenderness_ratio", body)).ravel()
     return ImpactGeometry.of_slenderness(ratios), np.ones(ratios.shape)
 

@@ -1,19 +1,21 @@
 """What the measurements say about the coefficient of one body, as a distribution to draw from."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.bodies import Block, Body
-from rocking.conventions import FloatArray, Foot, opposite
+from rocking.conventions import FEET, FloatArray, Foot
 from rocking.dynamics.impact_law import RandomRestitution
-from rocking.errors import AsymmetricBodyError, InvalidValueError
+from rocking.errors import InvalidValueError
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration, calibrate
 from rocking.evidence.likelihood import scatter
 from rocking.restitution import ImpactGeometry
+from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 from rocking.studies.sensitivity.sampled import SampledRestitution
 
@@ -22,25 +24,46 @@ _GRID = 2001
 _ROUNDS = 3
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RestitutionDistribution:
     """Posterior predictive distribution of the coefficient of restitution of one body.
 
     It holds both that the parameters of the calibrated model are not known exactly, and that bodies scatter about it.
+    What would create energy is cut off at the bound of each side, and what is below zero there: it is the distribution
+    of r on condition that 0 <= r <= bound, and the probability that was cut off is kept.
 
     Parameters
     ----------
-    quantiles : ndarray
-        Coefficients at equally spaced probabilities from 0 to 1, the outermost a quarter of a step inside [-].
-    symmetric : bool
-        Whether landing on the other foot is the same.
+    tables : dict of str to ndarray
+        By foot, coefficients at equally spaced probabilities from 0 to 1, the outermost a quarter of a step inside [-].
+    cut : dict of str to float
+        By foot, the probability outside [0, bound] that was cut off [-].
+    bounds : dict of str to float
+        By foot, the largest coefficient at which landing on it creates no energy [-].
+    onto : {"left", "right"}
+        The foot of which mean, quantiles and samples are asked.
     extrapolated : bool
         Whether the slenderness is outside what was measured.
     """
 
-    quantiles: FloatArray
-    symmetric: bool
+    tables: Mapping[Foot, FloatArray]
+    cut: Mapping[Foot, float]
+    bounds: Mapping[Foot, float]
+    onto: Foot
     extrapolated: bool
+
+    def __repr__(self) -> str:
+        """Return the numbers that matter, with what was cut off."""
+        cut = ", ".join(f"{foot}={100.0 * self.cut[foot]:.2g} % above {self.bounds[foot]:.6g}" for foot in FEET)
+        return (
+            f"RestitutionDistribution(onto={self.onto!r}, mean={self.mean:.4g}, "
+            f"standard_deviation={self.standard_deviation:.2g}, cut off: {cut}, extrapolated={self.extrapolated})"
+        )
+
+    @property
+    def quantiles(self) -> FloatArray:
+        """Coefficients at equally spaced probabilities from 0 to 1 [-]."""
+        return self.tables[self.onto]
 
     @property
     def mean(self) -> float:
@@ -53,13 +76,15 @@ class RestitutionDistribution:
         moved = (self.quantiles - self.mean) ** 2
         return float(np.sqrt(np.trapezoid(moved, dx=1.0 / (self.quantiles.size - 1))))
 
-    def quantile(self, probability: Any) -> FloatArray:
+    def quantile(self, probability: Any, onto: Foot | None = None) -> FloatArray:
         """Return the coefficients that are not exceeded with given probabilities.
 
         Parameters
         ----------
         probability : float or array_like
             Probabilities in [0, 1] [-].
+        onto : {"left", "right"}, optional
+            The foot on which the body lands, if not that of the distribution.
 
         Returns
         -------
@@ -74,9 +99,10 @@ class RestitutionDistribution:
         p = checks.real_array("probability", probability)
         if not ((p >= 0.0) & (p <= 1.0)).all():
             raise InvalidValueError(f"probability must be in [0, 1], got {probability!r:.60}")
-        return np.interp(p, np.linspace(0.0, 1.0, self.quantiles.size), self.quantiles)
+        table = self.tables[self.onto if onto is None else checks.foot("onto", onto)]
+        return np.interp(p, np.linspace(0.0, 1.0, table.size), table)
 
-    def sample(self, count: int, seed: int) -> FloatArray:
+    def sample(self, count: int, seed: int, onto: Foot | None = None) -> FloatArray:
         """Return coefficients drawn from the distribution.
 
         Parameters
@@ -84,17 +110,21 @@ class RestitutionDistribution:
         count : int
             How many.
         seed : int
-            Seed; the same one gives the same draws.
+            Seed; the same one gives the same draws, and onto both feet those of the same probabilities.
+        onto : {"left", "right"}, optional
+            The foot on which the body lands, if not that of the distribution.
 
         Returns
         -------
         ndarray
             Coefficients [-].
         """
-        return self.quantile(np.random.default_rng(seed).random(int(checks.within("count", count, 0, 1e9))))
+        return self.quantile(np.random.default_rng(seed).random(int(checks.within("count", count, 0, 1e9))), onto)
 
     def per_history(self, seed: int) -> SampledRestitution:
         """Return the restitution of a body whose coefficient is not known: one draw for every history.
+
+        Both sides take it at the same probability: where it is high onto one foot, it is high onto the other.
 
         Parameters
         ----------
@@ -105,13 +135,8 @@ class RestitutionDistribution:
         -------
         SampledRestitution
             For `simulate`, maps, spectra and fragility analyses.
-
-        Raises
-        ------
-        AsymmetricBodyError
-            If the coefficient depends on the side.
         """
-        return SampledRestitution(self._both_sides(), seed)
+        return SampledRestitution(dict(self.tables), seed, cut=(self.cut["left"], self.cut["right"]))
 
     def per_impact(self, seed: int) -> RandomRestitution:
         """Return the restitution of a body whose every impact is another draw.
@@ -125,21 +150,8 @@ class RestitutionDistribution:
         -------
         RandomRestitution
             For `simulate`, maps, spectra and fragility analyses.
-
-        Raises
-        ------
-        AsymmetricBodyError
-            If the coefficient depends on the side.
         """
-        return RandomRestitution(self._both_sides(), seed)
-
-    def _both_sides(self) -> FloatArray:
-        if not self.symmetric:
-            raise AsymmetricBodyError(
-                "the distribution of the coefficient depends on the side of this body, and a draw serves both sides; "
-                "take the quantiles of each side, or a body with equal sides"
-            )
-        return self.quantiles
+        return RandomRestitution(dict(self.tables), seed, cut=(self.cut["left"], self.cut["right"]))
 
 
 def restitution_distribution(
@@ -152,7 +164,7 @@ def restitution_distribution(
     body : Body or float
         A body, or the slenderness ratio h/b of a rectangle [-].
     onto : {"left", "right"}
-        The foot on which it lands.
+        The foot on which it lands, of which quantiles are asked; laws are of both.
     calibration : Calibration, optional
         Posterior of the model; that of all measurements if not given.
 
@@ -177,21 +189,34 @@ def restitution_distribution(
     known: Body = (
         body if isinstance(body, Body) else Block(width=1.0, height=checks.positive("slenderness_ratio", body))
     )
-    old, new = known.side(opposite(checks.foot("onto", onto))), known.side(onto)
-    bound = math.sqrt(old.moment_of_inertia / new.moment_of_inertia)
-    eta, k, s, gamma = posterior.samples.T
-    mean = np.clip(eta * shifted(ImpactGeometry.of_body(known, onto), k), 0.0, bound)
-    quantiles = np.clip(_quantiles(mean, scatter(mean, s, gamma)), 0.0, bound)
+    checks.foot("onto", onto)
     low, high = CALIBRATED_RANGE
-    outside = not all(low <= side.slenderness_ratio <= high for side in (old, new))
-    return RestitutionDistribution(quantiles, known.is_symmetric, outside)
+    outside = not all(low <= known.side(foot).slenderness_ratio <= high for foot in FEET)
+    bounds = {foot: energy_bound(known, foot) for foot in FEET}
+    feet = (onto,) if known.is_symmetric else FEET
+    found = {foot: _truncated(posterior, ImpactGeometry.of_body(known, foot), bounds[foot]) for foot in feet}
+    for foot, (_, cut) in found.items():
+        plausibility.warn(plausibility.of_truncation(cut, foot, bounds[foot]))
+    both = {foot: found.get(foot, found[onto]) for foot in FEET}
+    tables, cuts = {foot: both[foot][0] for foot in FEET}, {foot: both[foot][1] for foot in FEET}
+    return RestitutionDistribution(tables, cuts, bounds, onto, outside)
 
 
-def _quantiles(mean: FloatArray, sd: FloatArray) -> FloatArray:
-    """Return the quantiles of an even mixture of normal distributions: read from a grid, then made exact by Newton."""
+def _truncated(posterior: Calibration, geometry: ImpactGeometry, bound: float) -> tuple[FloatArray, float]:
+    """Return the quantiles on condition that 0 <= r <= bound, and the probability of what is outside."""
+    eta, k, s, gamma = posterior.samples.T
+    mean = np.clip(eta * shifted(geometry, k), 0.0, bound)
+    sd = scatter(mean, s, gamma)
+    low, high = _mixture(np.array([0.0, bound]), mean, sd)[0].tolist()
+    return np.clip(_quantiles(mean, sd, low, high), 0.0, bound), 1.0 - (high - low)
+
+
+def _quantiles(mean: FloatArray, sd: FloatArray, low: float, high: float) -> FloatArray:
+    """Quantiles of an even mixture of normals between two probabilities: read from a grid, made exact by Newton."""
     levels = np.linspace(0.0, 1.0, _POINTS)
     # the normal's ends are infinite: the outermost levels stand a quarter of a step inside
     levels[[0, -1]] = 0.25 / _POINTS, 1.0 - 0.25 / _POINTS
+    levels = low + (high - low) * levels
     grid = np.linspace((mean - 8.0 * sd).min(), (mean + 8.0 * sd).max(), _GRID)
     r = np.interp(levels, _mixture(grid, mean, sd)[0], grid)
     step = grid[1] - grid[0]

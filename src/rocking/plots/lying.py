@@ -106,7 +106,7 @@ class _Falling:
 
     def _coefficient(self, onto: float, speed: float) -> float:
         rocker, run = self.response.rocker, self.response.trajectory
-        return rocker.side(onto).coefficient * rocker.law.factor(abs(speed), self.response.key, run.impacts + 1)
+        return rocker.coefficient(onto, abs(speed), self.response.key, run.impacts + 1)
 
     def _step(self, side: float, state: _State, step: float) -> _State:
         """Return the state after a step, by the classical method of Runge and Kutta."""

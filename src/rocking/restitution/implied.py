@@ -61,6 +61,31 @@ class Implication:
         return tuple(found)
 
 
+def energy_bound(body: Body, onto: Foot) -> float:
+    """Return the largest coefficient of restitution at which an impact creates no energy.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    onto : {"left", "right"}
+        The foot on which it lands.
+
+    Returns
+    -------
+    float
+        sqrt(I_old / I_new), of the moments of inertia about the feet; of two that differ, one is above 1 [-].
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> energy_bound(Block(width=1.0, height=2.0), "left")
+    1.0
+    """
+    old, new = body.side(opposite(checks.foot("onto", onto))), body.side(onto)
+    return math.sqrt(old.moment_of_inertia / new.moment_of_inertia)
+
+
 def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implication:
     """Return what a coefficient implies for a body.
 
@@ -100,7 +125,7 @@ def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implicat
     lift = old.half_width + r * new.half_width
     arm = base_inertia * (1.0 - r) / (new.mass * lift)
     direction = 1.0 if onto == "right" else -1.0
-    bound = math.sqrt(old.moment_of_inertia / new.moment_of_inertia)
+    bound = energy_bound(body, onto)
     return Implication(
         coefficient=r,
         impulse_arm=arm,

@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.batch import ROWS, Batch, Rows
+from rocking.dynamics.batch import ROWS, SIDES_UNTOLD, Batch, Rows
 from rocking.dynamics.content import full_name, hash_of
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
@@ -306,7 +306,8 @@ class Product(Histories):
         The motions.
     sides : dict of str to ndarray, shape (bodies, choices)
         alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left [-]; and q_right, q_left
-        (m R^2 / I_O), without which the forces of the ground are not known [-].
+        (m R^2 / I_O), without which the forces of the ground are not known [-]; and share_right, share_left, of
+        the probability of a law that draws, 1 if not given [-].
     scales : ndarray, shape (scales,) or (motions, scales)
         Factors on the motions, the same for all or for each its own [-].
     """
@@ -317,8 +318,8 @@ class Product(Histories):
     def __post_init__(self) -> None:
         """Check the shapes."""
         wanted = {name for name in ROWS if name[-5:] in {"right", "_left"}}
-        # without them the forces of the ground are not known
-        unknown = dict.fromkeys(("q_right", "q_left"), np.full(np.shape(next(iter(self.sides.values()), ())), np.nan))
+        shape = np.shape(next(iter(self.sides.values()), ()))
+        unknown = {name: np.full(shape, value) for name, value in SIDES_UNTOLD.items()}
         object.__setattr__(self, "sides", unknown | self.sides)
         shapes = {np.shape(values) for values in self.sides.values()}
         if set(self.sides) != wanted or len(shapes) != 1 or len(next(iter(shapes))) != 2:

@@ -200,8 +200,8 @@ def sides_of(rockers: Sequence[Rocker | None]) -> dict[str, FloatArray]:
     Returns
     -------
     dict of str to ndarray
-        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left [-]; NaN where there is
-        no body.
+        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left, share_right,
+        share_left [-]; NaN where there is no body.
     """
     return {
         f"{short}_{side}": np.array([np.nan if r is None else getattr(getattr(r, side), name) for r in rockers])

@@ -21,7 +21,7 @@ built = pytest.mark.skipif(not engine.available(), reason="the fast engine was n
 every_engine = pytest.mark.parametrize("name", ENGINES)
 GOOD: dict[str, Any] = {
     "alpha_right": 0.25, "alpha_left": 0.2, "p_right": 2.5, "p_left": 2.6, "r_right": 0.9, "r_left": 0.85,
-    "q_right": 0.75, "q_left": 0.7,
+    "q_right": 0.75, "q_left": 0.7, "share_right": 1.0, "share_left": 0.9,
 }  # fmt: skip
 MOTION = Segments.between_samples(0.05, 4.0 * np.sin(0.3 * np.arange(60)))
 SCALES = np.linspace(0.3, 1.4, 9)

@@ -1,10 +1,13 @@
 """Restitutions that a job describes: models, coefficients, and laws that draw them."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rocking.bodies import Body
+from rocking.conventions import FEET
 from rocking.dynamics.impact_law import RandomRestitution
+from rocking.dynamics.rocker import cut_of, cut_words
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
@@ -81,7 +84,10 @@ def _drawn(
     else:
         mean, deviation = table.mean or 0.0, table.deviation or 0.0  # both are there: checked by the table
         drawn, words = law.normal(mean, deviation, **how), f"{mean:g} +- {deviation:g}"
-    return f"drawn per {table.each}: {words}, seed {seed}", drawn
+    # of many bodies, the one of which most is cut off
+    cuts = [cut_of(drawn, body) for body in bodies]
+    most = {foot: max((cut[foot] for cut in cuts), default=0.0) for foot in FEET}
+    return f"drawn per {table.each}: {words}, seed {seed}{cut_words(most)}", drawn
 
 
 def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Body]) -> tuple[Any, str]:
@@ -96,4 +102,5 @@ def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Body]) -> tuple
     law = found.per_history(seed) if table.each == "history" else found.per_impact(seed)
     if table.count is None:
         return law, words
-    return type(law).of_sample(found.sample(table.count, seed), seed=seed), f"{table.count} values of the {words}"
+    values = {foot: found.sample(table.count, seed, foot) for foot in FEET}
+    return replace(type(law).of_sample(values, seed=seed), cut=law.cut), f"{table.count} values of the {words}"

@@ -3,14 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from rocking import checks
-from rocking.conventions import FEET
-from rocking.dynamics.impact_law import ImpactLaw, RandomRestitution
+from rocking.conventions import FEET, Foot
+from rocking.dynamics.impact_law import DrawnRestitution, ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
-from rocking.studies.sensitivity.sampled import SampledRestitution
 
 
 def named_choices(restitutions: Any) -> dict[str, Any]:
@@ -75,7 +72,7 @@ def label_of(choice: Any) -> str:
     """
     if isinstance(choice, (str, RestitutionModel)):
         return model(choice).label
-    if isinstance(choice, (RandomRestitution, SampledRestitution)):
+    if isinstance(choice, DrawnRestitution):
         return _drawn(choice)
     if isinstance(choice, ImpactLaw):
         return type(choice).__name__ + _times(getattr(choice, "times", 1.0))
@@ -86,10 +83,15 @@ def label_of(choice: Any) -> str:
     return f"{checks.number('restitution', choice):.6g}"
 
 
-def _drawn(law: RandomRestitution | SampledRestitution) -> str:
-    low, middle, high = np.interp([0.025, 0.5, 0.975], law.at, law.factors).tolist()
-    each = "history" if isinstance(law, SampledRestitution) else "impact"
-    return f"drawn per {each}, {middle:.4g} [{low:.4g}, {high:.4g}], seed {law.seed}{_times(law.times)}"
+def _drawn(law: DrawnRestitution) -> str:
+    each = "history" if law.per_history else "impact"
+    found = [f"{middle:.4g} [{low:.4g}, {high:.4g}]" for low, middle, high in (_middle(law, foot) for foot in FEET)]
+    sides = found[0] if law.factors.ndim == 1 else f"left {found[0]}, right {found[1]}"
+    return f"drawn per {each}, {sides}, seed {law.seed}{_times(law.times)}"
+
+
+def _middle(law: DrawnRestitution, onto: Foot) -> list[float]:
+    return [law.quantile(probability, onto) for probability in (0.025, 0.5, 0.975)]
 
 
 def _times(base: Any) -> str:

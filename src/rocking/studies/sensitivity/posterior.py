@@ -5,7 +5,7 @@ from importlib import import_module
 from typing import Protocol
 
 from rocking.bodies import Body
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, Foot
 from rocking.dynamics.impact_law import RandomRestitution
 from rocking.studies.sensitivity.sampled import SampledRestitution
 
@@ -24,7 +24,7 @@ class Posterior(Protocol):
     def extrapolated(self) -> bool:
         """Whether the slenderness of the body is outside what was measured."""
 
-    def sample(self, count: int, seed: int) -> FloatArray:
+    def sample(self, count: int, seed: int, onto: Foot | None = None) -> FloatArray:
         """Return coefficients drawn from it.
 
         Parameters
@@ -33,6 +33,8 @@ class Posterior(Protocol):
             How many.
         seed : int
             Seed of the draws.
+        onto : {"left", "right"}, optional
+            The foot on which the body lands, if not that of the distribution.
 
         Returns
         -------

@@ -1,15 +1,15 @@
 """A coefficient of restitution drawn once for every history, and histories that carry such draws."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import FloatArray
-from rocking.dynamics.batch import Rows
+from rocking.conventions import FloatArray, Foot
+from rocking.dynamics.batch import Rows, drawn_rows
 from rocking.dynamics.content import full_name
-from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, interpolated, uniform
+from rocking.dynamics.impact_law import ConstantRestitution, DrawnRestitution, RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories, described_law
 
@@ -17,27 +17,31 @@ _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _FIRST, _SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 
 
-@dataclass(frozen=True, eq=False)
-class SampledRestitution(ImpactLaw):
+class SampledRestitution(DrawnRestitution):
     """A coefficient drawn once for every history: all its impacts share the draw, as if r were uncertain, not random.
 
     The draw depends on the seed and on the number of the history, on nothing else. Many histories at once draw before
     they run, so that either engine serves; a single response with it runs on the reference engine. For a new draw at
-    every impact take `RandomRestitution`.
+    every impact take `RandomRestitution`. Draws that would create energy are cut off, for each side at its own bound,
+    and both sides draw with the same number: see `rocking.dynamics.impact_law.DrawnRestitution`.
 
     Parameters
     ----------
-    factors : array_like
-        Quantiles of the distribution at equally spaced probabilities from 0 to 1 [-].
+    factors : array_like, or mapping of foot to array_like
+        Quantiles of the distribution at equally spaced probabilities from 0 to 1, for both sides or by
+        ``{"left": .., "right": ..}`` [-].
     seed : int
         Seed of the draws.
     times : optional
         What they multiply: a coefficient, a model or its name; 1 if not given.
+    cut : (float, float)
+        Probability that the quantiles onto the left and the right foot leave out already [-].
 
     Raises
     ------
     InvalidValueError
-        If the quantiles decrease or are outside [0, 1], or the seed is not a whole number from 0 to 2^64 - 1.
+        If the quantiles decrease or are outside [0, 1], or by side [0, 10], or the seed is not a whole number from 0 to
+        2^64 - 1.
 
     Examples
     --------
@@ -46,18 +50,7 @@ class SampledRestitution(ImpactLaw):
     True
     """
 
-    kind: ClassVar[int] = 2
     per_history: ClassVar[bool] = True
-    factors: FloatArray
-    seed: int
-    times: Any = 1.0
-    at: FloatArray = field(init=False)
-
-    def __post_init__(self) -> None:
-        """Check quantiles and seed as the law that draws for every impact does."""
-        checked = RandomRestitution(self.factors, self.seed, self.times)
-        object.__setattr__(self, "factors", checked.factors)
-        object.__setattr__(self, "at", checked.at)
 
     @classmethod
     def of_law(cls, law: RandomRestitution) -> "SampledRestitution":
@@ -81,66 +74,7 @@ class SampledRestitution(ImpactLaw):
         given: object = law
         if not isinstance(given, RandomRestitution):
             raise InvalidValueError(f"law must be a RandomRestitution, got {law!r:.60}")
-        return cls(law.factors, law.seed, law.times)
-
-    @classmethod
-    def normal(cls, mean: float, deviation: float, *, seed: int, times: Any = 1.0) -> "SampledRestitution":
-        """Return draws from a normal distribution cut to [0, 1].
-
-        Parameters
-        ----------
-        mean, deviation : float
-            Of the distribution before it is cut [-].
-        seed : int
-            Seed of the draws.
-        times : optional
-            What the draws multiply.
-
-        Returns
-        -------
-        SampledRestitution
-            The distribution.
-        """
-        return cls.of_law(RandomRestitution.normal(mean, deviation, seed=seed, times=times))
-
-    @classmethod
-    def of_sample(cls, values: Any, *, seed: int, times: Any = 1.0) -> "SampledRestitution":
-        """Return draws from measured or simulated values, for instance a posterior.
-
-        Parameters
-        ----------
-        values : array_like
-            Values of the coefficient or factor [-].
-        seed : int
-            Seed of the draws.
-        times : optional
-            What the draws multiply.
-
-        Returns
-        -------
-        SampledRestitution
-            The distribution.
-        """
-        return cls.of_law(RandomRestitution.of_sample(values, seed=seed, times=times))
-
-    def factor(self, speed: float, key: int, impact: int) -> float:
-        """Return the draw of a history.
-
-        Parameters
-        ----------
-        speed : float
-            Not used [rad/s].
-        key : int
-            Number of the history.
-        impact : int
-            Not used: all impacts of a history share the draw.
-
-        Returns
-        -------
-        float
-            Coefficient or factor [-].
-        """
-        return interpolated(self.at, self.factors, uniform(self.seed, key, 0))
+        return cls(law.factors, law.seed, law.times, law.cut)
 
     def content(self) -> dict[str, Any]:
         """Return the seed and the hashes of the tables; of a dataclass of your own, its fields.
@@ -152,22 +86,26 @@ class SampledRestitution(ImpactLaw):
         """
         return self._tables() if type(self) is SampledRestitution else super().content()
 
-    def draws(self, numbers: Any) -> FloatArray:
-        """Return the draws of many histories, to the last bit those of `factor`.
+    def draws(self, numbers: Any, onto: Foot | None = None, share: Any = 1.0) -> FloatArray:
+        """Return the draws of many histories, to the last bit those of `draw`.
 
         Parameters
         ----------
         numbers : array_like of int
             Numbers of histories.
+        onto : {"left", "right"}, optional
+            The foot on which they land, which a law of two tables needs.
+        share : float or array_like
+            Probability of the lowest part of the distribution, from which they are [-].
 
         Returns
         -------
         ndarray
             Coefficients or factors [-].
         """
-        u = uniforms(self.seed, numbers)
+        u, table = share * uniforms(self.seed, numbers), self.table(onto)
         above = np.maximum(np.searchsorted(self.at, u, side="right"), 1)
-        low, high = self.factors[above - 1], self.factors[above]
+        low, high = table[above - 1], table[above]
         return np.asarray(low + (high - low) * ((u - self.at[above - 1]) / (self.at[above] - self.at[above - 1])))
 
 
@@ -238,9 +176,7 @@ class SampledHistories(Histories):
         Rows
             Those of the base, with the coefficients times the draws.
         """
-        rows = self.base.rows(first, last)
-        factor = self.draw.draws(rows.key)
-        return replace(rows, values=rows.values | {name: rows.values[name] * factor for name in ("r_right", "r_left")})
+        return drawn_rows(self.base.rows(first, last), self.draw)
 
     def content(self) -> dict[str, Any]:
         """Return the content of the base, and the distribution with its seed.

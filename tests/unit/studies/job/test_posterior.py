@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence import restitution_distribution
 from rocking.studies import overturning_map
 from rocking.studies.job import Job
@@ -63,7 +63,10 @@ def test_label():
     (label,) = job_of("posterior = true\ncount = 30").parts.choices
     assert label == "drawn per impact: 30 values of the posterior of the measurements, seed 8"
     (label,) = job_of("posterior = true", body=BODY.replace("2.0", "40.0")).parts.choices
-    assert label == "drawn per impact: posterior of the measurements (extrapolated in slenderness), seed 8"
+    cut = 100.0 * restitution_distribution(80.0).cut["left"]
+    assert label == "drawn per impact: posterior of the measurements (extrapolated in slenderness), seed 8" + (
+        f" (of the distribution {cut:.2g} % cut off, where impacts would create energy)"
+    )
 
 
 def test_one_response():
@@ -103,19 +106,47 @@ def test_one_body_is_needed():
         job_of("posterior = true", "rocking-spectrum", body="", rest=spectrum)
 
 
-def test_a_body_with_unequal_sides():
-    """One law cannot serve two sides: the sentence of the evidence, with the place in the job."""
-    body = """[body]
+SECTION = """[body]
 units = "m"
 [body.section]
 feet = [0.0, 0.4]
 depth = 1.0
 [[body.section.region]]
 density = 2000.0
-outline = [[0.0, 0.0], [0.6, 0.0], [0.6, 1.5], [0.0, 1.5]]
+outline = [[0.0, 0.0], [0.4, 0.0], [0.4, 1.5], [0.0, 1.2]]
 """
-    with pytest.raises(InvalidValueError, match=r"restitution: the distribution of the coefficient depends on"):
-        job_of("posterior = true", body=body)
+
+
+@pytest.mark.parametrize("each", ["history", "impact"])
+@pytest.mark.parametrize("count", ["", "count = 30"])
+def test_a_body_with_unequal_sides(each, count):
+    """Each side draws from a table of its own: the laws of the evidence, or samples of both at the same numbers."""
+    outline = [(0.0, 0.0), (0.4, 0.0), (0.4, 1.5), (0.0, 1.2)]
+    body = rk.Section([rk.Region(outline, 2000.0)], feet=(0.0, 0.4))
+    found = restitution_distribution(body)
+    law = found.per_history(8) if each == "history" else found.per_impact(8)
+    if count:
+        law = type(law).of_sample({foot: found.sample(30, 8, foot) for foot in ("left", "right")}, seed=8)
+    job = job_of(f'posterior = true\neach = "{each}"\n{count}', "histories", body=SECTION, rest="")
+    (told,) = job.parts.choices.values()
+    assert type(told) is type(law)
+    assert np.array_equal(told.factors, law.factors)
+    assert not np.array_equal(told.table("left"), told.table("right"))
+    peak = job.study.histories.run(0, 1)["peak_rotation"][0]
+    assert peak == pytest.approx(rk.simulate(body, rk.pulses.sine(3.0, 0.6), law).peak_rotation, abs=1e-9)
+
+
+def test_the_label_says_what_is_cut_off():
+    """A distribution of which a part would create energy says so in the label of the job, as `simulate` does."""
+    body = rk.Section([rk.Region([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 3.0)], 2400.0)])
+    text = SECTION.replace("0.4, 1.5], [0.0, 1.2", "1.0, 1.0], [0.0, 3.0").replace("0.4", "1.0")
+    with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the distribution"):
+        (label,) = job_of("mean = 0.9\ndeviation = 0.05", "histories", body=text, rest="").parts.choices
+    with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the distribution"):
+        told = rk.simulate_many(body, rk.pulses.sine(3.0, 0.6), rk.RandomRestitution.normal(0.9, 0.05, seed=8))
+    words = " (of the distribution 9.8 % onto right cut off, where impacts would create energy)"
+    assert label == f"drawn per impact: 0.9 +- 0.05, seed 8{words}"
+    assert str(told["restitution"].values[0]).endswith(words)
 
 
 def test_asked_by_name():
