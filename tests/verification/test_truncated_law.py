@@ -312,11 +312,13 @@ def test_studies_take_asymmetric_bodies(law: Any) -> None:
     wanted = [response.peak_rotation for response in single]
     assert all(len(response.impacts) > 1 for response in single[:3])
     found = rk.simulate_many(body, pulse, made, scale=scales)
+    both = rk.simulate_many([rk.Block(width=0.5, height=2.0), body], pulse, made)
     np.testing.assert_allclose(np.abs(found["peak_rotation"].values.ravel())[:3], np.abs(wanted)[:3], atol=1e-8)
     axes = ("scale", scales), ("period", [0.6, 1.2])
     plane = rk.overturning_map(body, pulse, *axes, restitution=made)
     np.testing.assert_allclose(np.abs(plane["peak_rotation"].values.ravel())[:3], np.abs(wanted)[:3], atol=1e-8)
-    for told in (str(found["restitution"].values[0]), plane.attrs["restitution"]):
+    labels = [str(each["restitution"].values[0]) for each in (found, both)]
+    for told in (*labels, plane.attrs["restitution"]):
         assert "onto right cut off, where impacts would create energy" in told
     stripes = multiple_stripes(body, [pulse], [1.0, 2.0], restitution=made)
     assert stripes.failed == 0

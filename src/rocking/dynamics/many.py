@@ -145,7 +145,8 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
             "motion_provenance": ("motion", ["; ".join(getattr(m, "provenance", ())) or repr(m) for m in motion_list]),
             "scale": ("scale", scales, {"units": "1"}),
             "restitution": [
-                rocker.label if law.kind else _label(choice) for rocker, choice in zip(rockers[0], choices, strict=True)
+                _most_cut(column).label if law.kind else _label(choice)
+                for column, choice in zip(zip(*rockers, strict=True), choices, strict=True)
             ],
         },
         attrs={
@@ -216,6 +217,11 @@ def _common_law(choices: Sequence[Any]) -> ImpactLaw:
     if len(choices) > 1:
         raise InvalidValueError("a law that changes from impact to impact must be the only restitution of a call")
     return laws[0]
+
+
+def _most_cut(rockers: Sequence[Rocker]) -> Rocker:
+    """Return the first of those bodies that keep the least of a distribution: its label stands for all."""
+    return min(rockers, key=lambda rocker: min(rocker.left.share, rocker.right.share))
 
 
 def _label(choice: Any) -> str:
