@@ -55,7 +55,7 @@ def bound(body: Any, onto: Foot) -> float:
     return math.sqrt(about["left" if onto == "right" else "right"] / about[onto])
 
 
-def coefficients(rocker: Rocker, onto: Foot, count: int = 4000) -> Any:
+def coefficients(rocker: Rocker, onto: Foot, count: int = 2000) -> Any:
     return np.array([rocker.coefficient(SIGNS[onto], 1.0, key, 3) for key in range(count)])
 
 
@@ -64,7 +64,7 @@ def cut_normal(mean: float, sd: float, most: float) -> Any:
 
 
 BODIES = leaning(3.0), leaning(5.0, 2.0), mirrored(leaning(2.5, 0.8))
-CASES = [(body, mean, sd) for body in BODIES for mean, sd in ((0.9, 0.05), (0.97, 0.03))]
+CASES = list(zip(BODIES, (0.9, 0.97, 0.9), (0.05, 0.03, 0.05), strict=True))  # 10, 16 and 17 % are cut off
 
 
 # ---- the distribution -----------------------------------------------------------------------------------------------
@@ -86,10 +86,8 @@ def test_draws_follow_the_truncated_distribution(body: Any, mean: float, sd: flo
         found = [rocker.side(SIGNS[foot]).coefficient * quantile(rocker, foot, p) for p in u]
         np.testing.assert_allclose(found, exact.ppf(u), atol=0.02 * sd)
     # negative controls: draws that are clipped instead, and those of the other side
-    whole = np.array([law.normal(mean, sd, seed=11).factor(1.0, key, 3) for key in range(4000)])
+    whole = np.array([law.normal(mean, sd, seed=11).factor(1.0, key, 3) for key in range(2000)])
     exact = cut_normal(mean, sd, bound(body, narrow))
-    if rocker.side(SIGNS[narrow]).share > 0.92:  # too little for a test of 4,000 draws
-        return
     assert stats.kstest(np.minimum(whole, bound(body, narrow)), exact.cdf).pvalue < ALARM
     other: Foot = "left" if narrow == "right" else "right"
     assert stats.kstest(coefficients(rocker, other), exact.cdf).pvalue < ALARM
@@ -140,8 +138,8 @@ def test_posterior_is_truncated_on_both_sides(body: Any, point: tuple[float, flo
             assert rocker.side(SIGNS[foot]).share == 1.0
             assert (f"{100.0 * found.cut[foot]:.2g} % onto {foot}" in rocker.label) == (found.cut[foot] > 1e-4)
             assert stats.kstest(coefficients(rocker, foot), exact.cdf).pvalue > ALARM
-            clipped = np.minimum(whole.ppf([uniform(3, key, 3 * (not law.per_history)) for key in range(4000)]), most)
-            if found.cut[foot] > 0.05:
+            clipped = np.minimum(whole.ppf([uniform(3, key, 3 * (not law.per_history)) for key in range(2000)]), most)
+            if found.cut[foot] > 0.1:
                 assert stats.kstest(clipped, exact.cdf).pvalue < ALARM
 
 
@@ -202,13 +200,13 @@ def test_no_impact_creates_energy(name: str, body: Any) -> None:
     law = RandomRestitution({"left": [0.9, 1.15], "right": [0.9, 1.15]}, seed=4)
     inertia = {SIGNS[f]: body.moment_of_inertia + body.mass * body.side(f).semi_diagonal ** 2 for f in FEET}
     ratios, factors = [], []
-    for key in range(10):
+    for key in range(6):
         response = rk.free_rocking(body, 0.1, law, key=key, engine=name, duration=20.0)
         for event in response.trajectory.events:
             if event.kind is EventKind.IMPACT:
                 ratios.append((event.after / event.before) ** 2 * inertia[event.side] / inertia[-event.side])
                 factors.append(event.coefficient)
-    assert len(ratios) > 100
+    assert len(ratios) > 60
     assert max(ratios) <= 1.0 + 1e-9
     assert max(ratios) > 0.98  # draws come near the bound
     assert max(factors) > 1.0  # which is above 1 on one side

@@ -196,7 +196,7 @@ def cut_of(law: ImpactLaw, body: Body) -> dict[Foot, float]:
     Raises
     ------
     InvalidValueError
-        If a law that cannot be cut would create energy.
+        If a law that cannot be cut would create energy, or next to nothing is left of one that can.
     """
     coefficients, _ = coefficients_of(getattr(law, "times", 1.0), body)
     return _cut(law, {foot: _share(law, foot, coefficients[foot], energy_bound(body, foot)) for foot in FEET})
@@ -231,7 +231,9 @@ def _share(law: ImpactLaw, onto: Foot, r: float, most: float) -> float:
     if r * largest <= most * (1.0 + _ROUNDING):
         return 1.0
     if isinstance(law, DrawnRestitution) and law.truncates:
-        return law.share_within(most / r, onto)
+        share = law.share_within(most / r, onto)
+        plausibility.of_truncation(1.0 - share, onto, most)  # refuses what next to nothing is left of
+        return share
     raise InvalidValueError(
         f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], got {r * largest:.6g}: "
         "the impact would create energy"

@@ -147,6 +147,10 @@ def test_the_label_says_what_is_cut_off():
     words = " (of the distribution 9.8 % onto right cut off, where impacts would create energy)"
     assert label == f"drawn per impact: 0.9 +- 0.05, seed 8{words}"
     assert str(told["restitution"].values[0]).endswith(words)
+    with pytest.raises(
+        InvalidValueError, match=r"restitution: the coefficient .* right foot .* 100 % of the distribution"
+    ):
+        job_of("mean = 0.99\ndeviation = 0.001", "histories", body=text, rest="")
 
 
 def test_asked_by_name():
