@@ -125,7 +125,7 @@ def test_without_curves_there_is_no_interval():
     nothing = np.zeros((20, LEVELS.size))
     found = curve_change(((1.0, 0.4), (1.1, 0.4)), LEVELS, nothing, nothing, repetitions=50)
     assert (found.median.interval, found.without_curve) == (None, 50)
-    assert "no interval" in found.words
+    assert "no interval" in found.told("m/s2")
 
 
 def test_words():
@@ -135,7 +135,8 @@ def test_words():
     hits = 1.2 * np.exp(0.4 * np.random.default_rng(1).normal(size=(60, 1))) < LEVELS
     for second, word in ((1.32, "the median changes by +10 % "), (1.08, "the median changes by -10 % ")):
         found = curve_change(((1.2, 0.4), (second, 0.4)), LEVELS, hits, hits, repetitions=10)
-        assert word in found.words
+        assert word in found.told("g", 2.0)
+        assert found.told("g", 2.0).endswith(f" at {found.level / 2.0:.4g} g")
 
 
 @pytest.mark.parametrize(
