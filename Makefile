@@ -76,9 +76,9 @@ lint: $(VENV)/dev $(ENGINE)
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
 
 # What measures time runs alone, and what drives a browser in a process of its own; the rest on two processes. The unit
-# tests by themselves must run 95 % of the lines.
+# tests and the examples of docstrings must run 95 % of the lines by themselves.
 test: lint
-	$(BIN)/python -m pytest tests/unit -n 2 --dist loadfile -m "not timed" --cov
+	$(BIN)/python -m pytest tests/unit src -n 2 --dist loadfile -m "not timed" --cov
 	$(BIN)/python -m pytest tests --ignore=tests/unit -n 2 --dist loadfile -m "not timed and not browser"
 	$(BIN)/python -m pytest tests -m timed --ignore=tests/browser
 	$(BIN)/python -m pytest tests/browser -m timed
