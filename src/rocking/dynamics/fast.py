@@ -9,7 +9,7 @@ from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import Event, EventKind, Trajectory
 from rocking.motions.segments import Segments
 
-_OUTCOMES, _STATUSES = list(Outcome), list(Status)
+_OUTCOMES, _STATUSES, _KINDS = list(Outcome), list(Status), {kind.value: kind for kind in EventKind}
 
 
 def run_fast(
@@ -69,7 +69,7 @@ def run_fast(
     return Trajectory(
         rotation=rotations,
         angular_velocity=velocities,
-        events=[Event(t, EventKind(kind), side, before, then, r) for t, kind, side, before, then, r in noted],
+        events=[Event(t, _KINDS[kind], side, before, then, r) for t, kind, side, before, then, r in noted],
         outcome=outcome,
         status=_STATUSES[out["status"][0]],
         side=int(out["side"][0]),

@@ -160,9 +160,11 @@ class Rocker:
         law = restitution if isinstance(restitution, ImpactLaw) else ConstantRestitution()
         base = getattr(restitution, "times", 1.0) if isinstance(restitution, ImpactLaw) else restitution
         coefficients, label = coefficients_of(base, body)
-        shares = {foot: _share(law, foot, coefficients[foot], energy_bound(body, foot)) for foot in FEET}
+        most = {foot: energy_bound(body, foot) for foot in FEET}
+        shares = {foot: _share(law, foot, coefficients[foot], most[foot]) for foot in FEET}
         for foot, share in shares.items():
-            plausibility.warn(plausibility.of_truncation(1.0 - share, foot, energy_bound(body, foot)))
+            if share < 1.0:
+                plausibility.warn(plausibility.of_truncation(1.0 - share, foot, most[foot]))
         sides = {foot: body.side(foot, gravity) for foot in FEET}
         made = {
             foot: RockingSide(
