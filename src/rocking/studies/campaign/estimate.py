@@ -9,7 +9,7 @@ PARTS = 16
 """Equal parts of the histories, each of which is measured: costs change from the first history to the last one."""
 
 _SETTLED = 4.0
-_NOISE = 0.1
+NOISE = 0.1
 """A machine is no steadier than this from one minute to the next [-]."""
 
 
@@ -165,5 +165,5 @@ class Costs:
         # within a part the cost may be as far off its mean as halfway to its neighbours'
         doubt = np.sqrt(np.sum((self._missing * 0.5 * np.maximum(steps[:-1], steps[1:])) ** 2))
         best = float(np.sum(self._missing * each))
-        wide = 2.0 * float(doubt) + _NOISE * best
+        wide = 2.0 * float(doubt) + NOISE * best
         return Estimate(best, max(0.0, best - wide), best + wide)

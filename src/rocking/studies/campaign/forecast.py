@@ -9,7 +9,7 @@ import numpy as np
 from rocking.dynamics.engine import RESULTS
 from rocking.studies.campaign.chunks import Plan
 from rocking.studies.campaign.errors import CampaignStorageError
-from rocking.studies.campaign.estimate import Estimate
+from rocking.studies.campaign.estimate import NOISE, Estimate
 from rocking.studies.campaign.status import Status
 from rocking.studies.histories import Histories
 
@@ -19,8 +19,6 @@ _RUN = 2048
 _SHARE = 0.1
 _LONGEST = 2.0
 _PLACES = 32
-_NOISE = 0.1
-"""A machine is no steadier than this from one minute to the next [-]."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +111,7 @@ def trial(histories: Histories) -> Estimate:
             break
     best, number = float(np.mean(found)), len(found)
     doubt = 2.0 * float(np.std(found, ddof=1)) / number**0.5 if number > 1 else 0.5 * best
-    return Estimate(best, max(0.0, (1.0 - _NOISE) * best - doubt), (1.0 + _NOISE) * best + doubt)
+    return Estimate(best, max(0.0, (1.0 - NOISE) * best - doubt), (1.0 + NOISE) * best + doubt)
 
 
 def _spread(place: int) -> float:
