@@ -200,7 +200,7 @@ class Worker:
                 command,
                 cwd=self.folder,
                 env=os.environ | {"PYTHONPATH": paths},
-                timeout=20.0 * limit,
+                timeout=4.0 * limit,
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (round(limit), round(limit))),
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,

@@ -65,7 +65,7 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
         if (!(lane.over_time >= 0.0)) forces_up_to_here(i);
         return falls(i, lane.over_time >= 0.0 ? lane.over_time : now(i, 0.0));
     }
-    if (!inward && passes) {  // on resting ground the force grows from here to the top, unless it pulls
+    if (!inward && passes) {  // on resting ground the force grows from here to the top, unless it pulls or q < 0.3
         double s, c;
         sine_cosine(u[i], s, c);
         force_at(i, s, c, v[i], 0.0, 1.0);

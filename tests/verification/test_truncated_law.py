@@ -167,6 +167,37 @@ def test_doubted_and_refused() -> None:
     with pytest.raises(InvalidValueError, match=r"right foot.*would create energy"):
         Rocker.of_body(body, Own([0.5, 0.99], 1), 9.81)
 
+    class Stronger(Own):
+        """Its table says less than it gives."""
+
+        largest = 1.2
+
+    with pytest.raises(InvalidValueError, match=r"would create energy"):
+        Rocker.of_body(rk.Block(width=1.0, height=4.0), Stronger([0.5, 0.9], 1), 9.81)
+
+
+@pytest.mark.parametrize("cut", [(2.0, -1.0), (0.1,), None, (0.0, 1.0)])
+def test_what_is_cut_is_two_probabilities(cut: Any) -> None:
+    with pytest.raises(InvalidValueError, match="cut must be"):
+        RandomRestitution([0.5, 0.9], 1, 1.0, cut)
+
+
+def test_a_law_by_side_can_be_made_anew() -> None:
+    """Tables above 1, which one of two sides may need, stay tables by side where both are equal."""
+    law = RandomRestitution({"left": [0.9, 1.15], "right": [0.9, 1.15]}, 4)
+    assert replace(law, seed=5).factors.tolist() == SampledRestitution.of_law(law).factors.tolist() == [[0.9, 1.15]] * 2
+
+
+@LAWS
+def test_cells_without_a_body_spoil_no_others(law: Any) -> None:
+    """A map over widths that the semi-diagonal cannot have: those cells have no result, the others have theirs."""
+    block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.6)
+    axes = ("width", [0.4, 3.0]), ("semi_diagonal", [1.0, 2.0])
+    drawn, one = (rk.overturning_map(block, pulse, *axes, restitution=r) for r in (law.normal(0.9, 0.02, seed=1), 0.9))
+    failed = one["mode"].to_numpy() == -3
+    assert failed.sum() == 1
+    assert ((drawn["mode"].to_numpy() == -3) == failed).all()
+
 
 # ---- energy ---------------------------------------------------------------------------------------------------------
 

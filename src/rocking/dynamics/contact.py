@@ -52,7 +52,7 @@ class Contact:
 
     @property
     def loses_contact(self) -> bool:
-        """Whether the ground would have to pull, as `Response.lost_contact`: the body would fly instead."""
+        """Whether the ground would have to pull at these times; `Response.lost_contact` knows of what follows, too."""
         return self.least_vertical < 0.0
 
     def warnings(self, friction: float = 0.5) -> list[str]:

@@ -233,6 +233,10 @@ class DrawnRestitution(ImpactLaw):
         seed: object = self.seed
         if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed <= _MASK:
             raise InvalidValueError(f"seed must be a whole number in [0, 2^64), got {self.seed!r}")
+        cut = _row("cut", self.cut, "-")
+        if cut.size != 2 or not np.all((cut >= 0.0) & (cut < 1.0)):
+            raise InvalidValueError(f"cut must be two probabilities in [0, 1), left and right, got {self.cut!r:.60}")
+        object.__setattr__(self, "cut", (float(cut[0]), float(cut[1])))
         object.__setattr__(self, "factors", quantiles)
         object.__setattr__(self, "at", np.linspace(0.0, 1.0, quantiles.shape[-1]))
 
@@ -517,7 +521,7 @@ def _two_rows(values: Any) -> FloatArray:
     right, left = (_factors(row, None, _MOST_BY_SIDE) for row in values)
     if right.size != left.size:
         raise InvalidValueError(f"factors must be as many for both sides, got {left.size} left and {right.size} right")
-    if np.array_equal(right, left):
+    if np.array_equal(right, left) and right[-1] <= 1.0:
         return right
     both = np.stack([right, left])
     both.setflags(write=False)

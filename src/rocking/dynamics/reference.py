@@ -246,7 +246,7 @@ class Reference:
                 self.over_time, self.forces_before = self._now, self.forces
             return _Ended(Outcome.OVERTURNED)
         if not inward:
-            if passes:  # on resting ground the force grows from here to the top, unless it pulls
+            if passes:  # on resting ground the force grows from here to the top, unless it pulls or q < 0.3
                 self._note_force(self.u, self.rate, 0.0, 1.0)
                 self.over_time, self.forces_before = self._now, self.forces
                 return _Ended(Outcome.OVERTURNED)

@@ -229,15 +229,16 @@ def _foot(sign: float) -> Foot:
 
 def _share(law: ImpactLaw, onto: Foot, r: float, most: float) -> float:
     """Part of a distribution within the energy bound of a side; what cannot be cut there is refused beyond it."""
-    largest = float(law.table(onto)[-1]) if isinstance(law, DrawnRestitution) else law.largest
-    if r * largest <= most * (1.0 + _ROUNDING):
+    drawn = law if isinstance(law, DrawnRestitution) and law.truncates else None
+    largest = r * (law.largest if drawn is None else drawn.quantile(1.0, onto))
+    if largest <= most * (1.0 + _ROUNDING):
         return 1.0
-    if isinstance(law, DrawnRestitution) and law.truncates:
-        share = law.share_within(most / r, onto)
+    if drawn is not None:
+        share = drawn.share_within(most / r, onto)
         plausibility.of_truncation(1.0 - share, onto, most)  # refuses what next to nothing is left of
         return share
     raise InvalidValueError(
-        f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], got {r * largest:.6g}: "
+        f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], got {largest:.6g}: "
         "the impact would create energy"
     )
 

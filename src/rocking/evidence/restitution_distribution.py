@@ -54,7 +54,7 @@ class RestitutionDistribution:
 
     def __repr__(self) -> str:
         """Return the numbers that matter, with what was cut off."""
-        cut = ", ".join(f"{foot}={100.0 * self.cut[foot]:.2g} % above {self.bounds[foot]:.6g}" for foot in FEET)
+        cut = ", ".join(f"{foot}={100.0 * self.cut[foot]:.2g} % outside [0, {self.bounds[foot]:.6g}]" for foot in FEET)
         return (
             f"RestitutionDistribution(onto={self.onto!r}, mean={self.mean:.4g}, "
             f"standard_deviation={self.standard_deviation:.2g}, cut off: {cut}, extrapolated={self.extrapolated})"

@@ -170,7 +170,7 @@ def _friction(axes: "Axes", response: Response, friction: float) -> None:
         most = max(most, contact.friction_of_impacts)
     axes.axhline(friction, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)), label=f"friction {friction:g}")
     axes.set_ylim(0.0, 1.15 * min(most, 4.0 * friction + contact.friction_of_impacts))
-    if contact.loses_contact:
+    if response.lost_contact:
         axes.set_title("the ground would have to pull", loc="right", fontsize=7, color=_IMPACT)
     _legend(axes, 3)
     axes.set_ylabel("friction\ntaken [-]")

@@ -83,7 +83,7 @@ class SpatialBatch(Exportable):
     provenance: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Return an array by name."""
+        """Return an array by name, as the engine gives it: in `results` flags are NaN without a result."""
         return self.values[name].reshape(self.shape)
 
     def __len__(self) -> int:

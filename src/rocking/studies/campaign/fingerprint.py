@@ -68,7 +68,7 @@ def _fingerprint(chosen: str, instruction_set: str) -> str:
 
 def _batches() -> list[tuple[list[Segments], ImpactLaw, Settings]]:
     """Pulses and records, with and without a vertical part, all laws, both kinds of equations, all orders."""
-    quantiles = np.arange(33) / 256.0 + 0.8125
+    quantiles = {"right": np.arange(33) / 256.0 + 0.8125, "left": np.arange(33) / 512.0 + 0.875}
     by_speed = SpeedRestitution(np.array([0.0, 1.0, 4.0]), np.array([1.0, 0.9375, 0.75]))
     drawn = RandomRestitution(quantiles, 7)
     plain, linear = Settings(gravity=9.8125), Settings(gravity=9.8125, linear=True)
@@ -108,6 +108,7 @@ def _rows(count: int) -> Rows:
         "alpha_right": alpha, "alpha_left": 0.75 * alpha + 0.03125, "p_right": 1.0 + 0.25 * (k * 7 % 16),
         "p_left": 1.125 + 0.25 * (k * 7 % 16), "r_right": 0.75 + k / 128.0, "r_left": 0.875 - k / 128.0,
         "q_right": 0.5 + k / 128.0, "q_left": 0.75 - k / 128.0,
+        "share_right": 1.0 - k / 64.0, "share_left": 0.5 + k / 64.0,
         "scale": np.where(k == _EACH - 1, np.nan, 0.5 + k / 16.0), "rotation": np.where(k % 5 == 4, 0.03125, 0.0),
     }  # fmt: skip
     return Rows.of(count, k % 4, k, **values)

@@ -6,6 +6,7 @@ from typing import Any
 from rocking import checks
 from rocking.conventions import FEET, Foot
 from rocking.dynamics.impact_law import DrawnRestitution, ImpactLaw
+from rocking.dynamics.rocker import cut_words
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
 
@@ -87,7 +88,8 @@ def _drawn(law: DrawnRestitution) -> str:
     each = "history" if law.per_history else "impact"
     found = [f"{middle:.4g} [{low:.4g}, {high:.4g}]" for low, middle, high in (_middle(law, foot) for foot in FEET)]
     sides = found[0] if law.factors.ndim == 1 else f"left {found[0]}, right {found[1]}"
-    return f"drawn per {each}, {sides}, seed {law.seed}{_times(law.times)}"
+    cut = cut_words(dict(zip(FEET, law.cut, strict=True)))
+    return f"drawn per {each}, {sides}, seed {law.seed}{_times(law.times)}{cut}"
 
 
 def _middle(law: DrawnRestitution, onto: Foot) -> list[float]:

@@ -104,7 +104,7 @@ class SampledRestitution(DrawnRestitution):
             Coefficients or factors [-].
         """
         u, table = share * uniforms(self.seed, numbers), self.table(onto)
-        above = np.maximum(np.searchsorted(self.at, u, side="right"), 1)
+        above = np.clip(np.searchsorted(self.at, u, side="right"), 1, self.at.size - 1)  # of no body the share is NaN
         low, high = table[above - 1], table[above]
         return np.asarray(low + (high - low) * ((u - self.at[above - 1]) / (self.at[above] - self.at[above - 1])))
 
