@@ -89,9 +89,7 @@ def _built() -> ctypes.CDLL | None:
         return None
     with tempfile.TemporaryDirectory() as folder:
         built = Path(folder) / "operations.so"
-        done = subprocess.run([compiler, *FLAGS, "-o", built, SOURCE], capture_output=True, check=False)
-        if done.returncode:
-            return None
+        subprocess.run([compiler, *FLAGS, "-o", built, SOURCE], check=True)
         library = ctypes.CDLL(str(built))
     pointer = ctypes.c_void_p
     library.count_operations.argtypes = (

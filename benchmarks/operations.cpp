@@ -15,14 +15,15 @@ extern "C" void count_operations(const double* data, std::int64_t motions, const
     Motions all{data, 1, false, {}, {}, {}};
     for (std::int64_t k = 0; k < motions; ++k) all.shakes.push_back({first[k], segments[k], 0, step, 0, {0.0, 0.0}, {0.0, 0.0}});
     all.find_ranges();
-    const std::vector<double> still(count, 0.0), share(count, 0.75);
+    const std::vector<double> still(count, 0.0), spread(count, 0.75), share(count, 1.0);
     std::vector<std::int64_t> own(count);
     for (std::int64_t k = 0; k < count; ++k) own[k] = k;
     std::vector<double> real(8 * count);
     std::vector<std::int64_t> whole(2 * count);
     std::vector<std::int8_t> small(2 * count);
-    Rows rows{count, alpha, alpha, p, p, r, r, share.data(), share.data(), scale, rotation, still.data(), own.data(), own.data(), outcome, small.data(),
-              small.data() + count, real.data(), real.data() + count, real.data() + 2 * count, real.data() + 3 * count,
+    Rows rows{count, alpha, alpha, p, p, r, r, spread.data(), spread.data(), {share.data(), share.data()}, scale, rotation,
+              still.data(), own.data(), own.data(), outcome, small.data(), small.data() + count,
+              real.data(), real.data() + count, real.data() + 2 * count, real.data() + 3 * count,
               real.data() + 4 * count, real.data() + 5 * count,
               real.data() + 6 * count, real.data() + 7 * count, whole.data(), whole.data() + count};
     std::vector<std::int64_t> lists[2];

@@ -22,7 +22,7 @@ def by_hand(order: int) -> int:
     """One step, read off engine/step.hpp: a record without vertical part, the nonlinear equation."""
     forcing = 1 + 1 + (2 + 1) + 2  # length of the step; slope; value at its start, times c; slope, times c and length
     sines = 1 + 19 * 2 + 1  # square; 19 multiply-adds of the two polynomials; one product
-    start = 1 + 2 + 1  # length of the step; kappa h^2; V0
+    start = 2 + 1  # kappa h^2; V0
     first = 2 + 1  # moment at the start, its velocity term
     others = (order - 1) * (2 * 2 + 1 + 1 + 1)  # moment, over its degree, sum, velocity term
     sums = 2 * (1 + 2 * (order - 2)) + (1 + 2 + (order - 3))  # rotation and its sizes; sway
@@ -30,7 +30,6 @@ def by_hand(order: int) -> int:
     ends = (2 + 1) + 1 + (1 + 2) + 1  # rotation, u1, v1, v1 h
     ground = 1 + 3 + 4 + 1 + 1 + 2  # -V0, what is left of v1 h, sag, y0, y1, the bound
     force = 1 + 2 + 2 + 1 + 1  # of the ground: horizontal, vertical, against the largest demand and the least force
-    force += 2  # of a block that falls back, every step has a force beyond those before: two quotients
     rest = 2 + 2 + 1 + 1  # the highest point, beyond the top, time, error
     return forcing + sines + start + first + others + sums + series + ends + ground + force + rest
 
