@@ -8,11 +8,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test portable portable-quick lint engine campaign fuzz fuzz-web durability bench mutants gallery lock clean
+.PHONY: help demo test coverage portable portable-quick lint engine campaign fuzz fuzz-web durability bench mutants gallery lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
-	@echo "make test     set up, run linters, type checker, docstring and import checks, tests with coverage"
+	@echo "make test     set up, run linters, type checker, docstring and import checks, tests"
+	@echo "make coverage the unit tests, and which lines they run"
 	@echo "make portable the tests once under each of seven settings that stand for other processors"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make gallery  run every example         make lock     pin the dependencies anew"
@@ -75,21 +76,23 @@ lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/lint-imports
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
 
-# What measures time runs alone, and what drives a browser in a process of its own; the rest on two processes. The unit
-# tests and the examples of docstrings must run 95 % of the lines by themselves.
+# What measures time runs alone, and what drives a browser in a process of its own; the rest on two processes.
 test: lint
-	$(BIN)/python -m pytest tests/unit src -n 2 --dist loadfile -m "not timed" --cov
-	$(BIN)/python -m pytest tests --ignore=tests/unit -n 2 --dist loadfile -m "not timed and not browser"
-	$(BIN)/python -m pytest tests -m timed --ignore=tests/browser
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not timed and not browser"
+	$(BIN)/python -m pytest $$(grep -rl --include='test_*.py' --exclude-dir=browser timed tests) -m timed
 	$(BIN)/python -m pytest tests/browser -m timed
 	$(BIN)/python -m pytest tests/browser -n 2 --dist loadfile -m "not timed"
+
+# The unit tests and the examples of docstrings run 95 % of the lines by themselves; looking on takes half as long again.
+coverage: $(VENV)/dev $(ENGINE)
+	$(BIN)/python -m pytest tests/unit src -n 2 --dist loadfile -m "not timed" --cov
 
 portable: $(VENV)/dev $(ENGINE)
 	$(BIN)/python tests/portable.py -n 2 --dist loadfile -q -m "not timed"
 
 # What decides events, under the same settings.
 portable-quick: $(VENV)/dev $(ENGINE)
-	$(BIN)/python tests/portable.py -q -x --no-header $(PORTABLE)
+	$(BIN)/python tests/portable.py -q -x --no-header -n 2 $(PORTABLE)
 
 fuzz: $(VENV)/dev
 	ROCKING_FUZZ=100000 $(BIN)/python -m pytest tests/verification/test_fuzz_readers.py tests/unit/motions_formats/test_miniseed.py \
