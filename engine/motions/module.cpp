@@ -19,6 +19,13 @@ namespace rocking::motions {
 template <class T>
 using Line = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
+// Wider registers change nothing but the time: no product is fused with a sum.
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__)
+#define ROCKING_WIDER __attribute__((target_clones("avx2", "default")))
+#else
+#define ROCKING_WIDER
+#endif
+
 constexpr double kLog2High = 6.93147180369123816490e-01, kLog2Low = 1.90821492927058770002e-10;
 constexpr double kHalfPiHigh = 1.57079632673412561417e+00, kHalfPiLow = 6.07710050650619224932e-11;
 constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: added and taken away, it rounds to a whole number
@@ -85,20 +92,22 @@ static void check(bool fits) {
     if (!fits) throw std::invalid_argument("arrays of one length expected");
 }
 
+ROCKING_WIDER void exponentials_of(const double* from, double* to, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) to[i] = exponential(from[i]);
+}
+
 static void exponentials(Line<const double> x, Line<double> out) {
     check(x.shape(0) == out.shape(0));
-    const double* from = x.data();
-    double* to = out.data();
-    const std::size_t count = x.shape(0);
-    for (std::size_t i = 0; i < count; ++i) to[i] = exponential(from[i]);
+    exponentials_of(x.data(), out.data(), x.shape(0));
+}
+
+ROCKING_WIDER void logarithms_of(const double* from, double* to, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) to[i] = logarithm(from[i]);
 }
 
 static void logarithms(Line<const double> x, Line<double> out) {
     check(x.shape(0) == out.shape(0));
-    const double* from = x.data();
-    double* to = out.data();
-    const std::size_t count = x.shape(0);
-    for (std::size_t i = 0; i < count; ++i) to[i] = logarithm(from[i]);
+    logarithms_of(x.data(), out.data(), x.shape(0));
 }
 
 static void cosines_sines(Line<const double> x, Line<double> cosine, Line<double> sine) {
@@ -127,11 +136,7 @@ struct Four {
     double u[kLanes] = {}, v[kLanes] = {}, e[kLanes] = {}, f[kLanes] = {}, g[kLanes] = {};
 };
 
-// Wider registers change nothing but the time: no product is fused with a sum.
-#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__)
-__attribute__((target_clones("avx2", "default")))
-#endif
-void turn(Four* from, const Four* end, Four* fed, int feeds, const double* weight, double kick, double gain, double* sums,
+ROCKING_WIDER void turn(Four* from, const Four* end, Four* fed, int feeds, const double* weight, double kick, double gain, double* sums,
           double* squares) {
     for (int k = 0; k < feeds; ++k)
         for (int i = 0; i < kLanes; ++i) {
