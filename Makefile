@@ -47,7 +47,7 @@ $(VENV)/bench: $(VENV)/dev requirements/bench.lock
 	@touch $@
 
 $(VENV)/mutants: $(VENV)/dev requirements/mutants.lock
-	@$(PIP) install --require-hashes --only-binary=:all: -r requirements/mutants.lock
+	@$(PIP) install --require-hashes --only-binary=:all: --no-binary=yattag -r requirements/mutants.lock
 	@touch $@
 
 # The fast engine is built where it stands. Without a compiler the reference engine serves, and says so.
