@@ -169,6 +169,17 @@ class Worker:
             shutil.copytree(ROOT / name, folder / name, ignore=skip)
         for name in ("pyproject.toml", "CMakeLists.txt", "Makefile", "README.md", "CHANGELOG.md", "CITATION.cff"):
             shutil.copy2(ROOT / name, folder / name)
+        # an installation that finds the sources where they stand would test those, without an error
+        (folder / "sitecustomize.py").write_text(
+            "import sys\nsys.meta_path[:] = [each for each in sys.meta_path if '_editable_' not in type(each).__module__]\n",
+            encoding="utf-8",
+        )
+        paths = os.pathsep.join([str(folder / "src"), str(folder)])
+        self._env = os.environ | {"PYTHONPATH": paths}
+        command = [sys.executable, "-c", "import rocking; print(rocking.__file__)"]
+        found = subprocess.run(command, cwd=folder, env=self._env, check=True, capture_output=True, text=True).stdout
+        if folder not in Path(found).parents:
+            raise SystemExit(f"errors are put into {folder}, and the tests import {found.strip()}: remove this installation")
         self._writes = 0
 
     def write(self, path: str, text: str) -> None:
@@ -194,12 +205,11 @@ class Worker:
             "no:cacheprovider",
             f"@{listed}",
         ]
-        paths = os.pathsep.join([str(self.folder / "src"), str(self.folder)])
         try:
             done = subprocess.run(
                 command,
                 cwd=self.folder,
-                env=os.environ | {"PYTHONPATH": paths},
+                env=self._env,
                 timeout=4.0 * limit,
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (round(limit), round(limit))),
                 stdout=subprocess.DEVNULL,
