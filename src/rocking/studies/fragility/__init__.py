@@ -1,6 +1,7 @@
 """Fragility: how likely a body is to rock or to overturn at a level of shaking, and how well that is known."""
 
 from rocking.studies.fragility.bootstrap import BootstrapSample
+from rocking.studies.fragility.capacities import CapacitySample
 from rocking.studies.fragility.cloud import CloudAnalysis, cloud, cloud_plan
 from rocking.studies.fragility.comparison import MeasureComparison, MeasureScore, compare_measures
 from rocking.studies.fragility.counts import Counts, StateCounts, count_outcomes, count_states
@@ -20,6 +21,7 @@ from rocking.studies.fragility.tables import fema_p58_table
 
 __all__ = [
     "BootstrapSample",
+    "CapacitySample",
     "CloudAnalysis",
     "Counts",
     "FragilityCurve",

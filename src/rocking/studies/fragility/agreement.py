@@ -168,7 +168,7 @@ def repeated_of(fit: "LognormalFit", levels: FloatArray, repetitions: int, seed:
         band = fit.band(levels, 0.95, "bootstrap", **how)
     except InvalidValueError as error:
         return Repeated(words=f"none: {error}")
-    words = f"{sample.kind}, {sample.repetitions} repetitions, seed {seed}, studentised ends"
+    words = f"{sample.kind}, {sample.repetitions} repetitions, seed {seed}, {sample.ends} ends"
     if sample.undetermined:
         words += f"; {sample.undetermined} repetitions have no rising curve and widen the intervals"
     return Repeated(_closed(*ends[0]), _closed(*ends[1]), band, words)

@@ -1,6 +1,6 @@
 """Bootstrap: the study repeated many times on the computer, all repetitions fitted at once."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -20,9 +20,9 @@ from rocking.studies.fragility.estimate import (
 )
 from rocking.studies.fragility.robust import with_cluster_errors
 
-Resampling = Literal["parametric", "cases", "clusters", "capacities"]
+Resampling = Literal["parametric", "cases", "clusters"]
 Ends = Literal["studentised", "percentile", "basic"]
-RESAMPLING: tuple[Resampling, ...] = ("parametric", "cases", "clusters", "capacities")
+RESAMPLING: tuple[Resampling, ...] = ("parametric", "cases", "clusters")
 Pair = tuple[FloatArray, FloatArray]
 ENDS: tuple[Ends, ...] = ("studentised", "percentile", "basic")
 
@@ -68,7 +68,7 @@ def resample(
         failures, survivals = np.split(drawn, 2, axis=1)
         return failures, failures + survivals
     if kind != "clusters":
-        raise InvalidValueError(f"kind must be one of {', '.join(RESAMPLING)}, got {kind!r}")
+        raise InvalidValueError(f"kind must be one of {', '.join(RESAMPLING)} or capacities, got {kind!r}")
     if counts.cluster_trials is None:
         raise InvalidValueError("kind must not be 'clusters' unless clusters= names the record of each outcome")
     if counts.scarcity:
@@ -102,7 +102,7 @@ class BootstrapSample:
         The curve of the study: one row.
     scale : Scale
         Scale of the coefficients.
-    kind : {"parametric", "cases", "clusters", "capacities"}
+    kind : {"parametric", "cases", "clusters"}
         How the repetitions were drawn.
     """
 
@@ -110,6 +110,7 @@ class BootstrapSample:
     original: Curves
     scale: Scale
     kind: Resampling
+    ends = ENDS[0]
 
     @property
     def repetitions(self) -> int:
@@ -216,8 +217,8 @@ def bootstrap(
         The curve of the study: one row.
     scale : Scale
         Scale of the coefficients.
-    kind : {"parametric", "cases", "clusters", "capacities"}
-        How to draw the repetitions; the last draws one capacity from the curve for each cluster.
+    kind : {"parametric", "cases", "clusters"}
+        How to draw the repetitions.
     repetitions : int
         How many.
     seed : int
@@ -228,36 +229,13 @@ def bootstrap(
     BootstrapSample
         Their curves.
     """
-    probability, source = curve_probability(original, scale, counts.levels), counts
-    if kind == "capacities":
-        source = _capacities(counts, probability)
-        drawn = _drawn_clusters(source, repetitions, seed)
-        failures, trials = np.split(drawn @ source.distinct_clusters[0], 2, axis=1)
-    else:
-        failures, trials = resample(counts, probability, kind, repetitions, seed)
+    probability = curve_probability(original, scale, counts.levels)
+    failures, trials = resample(counts, probability, kind, repetitions, seed)
     curves = find_curves(counts.levels, scale, failures, trials, penalised=bool(original.penalised[0]))
     if kind == "clusters":
-        drawn = _drawn_clusters(counts, repetitions, seed)
-    if kind in {"clusters", "capacities"}:
-        curves = with_cluster_errors(source, scale, curves, drawn)
+        curves = with_cluster_errors(counts, scale, curves, _drawn_clusters(counts, repetitions, seed))
         original = with_cluster_errors(counts, scale, original, counts.distinct_clusters[1][None])
     return BootstrapSample(curves, original, scale, kind)
-
-
-def _capacities(counts: Counts, probability: FloatArray) -> Counts:
-    """Return clusters that fail from a level of their own on, as many of each kind as the curve expects."""
-    # Few clusters drawn again repeat one another, and 11 cover 92 %, 7 some 84 % at nominal 95. A record that serves at
-    # every level has one capacity: the pivot of the studentised bootstrap is then that of a sample of capacities, with
-    # levels close together Student's t for the median.
-    levels = counts.levels.size
-    failures = (np.arange(levels + 1)[:, None] <= np.arange(levels)).astype(np.float64)
-    share = np.clip(np.diff(np.concatenate([[0.0], probability, [1.0]])), 0.0, 1.0)
-    return replace(
-        counts,
-        cluster_failures=failures,
-        cluster_trials=np.ones_like(failures),
-        cluster_weights=counts.clusters * share / share.sum(),
-    )
 
 
 def curve_probability(curves: Curves, scale: Scale, levels: FloatArray) -> FloatArray:

@@ -67,11 +67,16 @@ class Counts:
         return self.cluster_trials is not None and bool(self.cluster_trials.sum(axis=1).max() > 1.0)
 
     @cached_property
-    def draws_capacities(self) -> bool:
-        """Whether few clusters were each tried once at every level, as records that are raised level by level."""
-        if self.cluster_trials is None or not LEAST_CLUSTERS <= self.clusters < MANY_CLUSTERS:
+    def tries_all_levels(self) -> bool:
+        """Whether clusters were each tried once at every level, as records that are raised level by level."""
+        if self.cluster_trials is None or self.clusters < 2 or self.levels.size < 2:
             return False
-        return self.levels.size > 1 and bool((self.cluster_trials == 1.0).all())
+        return bool((self.cluster_trials == 1.0).all())
+
+    @property
+    def draws_capacities(self) -> bool:
+        """Whether few clusters were each tried once at every level."""
+        return LEAST_CLUSTERS <= self.clusters < MANY_CLUSTERS and self.tries_all_levels
 
     @cached_property
     def distinct_clusters(self) -> tuple[FloatArray, FloatArray]:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.bootstrap import BootstrapSample, Resampling, bootstrap
+from rocking.studies.fragility.capacities import CapacitySample, draw_capacities
 from rocking.studies.fragility.counts import Counts
 from rocking.studies.fragility.estimate import Curves, Scale
 from rocking.studies.fragility.goodness import Goodness, goodness_of
@@ -166,8 +167,8 @@ class LognormalFit:
         level : float
             Confidence level, between 0 and 1 [-].
         method : {"profile", "bootstrap", "wald"}, optional
-            By the likelihood; by repeating the study (whole clusters where they were named, else from the curve), with
-            studentised ends; or from standard errors on the logarithmic scale. `interval_method`, if not given.
+            By the likelihood; by repeating the study as `bootstrap` does unless a kind is given; or from standard
+            errors on the logarithmic scale. `interval_method`, if not given.
         repetitions : int
             Number of repetitions of the bootstrap.
         seed : int
@@ -216,18 +217,20 @@ class LognormalFit:
         return self.intervals.band(im, level, used, sample)
 
     @cached_property
-    def _samples(self) -> dict[tuple[float, int], BootstrapSample]:
+    def _samples(self) -> dict[tuple[float, int], BootstrapSample | CapacitySample]:
         return {}
 
-    def _sample(self, repetitions: int, seed: int) -> BootstrapSample:
+    def _sample(self, repetitions: int, seed: int) -> BootstrapSample | CapacitySample:
         """Return a bootstrap, made once: both ends of all parameters come from the same one."""
         key = checks.within("repetitions", repetitions, 1, 10**7), seed
         if key not in self._samples:
             self._samples[key] = self.bootstrap(repetitions=repetitions, seed=seed)
         return self._samples[key]
 
-    def bootstrap(self, kind: Resampling | None = None, *, repetitions: int = 1000, seed: int = 0) -> BootstrapSample:
-        """Return curves of the study repeated many times.
+    def bootstrap(
+        self, kind: Resampling | Literal["capacities"] | None = None, *, repetitions: int = 1000, seed: int = 0
+    ) -> BootstrapSample | CapacitySample:
+        """Return the study repeated many times.
 
         Parameters
         ----------
@@ -241,14 +244,19 @@ class LognormalFit:
 
         Returns
         -------
-        BootstrapSample
-            Their curves.
+        BootstrapSample or CapacitySample
+            What finds the intervals.
+
+        Raises
+        ------
+        InvalidValueError
+            If the kind is unknown, or the outcomes do not come as it needs them.
         """
-        own = self.intervals
-        usual: Resampling = "parametric" if self.counts.cluster_trials is None else "clusters"
-        if self.counts.draws_capacities:
-            usual = "capacities"
-        return bootstrap(self.counts, own.curves, own.scale, kind or usual, repetitions, seed)
+        own, counts = self.intervals, self.counts
+        if kind == "capacities" or (kind is None and counts.draws_capacities):
+            return draw_capacities(counts, own.curves, own.scale, repetitions, seed)
+        usual: Resampling = "parametric" if counts.cluster_trials is None else "clusters"
+        return bootstrap(counts, own.curves, own.scale, kind or usual, repetitions, seed)
 
     def goodness(self, *, groups: int = 10, repetitions: int = 1000, seed: int = 0) -> Goodness:
         """Return how well the curve agrees with the outcomes.

@@ -10,6 +10,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.bootstrap import BootstrapSample, curve_probability
+from rocking.studies.fragility.capacities import CapacitySample
 from rocking.studies.fragility.constraints import (
     FractileConstraint,
     ProbabilityConstraint,
@@ -133,7 +134,11 @@ class Intervals:
         return result
 
     def interval(
-        self, parameter: str | float, level: float, method: IntervalMethod, sample: BootstrapSample | None
+        self,
+        parameter: str | float,
+        level: float,
+        method: IntervalMethod,
+        sample: BootstrapSample | CapacitySample | None,
     ) -> tuple[float, float]:
         """Return a confidence interval.
 
@@ -145,7 +150,7 @@ class Intervals:
             Confidence level [-].
         method : {"profile", "bootstrap", "wald"}
             How.
-        sample : BootstrapSample, optional
+        sample : BootstrapSample or CapacitySample, optional
             Needed by the bootstrap.
 
         Returns
@@ -181,7 +186,7 @@ class Intervals:
         return self.scale.log_level(ends)
 
     def band(
-        self, im: Any, level: float, method: IntervalMethod, sample: BootstrapSample | None
+        self, im: Any, level: float, method: IntervalMethod, sample: BootstrapSample | CapacitySample | None
     ) -> tuple[FloatArray, FloatArray]:
         """Return pointwise confidence intervals of the probability of failure.
 
@@ -193,7 +198,7 @@ class Intervals:
             Confidence level [-].
         method : {"profile", "bootstrap", "wald"}
             How.
-        sample : BootstrapSample, optional
+        sample : BootstrapSample or CapacitySample, optional
             Needed by the bootstrap.
 
         Returns

@@ -64,8 +64,9 @@ def _clustered(counts: Counts) -> str:
             f"Intervals are those of the likelihood and may be much too narrow: they take the outcomes of one cluster"
             f" for independent; the bootstrap of whole clusters has too few of them ({counts.scarcity})."
         )
+    how = "draws a capacity for each" if counts.draws_capacities else "draws whole clusters"
     return (
-        "Outcomes of one cluster are not independent: intervals are from the bootstrap, which draws whole clusters;"
+        f"Outcomes of one cluster are not independent: intervals are from the bootstrap, which {how};"
         " likelihood intervals would be too narrow."
     )
 

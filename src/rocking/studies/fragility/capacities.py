@@ -1,0 +1,230 @@
+"""Intervals from few records of one capacity each: the study is repeated on the computer at the ends themselves.
+
+A parameter belongs to the interval unless what was found would be among the rarest 2.5 % at either end, had the
+parameter this value (Neyman 1937, doi:10.1098/rsta.1937.0005). Repetitions of the study as it was fitted would be too
+narrow: where few capacities happen to lie between the same levels, so do most of theirs.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.studies.fragility.counts import Counts
+from rocking.studies.fragility.estimate import Curves, Scale, find_curves
+
+OUTWARD = 6
+"""Steps that look for a value outside the interval, each twice as long: an end beyond them is open."""
+
+NARROW = 0.01
+"""An end is found to this part of the first step, of two standard errors: far below what 1000 repetitions leave."""
+
+NODES = (-3.0, -2.0, -1.3, -0.7, 0.0, 0.7, 1.3, 2.0, 3.0)
+"""Variates whose fractiles bound a band; between them it is interpolated."""
+
+
+@dataclass(frozen=True, eq=False)
+class CapacitySample:
+    """Studies repeated with capacities drawn from lognormal distributions, one for each record.
+
+    Parameters
+    ----------
+    levels : ndarray
+        Levels at which every record is tried [any unit].
+    original : Curves
+        The curve of the study: one row.
+    scale : Scale
+        Scale of its coefficients.
+    variates : ndarray, shape (repetitions, records)
+        Standard normal variates of the capacities, the same at every value that is tried [-].
+    """
+
+    levels: FloatArray
+    original: Curves
+    scale: Scale
+    variates: FloatArray
+    kind = "capacities"
+    ends = "inverted"
+    undetermined = 0
+
+    @property
+    def repetitions(self) -> int:
+        """Number of repeated studies [-]."""
+        return int(self.variates.shape[0])
+
+    @cached_property
+    def _found(self) -> tuple[float, float]:
+        """Logarithms of median and dispersion of the study."""
+        a, b = self.original.theta[0].tolist()
+        return float(self.scale.log_level(np.array(-a / b))), math.log(self.scale.spread / b)
+
+    def rarity(self, variate: float | None, value: float) -> float:
+        """Return how often the study would find less than it did, if a parameter had some value.
+
+        The other parameter is then the likeliest one of capacities that are all known, with records less one for
+        records.
+
+        Parameters
+        ----------
+        variate : float, optional
+            Standard normal variate of a fractile; the dispersion without [-].
+        value : float
+            Logarithm of that level or of the dispersion [-].
+
+        Returns
+        -------
+        float
+            Share of the repetitions that find less, and half of those that find the same [-].
+        """
+        median, log_dispersion = self._found
+        if variate is None:
+            slopes = self._repeated(median, math.exp(value))[:, 1]
+            return _below(-slopes, -float(self.original.theta[0, 1]))
+        spread, away = math.exp(log_dispersion), value - median
+        likely = 0.5 * (math.hypot(variate * away, 2.0 * math.hypot(spread, away)) - variate * away)
+        records = self.variates.shape[1]
+        dispersion = likely * math.sqrt(records / (records - 1.0))
+        at = (value - self.scale.center) / self.scale.spread
+        theta = self._repeated(value - variate * dispersion, dispersion)
+        # a curve that is high where the fractile should be has a low fractile
+        return _below(-(theta[:, 0] + theta[:, 1] * at), -float(self.original.theta[0] @ (1.0, at)))
+
+    def log_interval(self, variate: float | None, level: float) -> tuple[float, float]:
+        """Return the interval of a logarithmic fractile or of the logarithmic dispersion.
+
+        Parameters
+        ----------
+        variate : float, optional
+            Standard normal variate of the fractile; the dispersion without [-].
+        level : float
+            Confidence level [-].
+
+        Returns
+        -------
+        tuple of float
+            Lower and upper end, infinite where the study leaves it open [-].
+        """
+        (median, log_dispersion), records = self._found, self.variates.shape[1]
+        start = log_dispersion if variate is None else median + variate * math.exp(log_dispersion)
+        step = 2.0 / math.sqrt(records) * (1.0 if variate is None else math.exp(log_dispersion))
+        tail = 0.5 * (1.0 - level)
+        low = _end(lambda value: 1.0 - self.rarity(variate, value), start, -step, tail)
+        return low, _end(lambda value: self.rarity(variate, value), start, step, tail)
+
+    def variate_band(self, position: FloatArray, level: float) -> tuple[FloatArray, FloatArray]:
+        """Return pointwise intervals of the variate a + b u of the probability: where fractiles have their ends.
+
+        Parameters
+        ----------
+        position : ndarray
+            u [-].
+        level : float
+            Confidence level [-].
+
+        Returns
+        -------
+        tuple of ndarray
+            Lower and upper ends [-].
+        """
+        ends = np.array([self.log_interval(variate, level) for variate in NODES])
+        at = self.scale.log_level(position)
+        # a level is the upper end of the fractile that is the least probability which it may have
+        low, high = _along(at, ends[:, 1]), _along(at, ends[:, 0])
+        return np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high)
+
+    def _repeated(self, median: float, dispersion: float) -> FloatArray:
+        """Return a and b of the repeated studies, if capacities had this logarithmic median and this dispersion."""
+        failures = np.count_nonzero(dispersion * self.variates[:, :, None] < np.log(self.levels) - median, axis=1)
+        rows, which = np.unique(failures, axis=0, return_inverse=True)
+        failed, tried = rows.astype(np.float64), np.full(rows.shape, float(self.variates.shape[1]))
+        curves = find_curves(self.levels, self.scale, failed, tried, penalised=bool(self.original.penalised[0]))
+        # as many failures at every level: a curve that does not rise
+        flat = np.stack([_variate(np.mean(failed / tried, axis=1)), np.zeros(len(rows))], axis=1)
+        return np.asarray(np.where(curves.found[:, None], curves.theta, flat)[which.ravel()])
+
+
+def draw_capacities(counts: Counts, original: Curves, scale: Scale, repetitions: int, seed: int) -> CapacitySample:
+    """Return what repeats a study whose records have one capacity each.
+
+    Parameters
+    ----------
+    counts : Counts
+        The data.
+    original : Curves
+        The curve of the study: one row.
+    scale : Scale
+        Scale of its coefficients.
+    repetitions : int
+        How many times the study is repeated.
+    seed : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    CapacitySample
+        Finds the intervals.
+
+    Raises
+    ------
+    InvalidValueError
+        If not every record was tried once at every level, or the repetitions are not between 1 and a million.
+    """
+    checks.within("repetitions", repetitions, 1, 10**6)
+    if not counts.tries_all_levels:
+        raise InvalidValueError(
+            "kind must not be 'capacities' unless clusters= names two records or more, each tried once at every level"
+        )
+    variates = np.random.default_rng(seed).standard_normal((repetitions, counts.clusters))
+    return CapacitySample(counts.levels, original, scale, variates)
+
+
+def _below(found: FloatArray, original: float) -> float:
+    near = 1e-9 * (1.0 + abs(original))
+    less, same = np.count_nonzero(found < original - near), np.count_nonzero(np.abs(found - original) <= near)
+    return float((less + 0.5 * same) / found.size)
+
+
+def _end(rarity: Callable[[float], float], start: float, step: float, tail: float) -> float:
+    """Return where a share that falls from the start on reaches that of a tail; infinite if it never does."""
+    inside, above, narrow = start, 0.5, NARROW * abs(step)
+    for _ in range(OUTWARD):
+        outside = inside + step
+        below = rarity(outside)
+        if below < tail:
+            break
+        inside, above, step = outside, below, 2.0 * step
+    else:
+        return math.copysign(math.inf, step)
+    while abs(outside - inside) > narrow:
+        # variates of such shares are nearly straight lines; none counts as far out, and a tenth is always left
+        high, low, goal = _variate(np.array([min(above, 0.999), max(below, 0.05 * tail), tail])).tolist()
+        middle = inside + min(max((high - goal) / (high - low), 0.1), 0.9) * (outside - inside)
+        if (found := rarity(middle)) < tail:
+            outside, below = middle, found
+        else:
+            inside, above = middle, found
+    return 0.5 * (inside + outside)
+
+
+def _along(at: FloatArray, places: FloatArray) -> FloatArray:
+    """Return the variate at each place: straight lines between the nodes, and beyond them unless they end open."""
+    some = np.isfinite(places)
+    if some.sum() < 2:
+        return np.full(at.shape, np.nan)
+    x, y = np.maximum.accumulate(places[some]), np.array(NODES)[some]
+    found = np.asarray(np.interp(at, x, y))
+    for end, near, beyond in ((0, 1, at < x[0]), (-1, -2, at > x[-1])):
+        if some[end] and x[end] != x[near]:
+            found = np.where(beyond, y[end] + (y[near] - y[end]) / (x[near] - x[end]) * (at - x[end]), found)
+    return found
+
+
+def _variate(share: FloatArray) -> FloatArray:
+    from scipy.special import ndtri
+
+    return np.asarray(ndtri(share), dtype=np.float64)
