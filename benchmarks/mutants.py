@@ -20,7 +20,7 @@ import sys
 import time
 import tomllib
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from queue import SimpleQueue
 from typing import NamedTuple
@@ -79,7 +79,7 @@ OPERATORS = (
     *(f"core/{change}" for change in ("NumberReplacer", "AddNot", "ReplaceBreakWithContinue", "ZeroIterationForLoop")),
 )
 STAGES = (4.0, 15.0, 60.0)  # seconds of tests: most errors die in the first
-HANGS = 6.0  # a mutant that takes this many times the processor's time that the tests take hangs
+HANGS = 3.0  # a mutant that takes this many times the processor's time that the tests take under coverage hangs
 
 
 class Mutant(NamedTuple):
@@ -179,7 +179,9 @@ class Worker:
         command = [sys.executable, "-c", "import rocking; print(rocking.__file__)"]
         found = subprocess.run(command, cwd=folder, env=self._env, check=True, capture_output=True, text=True).stdout
         if folder not in Path(found).parents:
-            raise SystemExit(f"errors are put into {folder}, and the tests import {found.strip()}: remove this installation")
+            raise SystemExit(
+                f"errors are put into {folder}, and the tests import {found.strip()}: remove this installation"
+            )
         self._writes = 0
 
     def write(self, path: str, text: str) -> None:
@@ -279,7 +281,7 @@ def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[
             free.put(worker)
 
     with ThreadPoolExecutor(workers) as pool, ledger.open("a", encoding="utf-8") as out:
-        for entry in filter(None, pool.map(judge, left)):
+        for entry in filter(None, (each.result() for each in as_completed([pool.submit(judge, one) for one in left]))):
             known[str(entry["key"])] = entry
             out.write(json.dumps(entry) + "\n")
             out.flush()
