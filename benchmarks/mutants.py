@@ -171,7 +171,7 @@ class Worker:
             shutil.copy2(ROOT / name, folder / name)
         # an installation that finds the sources where they stand would test those, without an error
         (folder / "sitecustomize.py").write_text(
-            "import sys\nsys.meta_path[:] = [each for each in sys.meta_path if '_editable_' not in type(each).__module__]\n",
+            "import sys\nsys.meta_path[:] = [one for one in sys.meta_path if '_editable_' not in type(one).__module__]\n",
             encoding="utf-8",
         )
         paths = os.pathsep.join([str(folder / "src"), str(folder)])
