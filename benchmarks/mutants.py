@@ -1,9 +1,9 @@
 """Deliberate errors in the numerical core, and how many of them the tests notice: `make mutants`.
 
 A random sample by seed of the mutations of Cosmic Ray's operators that keep a program meaningful (arithmetic, numbers,
-comparisons, signs, conditions, loops), each against the tests that run its line, quickest first, for a minute of tests
-at most; and the hand-made errors of mutants.toml in the compiled engines. It goes on where it was stopped: every
-verdict is a line in build/mutants/.
+comparisons, signs, conditions, loops), each against the tests that run its line, quickest first, for 45 seconds; and
+the hand-made errors of mutants.toml in the compiled engines. It goes on where it was stopped: every verdict is a line
+in build/mutants/.
 """
 
 import argparse
@@ -13,7 +13,6 @@ import json
 import math
 import os
 import random
-import resource
 import shutil
 import subprocess
 import sys
@@ -78,7 +77,7 @@ OPERATORS = (
     *(f"core/Replace{change}" for change in ("AndWithOr", "OrWithAnd", "TrueWithFalse", "FalseWithTrue")),
     *(f"core/{change}" for change in ("NumberReplacer", "AddNot", "ReplaceBreakWithContinue", "ZeroIterationForLoop")),
 )
-STAGES = (4.0, 15.0, 60.0)  # seconds of tests: most errors die in the first
+STAGES = (4.0, 15.0, 45.0)  # seconds of tests: most errors die in the first
 HANGS = 3.0  # a mutant that takes this many times the processor's time that the tests take under coverage hangs
 
 
@@ -171,18 +170,21 @@ class Worker:
             shutil.copy2(ROOT / name, folder / name)
         # an installation that finds the sources where they stand would test those, without an error
         (folder / "sitecustomize.py").write_text(
-            "import sys\nsys.meta_path[:] = [one for one in sys.meta_path if '_editable_' not in type(one).__module__]\n",
+            "import sys\nsys.meta_path[:] = [it for it in sys.meta_path if '_editable_' not in type(it).__module__]\n",
             encoding="utf-8",
         )
-        paths = os.pathsep.join([str(folder / "src"), str(folder)])
-        self._env = os.environ | {"PYTHONPATH": paths}
+        env = os.environ | {
+            "PYTHONPATH": os.pathsep.join([str(folder / "src"), str(folder)]),
+            "OPENBLAS_NUM_THREADS": "1",
+        }
         command = [sys.executable, "-c", "import rocking; print(rocking.__file__)"]
-        found = subprocess.run(command, cwd=folder, env=self._env, check=True, capture_output=True, text=True).stdout
+        found = subprocess.run(command, cwd=folder, env=env, check=True, capture_output=True, text=True).stdout
         if folder not in Path(found).parents:
-            raise SystemExit(
-                f"errors are put into {folder}, and the tests import {found.strip()}: remove this installation"
-            )
-        self._writes = 0
+            raise SystemExit(f"errors go into {folder}, and the tests import {found.strip()}: remove that installation")
+        command = [sys.executable, "-m", "benchmarks.mutant_server"]
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+        self._server = subprocess.Popen(command, cwd=folder, env=env, text=True, **pipes)
+        self._writes, self._sound = 0, dict[str, bool]()
 
     def write(self, path: str, text: str) -> None:
         """Write a module with a time of its own, since compiled files are recognised by time and size."""
@@ -191,36 +193,28 @@ class Worker:
         self._writes += 1
         os.utime(target, (2e9 + self._writes, 2e9 + self._writes))
 
-    def passes(self, tests: list[str], limit: float) -> bool:
-        """Whether these tests pass within a limit of the processor's time [s]: a neighbour's load kills no mutant."""
+    def fails(self, tests: list[str], limit: float) -> str:
+        """Return the test that fails first, or what else went wrong; empty if all pass.
+
+        The limit is of the processor's time [s]: a neighbour's load kills no mutant.
+        """
+        if not tests:
+            return ""
         listed = self.folder / "tests.txt"
         listed.write_text("\n".join(tests) + "\n", encoding="utf-8")
-        command = [
-            sys.executable,
-            "-m",
-            "pytest",
-            "-x",
-            "-q",
-            "--no-header",
-            "--tb=no",
-            "-p",
-            "no:cacheprovider",
-            f"@{listed}",
-        ]
-        try:
-            done = subprocess.run(
-                command,
-                cwd=self.folder,
-                env=self._env,
-                timeout=4.0 * limit,
-                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (round(limit), round(limit))),
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            return False
-        return done.returncode == 0
+        assert self._server.stdin is not None
+        assert self._server.stdout is not None
+        print(listed, round(limit), file=self._server.stdin, flush=True)
+        code, _, failed = self._server.stdout.readline().strip().partition(" ")
+        return "" if code == "0" else failed or f"code {code}"
+
+    def sound(self, test: str) -> bool:
+        """Whether a test passes here without an error in the sources."""
+        if test not in self._sound:
+            self._sound[test] = not self.fails([test], 600.0)
+            if not self._sound[test]:
+                print(f"fails without an error too, and does not count: {test}", flush=True)
+        return self._sound[test]
 
 
 def staged(tests: list[str], durations: dict[str, float]) -> list[list[str]]:
@@ -238,24 +232,20 @@ def staged(tests: list[str], durations: dict[str, float]) -> list[list[str]]:
 
 
 def verdict(mutant: Mutant, worker: Worker, covering: Covering) -> dict[str, object]:
-    """Whether a mutant is noticed, by how many tests at most, and how long that took."""
-    began = time.monotonic()
+    """Whether a mutant is noticed, by which of how many tests, and how long that took."""
+    began, text = time.monotonic(), (ROOT / mutant.path).read_text(encoding="utf-8")
     tests = covering.tests(mutant.path, range(mutant.first, mutant.last + 1))
-    worker.write(mutant.path, mutant.code())
-    killed, asked = False, 0
-    for batch in staged(tests, covering.durations):
-        asked += len(batch)
-        if not worker.passes(batch, 20.0 + HANGS * sum(covering.durations[test] for test in batch)):
-            killed = True
-            break
-    worker.write(mutant.path, (ROOT / mutant.path).read_text(encoding="utf-8"))
-    return {
-        "key": mutant.key,
-        "killed": killed,
-        "tests": asked,
-        "of": len(tests),
-        "seconds": round(time.monotonic() - began, 1),
-    }
+    left, failed = staged(tests, covering.durations), ""
+    while left and not failed:
+        worker.write(mutant.path, mutant.code())
+        failed = worker.fails(left[0], 20.0 + HANGS * sum(covering.durations[test] for test in left[0]))
+        worker.write(mutant.path, text)
+        if failed not in left[0] or worker.sound(failed):
+            left.pop(0)
+        else:  # it fails without the error too
+            left[0], failed = [test for test in left[0] if test != failed], ""
+    seconds = round(time.monotonic() - began, 1)
+    return {"key": mutant.key, "killed": bool(failed), "by": failed, "of": len(tests), "seconds": seconds}
 
 
 def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[str, dict[str, object]]:
@@ -311,7 +301,7 @@ def engines(folder: Path) -> list[tuple[str, str, bool]]:
             )
         worker.write(entry["file"], text.replace(entry["old"], entry["new"]))
         _build(worker.folder)
-        known[entry["name"]] = not worker.passes(by_hand["tests"][entry["of"]], 900.0)
+        known[entry["name"]] = bool(worker.fails(by_hand["tests"][entry["of"]], 900.0))
         worker.write(entry["file"], text)
         ledger.write_text(json.dumps(known), encoding="utf-8")
         print(f"{'killed  ' if known[entry['name']] else 'SURVIVED'}  {entry['file']}: {entry['name']}", flush=True)
