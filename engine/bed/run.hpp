@@ -100,6 +100,7 @@ private:
                 continue;
             }
             const double next = wanted * std::min(bed_.linear() ? 6.0 : 3.0, std::max(0.2, factor));
+            arresting_ = start_.end == kAtPeak && out_.touch >= 0.0 && out_.parting < 0.0 && alone();
             const double tau = stuck_ > 100 ? 1.0 : first_cause();
             if (stuck_ > 100) {
                 causes_.clear();
@@ -286,6 +287,7 @@ private:
         const Place at = place(x_, p_.exact);
         const bool floating = bed_.pressing == 0;
         for (const Cause& c : causes_) {
+            if (c.point == -3) continue;
             ++out_.switches;
             if (c.point == -2) {
                 peak = true;
@@ -355,10 +357,17 @@ private:
         else trace_->intervals.push_back({i, on_[i], out_.time}), on_[i] = -1.0;
     }
 
+    // Whether only the new foot presses.
+    bool alone() {
+        for (std::int64_t i = 0; i < p_.points.count; ++i)
+            if (holds(i) != (i == start_.new_foot)) return false;
+        return true;
+    }
+
     // The impact is over when only the new foot presses, and is arrested.
     bool ended() {
         if (start_.end == kAtTime || out_.touch < 0.0) return false;
-        const double slow = start_.end == kAtParting ? 1e-10 : 1e-3;
+        const double slow = start_.end == kAtParting ? 1e-10 : (1.0 + 1e-6) * kArrested;
         if (start_.end == kAtPeak && std::abs(x_[kTheta]) > start_.farthest) {
             out_.status = kPastTopple;
             return true;

@@ -1,4 +1,5 @@
-// A step and the first switch inside it: a point that touches, parts or turns, a base that slips or sticks, the peak.
+// A step and the first switch inside it: a point that touches, parts or turns, a base that slips or sticks, the peak, and
+// where the new foot is arrested while it presses alone: the end of the impact.
 #pragma once
 #include "motion.hpp"
 #include "result.hpp"
@@ -10,7 +11,7 @@ protected:
     Switches(const Problem& p, const Start& start) : p_(p), start_(start), bed_(p), motion_(p, bed_) {}
 
     struct Cause {
-        std::int64_t point;  // -1 friction, -2 peak
+        std::int64_t point;  // -1 friction, -2 peak, -3 arrest
         int which;
         double at;
     };
@@ -25,7 +26,7 @@ protected:
     Rates rates_[kStages + 1];
     std::vector<Cause> causes_;
     double first_ = 1.0, estimate_ = 1.0;
-    bool moved_ = false;
+    bool moved_ = false, arresting_ = false;
 
     void look_at_nodes() {
         for (int k = 0; k <= kStages; ++k) {
@@ -37,9 +38,15 @@ protected:
 
     double peak_margin(const State& x) const { return start_.end == kAtPeak ? x[kOmega] : 1.0; }
 
+    // Slower than this share of the landing speed, the new foot is arrested.
+    static constexpr double kArrested = 1e-3;
+
+    double arrest_margin(const Place& at) const { return -bed_.rate(start_.new_foot, at) - kArrested * start_.speed; }
+
     double margin(const Cause& c, const State& x) const {
         if (c.point == -1) return motion_.friction_margin(x);
         if (c.point == -2) return peak_margin(x);
+        if (c.point == -3) return arrest_margin(place(x, p_.exact));
         return bed_.margin(c.point, c.which, place(x, p_.exact));
     }
 
@@ -59,6 +66,10 @@ protected:
         if (start_.end == kAtPeak && moved_) {
             for (int k = 0; k <= kStages; ++k) g[0][k] = (k == 0 ? step_.start : step_.stage[k - 1])[kOmega];
             look({-2, 0, 0.0}, g[0]);
+        }
+        if (arresting_) {
+            for (int k = 0; k <= kStages; ++k) g[0][k] = arrest_margin(places_[k]);
+            look({-3, 0, 0.0}, g[0]);
         }
         const double near = first_ + 1e-12;
         causes_.erase(std::remove_if(causes_.begin(), causes_.end(), [near](const Cause& c) { return c.at > near; }), causes_.end());

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rocking.evidence import agreement
-from rocking.evidence.contenders import as_it_is
+from rocking.evidence.contenders import as_it_is, contenders
 from rocking.evidence.league import league
 from rocking.evidence.likelihood import gaussian_bic, interval_log_likelihood
 from rocking.evidence.measurements import all_measurements
@@ -146,3 +146,10 @@ def test_contender_without_fit_keeps_its_model():
     model = Fixed(r=0.9)
     assert as_it_is(model).fit(all_measurements()) is model
     assert as_it_is(Housner()).parameters == ()
+
+
+def test_the_models_as_they_are_have_their_parameters():
+    """A shifted impulse at k = 2/3, and the three distributions of impulses q = 0, 1 and 2."""
+    taken = [one.fit(all_measurements()) for one in contenders() if not one.parameters]
+    assert [model.k for model in taken if model.name == "shifted-impulse"] == [2.0 / 3.0]
+    assert [model.q for model in taken if model.name == "distributed-impulse"] == [0.0, 1.0, 2.0]

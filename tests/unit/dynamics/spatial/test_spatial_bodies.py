@@ -11,7 +11,7 @@ from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial, law_of
 from rocking.dynamics.spatial.landing import landed
 from rocking.dynamics.spatial.selection import State, forces, of_impact
-from rocking.dynamics.spatial.stance import edge, face
+from rocking.dynamics.spatial.stance import edge, face, rise
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution.spatial import SpatialHousner
 
@@ -141,3 +141,17 @@ def test_of_two_contact_sets_the_larger_stays():
             assert len(chosen.points) == max(len(each.stance.points) for each in found)
             assert len(chosen.points) > min(len(each.stance.points) for each in found)
     assert two > 5
+
+
+@pytest.mark.parametrize("tilt", [0.0, 1e-9, 0.4, 0.5 * math.pi, 2.0, 3.1])
+def test_rise_at_any_tilt(tilt):
+    """Height of the centre over a corner of the ground, upside down too: the arm turned by Rodrigues's formula."""
+    body = SpatialBody(700.0, np.array([0.07, -0.05, 1.1]), np.diag([400.0, 450.0, 90.0]), SQUARE - 0.5)
+    axis = np.array([0.6, -0.8, 0.0])
+    for pivot in np.column_stack([body.base, np.zeros(len(body.base))]):
+        arm = body.centre - pivot
+        turned = (
+            arm * math.cos(tilt) + np.cross(axis, arm) * math.sin(tilt) + axis * (axis @ arm) * (1.0 - math.cos(tilt))
+        )
+        up = UP * math.cos(tilt) - np.cross(axis, UP) * math.sin(tilt)
+        assert rise(body, pivot, up) == pytest.approx(turned[2] - arm[2], rel=1e-9, abs=1e-15)

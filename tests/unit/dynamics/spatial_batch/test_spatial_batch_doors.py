@@ -94,9 +94,11 @@ def test_the_reference_engine_serves_row_by_row():
     """Both engines give the same outcomes and counts, and the same numbers to 1e-6, refusals included."""
     bodies = [BOX, SpatialBody.box(0.7, 0.5, 2.5)]
     starts = [SpatialStart(), SpatialStart(0.03, 0.7), SpatialStart(math.nan)]
-    given = {"scales": [0.3, 0.8, 2.5], "start": starts}
+    given, told = {"scales": [0.3, 0.8, 2.5], "start": starts}, []
     fast = simulate_spatial_batch(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], **given)
-    slow = simulate_spatial_batch(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], engine="reference", **given)
+    given |= {"engine": "reference", "progress": told.append}
+    slow = simulate_spatial_batch(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], **given)
+    assert sum(told) == slow.status.size
     assert "reference" in slow.engine
     for name in ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events"):
         np.testing.assert_array_equal(fast[name], slow[name], err_msg=name)

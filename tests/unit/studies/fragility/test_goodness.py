@@ -50,6 +50,8 @@ def test_a_wrong_curve_is_found_out():
     z = np.round(100 * 0.6 * ndtr((np.log(LEVELS) + 0.6) / 0.25))
     found = fit_lognormal(LEVELS, z, [100] * 8).goodness(repetitions=200)
     assert max(values["p_value"] for values in found.summary().values()) < 0.02
+    # what no repetition reaches is itself one among them (Davison & Hinkley 1997, doi:10.1017/CBO9780511802843, 4.11)
+    assert found.pearson.p_value == pytest.approx(1.0 / (1.0 + found.repetitions), rel=1e-12)
     assert found.kolmogorov.value > found.distance_limit
     share = found.observed / found.trials
     assert np.any((share < found.band[0]) | (share > found.band[1]))
