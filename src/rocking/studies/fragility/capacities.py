@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -21,10 +22,10 @@ from rocking.studies.fragility.estimate import Curves, Scale, find_curves
 OUTWARD = 6
 """Steps that look for a value outside the interval, each twice as long: an end beyond them is open."""
 
-NARROW = 0.01
-"""An end is found to this part of the first step, of two standard errors: far below what 1000 repetitions leave."""
+NEAR = 0.05
+"""An end is taken from a line whose last two places are this part of the first step apart: far nearer than that."""
 
-NODES = (-3.0, -2.0, -1.3, -0.7, 0.0, 0.7, 1.3, 2.0, 3.0)
+NODES = (-3.0, -1.5, -0.7, 0.0, 0.7, 1.5, 3.0)
 """Variates whose fractiles bound a band; between them it is interpolated."""
 
 
@@ -111,8 +112,12 @@ class CapacitySample:
         """
         (median, log_dispersion), records = self._found, self.variates.shape[1]
         start = log_dispersion if variate is None else median + variate * math.exp(log_dispersion)
-        step = 2.0 / math.sqrt(records) * (1.0 if variate is None else math.exp(log_dispersion))
+        # about where the ends are: as of known capacities, a little wider
+        error = (
+            math.sqrt(0.5) if variate is None else math.exp(log_dispersion) * math.hypot(1.0, math.sqrt(0.5) * variate)
+        )
         tail = 0.5 * (1.0 - level)
+        step = -float(_variate(tail)) * (1.0 + 2.0 / records) / math.sqrt(records) * error
         low = _end(lambda value: 1.0 - self.rarity(variate, value), start, -step, tail)
         return low, _end(lambda value: self.rarity(variate, value), start, step, tail)
 
@@ -190,25 +195,27 @@ def _below(found: FloatArray, original: float) -> float:
 
 
 def _end(rarity: Callable[[float], float], start: float, step: float, tail: float) -> float:
-    """Return where a share that falls from the start on reaches that of a tail; infinite if it never does."""
-    inside, above, narrow = start, 0.5, NARROW * abs(step)
+    """Return where a share that falls from a half at the start on reaches that of a tail; infinite if it never does."""
+    # variates of such shares are nearly straight lines; none counts as far out, and a tenth is always left
+    least, goal = _variate(np.array([0.05 * tail, tail])).tolist()
+    inside, above, near = start, 0.0, NEAR * abs(step)
     for _ in range(OUTWARD):
-        outside = inside + step
-        below = rarity(outside)
-        if below < tail:
+        last = outside = inside + step
+        below = max(_variate(rarity(outside)), least)
+        if below < goal:
             break
         inside, above, step = outside, below, 2.0 * step
     else:
         return math.copysign(math.inf, step)
-    while abs(outside - inside) > narrow:
-        # variates of such shares are nearly straight lines; none counts as far out, and a tenth is always left
-        high, low, goal = _variate(np.array([min(above, 0.999), max(below, 0.05 * tail), tail])).tolist()
-        middle = inside + min(max((high - goal) / (high - low), 0.1), 0.9) * (outside - inside)
-        if (found := rarity(middle)) < tail:
+    while True:
+        middle = inside + min(max((above - goal) / (above - below), 0.1), 0.9) * (outside - inside)
+        if abs(middle - last) <= near:
+            return float(middle)
+        last, found = middle, max(_variate(rarity(middle)), least)
+        if found < goal:
             outside, below = middle, found
         else:
             inside, above = middle, found
-    return 0.5 * (inside + outside)
 
 
 def _along(at: FloatArray, places: FloatArray) -> FloatArray:
@@ -224,7 +231,7 @@ def _along(at: FloatArray, places: FloatArray) -> FloatArray:
     return found
 
 
-def _variate(share: FloatArray) -> FloatArray:
+def _variate(share: float | FloatArray) -> Any:
     from scipy.special import ndtri
 
-    return np.asarray(ndtri(share), dtype=np.float64)
+    return ndtri(share)
