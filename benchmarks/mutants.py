@@ -1,7 +1,7 @@
 """Deliberate errors in the numerical core, and how many of them the tests notice: `make mutants`.
 
 A random sample by seed of the mutations of Cosmic Ray's operators that keep a program meaningful (arithmetic, numbers,
-comparisons, signs, conditions, loops), each against the tests that run its line, quickest first, for 45 seconds; and
+comparisons, signs, conditions, loops), each against the tests that run its line, quickest first, for 90 seconds; and
 the hand-made errors of mutants.toml in the compiled engines. It goes on where it was stopped: every verdict is a line
 in build/mutants/.
 """
@@ -77,7 +77,7 @@ OPERATORS = (
     *(f"core/Replace{change}" for change in ("AndWithOr", "OrWithAnd", "TrueWithFalse", "FalseWithTrue")),
     *(f"core/{change}" for change in ("NumberReplacer", "AddNot", "ReplaceBreakWithContinue", "ZeroIterationForLoop")),
 )
-STAGES = (4.0, 15.0, 45.0)  # seconds of tests: most errors die in the first
+STAGES = (4.0, 15.0, 90.0)  # seconds of tests: most errors die in the first
 HANGS = 3.0  # a mutant that takes this many times the processor's time that the tests take under coverage hangs
 
 
