@@ -269,6 +269,20 @@ def test_another_solver_agrees(name: str) -> None:
     assert abs(quick.audit - quick.result("bed_loss") / setup.start.energy) > 1e-6 or name == "hertz"
 
 
+def test_heights_count_from_anywhere() -> None:
+    """A profile and the same one higher up on the body give the same coefficients: energies are above standing."""
+    block = slender(2.0)
+    linear, profile = sprung(block, 400.0, 0.5), np.array([0.0, 1e-4, 2e-4, 1e-4, 0.0])
+    one, other = (
+        bed_impact(
+            block, ContactBed.uniform(block, 5, linear).with_profile((profile + up).tolist()), angular_velocity=1.0
+        )
+        for up in (0.0, 3e-4)
+    )
+    assert other.emergent.by_energy == pytest.approx(one.emergent.by_energy, abs=1e-4)
+    assert other.emergent.by_peak == pytest.approx(one.emergent.by_peak, abs=1e-4)
+
+
 def test_an_implicit_solver_agrees() -> None:
     """SciPy's LSODA gives the same as its explicit method and as the fast engine, to 1e-6."""
     block = slender(2.0)

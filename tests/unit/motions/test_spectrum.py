@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from rocking.errors import InvalidValueError
 from rocking.motions import GroundMotion
 from rocking.motions.kinematics import quadratic_roots
-from rocking.motions.spectrum import phi, response_spectrum
+from rocking.motions.spectrum import _reach, _response, phi, response_spectrum
 
 JAGGED = GroundMotion(np.random.default_rng(5).standard_normal(40), 0.01)
 
@@ -201,3 +201,13 @@ def test_bad_values_are_refused():
     for damping in (-0.1, 1.0, 5.0, math.inf):
         with pytest.raises(InvalidValueError, match="damping"):
             response_spectrum(JAGGED, 0.1, damping)
+
+
+def test_no_phase_goes_beyond_the_reach():
+    """Of states of magnitude one, some phase has the largest response and none a larger one, for each response."""
+    rates, most = np.array([-0.4 + 3.0j, -0.01 + 70.0j, -5.0 + 2.0j]), np.zeros((3, 3))
+    for phase in np.linspace(0.0, 2.0 * np.pi, 4001):
+        found = _response(np.full(3, np.exp(1j * phase)), np.zeros(3), rates)
+        most = np.maximum(most, [np.abs(value) for value, _ in found])
+    # 4000 phases miss the top by (pi / 4000)^2 / 2
+    np.testing.assert_allclose(most, _reach(rates), rtol=4e-7)
