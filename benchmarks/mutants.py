@@ -1,9 +1,9 @@
 """Deliberate errors in the numerical core, and how many of them the tests notice: `make mutants`.
 
 A random sample by seed of the mutations of Cosmic Ray's operators that keep a program meaningful (arithmetic, numbers,
-comparisons, signs, conditions, loops), each against the tests that run its line, quickest first, for 90 seconds; and
-the hand-made errors of mutants.toml in the compiled engines. It goes on where it was stopped: every verdict is a line
-in build/mutants/.
+comparisons, signs, conditions, loops), each against the tests that run its line, the likeliest and quickest first, for
+90 seconds; and the hand-made errors of mutants.toml in the compiled engines. It goes on where it was stopped: every
+verdict is a line in build/mutants/.
 """
 
 import argparse
@@ -18,6 +18,7 @@ import subprocess
 import sys
 import time
 import tomllib
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
@@ -231,10 +232,14 @@ def staged(tests: list[str], durations: dict[str, float]) -> list[list[str]]:
     return [batch for batch in batches if batch]
 
 
-def verdict(mutant: Mutant, worker: Worker, covering: Covering) -> dict[str, object]:
-    """Whether a mutant is noticed, by which of how many tests, and how long that took."""
+def verdict(mutant: Mutant, worker: Worker, covering: Covering, noticed: Counter[str]) -> dict[str, object]:
+    """Whether a mutant is noticed, by which of how many tests, and how long that took.
+
+    Tests that noticed other errors in the same file come first.
+    """
     began, text = time.monotonic(), (ROOT / mutant.path).read_text(encoding="utf-8")
     tests = covering.tests(mutant.path, range(mutant.first, mutant.last + 1))
+    tests.sort(key=lambda test: -noticed[test])
     left, failed = staged(tests, covering.durations), ""
     while left and not failed:
         worker.write(mutant.path, mutant.code())
@@ -260,19 +265,23 @@ def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[
     for number in range(workers):
         free.put(Worker(folder / f"worker-{number}"))
     stop = time.monotonic() + 3600.0 * hours
+    noticed: dict[str, Counter[str]] = defaultdict(Counter)
+    for entry in known.values():
+        noticed[str(entry["key"]).partition(":")[0]][str(entry["by"])] += 1
 
     def judge(mutant: Mutant) -> dict[str, object] | None:
         if time.monotonic() > stop:
             return None
         worker = free.get()
         try:
-            return verdict(mutant, worker, covering)
+            return verdict(mutant, worker, covering, noticed[mutant.path])
         finally:
             free.put(worker)
 
     with ThreadPoolExecutor(workers) as pool, ledger.open("a", encoding="utf-8") as out:
         for entry in filter(None, (each.result() for each in as_completed([pool.submit(judge, one) for one in left]))):
             known[str(entry["key"])] = entry
+            noticed[str(entry["key"]).partition(":")[0]][str(entry["by"])] += 1
             out.write(json.dumps(entry) + "\n")
             out.flush()
             print(

@@ -27,7 +27,7 @@ from rocking.motions.segments import Segments
 ROWS = tuple(name for name in batch.ROWS if not name.startswith("q_"))
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 INJECTIONS = 1_000
-PATHOLOGICAL = {"fast": 10_000, "reference": 10_000 if CAMPAIGN else 300}
+PATHOLOGICAL = {"fast": 10_000, "reference": 10_000 if CAMPAIGN else 200}
 ENGINES = pytest.mark.parametrize(
     "name",
     [pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="not built")), "reference"],

@@ -264,6 +264,9 @@ def test_another_solver_agrees(name: str) -> None:
         assert quick.result(one) == pytest.approx(slow.result(one), rel=part), one
     for one, part in {"deepest": 1e-5, "slid": 1e-3}.items():
         assert quick.result(one) == pytest.approx(slow.result(one), rel=part, abs=1e-12), one
+    # when which point presses, in the order in which contacts end
+    assert quick.intervals == pytest.approx(slow.intervals, abs=2e-5)
+    assert (np.diff(slow.intervals[np.isfinite(slow.intervals[:, 2]), 2]) >= 0.0).all()
     assert abs(quick.audit) < 1e-8
     # negative control: the audit sees the losses of the bed
     assert abs(quick.audit - quick.result("bed_loss") / setup.start.energy) > 1e-6 or name == "hertz"

@@ -59,7 +59,7 @@ def test_intervals_from_few_motions_cover_as_often_as_they_say(motions, levels):
     An interval holds the truth where a study is not among the rarest 2.5 % either way, which takes one look instead of
     a search. Within three standard errors. The control: the profile interval, which takes the outcomes for independent.
     """
-    studies = 4000 if CAMPAIGN else 300
+    studies = 4000 if CAMPAIGN else 200
     random = np.random.default_rng(32)
     usual, alone = np.zeros((2, 3)), np.zeros(3)
     for k in range(studies):

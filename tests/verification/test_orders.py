@@ -128,7 +128,7 @@ def test_declared_orders(kind, order, impacts):
 
 
 @pytest.mark.parametrize(
-    ("kind", "linear"), [(smooth, True), (record, True), (record_with_vertical, False), (record_with_vertical, True)]
+    ("kind", "linear"), [(smooth, True), (record_with_vertical, False), (record_with_vertical, True)]
 )
 def test_order_eight_of_the_other_equations(kind, linear):
     """Linear equations and vertical motion have the order 8 too, across two to five impacts."""

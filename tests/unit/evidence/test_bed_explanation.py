@@ -11,7 +11,7 @@ from rocking.evidence.contenders import contact_bed
 from rocking.evidence.explanation import Explanation, Ranked, explanation
 from rocking.evidence.league import league
 from rocking.evidence.likelihood import interval_log_likelihood, scatter
-from rocking.evidence.measurements import all_measurements, datasets
+from rocking.evidence.measurements import GROUPS, all_measurements, datasets
 from rocking.restitution.contact_bed import ContactBedModel
 
 PHYSICS = {each.name: each for each in explanations()}
@@ -35,6 +35,50 @@ def test_the_bed_of_the_fit_is_the_model():
         assert bed_coefficients(ratios, points, damping, hardness) == pytest.approx(expected, rel=1e-12)
     # a bed on half the base is the bed of a block of twice the slenderness and the inertia of this one
     assert (bed_coefficients(ratios, 5, 1.0, 100.0, share=0.5) > bed_coefficients(ratios, 5, 1.0, 100.0)).all()
+
+
+def test_every_explanation_says_what_it_computes():
+    """Row by row, each physics is the bed with what its sentence says of that row's group, mass or width."""
+    data = all_measurements()
+    zeta, hard, x, y, z, w = 1.4, 90.0, 0.91, 0.94, 0.97, 0.99
+    by_group = dict(zip(("S", "M", "L"), (x, y, z), strict=True))
+    dampings = dict(zip(GROUPS, (1.1, 1.3, 1.6, 1.9), strict=True))
+    hardnesses = dict(zip(GROUPS, (60.0, 90.0, 130.0, 180.0), strict=True))
+
+    def bed(row, damping=zeta, hardness=hard, **more):
+        return bed_coefficients(data.slenderness[[row]], 5, damping, hardness, **more)[0]
+
+    def unshaken(name):
+        return name == "table1"
+
+    expected = {
+        "one bed": ((zeta, hard), lambda row, name: bed(row)),
+        "loss beside the bed": (
+            (zeta, hard, w),
+            lambda row, name: bed(row) * (1.0 if unshaken(name) else w),
+        ),
+        "loss that does not grow with mass": (
+            (zeta, hard, 0.03),
+            lambda row, name: bed(row) * (1.0 if unshaken(name) else np.sqrt(1.0 - 0.03 / data.mass[row])),
+        ),
+        "loss by group": ((zeta, hard, x, y, z), lambda row, name: bed(row) * by_group.get(name, 1.0)),
+        "damping by group": ((hard, *dampings.values()), lambda row, name: bed(row, damping=dampings[name])),
+        "hardness by group": ((zeta, *hardnesses.values()), lambda row, name: bed(row, hardness=hardnesses[name])),
+        "narrower base by group": (
+            (zeta, hard, x, y, z),
+            lambda row, name: bed(row, share=by_group.get(name, 1.0)),
+        ),
+        "unevenness of one height": (
+            (zeta, hard, 0.2),
+            lambda row, name: bed(row, shift=0.0 if unshaken(name) else 0.2 / relative_width(data)[row]),
+        ),
+    }
+    assert set(expected) == set(PHYSICS)
+    for name, (values, of_row) in expected.items():
+        found = PHYSICS[name].predict(np.array(values), data, 5)
+        assert found == pytest.approx([of_row(row, group) for row, group in enumerate(data.group)], rel=1e-12), name
+        assert len(values) == len(PHYSICS[name].parameters) == len(PHYSICS[name].start) == len(PHYSICS[name].bounds)
+        assert all(low <= at <= high for at, (low, high) in zip(PHYSICS[name].start, PHYSICS[name].bounds, strict=True))
 
 
 def test_factors_are_found_again():

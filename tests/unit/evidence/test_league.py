@@ -105,6 +105,15 @@ def test_verdict_is_made_from_the_numbers():
     assert verdict([exchanged.get(row.name, row) for row in league()])[0].startswith("Error of r: housner is closer (")
 
 
+def test_models_within_six_in_bic_are_not_resolved():
+    """Kass and Raftery (1995, doi:10.1080/01621459.1995.10476572, p. 777) call a difference from 6 on strong."""
+    rows = [dataclasses.replace(row, bic=20.0 + k) for k, row in enumerate(league())]
+    near = [dataclasses.replace(rows[0], bic=1.0), dataclasses.replace(rows[1], bic=6.9)]
+    last = verdict([*near, dataclasses.replace(rows[2], bic=7.1), *rows[3:]])[-1]
+    told = last[last.index(":") + 2 : last.index(" lie within 6 in BIC")]
+    assert told == ", ".join(row.name for row in near)
+
+
 def test_measures_by_hand():
     """RMSE, bias, concordance and losses of a tiny example worked by hand."""
     model, measured = np.array([0.8, 0.9]), np.array([0.7, 0.9])

@@ -8,7 +8,7 @@ import pytest
 
 from rocking.bodies.formats.mesh import mesh_from_file, solid_from_mesh
 from rocking.bodies.solid import Polyhedron, box
-from rocking.bodies.solid.repair import repaired
+from rocking.bodies.solid.repair import WELD, repaired
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError
 
 trimesh = pytest.importorskip("trimesh")
@@ -102,6 +102,25 @@ def test_nearly_equal_vertices():
     assert repaired(vertices + 1e-4 * noise, faces, weld_tolerance=2e-3).shape.moments().mass == pytest.approx(
         4.0, rel=1e-3
     )
+
+
+def test_a_closed_surface_is_left_as_it_is():
+    """Corners 1e-9 of the size apart stay two where nothing is open, in a soup of triangles too."""
+    beside = len(V)
+    vertices = np.vstack([V, V[0] + 1e-3 * WELD * (V[F[0, 1]] - V[F[0, 0]])])
+    opposite = next(f for f in F[1:] if set(F[0, :2].tolist()) <= set(f.tolist()))
+    # the edge of two faces is split next to its end: a closed surface with an edge of 1e-9 of the size
+    split = []
+    for face in F.tolist():
+        if set(face) in (set(F[0].tolist()), set(opposite.tolist())):
+            at = [face.index(number) for number in F[0, :2].tolist()]
+            split += [[beside if i == place else number for i, number in enumerate(face)] for place in at]
+        else:
+            split.append(face)
+    done = repaired(vertices, np.array(split))
+    assert (done.repairs, len(done.shape.vertices)) == ((), 9)
+    soup = repaired(*triangle_soup(vertices, np.array(split)))
+    assert len(soup.shape.vertices) == 9
 
 
 def test_missing_face():

@@ -17,11 +17,14 @@ from rocking.dynamics.planar import (
     regime_at_start,
     simulate_with_contact,
 )
+from rocking.dynamics.planar.engine import Planar
 from rocking.dynamics.planar.export import COLUMNS
+from rocking.dynamics.planar.footing import Footing
 from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine
+from rocking.motions.segments import Segments
 
 G = 9.80665
 BODY = Block(width=1.0, height=2.0)
@@ -214,6 +217,15 @@ def test_paradox_at_the_start_leaves_empty_tables():
     assert response.regimes.size == 0
     assert response.impacts.size == 0
     assert "Painleve" in response.summary
+
+
+def test_numbers_that_run_out():
+    """Where the series of a motion are no longer finite the history has failed, and not for want of a contact force."""
+    footing, law = Footing.of_body(BODY), ContactLaw(0.6)
+    for push in ([0.0, 1e200, 1e200], [0.0, 1e305, -1e305]):
+        with np.errstate(all="ignore"):
+            found = Planar(footing, Segments.between_samples(1e80, np.array(push)), law, PlanarSettings()).run()
+        assert found.status is Status.NOT_FINITE
 
 
 def test_map_refuses_what_has_no_answer():

@@ -72,6 +72,26 @@ def test_a_bad_row_touches_no_other():
     assert (good.status == Status.GOOD.code).all() or (good.overturned == 1.0).any()
 
 
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"tilt": math.nan},
+        {"tilt": -0.01},
+        {"tilt": 0.5 * math.pi},
+        {"azimuth": math.inf},
+        {"yaw": math.nan},
+        {"angular_velocity": (0.0, math.nan, 0.0)},
+        {"angular_velocity": (0.0, math.inf)},
+        {"angular_velocity": (0.0, 0.1)},
+    ],
+)
+def test_starts_that_are_none(bad):
+    """Each number of a start is looked at by itself."""
+    good = {"tilt": 0.1, "azimuth": -2.0, "yaw": 7.0, "angular_velocity": (0.1, -0.2, 0.3)}
+    assert SpatialStart(**good).valid
+    assert not SpatialStart(**(good | bad)).valid
+
+
 @built
 def test_threads_pieces_and_order_leave_the_bits(monkeypatch):
     """One thread or three, pieces of any size, rows forwards or backwards: the same bits; another step is not."""

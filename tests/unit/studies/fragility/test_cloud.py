@@ -204,7 +204,12 @@ def test_what_is_refused(found):
         found.probability(3.0, 0.0)
     with pytest.raises(InvalidValueError, match="at least 3 points"):
         _ = cloud(BLOCK, MOTIONS[:3], restitution=0.9).regression
-    with pytest.raises(InvalidValueError, match="different places"):
-        regression(np.ones(5), np.arange(5.0))
+    # places differ by more than rounding, which is relative to where they lie
+    for at, apart in ((1.0, 0.0), (1.0, 1e-13), (1e6, 1e-8)):
+        with pytest.raises(InvalidValueError, match="different places"):
+            regression(at + apart * np.arange(5.0), np.arange(5.0))
+    for at, apart in ((1.0, 1e-8), (1e6, 1e-4)):
+        x = at + apart * np.arange(5.0)
+        assert regression(x, np.arange(5.0)).slope == pytest.approx(1.0 / apart, rel=1e-5)  # digits that x has left
     with pytest.raises(InvalidValueError, match="finite"):
         regression(np.array([0.0, 1.0, 2.0]), np.array([0.0, math.nan, 1.0]))

@@ -239,6 +239,7 @@ def test_censored_fit_against_scipy(seed, censored):
     assert math.log(mine.median) == pytest.approx(location, abs=3e-4)
     assert mine.dispersion == pytest.approx(scale, abs=3e-4)
     assert mine.censored == mask.sum()
+    assert ("censored" in mine.method) == mask.any()
 
 
 def test_censoring_matters():

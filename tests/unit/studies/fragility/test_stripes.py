@@ -171,7 +171,8 @@ def test_the_same_motion_under_six_names_is_one_cluster():
 @pytest.mark.parametrize(
     "change",
     [
-        {"levels": []}, {"levels": [2.0, 1.0]}, {"levels": [1.0, math.nan]}, {"levels": [0.0, 1.0]}, {"measure": "x"},
+        {"levels": []}, {"levels": [[1.0, 2.0], [3.0, 4.0]]}, {"levels": [2.0, 1.0]}, {"levels": [1.0, math.nan]},
+        {"levels": [0.0, 1.0]}, {"measure": "x"},
         {"measure": "pgv/pga"}, {"states": (0.5, 0.1)}, {"motions": []}, {"body": "block"}, {"restitution": 2.0},
         {"progress": 3}, {"threads": 0}, {"gravity": -1.0}, {"engine": "slow"}, {"nonsense": 1},
     ],
