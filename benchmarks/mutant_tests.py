@@ -3,6 +3,7 @@
 This module is also the pytest plugin of that run; with `-p benchmarks.mutant_tests` it writes durations.
 """
 
+import hashlib
 import json
 import os
 import sqlite3
@@ -32,25 +33,39 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 def record(folder: Path) -> None:
-    """Run the suite once under coverage, if the folder does not have it yet."""
-    if (folder / "durations.json").exists():
+    """Run the suite once under coverage; later only what is in files of tests that have changed since."""
+    kept, now = folder / "recorded.json", seals()
+    before = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+    known = {path for path, seal in now.items() if before.get(path) == seal}
+    changed = sorted(now.keys() - known)
+    whole = bool((before.keys() | now.keys()) - known - {path for path in changed if "/test_" in path})
+    if not changed and not whole:
         return
-    print("Running the suite once to see which test runs which line ...", flush=True)
+    durations, stale = folder / "durations.json", () if whole else tuple(f"{path}::" for path in changed)
+    old = {} if whole else json.loads(durations.read_text(encoding="utf-8"))
+    print("Running the tests once to see which runs which line ...", flush=True)
     command = [sys.executable, "-m", "pytest", "-q", "-n", "2", "--dist", "loadfile", "-m", "not timed and not browser"]
-    command += [
-        "--cov",
-        "--cov-context=test",
-        "--cov-report=",
-        "-p",
-        "benchmarks.mutant_tests",
-        "-p",
-        "no:cacheprovider",
-    ]
-    at = {"COVERAGE_FILE": str(folder / "coverage"), DURATIONS: str(folder / "durations.json")}
+    command += ["--cov", "--cov-context=test", "--cov-report=", "-p", "benchmarks.mutant_tests"]
+    command += ["-p", "no:cacheprovider", *([] if whole else ["--cov-append", *changed])]
+    at = {"COVERAGE_FILE": str(folder / "coverage"), DURATIONS: str(durations)}
+    kept.unlink(missing_ok=True)
     done = subprocess.run(command, cwd=ROOT, env=os.environ | at, check=False)
-    if done.returncode:
-        (folder / "durations.json").unlink(missing_ok=True)
+    if done.returncode not in (0, 5):  # 5: none of the changed files has a test that counts
         raise SystemExit("the suite must pass before it can be judged")
+    found = json.loads(durations.read_text(encoding="utf-8"))
+    durations.write_text(
+        json.dumps({test: spent for test, spent in old.items() if not test.startswith(stale)} | found), encoding="utf-8"
+    )
+    kept.write_text(json.dumps(now), encoding="utf-8")
+
+
+def seals() -> dict[str, str]:
+    """What stands in the sources and the tests, by path."""
+    return {
+        str(path.relative_to(ROOT)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for folder in ("src", "tests")
+        for path in sorted((ROOT / folder).rglob("*.py"))
+    }
 
 
 class Covering:
@@ -58,14 +73,23 @@ class Covering:
 
     def __init__(self, folder: Path) -> None:
         self.durations: dict[str, float] = json.loads((folder / "durations.json").read_text(encoding="utf-8"))
+        self._seals: dict[str, str] = json.loads((folder / "recorded.json").read_text(encoding="utf-8"))
         self._database = sqlite3.connect(f"file:{folder / 'coverage'}?mode=ro", uri=True, check_same_thread=False)
+        self._files: dict[str, dict[int, set[str]]] = {}
 
     def tests(self, path: str, lines: range) -> list[str]:
         """Tests that run one of these lines; all that run the file where it runs only on import."""
-        by_line = self._of_file(path)
+        if path not in self._files:
+            self._files[path] = self._of_file(path)
+        by_line = self._files[path]
         found = set().union(*(by_line.get(line, set()) for line in lines)) or set().union(*by_line.values())
         own = Path(path).stem
         return sorted(found & self.durations.keys(), key=lambda test: (own not in test, self.durations[test], test))
+
+    def seal(self, tests: list[str]) -> str:
+        """Another one where these tests are others than before, or changed."""
+        stood = [(test, self._seals[test.partition("::")[0]]) for test in sorted(tests)]
+        return hashlib.sha256(json.dumps(stood).encode()).hexdigest()[:8]
 
     def _of_file(self, path: str) -> dict[int, set[str]]:
         # branch coverage keeps arcs from line to line; negative numbers are entries and exits
