@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.bodies.solid import Corner, Edge, Part, Solid, box
+from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder
 from rocking.dynamics.spatial import free_rocking_spatial
 from rocking.restitution.spatial import (
     LeaningImpact,
@@ -46,6 +46,26 @@ def test_the_impulse_of_a_block_on_narrow_feet(apart, k):
     """REF 7.2 (printed to 3 or 4 digits): k before the cut; above 1 it is cut, and said."""
     assert impulse_position(on_feet(apart)).at(np.array([1.0, 0.0])) == pytest.approx(k, rel=2e-3)
     assert (SpatialFlag.CUT in over_feet(apart).flags) == (k > 1.0)
+
+
+@pytest.mark.parametrize(("apart", "narrow"), [(0.8, False), (0.3, True)])
+def test_a_history_says_where_the_base_is_too_narrow(apart, narrow):
+    """All of the impacts over feet .3 apart have k above 1 and are counted, none of those over feet .8 apart."""
+    found = free_rocking_spatial(on_feet(apart), 0.5 * math.atan(0.5 * apart), 0.0, "ked-3d", duration=2.0)
+    assert found.impacts.size > 1
+    assert found.cut_impacts == (found.impacts.size if narrow else 0)
+    assert ("so narrow" in found.summary) == narrow
+    assert free_rocking_spatial(on_feet(0.3), 0.07, 0.0, "housner-3d", duration=2.0).cut_impacts == 0
+
+
+@pytest.mark.parametrize(("diameter", "narrow"), [(1.2, False), (0.3, True)])
+def test_a_round_foot_may_be_too_narrow_too(diameter, narrow):
+    """A slab on a round leg that rocks in its plane of symmetry lies down from either side of the rim."""
+    solid = Solid([Part(cylinder(diameter, 0.4)), Part(box(1.2, 1.0, 0.3)).moved(0.02, 0.0, 0.4)])
+    assert all((impulse_position(solid).at(np.array([x, 0.0, 0.0])) > 1.0) == narrow for x in (-1.0, 1.0))
+    found = free_rocking_spatial(solid, 0.2 * diameter, 0.0, "ked-3d", duration=2.0)
+    assert found.impacts.size > 1
+    assert found.cut_impacts == (found.impacts.size if narrow else 0)
 
 
 def test_no_distance_costs_nothing():

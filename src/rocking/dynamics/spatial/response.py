@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,8 +19,9 @@ from rocking.dynamics.spatial.impact import SpatialImpactLaw
 from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
-from rocking.dynamics.spatial.trajectory import SpatialTrajectory
+from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory
 from rocking.errors import InvalidValueError
+from rocking.portable import applied, dot, norm
 
 if TYPE_CHECKING:
     from rocking.dynamics.exported import Exported
@@ -219,7 +221,7 @@ class SpatialResponse(Exportable):
         if run.outcome is Outcome.ROCKED:
             return (
                 f"rocked and stayed standing: largest tilt {math.degrees(run.peak_tilt):.4g} degrees, {count} "
-                f"impact{'s' * (count != 1)}{self._pulled}{self._nearly_flat}"
+                f"impact{'s' * (count != 1)}{self._pulled}{self._cut}{self._nearly_flat}"
             ) + (f"; {self.unfinished}" if self.still_rocking else "")
         return run.outcome.value if run.outcome is Outcome.NO_UPLIFT else f"{run.outcome.value}: {run.status.value}"
 
@@ -227,6 +229,33 @@ class SpatialResponse(Exportable):
     def _pulled(self) -> str:
         count = int((self.impacts["pull"] > 1e-9 * np.abs(self.impacts["impulse"])).sum())
         return f"; at {count} of them a corner would have slipped or bounced rather than stuck" if count else ""
+
+    @cached_property
+    def cut_impacts(self) -> int:
+        """At how many impacts the model would have the impulse beyond the new foot, and has it at the foot."""
+        cut = getattr(getattr(self.law, "model", None), "cut", None)
+        if cut is None or self.body.matter is None:
+            return 0
+        solid, found = self.body.matter()[0], 0
+        for old, event in pairwise(self.trajectory.events):
+            if event.time > self.end:
+                break
+            if event.kind is not SpatialEventKind.IMPACT:
+                continue
+            if self.body.round:  # across the axis about which it lies down
+                before = self.at(np.nextafter(event.time, 0.0))
+                spin = applied(before.rotation[0].T, before.angular_velocity[0])
+                step = self.body.radius / norm(spin[:2]) * np.array([spin[1], -spin[0], 0.0])
+            else:
+                step, axis = event.stance.pivot - old.stance.pivot, event.stance.axis
+                step = step if axis is None else step - dot(step, axis) * axis
+            found += cut(solid, step)
+        return found
+
+    @property
+    def _cut(self) -> str:
+        count = self.cut_impacts
+        return f"; at {count} of them the base is so narrow that the loss is Housner's" if count else ""
 
     @cached_property
     def near_flat_passages(self) -> int:

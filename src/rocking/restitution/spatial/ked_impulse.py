@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rocking.bodies.solid import Solid
 from rocking.conventions import FloatArray
 from rocking.portable import applied, dot
 from rocking.restitution.spatial.impulse_position import impulse_position
@@ -101,9 +102,26 @@ class SpatialKed(SpatialModel):
         """
         along = getattr(impact.onto, "direction", None)
         step = impact.onto.point - impact.pivot if along is None else _across(impact, along)
-        found = [SpatialFlag.CUT] if _position(impact, step) > 1.0 + _ROUNDING else []
+        found = [SpatialFlag.CUT] if self.cut(impact.placed_solid[0], step) else []
         scale = impact.moments.mass * impact.speed * float(np.abs(impact.moments.centre).max())
         return (*found, SpatialFlag.PULLS) if _push(impact, velocity) < -_ROUNDING * scale else tuple(found)
+
+    def cut(self, solid: Solid, step: FloatArray) -> bool:
+        """Return whether k of a step was cut: the base is too narrow in this direction for the paper's loss.
+
+        Parameters
+        ----------
+        solid : Solid
+            The body.
+        step : ndarray, shape (3,)
+            From the old pivot to the new one, in the solid's axes [m].
+
+        Returns
+        -------
+        bool
+            True if the impulse is taken at the new foot although the model would have it beyond.
+        """
+        return _position(solid, step) > 1.0 + _ROUNDING
 
 
 def _across(impact: RigidImpact, direction: FloatArray) -> FloatArray:
@@ -112,16 +130,15 @@ def _across(impact: RigidImpact, direction: FloatArray) -> FloatArray:
     return across
 
 
-def _position(impact: RigidImpact, step: FloatArray) -> float:
+def _position(solid: Solid, step: FloatArray) -> float:
     """Position k of a step, not cut; 1 where there is no step."""
-    solid = impact.placed_solid[0]
     if not float(np.abs(step).max()) > _ROUNDING * solid.size:
         return 1.0
     return impulse_position(solid).at(step)
 
 
 def _stepped(impact: RigidImpact, step: FloatArray, axis: FloatArray | None) -> FloatArray:
-    k = min(_position(impact, step), 1.0)
+    k = min(_position(impact.placed_solid[0], step), 1.0)
     made = _kept(impact, step, k, axis)
     if k < 1.0 and _push(impact, made) < 0.0:
         made = _kept(impact, step, 1.0, axis)
