@@ -342,7 +342,7 @@ def engines(folder: Path, workers: int) -> list[tuple[str, str, bool]]:
 
 
 def _build(folder: Path) -> None:
-    """Build the plain kernels, which have the bits of the others, with little optimisation."""
+    """Build the plain kernels, which have the bits of the others, less optimised."""
     tools = Path(sys.executable).parent
     options = [
         "-G",
@@ -350,7 +350,7 @@ def _build(folder: Path) -> None:
         f"-DCMAKE_MAKE_PROGRAM={tools / 'ninja'}",
         "-DROCKING_INPLACE=ON",
         "-DROCKING_PLAIN=ON",
-        "-DROCKING_OPTIMISATION=-O1",
+        "-DROCKING_OPTIMISATION=-O2",
         f"-DPython_EXECUTABLE={sys.executable}",
     ]
     for command in (["-S", ".", "-B", "build/engine", *options], ["--build", "build/engine"]):
