@@ -79,6 +79,7 @@ OPERATORS = (
     *(f"core/{change}" for change in ("NumberReplacer", "AddNot", "ReplaceBreakWithContinue", "ZeroIterationForLoop")),
 )
 STAGES = (4.0, 15.0, 90.0)  # seconds of tests: most errors die in the first
+ENGINE_LIMIT = 900.0  # seconds for the tests of an engine
 HANGS = 3.0  # a mutant that takes this many times the processor's time that the tests take under coverage hangs
 
 
@@ -302,39 +303,54 @@ def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[
     return known
 
 
-def engines(folder: Path) -> list[tuple[str, str, bool]]:
+def engines(folder: Path, workers: int) -> list[tuple[str, str, bool]]:
     """The hand-made errors of the compiled engines: each built, and judged by the tests that its entry names."""
     by_hand = tomllib.loads((Path(__file__).parent / "mutants.toml").read_text(encoding="utf-8"))
-    entries = by_hand["engine"]
     ledger = folder / "engines.json"
     known: dict[str, bool] = json.loads(ledger.read_text(encoding="utf-8")) if ledger.exists() else {}
-    if all(entry["name"] in known for entry in entries):
-        return [(entry["file"], entry["name"], known[entry["name"]]) for entry in entries]
-    worker = Worker(folder / "worker-engine")
-    for entry in entries:
-        if entry["name"] in known:
-            continue
-        text = (ROOT / entry["file"]).read_text(encoding="utf-8")
-        if text.count(entry["old"]) != 1:
-            raise SystemExit(
-                f"mutants.toml: {entry['name']}: {entry['file']} has {entry['old']!r} {text.count(entry['old'])} times"
-            )
-        worker.write(entry["file"], text.replace(entry["old"], entry["new"]))
+    left = [entry for entry in by_hand["engine"] if entry["name"] not in known]
+    for entry in left:
+        count = (ROOT / entry["file"]).read_text(encoding="utf-8").count(entry["old"])
+        if count != 1:
+            raise SystemExit(f"mutants.toml: {entry['name']}: {entry['file']} has {entry['old']!r} {count} times")
+
+    def judge(entry: dict[str, str], worker: Worker) -> bool:
+        target, text = worker.folder / entry["file"], (ROOT / entry["file"]).read_text(encoding="utf-8")
+        target.write_text(text.replace(entry["old"], entry["new"]), encoding="utf-8")
         _build(worker.folder)
-        known[entry["name"]] = bool(worker.fails(by_hand["tests"][entry["of"]], 900.0))
-        worker.write(entry["file"], text)
-        ledger.write_text(json.dumps(known), encoding="utf-8")
-        print(f"{'killed  ' if known[entry['name']] else 'SURVIVED'}  {entry['file']}: {entry['name']}", flush=True)
-    return [(entry["file"], entry["name"], known[entry["name"]]) for entry in entries]
+        failed = worker.fails(by_hand["tests"][entry["of"]], ENGINE_LIMIT)
+        target.write_text(text, encoding="utf-8")
+        return bool(failed)
+
+    def judged(number: int) -> None:
+        mine = left[number::workers]
+        if not mine:
+            return
+        worker = Worker(folder / f"worker-engine-{number}")
+        _build(worker.folder)
+        for of in sorted({entry["of"] for entry in mine}):
+            if failed := worker.fails(by_hand["tests"][of], ENGINE_LIMIT):
+                raise SystemExit(f"fails without an error too: {failed}")
+        for entry in mine:
+            known[entry["name"]] = judge(entry, worker)
+            ledger.write_text(json.dumps(known), encoding="utf-8")
+            print(f"{'killed  ' if known[entry['name']] else 'SURVIVED'}  {entry['file']}: {entry['name']}", flush=True)
+
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(judged, range(workers)))
+    return [(entry["file"], entry["name"], known[entry["name"]]) for entry in by_hand["engine"]]
 
 
 def _build(folder: Path) -> None:
+    """Build the plain kernels, which have the bits of the others, less optimised."""
     tools = Path(sys.executable).parent
     options = [
         "-G",
         "Ninja",
         f"-DCMAKE_MAKE_PROGRAM={tools / 'ninja'}",
         "-DROCKING_INPLACE=ON",
+        "-DROCKING_PLAIN=ON",
+        "-DROCKING_OPTIMISATION=-O2",
         f"-DPython_EXECUTABLE={sys.executable}",
     ]
     for command in (["-S", ".", "-B", "build/engine", *options], ["--build", "build/engine"]):
@@ -410,7 +426,7 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     record(folder)
     chosen, every = sample(asked.seed, asked.count)
-    made = [] if asked.no_engines else engines(folder)
+    made = [] if asked.no_engines else engines(folder, asked.workers)
     known = run(chosen, folder, asked.workers, asked.hours)
     raise SystemExit(not page(chosen, every, known, made, asked.seed))
 
