@@ -75,9 +75,27 @@ def test_uniform_points_reach_both_feet() -> None:
 def test_the_other_foot_sees_the_mirror() -> None:
     """Landing on the left of a body is landing on the right of its mirror image."""
     body = Section([Region([(0, 0), (0.3, 0), (0.1, 0.6), (0.0, 0.6)], 2000.0)])
-    left = ContactBed.uniform(body, 7, LAW, onto="left")
-    mirror = ContactBed.uniform(body.mirrored(), 7, LAW)
-    assert left.positions == pytest.approx(mirror.positions)
+    for points in (2, 7):
+        left = ContactBed.uniform(body, points, LAW, onto="left")
+        mirror = ContactBed.uniform(body.mirrored(), points, LAW)
+        assert left.positions == pytest.approx(mirror.positions)
+        # a rectangle and a triangle of one area: the centre is (.05 + .5 / 3) / 2 from the left foot
+        right = ContactBed.uniform(body, points, LAW).positions
+        assert right[[0, -1]] == pytest.approx([-0.325 / 3.0, 0.3 - 0.325 / 3.0])
+
+
+@pytest.mark.parametrize("rotation", [-0.2, -0.01, 0.02, 0.15])
+def test_the_force_under_a_rocking_foot_follows_from_energy(rotation: float) -> None:
+    """With T + V constant, m (g + y'') is m g - (m g y')^2 / (I g) + m y'' w^2 over the height y of the centre."""
+    body = Section([Region([(0, 0), (0.3, 0), (0.1, 0.6), (0.0, 0.6)], 2000.0)])
+    rigid = setup_of(body, ContactBed.uniform(body, 2, LAW), angular_velocity=0.5).rigid
+    weight, step, spin = rigid.mass * rigid.gravity, 1e-4, 0.7
+    below, here, above = (rigid.potential(rotation + k * step) / weight for k in (-1, 0, 1))
+    slope, bend = (above - below) / (2.0 * step), (above - 2.0 * here + below) / step**2
+    force = weight - (weight * slope) ** 2 / (rigid.gravity * rigid.inertia_about(rigid.pivot(rotation)))
+    # by differences, whose last digits are rounding
+    assert rigid.support(rotation, 0.0) == pytest.approx(force, rel=1e-6)
+    assert rigid.support(rotation, spin) == pytest.approx(force + rigid.mass * bend * spin**2, rel=1e-5)
 
 
 def test_a_hollow_base_has_no_points_in_its_gap() -> None:
