@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rocking.evidence.bed_fit import fit_bed, left_out
+from rocking.evidence.bed_fit import BedFit, fit_bed, left_out
 from rocking.evidence.bed_physics import bed_coefficients, explanations, relative_width
 from rocking.evidence.contenders import contact_bed
 from rocking.evidence.explanation import Explanation, Ranked, explanation
@@ -163,3 +163,16 @@ def test_a_tie_is_called_a_tie():
     assert tied.unresolved == (best.name, plain.name)
     assert "do not decide" in tied.verdict[1]
     assert "not resolved" in tied.verdict[2]
+
+
+def test_two_of_bic_and_two_standard_errors_decide():
+    """Undecided is what lies less than 2 of BIC behind; better unseen is what gains over two of its standard errors."""
+    none = np.zeros(39)
+    fits = [BedFit(each, 5, {}, 0.02, 1.0, 0.0, 0.0, 0.0, none) for each in PHYSICS.values()]
+    told = {0: (0.0, 0.9, 0.4), 1: (1.9, 0.1, 0.06), 2: (2.1, 2.5, 1.0), 3: (9.0, -0.9, 0.1), 4: (9.5, 0.0, 0.0)}
+    found = Explanation(
+        tuple(Ranked(fits[i], none, behind, gain, gain_error) for i, (behind, gain, gain_error) in told.items())
+    )
+    names = [fit.physics.name for fit in fits]
+    assert found.unresolved == tuple(names[:2])
+    assert found.better_unseen == (names[0], names[2])
