@@ -74,6 +74,18 @@ def test_every_explanation_says_what_it_computes():
         ),
     }
     assert set(expected) == set(PHYSICS)
+    groups = ("S", "M", "L")
+    fitted = {
+        "one bed": ("damping", "hardness"),
+        "loss beside the bed": ("damping", "hardness", "eta"),
+        "loss that does not grow with mass": ("damping", "hardness", "tape"),
+        "loss by group": ("damping", "hardness", *(f"eta {group}" for group in groups)),
+        "damping by group": ("hardness", "damping Table 1", *(f"damping {group}" for group in groups)),
+        "hardness by group": ("damping", "hardness Table 1", *(f"hardness {group}" for group in groups)),
+        "narrower base by group": ("damping", "hardness", *(f"share {group}" for group in groups)),
+        "unevenness of one height": ("damping", "hardness", "uneven"),
+    }
+    assert {name: each.parameters for name, each in PHYSICS.items()} == fitted
     for name, (values, of_row) in expected.items():
         found = PHYSICS[name].predict(np.array(values), data, 5)
         assert found == pytest.approx([of_row(row, group) for row, group in enumerate(data.group)], rel=1e-12), name
