@@ -141,6 +141,23 @@ def test_steps_keep_momentum_about_the_impulse_and_create_no_energy(name):
     assert moved < 0.02 * 4000
 
 
+def test_a_step_that_would_gain_energy_keeps_it():
+    """A low weight at one end of the base and a mast at the other: k is below 0, and a short step loses nothing.
+
+    The equations about X alone would gain energy there; what is left of them is their direction.
+    """
+    weight, mast = Part(box(0.2, 0.4, 0.2), 8000.0), Part(box(0.05, 0.3, 1.0), 500.0)
+    solid = Solid([weight.moved(-0.4, 0.0, 0.0), mast.moved(0.475, 0.0, 0.0)])
+    k = impulse_position(solid).at(np.array([1.0, 0.0]))
+    assert k < -0.05
+    old, new, velocity = np.array([-0.4, 0.0, 0.0]), np.array([-0.3, 0.0, 0.0]), np.array([0.2, 1.0, 0.1])
+    impact, free = impact_of(solid, old, new, velocity), of_mass(solid, old, new, velocity, k)
+    assert 0.5 * free @ impact.inertia @ free > 1.001 * impact.energy
+    made = SpatialKed().turned(impact)
+    assert 0.5 * made @ impact.inertia @ made == pytest.approx(impact.energy, rel=1e-12)
+    np.testing.assert_allclose(made / np.linalg.norm(made), free / np.linalg.norm(free), rtol=1e-9)
+
+
 @pytest.mark.parametrize("name", BODIES)
 def test_few_nodes_give_the_position_everywhere(name):
     """Between the azimuths at which a foot changes k is a polynomial to 1e-6 of the exact integrals."""
