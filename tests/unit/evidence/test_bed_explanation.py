@@ -188,3 +188,15 @@ def test_two_of_bic_and_two_standard_errors_decide():
     names = [fit.physics.name for fit in fits]
     assert found.unresolved == tuple(names[:2])
     assert found.better_unseen == (names[0], names[2])
+
+
+def test_parameters_at_the_ends_of_their_ranges_are_named():
+    """Within two thousandths of a range from either of its ends a fit has been pushed to a limit; in between not."""
+    physics = PHYSICS["unevenness of one height"]
+    ranges = dict(zip(physics.parameters, physics.bounds, strict=True))
+    inside = {name: low + 0.3 * (high - low) for name, (low, high) in ranges.items()}
+    for name, (low, high) in ranges.items():
+        for share, told in ((0.0, True), (0.0015, True), (0.003, False), (0.997, False), (0.9985, True), (1.0, True)):
+            values = {**inside, name: low + share * (high - low)}
+            fit = BedFit(physics, 5, values, 0.02, 1.0, 0.0, 0.0, 0.0, np.zeros(39))
+            assert fit.at_a_limit == ((name,) if told else ())
