@@ -200,6 +200,18 @@ def test_credible_intervals_against_a_markov_chain():
         assert np.abs(np.quantile(found.samples[:, i], [0.025, 0.975]) - ends).max() > 0.1 * fact["sd"]
 
 
+@pytest.mark.parametrize("power", [-3.0, 2.0])
+def test_quantiles_of_a_density_that_ends_at_its_grid(power):
+    """An exponential law cut off at both ends of an even grid, and a power law on a logarithmic one, in closed form."""
+    levels = (0.025, 0.5, 0.975)
+    even, exact = np.linspace(1.0, 2.0, 9), np.array(levels)
+    found = marginal_quantiles(even, np.exp(power * even), levels)
+    assert found == pytest.approx(1.0 + np.log1p(exact * np.expm1(power)) / power, abs=1e-5)
+    spread = np.geomspace(1.0, 4.0, 9)
+    found = marginal_quantiles(spread, spread**power, levels)
+    assert found == pytest.approx((1.0 + exact * (4.0**power - 1.0)) ** (1.0 / power), abs=2e-4)
+
+
 @pytest.mark.parametrize("axis", ["even", "logarithmic"])
 def test_quantiles_converge_with_the_grid(axis):
     """Quantiles of a gamma distribution from its density at nodes: fourth order; by steps at nodes, first."""
