@@ -14,7 +14,7 @@ from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
 from rocking.dynamics.planar.ground import Ground
 from rocking.dynamics.planar.impact import Struck, strike
 from rocking.dynamics.planar.imposed import strike_with
-from rocking.dynamics.planar.margins import Kind, Margin, consistent, first_end, leading
+from rocking.dynamics.planar.margins import Kind, Margin, consistent, first_end, leading, margins
 from rocking.dynamics.planar.mode import FLIGHT, REST, Mode, Regime
 from rocking.dynamics.planar.power_series import derivative, integral, value
 from rocking.dynamics.planar.state import State, along, away, kept, kinetic
@@ -225,3 +225,26 @@ def test_two_motions_that_both_obey_coulomb_are_not_chosen_between():
     frictionless = choose(UNEVEN, state, AWAY, 0.0)
     assert isinstance(frictionless, Choice)
     assert frictionless.mode == FLIGHT
+
+
+@pytest.mark.parametrize(("size", "unit"), [(1.0, 0.03), (4.0, 0.3), (4.0, 0.6)])
+@pytest.mark.parametrize("mode", [Mode((RIGHT,)), Mode((RIGHT,), 1), FLIGHT])
+def test_what_counts_as_rounding_is_the_same_for_similar_bodies_and_steps(mode, size, unit):
+    """Of bodies alike in shape, with speeds as the root of their size, the first coefficient of each margin that may
+    carry rounding has the same part of its scale, over any unit of time."""
+
+    def measured(size, unit):
+        footing = Footing(1.0, 0.42 * size**2, size, 0.65 * size, 1.2 * size)
+        r_x, r_z = footing.arm(RIGHT, 0.2)
+        spin, slip = -0.5 / math.sqrt(size), mode.slip * 0.4 * math.sqrt(size)
+        rise = footing.rise_on(RIGHT, 0.2) + (0.1 * size if mode == FLIGHT else 0.0)
+        state = State(0.0, rise, 0.2, slip - r_z * spin, r_x * spin, spin, mode.feet)
+        found = course(footing, state, mode, Ground([1.0], [G + 0.4], unit), 0.3, 12)
+        made = margins(footing, mode, found, 0.3, 12.0)
+        return [(margin.kind, margin.series[margin.exact] / margin.scale) for margin in made]
+
+    kinds, parts = zip(*measured(size, unit), strict=True)
+    expected_kinds, expected = zip(*measured(1.0, 0.3), strict=True)
+    assert kinds == expected_kinds
+    assert parts == pytest.approx(expected, rel=1e-12)
+    assert all(part != 0.0 for kind, part in zip(kinds, parts, strict=True) if kind is not Kind.LYING)
