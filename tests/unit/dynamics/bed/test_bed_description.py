@@ -21,11 +21,13 @@ from rocking.dynamics.bed import (
     setup_of,
 )
 from rocking.dynamics.bed import law as laws
+from rocking.dynamics.bed.rigid import RigidRocking
 from rocking.errors import InvalidValueError, MissingExtraError
 
 BLOCK = Block(width=0.2, height=0.4)
 LAW = KelvinVoigt(1e8, damping_ratio=0.5)
 ZERO = np.zeros(1)
+G = 9.80665
 
 
 def test_kelvin_voigt_force() -> None:
@@ -78,6 +80,37 @@ def test_the_other_foot_sees_the_mirror() -> None:
     left = ContactBed.uniform(body, 7, LAW, onto="left")
     mirror = ContactBed.uniform(body.mirrored(), 7, LAW)
     assert left.positions == pytest.approx(mirror.positions)
+
+
+@pytest.mark.parametrize(
+    ("onto", "ends"), [("right", (-13.0 / 120.0, 23.0 / 120.0)), ("left", (-23.0 / 120.0, 13.0 / 120.0))]
+)
+def test_two_points_are_the_feet(onto: Any, ends: tuple[float, float]) -> None:
+    """A leaning body whose centre is 13/120 m from its left foot: two points stand at its feet, towards the new one,
+    and so do the outer ones of more."""
+    body = Section([Region([(0, 0), (0.3, 0), (0.1, 0.6), (0.0, 0.6)], 2000.0)])
+    for count in (2, 4):
+        assert ContactBed.uniform(body, count, LAW, onto=onto).ends == pytest.approx(ends, rel=1e-13)
+
+
+@pytest.mark.parametrize("kinematics", ["exact", "small"])
+@pytest.mark.parametrize("rotation", [-0.25, 0.2])
+def test_support_is_the_weight_and_the_acceleration_of_the_centre(kinematics: Any, rotation: float) -> None:
+    """N = m (g + z''), with z from the lift of the base and theta'' from the slope of the potential; the small-base
+    kinematics leaves the height of the centre over its base line as it is."""
+    body = Section([Region([(0, 0), (0.3, 0), (0.1, 0.6), (0.0, 0.6)], 2000.0)])
+    rigid = RigidRocking.of_body(body, ContactBed.uniform(body, 4, LAW, kinematics=kinematics), G)
+    velocity, h = 0.7, 1e-4
+
+    def centre(at: float) -> float:
+        return rigid.lift(at) + (rigid.height * math.cos(at) if kinematics == "exact" else 0.0)
+
+    turning = -(rigid.potential(rotation + h) - rigid.potential(rotation - h)) / (2.0 * h)
+    turning /= rigid.inertia_about(rigid.pivot(rotation))
+    slope = (centre(rotation + h) - centre(rotation - h)) / (2.0 * h)
+    bend = (centre(rotation + h) - 2.0 * centre(rotation) + centre(rotation - h)) / h**2
+    expected = body.mass * (G + slope * turning + bend * velocity**2)
+    assert rigid.support(rotation, velocity) == pytest.approx(expected, rel=1e-6)
 
 
 def test_a_hollow_base_has_no_points_in_its_gap() -> None:
