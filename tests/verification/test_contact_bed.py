@@ -317,6 +317,29 @@ def test_the_other_solver_ends_where_the_bed_parts() -> None:
         assert found.result("deepest") == pytest.approx(depth, rel=2e-3)
 
 
+def test_the_other_solver_says_between_what_the_impact_lies() -> None:
+    """From the first sample at which more than the old foot presses to the first one at which the new foot alone does
+    and sinks no faster than a thousandth of its speed before; the impulse between is the integral of the force; r
+    is that of the fast engine."""
+    block = slender(2.0)
+    bed = ContactBed.uniform(block, 5, sprung(block, 400.0, 0.5), kinematics="small")
+    setup = setup_of(block, bed, angular_velocity=1.0)
+    found = BedImpact(setup, *reference.one(setup, tolerance=1e-9))
+    assert found.coefficient == pytest.approx(BedImpact(setup, *fast.one(setup, MOST_STEPS)).coefficient, abs=1e-6)
+    pressing, new, old = found.forces > 0.0, setup.start.new_foot, setup.start.old_foot
+    sinks = bed.positions[new] * found.sample("angular_velocity") - found.sample("w")
+    touch = int(np.argmax(np.delete(pressing, old, axis=1).any(axis=1)))
+    arrested = ~np.delete(pressing, new, axis=1).any(axis=1) & (sinks <= 1e-3 * setup.start.speed)
+    parting = touch + int(np.argmax(arrested[touch:]))
+    assert 0 < touch < parting
+    assert (found.result("touch"), found.result("parting")) == (found.time[touch], found.time[parting])
+    between = slice(touch, parting + 1)
+    for name, sample in (("impulse", "normal"), ("impulse_moment", "moment"), ("shear_impulse", "shear")):
+        integral = np.trapezoid(found.sample(sample)[between], found.time[between])
+        assert found.result(name) == pytest.approx(integral, rel=2e-3), name
+    assert found.counts.min() >= 0, "what is counted is never below zero"
+
+
 def test_the_other_solver_finds_what_friction_takes() -> None:
     """An impulsive impact on two dashpots has r(mu) of physics.md 1.2 by SciPy's solver too, and closes its audit."""
     block, mu = slender(2.0), 0.2

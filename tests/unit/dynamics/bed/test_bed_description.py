@@ -134,6 +134,26 @@ def test_a_history_hangs_together() -> None:
     assert -1.0 < impact.mean_impulse_position < 1.0
 
 
+def test_the_place_of_the_resultant_is_known_where_the_bed_presses() -> None:
+    """Through hops too: NaN where the force is not above zero, on the base everywhere else."""
+    bed = ContactBed.uniform(BLOCK, 5, KelvinVoigt(BLOCK.mass * (800.0 * math.pi) ** 2, damping_ratio=0.5))
+    impact = bed_impact(BLOCK, bed, angular_velocity=1.0)
+    assert impact.contacts > 1
+    np.testing.assert_array_equal(np.isnan(impact.impulse_position), impact.sample("normal") <= 0.0)
+    assert np.nanmax(np.abs(impact.impulse_position)) <= 1.0 + 1e-8
+
+
+def test_time_allowed_goes_with_the_time_of_the_body() -> None:
+    """Four times the gravity halves it, four times the size doubles it."""
+    large = Block(width=0.8, height=1.6)
+    usual, heavy, grown = (
+        setup_of(block, ContactBed.uniform(block, 3, LAW), rotation=0.1, gravity=gravity).longest
+        for block, gravity in ((BLOCK, G), (BLOCK, 4.0 * G), (large, G))
+    )
+    assert heavy == pytest.approx(0.5 * usual, rel=1e-12)
+    assert grown == pytest.approx(2.0 * usual, rel=1e-12)
+
+
 def test_rotation_and_velocity_are_the_same_start() -> None:
     """A body let go at a rotation lands with the velocity that energy gives, and the other way round."""
     alpha = math.atan(0.5)

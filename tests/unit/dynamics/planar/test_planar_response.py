@@ -306,3 +306,18 @@ def test_dropped_without_turning_beyond_balance(rotation):
     response = simulate_with_contact(BODY, None, 0.5, start=Start(rotation=rotation, height=1.0))
     assert response.outcome is Outcome.OVERTURNED
     assert response.overturning_time == 0.0
+
+
+def test_forces_of_a_body_that_rests_follow_the_motion():
+    """Under a record that moves nothing, at each sample m a along the ground and m (g + a_z) across it, the left foot
+    with m ((g + a_z) b + a h) / (2 b)."""
+    time = np.arange(60) * 0.02
+    push, lift = 1.5 * np.sin(9.0 * time), 0.8 * np.cos(7.0 * time)
+    response = simulate_with_contact(BODY, GroundMotion(push, 0.02, vertical=lift), 0.6, duration=1.0)
+    assert response.outcome is Outcome.NO_UPLIFT
+    count = len(response.time)
+    assert count == 51
+    weight = BODY.mass * (G + lift[:count])
+    np.testing.assert_allclose(response.forces.horizontal, BODY.mass * push[:count], rtol=0.0, atol=1e-9 * BODY.mass)
+    np.testing.assert_allclose(response.forces.vertical, weight, rtol=1e-12)
+    np.testing.assert_allclose(response.forces.left, 0.5 * weight + BODY.mass * push[:count], rtol=1e-12)

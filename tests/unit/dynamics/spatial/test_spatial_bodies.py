@@ -10,7 +10,7 @@ from rocking.dynamics.spatial import Contact, SpatialBody, SpatialSettings, atti
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial, law_of
 from rocking.dynamics.spatial.landing import landed, started
-from rocking.dynamics.spatial.selection import State, forces, of_impact
+from rocking.dynamics.spatial.selection import State, forces, impulses, of_impact
 from rocking.dynamics.spatial.stance import edge, face, rise, vertex
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution.spatial import SpatialHousner
@@ -107,6 +107,48 @@ def test_components_with_different_steps_are_one_motion():
         ground_of(rk.GroundMotion(x.acceleration, 0.02, x.acceleration))
     with pytest.raises(InvalidValueError, match="GroundMotion"):
         ground_of([1.0, 2.0])
+
+
+@pytest.mark.parametrize(("start", "length"), [(0.0, 1.0), (0.25, 1.0), (0.5, 0.5), (0.3, 0.2)])
+def test_part_of_a_stretch_is_the_motion_there(start, length):
+    """The line of a record with samples 1 s apart, from any instant on and over any unit of time."""
+    ground = ground_of(rk.GroundMotion([0.0, 1.0, -2.0, 0.0], 1.0), rk.GroundMotion([0.5, -1.0, 4.0, 0.0], 1.0))
+    found = ground.part(1, 1.0 + start, length)
+    np.testing.assert_allclose(found[0, :2], [1.0 - 3.0 * start, -3.0 * length], rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(found[1, :2], [-1.0 + 5.0 * start, 5.0 * length], rtol=0.0, atol=1e-14)
+    assert not found[:, 2:].any()
+    assert not found[2].any()
+    assert not ground.part(3, 3.0, length).any()
+
+
+def test_where_nothing_stays_without_a_pull_the_least_pull_is_taken():
+    """Bodies that spin fast as they fall flat on their base: no gap closes after it, and the face, on which a body
+    stops, would be pulled at least as much; for some it is the face."""
+    law, random, faces, none = law_of("housner-3d"), np.random.default_rng(1), 0, 0
+    for _ in range(40):
+        count = int(random.integers(3, 7))
+        angle = np.sort((np.arange(count) + random.uniform(-0.3, 0.3, count)) * 2.0 * np.pi / count)
+        base, every = np.column_stack([np.cos(angle), np.sin(angle)]), tuple(range(count))
+        centre = np.append(base.mean(axis=0) + 0.03 * random.normal(size=2), random.uniform(1.5, 3.0))
+        arms = random.normal(size=(6, 3)) * random.uniform(0.05, 2.0, 3)
+        arms -= arms.mean(axis=0)
+        body = SpatialBody(6.0, centre, np.square(arms).sum() * np.eye(3) - arms.T @ arms, base)
+        for _ in range(30):
+            pivot, velocity = body.vertices[random.integers(count)], random.normal(size=3) * [1.0, 1.0, 30.0]
+            state = State(pivot, velocity, UP, -9.81 * UP)
+            if (np.cross(velocity, body.vertices - pivot) @ UP).max() > 0.0 or of_impact(body, state, every, law):
+                continue
+            none += 1
+            found = landed(body, state, every, law)
+            opens = np.cross(found.velocity, body.vertices - found.stance.pivot) @ UP
+            assert opens.min() >= -1e-8 * np.abs(velocity).max()
+            assert found.supports.min() < 0.0
+            assert found.supports.min() >= impulses(body, state, face(body), np.zeros(3)).min()
+            if found.stance.contact is Contact.REST:
+                faces += 1
+                np.testing.assert_array_equal(found.velocity, np.zeros(3))
+    assert none > 30
+    assert faces > 5
 
 
 def test_laws_by_name_by_number_and_by_interface():
