@@ -322,7 +322,7 @@ def test_the_other_solver_says_between_what_the_impact_lies() -> None:
     and sinks no faster than a thousandth of its speed before; the impulse between is the integral of the force; r
     is that of the fast engine."""
     block = slender(2.0)
-    bed = ContactBed.uniform(block, 5, sprung(block, 400.0, 0.5), kinematics="small")
+    bed = ContactBed.uniform(block, 5, sprung(block, 100.0, 0.5), kinematics="small")
     setup = setup_of(block, bed, angular_velocity=1.0)
     found = BedImpact(setup, *reference.one(setup, tolerance=1e-9))
     assert found.coefficient == pytest.approx(BedImpact(setup, *fast.one(setup, MOST_STEPS)).coefficient, abs=1e-6)
@@ -336,7 +336,7 @@ def test_the_other_solver_says_between_what_the_impact_lies() -> None:
     between = slice(touch, parting + 1)
     for name, sample in (("impulse", "normal"), ("impulse_moment", "moment"), ("shear_impulse", "shear")):
         integral = np.trapezoid(found.sample(sample)[between], found.time[between])
-        assert found.result(name) == pytest.approx(integral, rel=2e-3), name
+        assert found.result(name) == pytest.approx(integral, rel=5e-3), name
     assert found.counts.min() >= 0, "what is counted is never below zero"
 
 
