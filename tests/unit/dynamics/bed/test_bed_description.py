@@ -143,6 +143,23 @@ def test_the_place_of_the_resultant_is_known_where_the_bed_presses() -> None:
     assert np.nanmax(np.abs(impact.impulse_position)) <= 1.0 + 1e-8
 
 
+def test_depth_of_an_impact_absorbs_its_energy() -> None:
+    """Springs take up k d^2 / 2; dashpots alone, at the speed of the new foot 0.2 theta_dot', c v d; of both the less;
+    and no impact goes deeper than the base is long."""
+    landing, c, k = 0.8, 1e5, 1e7
+    energy = 0.5 * BLOCK.mass * (1.0 / 12.0 * 0.2 + 0.05) * landing**2  # (b^2 + h^2) / 12 and R^2 = 0.05 m2
+
+    def start(law: KelvinVoigt) -> Any:
+        return setup_of(BLOCK, ContactBed.uniform(BLOCK, 5, law), angular_velocity=landing, impulsive=True).start
+
+    found = start(KelvinVoigt(0.0, damping=c))
+    assert (found.energy, found.speed) == (pytest.approx(energy, rel=1e-12), pytest.approx(0.2 * landing, rel=1e-12))
+    assert found.depth == pytest.approx(energy / (c * 0.2 * landing), rel=1e-12)
+    assert start(KelvinVoigt(k)).depth == pytest.approx(math.sqrt(2.0 * energy / k), rel=1e-12)
+    assert start(KelvinVoigt(k, damping=1e6)).depth == pytest.approx(energy / (1e6 * 0.2 * landing), rel=1e-12)
+    assert start(KelvinVoigt(0.0, damping=1.0)).depth == pytest.approx(0.2, rel=1e-12)
+
+
 def test_time_allowed_goes_with_the_time_of_the_body() -> None:
     """Four times the gravity halves it, four times the size doubles it."""
     large = Block(width=0.8, height=1.6)
