@@ -223,6 +223,8 @@ def test_refusals(make: Any) -> None:
         {"angular_velocity": math.nan},
         {"angular_velocity": -1.0},
         {"angular_velocity": 1.0, "tolerance": 0.1},
+        {"angular_velocity": 1.0, "tolerance": 0.0},
+        {"angular_velocity": 1.0, "tolerance": 9e-14},
         {"angular_velocity": 1.0, "ground_acceleration": (0.0, -20.0)},
     ],
 )
