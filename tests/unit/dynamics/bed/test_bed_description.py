@@ -160,6 +160,17 @@ def test_depth_of_an_impact_absorbs_its_energy() -> None:
     assert start(KelvinVoigt(0.0, damping=1.0)).depth == pytest.approx(0.2, rel=1e-12)
 
 
+def test_light_bodies_are_struck_where_heavy_ones_are() -> None:
+    """A body of 80 g on a bed as much softer has the impulse at the same place, however small it is."""
+    places = []
+    for density in (1000.0, 1.0):
+        block = Block(width=0.2, height=0.4, density=density)
+        law = KelvinVoigt(block.mass * (800.0 * math.pi) ** 2, damping_ratio=1.0)
+        places.append(bed_impact(block, ContactBed.uniform(block, 5, law), angular_velocity=0.5).mean_impulse_position)
+    assert -1.0 < places[0] < 1.0
+    assert places[1] == pytest.approx(places[0], rel=1e-6)
+
+
 def test_time_allowed_goes_with_the_time_of_the_body() -> None:
     """Four times the gravity halves it, four times the size doubles it."""
     large = Block(width=0.8, height=1.6)

@@ -151,6 +151,14 @@ def test_where_nothing_stays_without_a_pull_the_least_pull_is_taken():
     assert faces > 5
 
 
+def test_a_coefficient_of_nothing_is_nothing():
+    """A body without velocity has none after an impact by a coefficient."""
+    body, none = SpatialBody.box(0.8, 1.1, 3.0), np.zeros(3)
+    for axis in (None, body.edges[1]):
+        found = FixedSpatial(0.9).velocity_after(body, body.vertices[0], body.vertices[1], axis, UP, none)
+        np.testing.assert_array_equal(found, none)
+
+
 def test_laws_by_name_by_number_and_by_interface():
     """Names, coefficients and objects are laws; others are refused with what there is."""
     assert law_of("housner-3d").label == law_of("housner").label == law_of(SpatialHousner()).label == "housner-3d"

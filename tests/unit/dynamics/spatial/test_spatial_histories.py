@@ -123,6 +123,16 @@ def test_nothing_of_a_response_lies_beyond_its_end():
     assert run.time[-1] <= 0.02
 
 
+def test_energy_closes_where_steps_hold_several_samples():
+    """Under a pulse along each axis the steps are longer than the samples are apart, and the work is right at each."""
+    pulse = rk.pulses.half_sine(amplitude=4.0, period=1.2)
+    run = simulate_spatial(BOX, pulse, pulse.scaled(0.3), pulse.scaled(-0.2))
+    starts = np.array([piece.start for piece in run.trajectory.pieces])
+    assert np.bincount(np.searchsorted(starts, run.time[run.time < 0.6], side="right")).max() > 2
+    assert np.abs(run.energy.work).max() > 100.0
+    assert run.energy.closure < 1e-9
+
+
 def test_files_hold_the_samples_with_units(tmp_path):
     """CSV to the last digit; netCDF with units, provenance and impacts."""
     xarray = pytest.importorskip("xarray")

@@ -8,12 +8,13 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics.outcome import Status
-from rocking.dynamics.spatial import SpatialBody
+from rocking.dynamics.spatial import SpatialBody, SpatialSettings
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial
 from rocking.dynamics.spatial_batch import SpatialStart, engine, run, simulate_spatial_batch
 from rocking.dynamics.spatial_batch.ground import joined
 from rocking.dynamics.spatial_batch.laws import batch_law
+from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning, UnknownModelError
 
 BOX = SpatialBody.box(0.5, 0.6, 2.0)
@@ -284,3 +285,10 @@ def test_a_start_knows_whether_it_can_be(wrong):
         batch = simulate_spatial_batch(BOX, None, start=[SpatialStart(**wrong), SpatialStart(0.02)], duration=0.1)
         assert batch.status.ravel().tolist()[0] == Status.INVALID.code
         assert batch.status.ravel().tolist()[1] == Status.GOOD.code
+
+
+def test_settings_of_the_batch_are_those_of_one_history():
+    """But for step and tolerance, which each engine has its own."""
+    batch, one = SpatialBatchSettings(), SpatialSettings()
+    for name in ("gravity", "rest_speed", "most_events"):
+        assert getattr(batch, name) == getattr(one, name)
