@@ -21,6 +21,7 @@ from rocking.dynamics.bed import (
     setup_of,
 )
 from rocking.dynamics.bed import law as laws
+from rocking.dynamics.bed.reference import Field
 from rocking.dynamics.bed.rigid import RigidRocking
 from rocking.errors import InvalidValueError, MissingExtraError
 
@@ -169,6 +170,23 @@ def test_light_bodies_are_struck_where_heavy_ones_are() -> None:
         places.append(bed_impact(block, ContactBed.uniform(block, 5, law), angular_velocity=0.5).mean_impulse_position)
     assert -1.0 < places[0] < 1.0
     assert places[1] == pytest.approx(places[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("kinematics", ["exact", "small"])
+def test_points_sink_at_the_rate_of_their_depth(kinematics: Any) -> None:
+    """Of a rough base that turns, slides and falls: the rate of each depth is its difference in time, with
+    y' = w cos theta - u sin theta, or w for a small base."""
+    bed = ContactBed.uniform(BLOCK, 5, LAW, kinematics=kinematics).with_profile([0.0, 0.01, 0.03, 0.02, 0.0])
+    field = Field(setup_of(BLOCK, bed, angular_velocity=0.5))
+    theta, u, w, omega, h = 0.12, 0.3, -0.4, 0.7, 1e-5
+    falls = w * math.cos(theta) - u * math.sin(theta) if kinematics == "exact" else w
+
+    def points(after: float) -> tuple[Any, Any, Any]:
+        state = [-0.01 + after * falls, theta + after * omega, u, w, omega, *[0.0] * 13]
+        return field.points(np.array(state))
+
+    differences = (points(h)[0] - points(-h)[0]) / (2.0 * h)
+    np.testing.assert_allclose(points(0.0)[1], differences, rtol=0.0, atol=1e-9)
 
 
 def test_time_allowed_goes_with_the_time_of_the_body() -> None:
