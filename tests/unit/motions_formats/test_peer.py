@@ -52,6 +52,15 @@ def test_free_header_with_eight_columns_and_marks() -> None:
         PEER.read(_source(text.replace("7 points", "8 points")))
 
 
+@pytest.mark.parametrize("more", [0, 1, 2, 3])
+def test_the_first_line_is_the_title(more: int) -> None:
+    """Before the line of the size, however many there are; a file that begins with the size has none."""
+    lines = [" A DATABASE ", "SOMEWHERE, 01/17/94, CELLAR, 360", "IN THE CELLAR", ""][: more + 1]
+    record = PEER.read(_source("\n".join(lines) + "\n" + SIZE + BODY), units="g")
+    assert record.metadata["title"] == "A DATABASE"
+    assert "title" not in PEER.read(_source(SIZE + BODY), units="g").metadata
+
+
 def test_metadata_and_header_are_kept() -> None:
     """Event, date, station and filter are what the second and third lines say."""
     record = PEER.read(_source(TOP.replace("OF G", "OF G. FILTER POINTS: HP=0.2 Hz LP=15.0 Hz") + SIZE + BODY))

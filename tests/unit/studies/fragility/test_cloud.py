@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -186,6 +187,17 @@ def test_a_line_without_scatter():
     line, flat = regression(x, 2.0 * x), regression(x, np.ones(4))
     assert line.probability_above(3.0, [1.0, 2.0]).tolist() == [0.0, 1.0]
     assert (line.p_value, flat.p_value) == (0.0, 1.0)
+
+
+def test_places_that_differ_by_more_than_rounding():
+    """Points a hundred-millionth apart give their line; those that only rounding tells apart give none."""
+    x = np.array([0.0, 1e-8, 3e-8])
+    assert regression(x, 5.0 - 3.0 * x).slope == pytest.approx(-3.0, rel=1e-6)
+    far = 1e6 + 1e-3 * np.arange(3.0)
+    assert regression(far, 2.0 * (far - 1e6)).slope == pytest.approx(2.0, rel=1e-9)
+    for same in (np.full(3, 0.7), np.array([1e6, np.nextafter(1e6, 2e6), 1e6]), np.array([0.7, 0.7 - 1e-15, 0.7])):
+        with pytest.raises(InvalidValueError, match=re.escape(f"different places, got 3 at {same[0]:g}")):
+            regression(same, np.array([1.0, 3.0, 2.0]))
 
 
 def test_summary_without_a_line():

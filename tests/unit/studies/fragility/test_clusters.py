@@ -24,6 +24,13 @@ def study(capacities, levels=LEVELS):
 SPREAD = study(np.exp(0.5 * np.random.default_rng(3).normal(size=30)))
 
 
+@pytest.mark.parametrize("kind", ["parametric", "cases", "clusters", "capacities"])
+def test_a_bootstrap_knows_how_often_it_was_repeated(kind):
+    """Thirty motions at nine levels, the study repeated 47 times: each kind says 47, and its own name."""
+    sample = SPREAD.bootstrap(kind, repetitions=47, seed=1)
+    assert (sample.kind, sample.repetitions) == (kind, 47)
+
+
 def test_one_cluster_gives_no_bootstrap_and_no_certainty():
     """One motion at nine levels: the cluster bootstrap is refused, the interval open-ended, the verdict says why."""
     failed = [0, 0, 1, 0, 1, 0, 1, 1, 1]
