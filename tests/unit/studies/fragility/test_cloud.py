@@ -12,8 +12,10 @@ from scipy import stats
 import rocking as rk
 from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
+from rocking.studies.fragility.barely_lifted import ClearShare
 from rocking.studies.fragility.cloud import cloud, cloud_plan
 from rocking.studies.fragility.regression import regression
+from rocking.studies.fragility.states import Responses
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 
@@ -179,6 +181,21 @@ def test_dataset_and_summary(found):
     told = json.loads(json.dumps(found.summary()))
     assert sum(told["states"].values()) == 80
     assert told["definition"].startswith("cloud")
+
+
+def test_share_of_what_was_clearly_lifted():
+    """Of what rocked and stands: by hand where all are at one level, one where all are, and never above one."""
+    levels, codes = np.full(5, 2.0), [Outcome.ROCKED.code] * 4 + [Outcome.OVERTURNED.code]
+    rotation = np.array([0.3, 0.001, 0.2, 0.5, math.inf])
+
+    def share(outcome, rotation):
+        answers = Responses(np.array(outcome), np.asarray(rotation), np.zeros(5, np.int8))
+        return ClearShare(levels, answers, 0.01).at(np.array([1.0, 4.0])).tolist()
+
+    assert share(codes, rotation) == [0.75, 0.75]
+    assert share(codes, np.maximum(rotation, 0.1)) == [1.0, 1.0]
+    assert share(codes, np.minimum(rotation, 0.001)) == [0.0, 0.0]
+    assert share([Outcome.OVERTURNED.code] * 5, np.full(5, math.inf)) == [1.0, 1.0]
 
 
 def test_a_line_without_scatter():
