@@ -61,6 +61,14 @@ def test_the_first_line_is_the_title(more: int) -> None:
     assert "title" not in PEER.read(_source(SIZE + BODY), units="g").metadata
 
 
+def test_two_samples_are_a_record_and_one_is_none() -> None:
+    """The shortest record has two samples; a header that states one is refused with its line."""
+    part = PEER.read(_source(TOP + "NPTS= 2, DT= .02 SEC\n .1 -.25\n")).components[0]
+    assert part.acceleration.tolist() == [0.1, -0.25]
+    with pytest.raises(RecordError, match="line 4: number of samples expected, found '1'"):
+        PEER.read(_source(TOP + "NPTS= 1, DT= .02 SEC\n .1\n"))
+
+
 def test_metadata_and_header_are_kept() -> None:
     """Event, date, station and filter are what the second and third lines say."""
     record = PEER.read(_source(TOP.replace("OF G", "OF G. FILTER POINTS: HP=0.2 Hz LP=15.0 Hz") + SIZE + BODY))

@@ -126,6 +126,16 @@ def test_it_tells_the_two_kinds_of_smc_apart_and_survives_a_missing_line() -> No
         SmcUsgs().read(shorter)
 
 
+@pytest.mark.parametrize("line", [*range(11, 17), *range(17, 27)])
+def test_a_file_with_one_damaged_header_line_is_still_known(line: int) -> None:
+    """One line of whole or real numbers out of six or ten may be damaged: the reader knows the file and names it."""
+    lines = typed()
+    lines[line] = "damaged " + lines[line][8:]
+    assert SmcUsgs().recognises(source(lines))
+    with pytest.raises(RecordError, match=f"line {line + 1}: a full line of header numbers expected"):
+        SmcUsgs().read(source(lines))
+
+
 def test_what_is_written_is_read_back(made_up: Callable[..., Record]) -> None:
     """A record in m/s2 comes back in cm/s2 to the five digits of the format, with its name."""
     record = made_up("45", scale=3.0)
