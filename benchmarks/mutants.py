@@ -23,7 +23,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from queue import SimpleQueue
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
@@ -260,11 +260,14 @@ def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[
     ledger, covering = folder / "verdicts.jsonl", Covering(folder)
     lines = ledger.read_text(encoding="utf-8").splitlines() if ledger.exists() else []
     known = {entry["key"]: entry for entry in map(json.loads, lines)}
+    reasons = harmless()
 
     def stands(mutant: Mutant) -> bool:
         entry = known.get(mutant.key)
         if entry is None or entry["killed"]:
             return entry is not None
+        if (mutant.path, mutant.change()[1]) in reasons:
+            return True
         tests = covering.tests(mutant.path, range(mutant.first, mutant.last + 1))
         return bool(entry.get("tests") == covering.seal(tests))
 
@@ -305,10 +308,10 @@ def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[
 
 def engines(folder: Path, workers: int) -> list[tuple[str, str, bool]]:
     """The hand-made errors of the compiled engines: each built, and judged by the tests that its entry names."""
-    by_hand = tomllib.loads((Path(__file__).parent / "mutants.toml").read_text(encoding="utf-8"))
+    entries, tests = by_hand()["engine"], by_hand()["tests"]
     ledger = folder / "engines.json"
     known: dict[str, bool] = json.loads(ledger.read_text(encoding="utf-8")) if ledger.exists() else {}
-    left = [entry for entry in by_hand["engine"] if entry["name"] not in known]
+    left = [entry for entry in entries if entry["name"] not in known]
     for entry in left:
         count = (ROOT / entry["file"]).read_text(encoding="utf-8").count(entry["old"])
         if count != 1:
@@ -318,7 +321,7 @@ def engines(folder: Path, workers: int) -> list[tuple[str, str, bool]]:
         target, text = worker.folder / entry["file"], (ROOT / entry["file"]).read_text(encoding="utf-8")
         target.write_text(text.replace(entry["old"], entry["new"]), encoding="utf-8")
         _build(worker.folder)
-        failed = worker.fails(by_hand["tests"][entry["of"]], ENGINE_LIMIT)
+        failed = worker.fails(tests[entry["of"]], ENGINE_LIMIT)
         target.write_text(text, encoding="utf-8")
         return bool(failed)
 
@@ -329,7 +332,7 @@ def engines(folder: Path, workers: int) -> list[tuple[str, str, bool]]:
         worker = Worker(folder / f"worker-engine-{number}")
         _build(worker.folder)
         for of in sorted({entry["of"] for entry in mine}):
-            if failed := worker.fails(by_hand["tests"][of], ENGINE_LIMIT):
+            if failed := worker.fails(tests[of], ENGINE_LIMIT):
                 raise SystemExit(f"fails without an error too: {failed}")
         for entry in mine:
             known[entry["name"]] = judge(entry, worker)
@@ -338,7 +341,7 @@ def engines(folder: Path, workers: int) -> list[tuple[str, str, bool]]:
 
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(judged, range(workers)))
-    return [(entry["file"], entry["name"], known[entry["name"]]) for entry in by_hand["engine"]]
+    return [(entry["file"], entry["name"], known[entry["name"]]) for entry in entries]
 
 
 def _build(folder: Path) -> None:
@@ -355,6 +358,16 @@ def _build(folder: Path) -> None:
     ]
     for command in (["-S", ".", "-B", "build/engine", *options], ["--build", "build/engine"]):
         subprocess.run([str(tools / "cmake"), *command], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+
+
+def by_hand() -> dict[str, Any]:
+    """What stands in mutants.toml."""
+    return tomllib.loads((Path(__file__).parent / "mutants.toml").read_text(encoding="utf-8"))
+
+
+def harmless() -> dict[tuple[str, str], str]:
+    """Why an error changes no result, by file and wrong line."""
+    return {(entry["file"], entry["line"]): str(entry["why"]) for entry in by_hand().get("survivor", [])}
 
 
 def wilson(killed: float, count: int) -> tuple[float, float]:
@@ -377,11 +390,10 @@ def page(
     The score is that of the errors that are some: survivors of which mutants.toml says why they change no result are
     counted, and left out of it (Jia and Harman 2011, doi:10.1109/TSE.2010.62).
     """
-    explained = tomllib.loads((Path(__file__).parent / "mutants.toml").read_text(encoding="utf-8")).get("survivor", [])
-    reasons = {(entry["file"], entry["line"]): str(entry["why"]) for entry in explained}
+    reasons = harmless()
     judged = [mutant for mutant in chosen if mutant.key in known]
     survivors = {mutant: mutant.change() for mutant in sorted(judged) if not known[mutant.key]["killed"]}
-    harmless = {mutant for mutant, (_, new) in survivors.items() if (mutant.path, new) in reasons}
+    same_results = {mutant for mutant, (_, new) in survivors.items() if (mutant.path, new) in reasons}
     text = [
         "# Deliberate errors",
         "",
@@ -393,7 +405,7 @@ def page(
     low = 0.0
     for package in (*CORE, "all"):
         of = [mutant for mutant in judged if package in {mutant.package, "all"}]
-        killed, same = len(of) - sum(mutant in survivors for mutant in of), sum(mutant in harmless for mutant in of)
+        killed, same = len(of) - sum(mutant in survivors for mutant in of), sum(mutant in same_results for mutant in of)
         if len(of) > same:
             low, high = wilson(killed, len(of) - same)
             count = sum(every.values()) if package == "all" else every[package]

@@ -68,15 +68,19 @@ def impulsive(block: Block, bed: ContactBed) -> BedImpact:
     return bed_impact(block, bed, angular_velocity=0.5, impulsive=True)
 
 
-def dropped(law: LawNumbers, speed: float) -> tuple[float, float, float]:
-    """Contact time, greatest depth and velocity ratio of a block of 1000 kg that falls flat on two points."""
+def falling(law: LawNumbers, speed: float, depth: float) -> Setup:
+    """A block of 1000 kg that falls flat on two points, without gravity."""
     block = Block(width=1.0, height=1.0, density=1000.0)
     bed = ContactBed([-0.5, 0.5], KelvinVoigt(1.0))
     setup = setup_of(block, bed, angular_velocity=1.0, impulsive=True)
-    depth = speed * math.sqrt(block.mass / law.stiffness) if law.exponent == 1.0 else 1e-3
     start = replace(setup.start, state=(0.0, 0.0, 0.0, -speed, 0.0), depth=depth, speed=speed, old_foot=-1)
-    setup = replace(setup, law=law, start=start, longest=1e3 * depth / speed)
-    results, _, _, _, intervals = fast.one(setup, MOST_STEPS)
+    return replace(setup, law=law, start=start, longest=1e3 * depth / speed)
+
+
+def dropped(law: LawNumbers, speed: float) -> tuple[float, float, float]:
+    """Contact time, greatest depth and velocity ratio of a block of 1000 kg that falls flat on two points."""
+    depth = speed * math.sqrt(1000.0 / law.stiffness) if law.exponent == 1.0 else 1e-3
+    results, _, _, _, intervals = fast.one(falling(law, speed, depth), MOST_STEPS)
     assert len(intervals) == 2
     assert intervals[0, 2] == pytest.approx(intervals[1, 2], rel=1e-12)
     return float(intervals[0, 2] - intervals[0, 1]), float(results[RESULTS.index("deepest")]), float(results[3] / speed)
@@ -292,6 +296,70 @@ def test_an_implicit_solver_agrees() -> None:
     setup = setup_of(block, ContactBed.uniform(block, 3, sprung(block, 200.0, 1.0)), angular_velocity=0.6)
     quick = BedImpact(setup, *fast.one(setup, MOST_STEPS)).coefficient
     assert BedImpact(setup, *reference.one(setup, "LSODA", 1e-8)).coefficient == pytest.approx(quick, abs=1e-6)
+
+
+def test_the_other_solver_ends_where_the_bed_parts() -> None:
+    """A block dropped flat leaves a spring after pi sqrt(m / k) as fast as it came, a plastic bed after (1 + e) quarter
+    periods with e; on dashpots it is at rest when 1e-10 of its speed is left, after ln(1e10) m / c."""
+    mass, stiffness, damping, speed = 1000.0, 1e7, 1e5, 0.3
+    pace = math.sqrt(mass / stiffness)
+    cases = {
+        KelvinVoigt(stiffness): (1.0, math.pi * pace, speed * pace),
+        PlasticUnloading(stiffness, 0.4): (0.4, 0.5 * math.pi * 1.4 * pace, speed * pace),
+        KelvinVoigt(0.0, damping=damping): (-1e-10, math.log(1e10) * mass / damping, speed * mass / damping),
+    }
+    for law, (ratio, time, depth) in cases.items():
+        setup = falling(law.numbers(mass), speed, depth)
+        found = BedImpact(setup, *reference.one(setup))
+        assert found.status is BedStatus.PARTED
+        assert found.result("time") == pytest.approx(time, rel=2e-5)
+        assert found.result("w") / speed == pytest.approx(ratio, abs=1e-8)
+        assert found.result("deepest") == pytest.approx(depth, rel=2e-3)
+
+
+def test_the_other_solver_says_between_what_the_impact_lies() -> None:
+    """From the first sample at which more than the old foot presses to the first one at which the new foot alone does
+    and sinks no faster than a thousandth of its speed before; the impulse between is the integral of the force; r
+    is that of the fast engine."""
+    block = slender(2.0)
+    bed = ContactBed.uniform(block, 5, sprung(block, 100.0, 0.5), kinematics="small")
+    setup = setup_of(block, bed, angular_velocity=1.0)
+    found = BedImpact(setup, *reference.one(setup, tolerance=1e-9))
+    assert found.coefficient == pytest.approx(BedImpact(setup, *fast.one(setup, MOST_STEPS)).coefficient, abs=1e-6)
+    pressing, new, old = found.forces > 0.0, setup.start.new_foot, setup.start.old_foot
+    sinks = bed.positions[new] * found.sample("angular_velocity") - found.sample("w")
+    touch = int(np.argmax(np.delete(pressing, old, axis=1).any(axis=1)))
+    arrested = ~np.delete(pressing, new, axis=1).any(axis=1) & (sinks <= 1e-3 * setup.start.speed)
+    parting = touch + int(np.argmax(arrested[touch:]))
+    assert 0 < touch < parting
+    assert (found.result("touch"), found.result("parting")) == (found.time[touch], found.time[parting])
+    between = slice(touch, parting + 1)
+    for name, sample in (("impulse", "normal"), ("impulse_moment", "moment"), ("shear_impulse", "shear")):
+        integral = np.trapezoid(found.sample(sample)[between], found.time[between])
+        assert found.result(name) == pytest.approx(integral, rel=5e-3), name
+    assert found.counts.min() >= 0, "what is counted is never below zero"
+
+
+def test_the_other_solver_finds_what_friction_takes() -> None:
+    """An impulsive impact on two dashpots has r(mu) of physics.md 1.2 by SciPy's solver too, and closes its audit."""
+    block, mu = slender(2.0), 0.2
+    bed = ContactBed.uniform(block, 2, dashpots(block), friction=Coulomb(mu))
+    found = bed_impact(block, bed, angular_velocity=0.5, impulsive=True, engine="reference")
+    exact = (5.0 / 3.0 - 1.0 + 2.0 * mu) / (5.0 / 3.0 + 1.0 - 2.0 * mu)
+    assert found.status is BedStatus.PARTED
+    assert found.coefficient == pytest.approx(exact, abs=1e-7)
+    assert abs(found.audit) < 1e-9
+
+
+def test_both_solvers_say_when_time_ran_out() -> None:
+    """An impact given less time than it takes is no impact that has ended."""
+    block = slender(2.0)
+    setup = setup_of(block, ContactBed.uniform(block, 3, sprung(block, 200.0, 1.0)), angular_velocity=0.6)
+    short = replace(setup, longest=1e-2 * setup.start.depth / setup.start.speed)
+    for result in (fast.one(short, MOST_STEPS), reference.one(short)):
+        found = BedImpact(short, *result)
+        assert found.status is BedStatus.TIME_OUT
+        assert found.result("time") == pytest.approx(short.longest, rel=1e-9)
 
 
 def test_results_do_not_depend_on_the_step() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rocking.bodies import Block
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, Foot
 from rocking.dynamics.bed import fast
 from rocking.errors import InvalidValueError
 from rocking.restitution import model
@@ -137,6 +137,30 @@ def test_two_points_are_housner() -> None:
         r = [model("contact-bed", points=n, hardness=1000.0).coefficient(setup_block(ratio)) for n in POINTS]
         assert r[0] == pytest.approx(1.0 - 1.5 / (1.0 + ratio**2), abs=3e-3)
         assert (np.diff(r) > 0.0).all()
+
+
+@pytest.mark.parametrize("onto", ["left", "right"])
+def test_two_points_are_housner_for_a_plumb_line_off_the_middle(onto: Foot) -> None:
+    """n = 2 gives r = (I_C + m h^2 - m b b') / (I_C + m h^2 + m b'^2) (physics.md 1.1) within .003, or keeps energy."""
+    for ratio, shift in itertools.product((1.5, 3.0), (0.0, 0.2, 0.5)):
+        body = setup_block(ratio).with_feet(0.0, 0.2 - 0.1 * shift)
+        old, new = (0.1, 0.1 - 0.1 * shift) if onto == "right" else (0.1 - 0.1 * shift, 0.1)
+        over_base = (0.2**2 + (0.2 * ratio) ** 2) / 12.0 + (0.1 * ratio) ** 2
+        housner = (over_base - old * new) / (over_base + new**2)
+        bed = model("contact-bed", points=2, hardness=1000.0)
+        assert isinstance(bed, ContactBedModel)
+        assert bed.evaluate(body, onto).source is Source.TABLE
+        expected = min(housner, math.sqrt((over_base + old**2) / (over_base + new**2)))
+        assert bed.coefficient(body, onto) == pytest.approx(expected, abs=3e-3)
+
+
+def test_the_ends_of_the_table_are_in_it() -> None:
+    """Damping from 0.05 to 5 and hardness from 30 to 1000 are read, their ends among them; nothing beyond."""
+    for points, damping, hardness in itertools.product(POINTS, (0.05, 5.0), (30.0, 1000.0)):
+        assert ContactBedModel(points, damping, hardness).tabulated
+        assert not ContactBedModel(points, damping, hardness * (1.001 if hardness > 100.0 else 0.999)).tabulated
+        assert not ContactBedModel(points, damping * (1.001 if damping > 1.0 else 0.999), hardness).tabulated
+        assert not ContactBedModel(points + 1 if points != 2 else 4, damping, hardness).tabulated
 
 
 def test_between_viscous_and_elastic() -> None:

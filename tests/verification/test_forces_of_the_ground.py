@@ -108,22 +108,31 @@ def test_what_follows_a_motion_that_ends(engine: str) -> None:
     sides |= {f"{name}_{foot}": value for foot in alpha for name, value in (("p", p), ("q", q), ("r", 0.99))}
     lifted = rk.GroundMotion(np.zeros(2), 1e-7, vertical=np.full(2, 0.5 * g)).segments()
 
-    def least(rotation: float, velocity: float) -> float:
+    def least(rotation: float, velocity: float, name: str = "least_force") -> float:
         batch = Batch([lifted], engine=engine)
         rows = Rows.of(1, scale=1.0, rotation=rotation, velocity=velocity, **sides)
         found, _ = batch.run(1, lambda a, b: rows)
         assert found["outcome"] == rk.Outcome.OVERTURNED.code
-        return float(found["least_force"][0])
+        return float(found[name][0])
 
     def normal(u: float, speed: float) -> float:
         return 1.0 - q * (math.sin(u) ** 2 + (speed / p) ** 2 * math.cos(u))
 
+    def demand(u: float, speed: float, weight: float) -> float:
+        moment, spin = weight * math.sin(u), (speed / p) ** 2
+        along, up = q * (moment * math.cos(u) - spin * math.sin(u)), q * (moment * math.sin(u) + spin * math.cos(u))
+        return abs(along) / (weight - up)
+
     assert least(0.05, 0.3) == pytest.approx(normal(0.05, 0.3), rel=1e-5)
+    either = max(demand(0.05, 0.3, weight) for weight in (1.0, 1.5))
+    assert least(0.05, 0.3, "friction_demand") == pytest.approx(either, rel=1e-5)
     assert least(0.05, 0.3) != pytest.approx(normal(0.05, 0.3) + 0.5, rel=1e-2)  # negative control: while it lifts
     arrives = math.sqrt(0.9**2 + 2.0 * p**2 * (math.cos(0.05) - math.cos(0.1)))
     after = normal(alpha["left"], 0.99 * arrives)
     assert after < normal(alpha["right"], arrives) - 0.05
     assert least(0.05, -0.9) == pytest.approx(after, rel=1e-5)
+    steps = [demand(0.05, -0.9, 1.5), demand(0.1, arrives, 1.0), demand(0.4, 0.99 * arrives, 1.0)]
+    assert least(0.05, -0.9, "friction_demand") == pytest.approx(max(steps), rel=1e-5)
 
 
 @pytest.mark.parametrize("linear", [False, True])

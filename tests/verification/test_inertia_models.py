@@ -204,6 +204,18 @@ def test_distributed_impulse_on_two_legs(q, onto):
     assert r != pytest.approx(np.exp(-exponent_by_quadrature(kappa, [(start, end)], start, end, q)), rel=1e-3)
 
 
+def test_a_slab_on_two_strips_stops():
+    """Where the impulse of the strips alone would throw the slab back, as Housner's does, it stops: r = 0."""
+    outline = [(-0.5, 0), (-0.45, 0), (-0.45, 0.02), (0.4, 0.02), (0.4, 0), (0.5, 0), (0.5, 0.2), (-0.5, 0.2)]
+    slab = rk.Section.from_points(outline)
+    for onto in ("left", "right"):
+        assert Housner().raw_coefficient(slab, onto) < 0.0
+        for q in (0.0, 1.0, 2.5):
+            assert DistributedImpulse(q=q).coefficient(slab, onto) == 0.0
+    # on its whole base it goes on
+    assert DistributedImpulse(q=0.0).coefficient(rk.Block(width=1.0, height=0.2)) > 0.1
+
+
 @pytest.mark.parametrize("q", [0.0, 0.5, 1.0, 3.0])
 @pytest.mark.parametrize("levers", [(0.5, 0.5), (0.3, 0.7)])
 def test_quadrature_route_equals_closed_form(q, levers):

@@ -72,6 +72,24 @@ def test_a_vertical_frozen_to_the_body_is_rejected(place):
     assert abs(energy_left(leaning(PRISM, onto, velocity, UP)) / brute - 1.0) > 0.01
 
 
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("tilt", [0.3, -0.2])
+def test_a_body_that_leans_about_the_edge_it_lands_on(axis, tilt):
+    """Turning about the edge alone, from a line on the same ground: mass points and Richardson to 1e-5.
+
+    Negative control: with the ground level in the body it is over 1 % off.
+    """
+    along, corner = np.eye(3)[axis], np.array([0.5, 0.65, 0.0])
+    up = rotation_about(along, tilt) @ UP
+    pivot, velocity = corner - 0.8 * np.cross(along, up), 1.1 * along
+    onto = Edge(corner, along)
+    coarse, fine = (left_of_points(*prism_points(count), onto, velocity, up, pivot) for count in (20, 40))
+    expected = fine + (fine - coarse) / 3.0
+    assert energy_left(leaning(PRISM, onto, velocity, up, pivot)) == pytest.approx(expected, rel=1e-5)
+    level = pivot * [1.0, 1.0, 0.0]
+    assert abs(energy_left(leaning(PRISM, onto, velocity, UP, level)) / expected - 1.0) > 0.01
+
+
 def gauss_ellipsoid():
     """Gauss points of the truncated ellipsoid below, which no landing place here touches: a smooth integrand."""
     solid = Solid(ellipsoid(1.0, 1.4, 2.0, cut_below=0.3, cut_above=0.6))

@@ -72,6 +72,7 @@ def test_a_near_flat_passage_sweeps_the_reference_angle(ratio, sweep):
     low = int(np.argmin(tilt))
     after = low + int(np.argmax(tilt[low:]))
     assert tilt.min() < 1e-4
+    assert run.near_flat_passages == 1
     assert run.impacts.size == 0
     assert abs(turned[after] - turned[0]) == pytest.approx(sweep, abs=3e-3)
 

@@ -153,6 +153,22 @@ def test_a_spin_draws_a_rim_that_is_nearly_flat(turning, spin, pulls):
     assert (expected < 0.0) == pulls
 
 
+@pytest.mark.parametrize(("tilt", "rate", "held"), [(2.4e-3, -0.3, True), (2.6e-3, 0.3, False)])
+def test_a_rim_is_held_down_up_to_a_hundredth_of_the_slenderness_angle(tilt, rate, held):
+    """Drawn down by its spin at a tilt just above b / 100 h = 2.5e-3 the rim loses contact at once, though it was lower
+    a moment before; just below it stays, though it was higher, until it has risen above."""
+    turning, spin = 100.0, 15.0
+    assert _normal_by_angles(tilt, rate, turning, spin) < -5.0 * G
+    rotation = attitude.matrix(attitude.turn([1.0, 0.0, 0.0], tilt))
+    velocity = rotation @ np.array([rate, turning * math.sin(tilt), spin])
+    run = free_rocking_spatial(CYLINDER, tilt, -0.5 * math.pi, angular_velocity=velocity, gravity=G, duration=0.02)
+    assert run.status is Status.LOST_CONTACT
+    last = run.trajectory.pieces[-1]
+    assert (last.end > 1e-3) is (run.trajectory.held > 1e-3) is held
+    end = last.at(np.array([last.until]))[0]
+    assert attitude.tilt(end)[0] > 2.5e-3 * (1.0 - 1e-5)
+
+
 @pytest.mark.parametrize("seed", [15, 104])
 def test_energy_closes_under_records(seed):
     """Work of the ground, kinetic and potential energy and losses of the reference engine: to 1e-9."""

@@ -43,9 +43,13 @@ def over_feet(apart, model="ked-3d"):
 
 @pytest.mark.parametrize(("apart", "k"), [(1.0, 0.525), (0.8, 0.621), (0.5, 1.004), (0.3, 2.10), (0.1, 15.7)])
 def test_the_impulse_of_a_block_on_narrow_feet(apart, k):
-    """REF 7.2 (printed to 3 or 4 digits): k before the cut; above 1 it is cut, and said."""
+    """REF 7.2 (printed to 3 or 4 digits): k before the cut; above 1 it is cut, and said: Housner's impact."""
     assert impulse_position(on_feet(apart)).at(np.array([1.0, 0.0])) == pytest.approx(k, rel=2e-3)
     assert (SpatialFlag.CUT in over_feet(apart).flags) == (k > 1.0)
+    # one impulse at k of the half distance b: r = (I_C + m h^2 - m k b^2) / (I_C + m h^2 + m k b^2)
+    over_base, moved = (1.0 + 4.0) / 12.0 + 1.0, min(k, 1.0) * (0.5 * apart) ** 2
+    r = (over_base - moved) / (over_base + moved)
+    assert over_feet(apart).coefficient == pytest.approx(r, rel=1e-9 if k > 1.0 else 1e-3)
 
 
 @pytest.mark.parametrize(("apart", "narrow"), [(0.8, False), (0.3, True)])
@@ -155,6 +159,23 @@ def test_steps_keep_momentum_about_the_impulse_and_create_no_energy(name):
     assert gains > 1000
     assert pulls < 0.15 * 4000
     assert moved < 0.02 * 4000
+
+
+def test_a_step_that_would_gain_energy_keeps_it():
+    """A low weight at one end of the base and a mast at the other: k is below 0, and a short step loses nothing.
+
+    The equations about X alone would gain energy there; what is left of them is their direction.
+    """
+    weight, mast = Part(box(0.2, 0.4, 0.2), 8000.0), Part(box(0.05, 0.3, 1.0), 500.0)
+    solid = Solid([weight.moved(-0.4, 0.0, 0.0), mast.moved(0.475, 0.0, 0.0)])
+    k = impulse_position(solid).at(np.array([1.0, 0.0]))
+    assert k < -0.05
+    old, new, velocity = np.array([-0.4, 0.0, 0.0]), np.array([-0.3, 0.0, 0.0]), np.array([0.2, 1.0, 0.1])
+    impact, free = impact_of(solid, old, new, velocity), of_mass(solid, old, new, velocity, k)
+    assert 0.5 * free @ impact.inertia @ free > 1.001 * impact.energy
+    made = SpatialKed().turned(impact)
+    assert 0.5 * made @ impact.inertia @ made == pytest.approx(impact.energy, rel=1e-12)
+    np.testing.assert_allclose(made / np.linalg.norm(made), free / np.linalg.norm(free), rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", BODIES)

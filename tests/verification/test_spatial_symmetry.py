@@ -8,6 +8,7 @@ import math
 import os
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -71,3 +72,18 @@ def test_equal_components_move_a_square_body_along_its_diagonal():
     assert run.impacts.size > 10
     np.testing.assert_allclose(run.centre[:, 0], run.centre[:, 1], atol=1e-11)
     assert {contact for _, _, contact, _ in run.intervals} == {Contact.REST, Contact.VERTEX}
+
+
+@pytest.mark.parametrize("size", [1.0 / 256.0, 256.0])
+@pytest.mark.parametrize("azimuth", [0.0, 0.4])
+def test_similar_bodies_rock_alike(size, azimuth):
+    """Of another size, with times as its root: the same contacts in the same order until both rest, impacts at
+    corresponding times to 1e-9."""
+    first, other = (
+        free_rocking_spatial(SpatialBody.box(0.5 * s, 0.6 * s, 2.0 * s), 0.1, azimuth, 0.6, rest_speed=1e-3)
+        for s in (1.0, size)
+    )
+    assert [interval[2:] for interval in other.intervals] == [interval[2:] for interval in first.intervals]
+    assert first.contact[-1] == Contact.REST.code
+    assert first.impacts.size > 6
+    np.testing.assert_allclose(other.impacts["time"] / math.sqrt(size), first.impacts["time"], rtol=1e-9)

@@ -133,3 +133,21 @@ def test_stopped_before_anything_happened() -> None:
     for what in ("energy", "contact"):
         with pytest.raises(InvalidValueError, match="no response at any time above 0 s: stopped: more impacts"):
             getattr(response, what)
+
+
+@every_engine
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_thrown_back_within_a_long_step(name: str, sign: float) -> None:
+    """From 0.8 alpha and thrown inwards, slender-linear, alpha - |theta| is u cosh pt + u' / p sinh pt up to the impact
+    at any time between two samples 0.5 s apart."""
+    p, speed = BLOCK.frequency_parameter, 0.4
+    still = rk.GroundMotion(np.zeros(9), 0.5)
+    response = rk.simulate(
+        BLOCK, still, 0.5, engine=name, linear=True, rotation=sign * 0.8 * ALPHA, angular_velocity=-sign * speed
+    )
+    lands = response.impacts["time"][0]
+    t = np.linspace(0.0, lands, 40)
+    u = 0.2 * ALPHA * np.cosh(p * t) + speed / p * np.sinh(p * t)
+    assert p * min(lands, 0.5) > 0.5, "the interval is long"
+    assert u[-1] == pytest.approx(ALPHA, rel=1e-9)
+    np.testing.assert_allclose(response.at(t), sign * (ALPHA - u), rtol=0.0, atol=1e-9)

@@ -205,3 +205,13 @@ def test_a_twin_tells_what_the_integration_leaves_open() -> None:
     assert not tells(found["truncation"])
     assert not {"twin_change", "twin_flips", "error"} & set(one.data_vars)
     assert found["twin_change"].attrs["units"] == "rad"
+
+
+@every_engine
+def test_scales_go_up_to_a_million(name: str) -> None:
+    """The ends of the range are in it: a motion of a millionth, scaled by either, is itself or its mirror image."""
+    small = rk.GroundMotion(1e-6 * MOTIONS[0].acceleration, 0.05)
+    made = rk.simulate_many(BODIES[0], small, 0.9, scale=[1e6, -1e6], engine=name)
+    own = rk.simulate_many(BODIES[0], MOTIONS[0], 0.9, scale=[1.0, -1.0], engine=name)
+    for key in ("outcome", "peak_rotation"):
+        np.testing.assert_allclose(made[key].to_numpy(), own[key].to_numpy(), rtol=1e-9)

@@ -76,6 +76,7 @@ def test_zeros_of_polynomials() -> None:
     falls = -Polynomial.fromroots([0.2, 0.5, 0.8]).coef
     assert first_fall(falls.tolist()) == pytest.approx(0.2, rel=1e-14)
     assert last_fall(falls.tolist()) == pytest.approx(0.8, rel=1e-14)
+    assert first_fall([0.1, -1.0, 2.0]) == pytest.approx((1.0 - math.sqrt(0.2)) / 4.0, rel=1e-14)
     assert first_fall([0.25, -1.0, 1.0]) is None
     assert first_fall([1.0, -0.5, -0.5 + 1e-9]) is None
     assert last_fall([-0.25, 1.0, -1.0]) is None

@@ -174,6 +174,7 @@ def test_progress(progress: Any) -> None:
     ("scale", "message"),
     [
         (2e6, r"scale must be finite and within 1e6, got 2e\+06 at index 0"),
+        ([-1e6, -1000001.0], r"within 1e6, got -1e\+06 at index 1"),
         ([1.0, math.nan], "got nan at index 1"),
         ([1.0, 2.0, -math.inf], "got -inf at index 2"),
         ([], r"scale must be one number or a row of numbers, got shape \(0,\)"),

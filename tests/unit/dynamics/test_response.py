@@ -227,3 +227,21 @@ def test_a_motion_that_was_cut_is_told(name: str) -> None:
     lies = rk.simulate(BLOCK, record, R, engine=name, duration=4.9)
     assert lies.outcome is Outcome.OVERTURNED
     assert "cut" not in lies.summary, "it lay before"
+
+
+def test_the_same_question_to_the_full_equations() -> None:
+    """Where contact is not lost, feet that do not slide give the same history: body, coefficients by side, scale,
+    start and gravity are those asked for. The friction is 10 if none is given."""
+    pulse = rk.pulses.sine(0.4 * g / 3.0, 2.0 * math.pi / (3.0 * P))
+    response = rk.simulate(
+        BLOCK, pulse, {"left": 0.85, "right": 0.8}, scale=-1.3, rotation=0.05, angular_velocity=0.1, gravity=0.9 * g
+    )
+    assert response.impacts.size > 5
+    assert not response.lost_contact
+    full = response.with_contact()
+    assert (full.law.friction, full.law.restitution, full.law.bounce) == (10.0, (0.85, 0.8), 0.0)
+    assert response.with_contact(0.7).law.friction == 0.7
+    until = min(response.impacts["time"][5], full.history.end)
+    t = np.linspace(0.0, until, 200)
+    np.testing.assert_allclose(full.at(t)[:, 2], response.at(t), rtol=0.0, atol=1e-7)
+    assert full.history.end == pytest.approx(response.time[-1], rel=1e-9)

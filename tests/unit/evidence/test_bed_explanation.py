@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rocking.evidence.bed_fit import fit_bed, left_out
+from rocking.evidence.bed_fit import BedFit, fit_bed, left_out
 from rocking.evidence.bed_physics import bed_coefficients, explanations, relative_width
 from rocking.evidence.contenders import contact_bed
 from rocking.evidence.explanation import Explanation, Ranked, explanation
@@ -74,6 +74,18 @@ def test_every_explanation_says_what_it_computes():
         ),
     }
     assert set(expected) == set(PHYSICS)
+    groups = ("S", "M", "L")
+    fitted = {
+        "one bed": ("damping", "hardness"),
+        "loss beside the bed": ("damping", "hardness", "eta"),
+        "loss that does not grow with mass": ("damping", "hardness", "tape"),
+        "loss by group": ("damping", "hardness", *(f"eta {group}" for group in groups)),
+        "damping by group": ("hardness", "damping Table 1", *(f"damping {group}" for group in groups)),
+        "hardness by group": ("damping", "hardness Table 1", *(f"hardness {group}" for group in groups)),
+        "narrower base by group": ("damping", "hardness", *(f"share {group}" for group in groups)),
+        "unevenness of one height": ("damping", "hardness", "uneven"),
+    }
+    assert {name: each.parameters for name, each in PHYSICS.items()} == fitted
     for name, (values, of_row) in expected.items():
         found = PHYSICS[name].predict(np.array(values), data, 5)
         assert found == pytest.approx([of_row(row, group) for row, group in enumerate(data.group)], rel=1e-12), name
@@ -163,3 +175,28 @@ def test_a_tie_is_called_a_tie():
     assert tied.unresolved == (best.name, plain.name)
     assert "do not decide" in tied.verdict[1]
     assert "not resolved" in tied.verdict[2]
+
+
+def test_two_of_bic_and_two_standard_errors_decide():
+    """Undecided is what lies less than 2 of BIC behind; better unseen is what gains over two of its standard errors."""
+    none = np.zeros(39)
+    fits = [BedFit(each, 5, {}, 0.02, 1.0, 0.0, 0.0, 0.0, none) for each in PHYSICS.values()]
+    told = {0: (0.0, 0.9, 0.4), 1: (1.9, 0.1, 0.06), 2: (2.1, 2.5, 1.0), 3: (9.0, -0.9, 0.1), 4: (9.5, 0.0, 0.0)}
+    found = Explanation(
+        tuple(Ranked(fits[i], none, behind, gain, gain_error) for i, (behind, gain, gain_error) in told.items())
+    )
+    names = [fit.physics.name for fit in fits]
+    assert found.unresolved == tuple(names[:2])
+    assert found.better_unseen == (names[0], names[2])
+
+
+def test_parameters_at_the_ends_of_their_ranges_are_named():
+    """Within two thousandths of a range from either of its ends a fit has been pushed to a limit; in between not."""
+    physics = PHYSICS["unevenness of one height"]
+    ranges = dict(zip(physics.parameters, physics.bounds, strict=True))
+    inside = {name: low + 0.3 * (high - low) for name, (low, high) in ranges.items()}
+    for name, (low, high) in ranges.items():
+        for share, told in ((0.0, True), (0.0015, True), (0.003, False), (0.997, False), (0.9985, True), (1.0, True)):
+            values = {**inside, name: low + share * (high - low)}
+            fit = BedFit(physics, 5, values, 0.02, 1.0, 0.0, 0.0, 0.0, np.zeros(39))
+            assert fit.at_a_limit == ((name,) if told else ())

@@ -102,6 +102,22 @@ def test_prediction_of_a_body_is_that_of_its_slenderness():
     assert (wide.high <= 1.0).all()
 
 
+def test_a_prediction_is_the_mixture_over_the_posterior():
+    """Mean, spread and interval are those of normals around eta (g - k)/(g + k), cut at 0 where a flat block stops."""
+    posterior, ratios = calibrate(), np.array([0.3, 0.6, 1.5, 4.0])
+    eta, k, s, gamma = posterior.samples.T
+    found = posterior.predict(ratios)
+    for i, ratio in enumerate(ratios.tolist()):
+        over_base = (1.0 + ratio**2) / 3.0 + ratio**2  # (I_C + m h^2) / (m b^2) of a rectangle
+        mean = np.maximum(eta * (over_base - k) / (over_base + k), 0.0)
+        sd = s * (1.0 - mean) ** gamma
+        assert found.coefficient[i] == pytest.approx(mean.mean(), rel=1e-9, abs=1e-12)
+        assert found.standard_deviation[i] == pytest.approx(np.sqrt(np.mean(sd**2) + np.var(mean)), rel=1e-9)
+        for end, level in ((found.low[i], 0.025), (found.high[i], 0.975)):
+            below = stats.norm.cdf(end, mean, sd).mean()
+            assert below == pytest.approx(level, abs=1e-6) or (end == 0.0 and below > level)
+
+
 @pytest.mark.parametrize("model", [Housner(), Ked(), Fixed(r=0.9)])
 def test_interval_of_any_model(model):
     """Each model's interval holds its own coefficient; Housner's, which misses most, is the widest."""
@@ -182,6 +198,18 @@ def test_credible_intervals_against_a_markov_chain():
         assert (fact["low"], fact["high"]) == pytest.approx(tuple(ends), abs=0.1 * fact["sd"])
         # negative control: quantiles of samples at nodes
         assert np.abs(np.quantile(found.samples[:, i], [0.025, 0.975]) - ends).max() > 0.1 * fact["sd"]
+
+
+@pytest.mark.parametrize("power", [-3.0, 2.0])
+def test_quantiles_of_a_density_that_ends_at_its_grid(power):
+    """An exponential law cut off at both ends of an even grid, and a power law on a logarithmic one, in closed form."""
+    levels = (0.025, 0.5, 0.975)
+    even, exact = np.linspace(1.0, 2.0, 9), np.array(levels)
+    found = marginal_quantiles(even, np.exp(power * even), levels)
+    assert found == pytest.approx(1.0 + np.log1p(exact * np.expm1(power)) / power, abs=1e-5)
+    spread = np.geomspace(1.0, 4.0, 9)
+    found = marginal_quantiles(spread, spread**power, levels)
+    assert found == pytest.approx((1.0 + exact * (4.0**power - 1.0)) ** (1.0 / power), abs=2e-4)
 
 
 @pytest.mark.parametrize("axis", ["even", "logarithmic"])

@@ -12,8 +12,19 @@ from rocking.errors import InvalidValueError
 from rocking.motions.intensity import peak_ground_acceleration, peak_ground_velocity
 from rocking.motions.kinematics import ground_velocity
 from rocking.motions.motion import GroundMotion
+from rocking.motions.synthetic import (
+    Envelope,
+    KanaiTajimi,
+    NonstationaryFilter,
+    PointSource,
+    kanai_tajimi_motion,
+    modulation_from_intensity,
+    nonstationary_motion,
+    point_source_motion,
+)
 from rocking.motions.synthetic.distributions import Lognormal, LogUniform, Uniform
 from rocking.motions.synthetic.families import families, family
+from rocking.motions.synthetic.oscillator import highpassed
 
 DRAWS = 600
 STATED = [(name, parameter) for name, one in families().items() for parameter in one.distributions]
@@ -98,6 +109,31 @@ def test_motions_are_of_the_size_of_earthquakes_and_end_at_rest(name):
         assert 0.01 < peak_ground_acceleration(motion) < 30.0
         assert velocity < 5.0
         assert abs(ground_velocity(motion)[-1]) < 0.05 * velocity
+
+
+def test_parameters_reach_the_generators_in_their_units():
+    """20 km and 100 bar are 20 000 m and 10 MPa; 45 % of the intensity is there at 0.6 of 12 s; the rest by hand."""
+    drawn = {"magnitude": 6.5, "distance_km": 20.0, "stress_drop_bar": 100.0, "kappa_s": 0.04}
+    source = PointSource(magnitude=6.5, distance=20_000.0, stress_drop=10.0e6, kappa=0.04)
+    found, wanted = family("point-source").make(drawn, 5, 0.01), point_source_motion(source, seed=5, time_step=0.01)
+    np.testing.assert_allclose(found.acceleration, wanted.acceleration, rtol=0.0, atol=1e-12 * wanted.peak)
+
+    drawn = {"density_m2_s3": 0.02, "frequency_hz": 2.5, "damping": 0.4, "rise_s": 2.0, "plateau_s": 5.0}
+    found = family("kanai-tajimi").make(drawn | {"decay_1_s": 0.5, "corner_hz": 0.1}, 5, 0.01)
+    layer, envelope = KanaiTajimi(density=0.02, frequency=2.5, damping=0.4), Envelope(2.0, 7.0, 0.5)
+    # three times of decay and two periods of the high pass after the plateau
+    wanted = kanai_tajimi_motion(layer, envelope, seed=5, time_step=0.01, duration=7.0 + 6.0 + 20.0)
+    through = highpassed(wanted.acceleration, 0.01, 0.1)
+    np.testing.assert_allclose(found.acceleration, through, rtol=0.0, atol=1e-12 * wanted.peak)
+
+    drawn = {"arias_intensity_m_s": 0.8, "significant_duration_s": 12.0, "middle_over_duration": 0.6, "corner_hz": 0.1}
+    found = family("firm-ground").make(drawn | {"frequency_hz": 5.0, "slope_hz_s": -0.1, "damping": 0.3}, 5, 0.01)
+    modulation = modulation_from_intensity(0.8, significant_duration=12.0, middle=7.2)
+    # 5 Hz at the middle, falling by 0.1 Hz a second, to no less than a fifth of it
+    shaper = NonstationaryFilter(5.0, -0.1, 7.2, 0.3, lowest=1.0)
+    wanted = nonstationary_motion(modulation, shaper, seed=5, time_step=0.01, duration=found.duration, corner=0.1)
+    np.testing.assert_allclose(found.acceleration, wanted.acceleration, rtol=0.0, atol=1e-12 * wanted.peak)
+    assert found.duration == pytest.approx(modulation.time_of(0.999) + 20.0, abs=0.01)
 
 
 def test_soft_ground_is_slower_than_firm_ground():

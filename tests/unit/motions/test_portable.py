@@ -1,6 +1,7 @@
 """Elementary functions of sums and products: accuracy, and the same bits on every processor."""
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -43,9 +44,14 @@ def test_functions_are_within_a_unit_or_so_of_the_last_digit(name, monkeypatch):
     np.testing.assert_array_equal(_found(name, x), found)
 
 
-def test_ends():
-    """Zero, infinity and what is below the smallest number."""
+def test_ends(monkeypatch):
+    """Zero, infinity, what is below the smallest number, and the last arguments before."""
     assert portable.exponential(np.array([-np.inf, -709.0, 0.0])).tolist() == [0.0, 0.0, 1.0]
+    outermost = np.array([-708.0 - 1e-9, -708.0, -707.5, 708.5, 709.0])
+    expected = [0.0, *(math.exp(x) for x in outermost[1:])]
+    assert portable.exponential(outermost) == pytest.approx(expected, rel=1e-15, abs=0.0)
+    monkeypatch.setattr(portable, "compiled", lambda: None)
+    assert portable.exponential(outermost) == pytest.approx(expected, rel=1e-15, abs=0.0)
     assert portable.logarithm(np.array([0.0, 1.0])).tolist() == [-np.inf, 0.0]
 
 

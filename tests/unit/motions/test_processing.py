@@ -84,6 +84,24 @@ def test_one_pass_only_is_rejected():
     assert np.abs(once[middle] - 0.5 * motion.acceleration[middle]).max() > 0.1
 
 
+def test_zeros_that_the_filter_runs_into():
+    """A narrow band rings on into 1.5 order / low seconds of zeros at both ends, and is cut off there; not later."""
+    from scipy.signal import butter, sosfiltfilt
+
+    low, high, order, step = 0.5, 0.54, 3, 0.02
+    sections = butter(order, [low, high], btype="bandpass", fs=1.0 / step, output="sos")
+    record = NOISE[:300]
+    filtered = bandpassed(GroundMotion(record, step), low, high, order).acceleration
+
+    def within(zeros):
+        return sosfiltfilt(sections, np.pad(record, zeros), padtype=None)[zeros : zeros + record.size]
+
+    # 1.5 * 3 / 0.5 Hz are 9 s
+    np.testing.assert_allclose(filtered, within(450), rtol=0.0, atol=1e-12)
+    for zeros in (300, 600):
+        assert np.abs(filtered - within(zeros)).max() > 1e-3 * np.abs(filtered).max()
+
+
 def test_time_reversal_commutes_with_the_filter():
     """Zero phase means that a motion run backwards is filtered backwards."""
     forward = bandpassed(BOTH, 0.5, 20.0)
@@ -190,6 +208,9 @@ def test_every_change_leaves_a_line():
         (lambda m: detrended(m, 1, "displacement"), "fit"),
         (lambda m: detrended(trimmed(m, 0.0, 0.02), 3), "samples"),
         (lambda m: tapered(m, 0.6), "fraction"),
+        (lambda m: tapered(m, 0.5 + 1e-9), "fraction"),
+        (lambda m: tapered(m, 0.0), "fraction"),
+        (lambda m: tapered(m, -0.1), "fraction"),
         (lambda m: bandpassed(m, 5.0, 5.0), "high"),
         (lambda m: bandpassed(m, 1.0, 50.0), "high"),
         (lambda m: bandpassed(m, 0.0, 10.0), "low"),

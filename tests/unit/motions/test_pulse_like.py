@@ -1,5 +1,6 @@
 """Pulse-like motions: the pulse is in the sum, whole and where it was put."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,16 @@ def residual(count=2000):
     """Small noise with a vertical part."""
     noise = np.random.default_rng(2).standard_normal((2, count))
     return GroundMotion(0.1 * noise[0], STEP, 0.05 * noise[1], name="noise")
+
+
+def test_periods_of_pulses_are_those_of_strong_earthquakes():
+    """Shahi & Baker (2011): ln T = -5.73 + 0.99 M with deviation 0.56; the middle is that of M 6.3 to 6.8."""
+    periods = family("pulse-like").distributions["pulse_period_s"]
+    low, middle, high = (math.log(periods.value_at(share)) for share in (0.158655, 0.5, 0.841345))
+    assert -5.73 + 0.99 * 6.3 < middle < -5.73 + 0.99 * 6.8
+    # a standard deviation to either side
+    assert middle - low == pytest.approx(0.56, abs=0.15)
+    assert high - middle == pytest.approx(0.56, abs=0.15)
 
 
 def test_pulse_is_added_whole_and_in_place():

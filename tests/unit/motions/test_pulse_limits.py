@@ -9,7 +9,6 @@ import pytest
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.motions import pulses
-from rocking.motions.pulse import MOST_SAMPLES
 
 PULSE = pulses.sine(amplitude=3.0, period=0.6)
 PEAK = r"peak of a pulse must be in \[0, 1e\+06\] m/s2, got"
@@ -72,10 +71,10 @@ def test_how_finely_it_is_sampled() -> None:
             PULSE.sampled(bad)
     with pytest.raises(InvalidValueError, match=r"at most 2e\+06 samples, got 1e-09 s, which leaves 6e\+08"):
         PULSE.sampled(1e-9)
-    most = PULSE.duration / (MOST_SAMPLES - 2)
-    assert len(PULSE.sampled(most * (1.0 + 1e-9))) == MOST_SAMPLES
+    most = PULSE.duration / 1_999_998
+    assert len(PULSE.sampled(most * (1.0 + 1e-9))) == 2_000_000
     with pytest.raises(InvalidValueError, match="at most"):
-        PULSE.sampled(PULSE.duration / (MOST_SAMPLES - 1))
+        PULSE.sampled(PULSE.duration / 1_999_999)
 
 
 @pytest.mark.parametrize("words", [None, 5, b"sine:amplitude=3,period=0.8", ["sine"], PULSE])

@@ -88,6 +88,14 @@ def test_sampled() -> None:
     assert "sampled every 0.1 s" in motion.provenance[0]
 
 
+def test_a_step_as_long_as_the_pulse() -> None:
+    """The longest step leaves both ends of the pulse and the zero after it; a little more is refused."""
+    pulse = pulses.cosine(2.0, 0.5)
+    np.testing.assert_allclose(pulse.sampled(0.5).acceleration, [2.0, 2.0, 0.0], rtol=0.0, atol=1e-14)
+    with pytest.raises(InvalidValueError, match=r"at most the pulse's duration 0\.5 s"):
+        pulse.sampled(0.5 + 1e-12)
+
+
 @pytest.mark.parametrize("step", [0.0, -0.1, math.nan, math.inf, None, "0.1", 0.51])
 def test_bad_sampling_steps(step: Any) -> None:
     """A step that is no number above zero, or longer than the pulse, is refused."""

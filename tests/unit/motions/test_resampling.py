@@ -53,6 +53,16 @@ def test_coarser_is_filtered() -> None:
     assert "low-passed (linear phase) and coarsened from 0.005 s to 0.02 s" in kept.provenance
 
 
+def test_steps_typed_to_a_few_digits() -> None:
+    """A step is a whole multiple if it is one to a part in a million: 2 and 5 times a thirtieth in seven decimals."""
+    motion = GroundMotion(np.sin(0.1 * np.arange(200)), 1.0 / 30.0)
+    for step, samples in ((0.0666667, 100), (0.1666667, 40)):
+        assert len(resampled(motion, step)) == samples
+    for step in (0.066667, 0.1667):
+        with pytest.raises(InvalidValueError, match="whole multiple"):
+            resampled(motion, step)
+
+
 @pytest.mark.parametrize(
     ("step", "message"),
     [

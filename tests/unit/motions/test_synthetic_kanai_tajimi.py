@@ -98,3 +98,18 @@ def test_bad_values_are_refused():
     for step in (1e-6, 0.5):
         with pytest.raises(InvalidValueError, match="time_step"):
             kanai_tajimi_motion(LAYER, seed=1, time_step=step, duration=2.0)
+
+
+def test_limits_of_the_step_are_as_stated():
+    """The refusal names the range, up to half a period of 0.4 s; steps just inside are taken, just outside not."""
+    with pytest.raises(
+        InvalidValueError, match=r"time_step must be in \[6\.3662e-05, 0\.2\) s for this layer, got 0\.5"
+    ):
+        kanai_tajimi_motion(LAYER, seed=1, time_step=0.5, duration=2.0)
+    # a thousandth of a radian at 2.5 Hz
+    least = 1e-3 / (5.0 * math.pi)
+    for inside in (least * (1.0 + 1e-9), 0.2 * (1.0 - 1e-9)):
+        assert kanai_tajimi_motion(LAYER, seed=1, time_step=inside, duration=3.0 * inside).time_step == inside
+    for outside in (least * (1.0 - 1e-9), 0.2 * (1.0 + 1e-9)):
+        with pytest.raises(InvalidValueError, match="for this layer"):
+            kanai_tajimi_motion(LAYER, seed=1, time_step=outside, duration=3.0 * outside)

@@ -190,6 +190,30 @@ def test_v1_evenly_spaced_variant() -> None:
     np.testing.assert_allclose(part.acceleration, np.array(TENTHS) / 10.0, rtol=0.0, atol=1e-12)
 
 
+def test_v1_evenly_spaced_without_a_form() -> None:
+    """Where the line of the spacing names no Fortran format, the numbers stand in 8 columns of 9 characters."""
+    tenths = [0.001 * k * (-1) ** k for k in range(12)]
+    lines = _v1(unit="IN G. MAX")
+    text = "\n".join(lines[:27]).replace("    0    7    0", "    0   12    0").replace("      .120", "      .220")
+    text = text.replace("    -1.235", "      .000").replace("      .060", "      .000")
+    even = ["  12 POINTS OF DATA EQUALLY SPACED AT .020 SEC", *_block(tenths, 8, 9, 6), lines[-1]]
+    part = V1.read(_source([*text.split("\n"), *even], "\n")).components[0]
+    assert (part.acceleration.tolist(), part.time_step) == (pytest.approx(tenths, abs=1e-15), 0.02)
+    for other in (8, 10):
+        wrong = [even[0], *_block(tenths, 8, other, 5), even[-1]]
+        with pytest.raises(RecordError, match=r"line 29: .* expected"):
+            V1.read(_source([*text.split("\n"), *wrong], "\n"))
+
+
+@pytest.mark.parametrize("size", range(49, 57))
+def test_v1_last_line_of_the_reals(size: int) -> None:
+    """It holds from one to eight numbers; peak and length are checked and the samples follow whichever it is."""
+    lines = _v1()
+    reals = _block([0.04, 0.0, 0.12, 0.0, 0.0, 0.0, -1.235, 0.06, *[0.0] * (size - 8)], 8, 10, 3)
+    part = V1.read(_source([*lines[:20], *reals, *lines[27:]])).components[0]
+    assert (part.acceleration.tolist(), part.stated_peak) == (TENTHS, pytest.approx(12.35))
+
+
 @pytest.mark.parametrize(("kind", "factor", "digit"), [(V1, 10.0 / 9.80665, 5.1e-4), (V2, 100.0, 5.1e-4)])
 def test_round_trips(kind: RecordFormat, factor: float, digit: float, made_up) -> None:
     """Channels of unequal length come back to 3 decimals of the format's unit."""

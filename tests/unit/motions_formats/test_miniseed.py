@@ -142,6 +142,18 @@ def test_records_that_state_more_samples_than_they_hold_are_refused() -> None:
         MiniSeed().read(Source("a", bytes(content)), units="g")
 
 
+@pytest.mark.parametrize(
+    ("encoding", "room"),
+    [(0, 4040), (1, 2020), (2, 1346), (3, 1010), (4, 1010), (5, 505), (10, 4040), (11, 7070), (19, 4040), (30, 2020)],
+)
+def test_room_by_encoding(encoding: int, room: int) -> None:
+    """4096 bytes less 56 of headers hold as many: text, 16, 24, 32 bits, reals, Steim 1 to 3 at their closest."""
+    content = bytearray(recorded(np.sin(np.arange(300.0))).content)
+    content[52], content[30:32] = encoding, (room + 1).to_bytes(2, "big")
+    with pytest.raises(RecordError, match=f"states {room + 1} samples, it has room for {room}; damaged"):
+        MiniSeed().read(Source("a", bytes(content)), units="g")
+
+
 @pytest.mark.parametrize("order", "<>")
 @pytest.mark.parametrize("encoding", ["STEIM1", "STEIM2", "INT32", "INT16", "FLOAT32", "FLOAT64"])
 def test_every_encoding_has_room(encoding: str, order: str) -> None:

@@ -52,6 +52,23 @@ def test_free_header_with_eight_columns_and_marks() -> None:
         PEER.read(_source(text.replace("7 points", "8 points")))
 
 
+@pytest.mark.parametrize("more", [0, 1, 2, 3])
+def test_the_first_line_is_the_title(more: int) -> None:
+    """Before the line of the size, however many there are; a file that begins with the size has none."""
+    lines = [" A DATABASE ", "SOMEWHERE, 01/17/94, CELLAR, 360", "IN THE CELLAR", ""][: more + 1]
+    record = PEER.read(_source("\n".join(lines) + "\n" + SIZE + BODY), units="g")
+    assert record.metadata["title"] == "A DATABASE"
+    assert "title" not in PEER.read(_source(SIZE + BODY), units="g").metadata
+
+
+def test_two_samples_are_a_record_and_one_is_none() -> None:
+    """The shortest record has two samples; a header that states one is refused with its line."""
+    part = PEER.read(_source(TOP + "NPTS= 2, DT= .02 SEC\n .1 -.25\n")).components[0]
+    assert part.acceleration.tolist() == [0.1, -0.25]
+    with pytest.raises(RecordError, match="line 4: number of samples expected, found '1'"):
+        PEER.read(_source(TOP + "NPTS= 1, DT= .02 SEC\n .1\n"))
+
+
 def test_metadata_and_header_are_kept() -> None:
     """Event, date, station and filter are what the second and third lines say."""
     record = PEER.read(_source(TOP.replace("OF G", "OF G. FILTER POINTS: HP=0.2 Hz LP=15.0 Hz") + SIZE + BODY))

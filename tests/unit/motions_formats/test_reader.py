@@ -66,6 +66,15 @@ def test_unknown_files_and_formats(tmp_path: Path) -> None:
         read_record(_write(tmp_path, " \n", "empty"))
 
 
+def test_a_file_above_256_mib_is_not_read(tmp_path: Path) -> None:
+    """A byte more than 256 MiB is refused with both sizes, before the content is looked at."""
+    path = tmp_path / "long.at2"
+    with path.open("wb") as file:
+        file.truncate(268_435_457)
+    with pytest.raises(RecordError, match="268435457 bytes, more than the 268435456 that are read"):
+        read_record(path)
+
+
 def test_ambiguous_file_names_its_candidates(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made_up) -> None:
     """Where two formats recognise a file, the error names both; format= decides."""
     path = tmp_path / "two"

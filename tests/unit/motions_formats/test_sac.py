@@ -106,6 +106,20 @@ def test_places_on_earth_are_taken(east: float) -> None:
     assert Sac().read(Source("a.sac", content), units="g").components[0].acceleration.tolist() == VALUES
 
 
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize(("name", "most"), [("stla", 90.0), ("stlo", 360.0), ("evla", 90.0), ("evlo", 360.0)])
+def test_each_place_has_its_own_limit(order: str, name: str, most: float) -> None:
+    """The next number of single precision above 90 or 360 degrees is refused, the one below is taken."""
+    pytest.importorskip("obspy")
+    known = {"stla": 35.3, "stlo": 139.7, "evla": -36.1, "evlo": 140.9}
+    for sign in (1.0, -1.0):
+        beyond, within = (float(np.nextafter(np.float32(sign * most), np.float32(sign * to))) for to in (1e3, 0.0))
+        with pytest.raises(RecordError, match=f"header's {name} must be within {most:g} degrees of 0"):
+            Sac().read(Source("a.sac", typed(VALUES, order, **known | {name: beyond})), units="g")
+        inside = typed(VALUES, order, **known | {name: within})
+        assert Sac().read(Source("a.sac", inside), units="g").components[0].acceleration.tolist() == VALUES
+
+
 def test_damaged_files_give_no_other_error() -> None:
     """Files with flipped bits or cut short are refused, or keep what their header states."""
     pytest.importorskip("obspy")

@@ -60,8 +60,13 @@ def test_numbers_that_touch_are_read_by_columns() -> None:
     (part,) = record.components
     np.testing.assert_array_equal(part.acceleration, VALUES)
     assert (part.name, part.unit, part.time_step, part.stated_peak) == ("360", "cm/s2", 0.005, 104.417)
-    assert record.metadata["kind"] == "corrected accelerogram"
-    assert "Cellar" in record.metadata["station"]
+    assert record.metadata == {
+        "kind": "corrected accelerogram",
+        "event": "1999 12 31 0004 Somewhere",
+        "station": "station = Cellar, 3 Main St",
+        "instrument": "inst type=SMA-1 data source = USGS",
+        "azimuth": "360",
+    }
     assert record.header.splitlines()[0].startswith("2 CORRECTED")
     # the negative control: blanks are no separators here
     assert len("".join(SAMPLES[:8]).split()) != 8
@@ -119,6 +124,16 @@ def test_it_tells_the_two_kinds_of_smc_apart_and_survives_a_missing_line() -> No
     assert SmcUsgs().recognises(shorter)
     with pytest.raises(RecordError, match="header numbers expected"):
         SmcUsgs().read(shorter)
+
+
+@pytest.mark.parametrize("line", [*range(11, 17), *range(17, 27)])
+def test_a_file_with_one_damaged_header_line_is_still_known(line: int) -> None:
+    """One line of whole or real numbers out of six or ten may be damaged: the reader knows the file and names it."""
+    lines = typed()
+    lines[line] = "damaged " + lines[line][8:]
+    assert SmcUsgs().recognises(source(lines))
+    with pytest.raises(RecordError, match=f"line {line + 1}: a full line of header numbers expected"):
+        SmcUsgs().read(source(lines))
 
 
 def test_what_is_written_is_read_back(made_up: Callable[..., Record]) -> None:

@@ -25,6 +25,19 @@ def test_implied_inverts_the_shifted_impulse():
             assert result.impulse_ratio != pytest.approx(k + 1e-6, abs=1e-12)
 
 
+def test_the_base_reaches_from_foot_to_foot():
+    """An impulse behind the centre is on the base down to the old foot, one ahead of it up to the new one."""
+    middle_over_base = (4.0 + 1.0) / 12.0 + 0.25
+    for onto, sign in (("right", 1.0), ("left", -1.0)):
+        old, new = (0.2, 1.0) if onto == "right" else (1.0, 0.2)
+        for arm in (-1.01 * old, -0.99 * old, -0.01, 0.01, 0.99 * new, 1.01 * new):
+            r = (middle_over_base - arm * old) / (middle_over_base + arm * new)
+            result = implied(ASYMMETRIC, r, onto=onto)
+            assert result.impulse_arm == pytest.approx(arm, rel=1e-9)
+            assert result.impulse_x == pytest.approx(1.0 + sign * arm, rel=1e-12)
+            assert result.within_base is (-old < arm < new)
+
+
 def test_implied_energy():
     """The loss is 1 - r^2 I_O'/I_O (physics 1.1), and a coefficient above sqrt(I_O/I_O') creates energy."""
     old, new = (ASYMMETRIC.side(foot).moment_of_inertia for foot in ("left", "right"))
@@ -125,3 +138,24 @@ def test_identity_report_catches_a_broken_model():
             return 1.0 + 1e-6 * body.mass + (0.1 if onto == "right" else 0.0)
 
     assert {"scale", "density", "mirror", "round trip", "energy bound"} <= broken(BLOCK, Bad())
+
+
+def test_twins_have_the_same_mass_centre_and_inertia():
+    """A model that sees nothing but mass, centre, inertia and feet holds "inertia alone", for a heavy body too."""
+
+    class Seen(rk.RestitutionModel):
+        """Sees mass, height, inertia and feet."""
+
+        name = "seen"
+
+        def raw_coefficient(self, body, onto):
+            new = body.side(onto)
+            gyration = new.moment_of_inertia / new.mass
+            return 0.4 + 0.1 / (1.0 + body.mass) + 0.01 * gyration + 0.1 * new.half_width + 0.02 * new.centre_height
+
+    for body in (rk.Block(width=1.0, height=2.0, density=0.3), ASYMMETRIC.scaled(density=40.0)):
+        for onto in ("left", "right"):
+            checks = {check.name: check for check in identity_report(body, Seen(), onto=onto)}
+            assert checks["inertia alone"].holds
+            # negative control: KED sees where the mass is
+            assert not {check.name: check for check in identity_report(body, Ked(), onto=onto)}["inertia alone"].holds

@@ -13,6 +13,9 @@ BASES = {
     "stocky": (1.6, 0.4, [[-0.4, 1.0]]),
     "two feet": (0.12, 1.2, [[-1.2, -0.7], [0.5, 1.0]]),
     "three feet": (0.37, 6.2, [[-6.2, -4.1], [-4.0, -1.5], [-1.2, 1.0]]),
+    # so squat that the middle is driven up again and the body stops
+    "back to the old foot": (1.47, 6.8, [[-6.8, -4.2], [-0.2, 1.0]]),
+    "back short of the old foot": (2.3, 6.3, [[-5.2, -3.95], [0.41, 0.47]]),
     "short of the foot": (0.3, 0.8, [[-0.7, 0.1], [0.3, 0.9]]),
 }
 
@@ -44,15 +47,18 @@ def landed(kappa, back, stretches):
     def over(_, state):
         return end * state[1] - state[0] - 1e-13
 
-    over.terminal = True
+    def still(_, state):
+        return state[1] - 1e-9
+
+    over.terminal = still.terminal = True
     time, state = 0.0, np.array([-back, 1.0, 0.0, 0.0])
     left = [edge for edge in edges if edge > -back]
     while True:
-        watched = [over, *(event(edge) for edge in left[:1])]
+        watched = [over, still, *(event(edge) for edge in left[:1])]
         run = solve_ivp(rates, (time, 1e3), state, "DOP853", rtol=2.3e-14, atol=1e-17, events=watched, max_step=0.02)
         time, state = run.t[-1], run.y[:, -1]
-        if len(run.t_events[0]):
-            return state[1]
+        if len(run.t_events[0]) or len(run.t_events[1]):
+            return 0.0 if len(run.t_events[1]) else state[1]
         del left[0]
 
 

@@ -186,6 +186,19 @@ def test_shells():
             repaired(np.concatenate([V, V + shift]), other)
 
 
+@pytest.mark.parametrize("outward", [True, False], ids=["outward", "inward"])
+def test_shells_inside_shells(outward):
+    """Four boxes one in the other are a body, a cavity, a body and a cavity, whichever way their faces looked."""
+    sizes = np.array([4.0, 3.0, 2.0, 1.0])
+    box_ = box(1.0, 1.3, 0.7)
+    vertices = np.concatenate([size * (box_.vertices - [0.0, 0.0, 0.35]) for size in sizes])
+    faces = np.concatenate([box_.faces + 8 * i for i in range(4)])
+    done = repaired(vertices, faces if outward else faces[:, ::-1])
+    assert done.shape.moments().mass == pytest.approx(1.3 * 0.7 * (64.0 - 27.0 + 8.0 - 1.0), rel=1e-13)
+    assert done.repairs[0] == "turned 2 shell(s), 24 faces, inside out"
+    assert "4 separate shells, 2 of them cavities" in done.repairs[1]
+
+
 def test_one_sided_surface():
     """A Moebius band has an open edge; neither it nor what a fan makes of it becomes a body."""
     count = 12

@@ -87,6 +87,19 @@ def test_pictures_show_the_outside(name):
     assert drawn.mass == pytest.approx(ALL[name].moments().mass, rel=8e-3)
 
 
+def test_halves_of_a_ball_are_drawn_alike():
+    """The upper and the lower half of an ellipsoid are the same picture turned over."""
+    upper, lower = (ellipsoid(1.0, 1.4, 2.0, **{cut: 1.0}) for cut in ("cut_below", "cut_above"))
+    for divisions in (1, 3):
+        drawn = [
+            np.concatenate([surface.triangles(divisions) for surface in half.surfaces()]) for half in (upper, lower)
+        ]
+        assert len(drawn[0]) == len(drawn[1])
+        one, other = (polyhedron_moments(triangles) for triangles in drawn)
+        assert one.mass == pytest.approx(other.mass, rel=1e-12)
+        assert one.centre[2] == pytest.approx(1.0 - other.centre[2], rel=1e-12)
+
+
 @pytest.mark.parametrize("name", ALL)
 def test_contains_agrees_with_the_volume(name):
     """The share of a regular grid that lies inside is the volume over the box, to the grid's resolution."""

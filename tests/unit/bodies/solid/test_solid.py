@@ -59,6 +59,16 @@ def test_bases():
     assert len(Solid(ellipsoid(1.0, 2.0, 2.0, cut_below=0.5)).base.vertices) == 360
 
 
+def test_an_elliptical_base_is_that_of_the_end_it_stands_on():
+    """An ellipsoid cut unequally at both ends has the ellipse of the lower cut for its base, upright or turned over."""
+    cut = Part(ellipsoid(1.0, 2.0, 3.0, cut_below=0.4, cut_above=1.0))
+    for part, from_middle in ((cut, 1.1), (cut.turned((0, 1, 0), math.pi).moved(0.0, 0.0, 1.6), 0.5)):
+        share = math.sqrt(1.0 - (from_middle / 1.5) ** 2)
+        for ground in (0.0, 2.0):
+            base = Solid(part.moved(0.0, 0.0, ground), ground=ground).base
+            assert np.ptp(base.vertices, axis=0) == pytest.approx((1.0 * share, 2.0 * share), rel=1e-9)
+
+
 def test_edges_run_round_the_base():
     """Edges are level unit vectors, counter-clockwise; turning about one lifts the rest of the base."""
     base = Solid(extrusion([(0, 0), (2, 0), (3, 1), (1, 3)], 1.0)).base

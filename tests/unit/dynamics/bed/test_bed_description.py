@@ -21,11 +21,14 @@ from rocking.dynamics.bed import (
     setup_of,
 )
 from rocking.dynamics.bed import law as laws
+from rocking.dynamics.bed.reference import Field
+from rocking.dynamics.bed.rigid import RigidRocking
 from rocking.errors import InvalidValueError, MissingExtraError
 
 BLOCK = Block(width=0.2, height=0.4)
 LAW = KelvinVoigt(1e8, damping_ratio=0.5)
 ZERO = np.zeros(1)
+G = 9.80665
 
 
 def test_kelvin_voigt_force() -> None:
@@ -98,6 +101,37 @@ def test_the_force_under_a_rocking_foot_follows_from_energy(rotation: float) -> 
     assert rigid.support(rotation, spin) == pytest.approx(force + rigid.mass * bend * spin**2, rel=1e-5)
 
 
+@pytest.mark.parametrize(
+    ("onto", "ends"), [("right", (-13.0 / 120.0, 23.0 / 120.0)), ("left", (-23.0 / 120.0, 13.0 / 120.0))]
+)
+def test_two_points_are_the_feet(onto: Any, ends: tuple[float, float]) -> None:
+    """A leaning body whose centre is 13/120 m from its left foot: two points stand at its feet, towards the new one,
+    and so do the outer ones of more."""
+    body = Section([Region([(0, 0), (0.3, 0), (0.1, 0.6), (0.0, 0.6)], 2000.0)])
+    for count in (2, 4):
+        assert ContactBed.uniform(body, count, LAW, onto=onto).ends == pytest.approx(ends, rel=1e-13)
+
+
+@pytest.mark.parametrize("kinematics", ["exact", "small"])
+@pytest.mark.parametrize("rotation", [-0.25, 0.2])
+def test_support_is_the_weight_and_the_acceleration_of_the_centre(kinematics: Any, rotation: float) -> None:
+    """N = m (g + z''), with z from the lift of the base and theta'' from the slope of the potential; the small-base
+    kinematics leaves the height of the centre over its base line as it is."""
+    body = Section([Region([(0, 0), (0.3, 0), (0.1, 0.6), (0.0, 0.6)], 2000.0)])
+    rigid = RigidRocking.of_body(body, ContactBed.uniform(body, 4, LAW, kinematics=kinematics), G)
+    velocity, h = 0.7, 1e-4
+
+    def centre(at: float) -> float:
+        return rigid.lift(at) + (rigid.height * math.cos(at) if kinematics == "exact" else 0.0)
+
+    turning = -(rigid.potential(rotation + h) - rigid.potential(rotation - h)) / (2.0 * h)
+    turning /= rigid.inertia_about(rigid.pivot(rotation))
+    slope = (centre(rotation + h) - centre(rotation - h)) / (2.0 * h)
+    bend = (centre(rotation + h) - 2.0 * centre(rotation) + centre(rotation - h)) / h**2
+    expected = body.mass * (G + slope * turning + bend * velocity**2)
+    assert rigid.support(rotation, velocity) == pytest.approx(expected, rel=1e-6)
+
+
 def test_a_hollow_base_has_no_points_in_its_gap() -> None:
     """Points stand where the base touches, and nowhere else."""
     outline = [(0, 0), (0.1, 0), (0.1, 0.05), (0.3, 0.05), (0.3, 0), (0.4, 0), (0.4, 1), (0, 1)]
@@ -117,6 +151,71 @@ def test_a_history_hangs_together() -> None:
     assert (impact.intervals[:, 2] >= impact.intervals[:, 1]).all()
     assert 0.0 < impact.duration < 0.1
     assert -1.0 < impact.mean_impulse_position < 1.0
+
+
+def test_the_place_of_the_resultant_is_known_where_the_bed_presses() -> None:
+    """Through hops too: NaN where the force is not above zero, on the base everywhere else."""
+    bed = ContactBed.uniform(BLOCK, 5, KelvinVoigt(BLOCK.mass * (800.0 * math.pi) ** 2, damping_ratio=0.5))
+    impact = bed_impact(BLOCK, bed, angular_velocity=1.0)
+    assert impact.contacts > 1
+    np.testing.assert_array_equal(np.isnan(impact.impulse_position), impact.sample("normal") <= 0.0)
+    assert np.nanmax(np.abs(impact.impulse_position)) <= 1.0 + 1e-8
+
+
+def test_depth_of_an_impact_absorbs_its_energy() -> None:
+    """Springs take up k d^2 / 2; dashpots alone, at the speed of the new foot 0.2 theta_dot', c v d; of both the less;
+    and no impact goes deeper than the base is long."""
+    landing, c, k = 0.8, 1e5, 1e7
+    energy = 0.5 * BLOCK.mass * (1.0 / 12.0 * 0.2 + 0.05) * landing**2  # (b^2 + h^2) / 12 and R^2 = 0.05 m2
+
+    def start(law: KelvinVoigt) -> Any:
+        return setup_of(BLOCK, ContactBed.uniform(BLOCK, 5, law), angular_velocity=landing, impulsive=True).start
+
+    found = start(KelvinVoigt(0.0, damping=c))
+    assert (found.energy, found.speed) == (pytest.approx(energy, rel=1e-12), pytest.approx(0.2 * landing, rel=1e-12))
+    assert found.depth == pytest.approx(energy / (c * 0.2 * landing), rel=1e-12)
+    assert start(KelvinVoigt(k)).depth == pytest.approx(math.sqrt(2.0 * energy / k), rel=1e-12)
+    assert start(KelvinVoigt(k, damping=1e6)).depth == pytest.approx(energy / (1e6 * 0.2 * landing), rel=1e-12)
+    assert start(KelvinVoigt(0.0, damping=1.0)).depth == pytest.approx(0.2, rel=1e-12)
+
+
+def test_light_bodies_are_struck_where_heavy_ones_are() -> None:
+    """A body of 80 g on a bed as much softer has the impulse at the same place, however small it is."""
+    places = []
+    for density in (1000.0, 1.0):
+        block = Block(width=0.2, height=0.4, density=density)
+        law = KelvinVoigt(block.mass * (800.0 * math.pi) ** 2, damping_ratio=1.0)
+        places.append(bed_impact(block, ContactBed.uniform(block, 5, law), angular_velocity=0.5).mean_impulse_position)
+    assert -1.0 < places[0] < 1.0
+    assert places[1] == pytest.approx(places[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("kinematics", ["exact", "small"])
+def test_points_sink_at_the_rate_of_their_depth(kinematics: Any) -> None:
+    """Of a rough base that turns, slides and falls: the rate of each depth is its difference in time, with
+    y' = w cos theta - u sin theta, or w for a small base."""
+    bed = ContactBed.uniform(BLOCK, 5, LAW, kinematics=kinematics).with_profile([0.0, 0.01, 0.03, 0.02, 0.0])
+    field = Field(setup_of(BLOCK, bed, angular_velocity=0.5))
+    theta, u, w, omega, h = 0.12, 0.3, -0.4, 0.7, 1e-5
+    falls = w * math.cos(theta) - u * math.sin(theta) if kinematics == "exact" else w
+
+    def points(after: float) -> tuple[Any, Any, Any]:
+        state = [-0.01 + after * falls, theta + after * omega, u, w, omega, *[0.0] * 13]
+        return field.points(np.array(state))
+
+    differences = (points(h)[0] - points(-h)[0]) / (2.0 * h)
+    np.testing.assert_allclose(points(0.0)[1], differences, rtol=0.0, atol=1e-9)
+
+
+def test_time_allowed_goes_with_the_time_of_the_body() -> None:
+    """Four times the gravity halves it, four times the size doubles it."""
+    large = Block(width=0.8, height=1.6)
+    usual, heavy, grown = (
+        setup_of(block, ContactBed.uniform(block, 3, LAW), rotation=0.1, gravity=gravity).longest
+        for block, gravity in ((BLOCK, G), (BLOCK, 4.0 * G), (large, G))
+    )
+    assert heavy == pytest.approx(0.5 * usual, rel=1e-12)
+    assert grown == pytest.approx(2.0 * usual, rel=1e-12)
 
 
 def test_rotation_and_velocity_are_the_same_start() -> None:
@@ -171,6 +270,8 @@ def test_refusals(make: Any) -> None:
         {"angular_velocity": math.nan},
         {"angular_velocity": -1.0},
         {"angular_velocity": 1.0, "tolerance": 0.1},
+        {"angular_velocity": 1.0, "tolerance": 0.0},
+        {"angular_velocity": 1.0, "tolerance": 9e-14},
         {"angular_velocity": 1.0, "ground_acceleration": (0.0, -20.0)},
     ],
 )

@@ -8,13 +8,13 @@ import pytest
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
 from rocking.dynamics.outcome import Status
-from rocking.dynamics.planar.choosing import Choice, candidates, choose
+from rocking.dynamics.planar.choosing import Choice, candidates, choose, weight_of
 from rocking.dynamics.planar.course import course
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
 from rocking.dynamics.planar.ground import Ground
 from rocking.dynamics.planar.impact import Struck, strike
 from rocking.dynamics.planar.imposed import strike_with
-from rocking.dynamics.planar.margins import Kind, Margin, consistent, first_end, leading
+from rocking.dynamics.planar.margins import Kind, Margin, consistent, first_end, leading, margins
 from rocking.dynamics.planar.mode import FLIGHT, REST, Mode, Regime
 from rocking.dynamics.planar.power_series import derivative, integral, value
 from rocking.dynamics.planar.state import State, along, away, kept, kinetic
@@ -225,3 +225,60 @@ def test_two_motions_that_both_obey_coulomb_are_not_chosen_between():
     frictionless = choose(UNEVEN, state, AWAY, 0.0)
     assert isinstance(frictionless, Choice)
     assert frictionless.mode == FLIGHT
+
+
+@pytest.mark.parametrize(("size", "unit"), [(1.0, 0.03), (4.0, 0.3), (4.0, 0.6)])
+@pytest.mark.parametrize("mode", [Mode((RIGHT,)), Mode((RIGHT,), 1), FLIGHT])
+def test_what_counts_as_rounding_is_the_same_for_similar_bodies_and_steps(mode, size, unit):
+    """Of bodies alike in shape, with speeds as the root of their size, the first coefficient of each margin that may
+    carry rounding has the same part of its scale, over any unit of time."""
+
+    def measured(size, unit):
+        footing = Footing(1.0, 0.42 * size**2, size, 0.65 * size, 1.2 * size)
+        r_x, r_z = footing.arm(RIGHT, 0.2)
+        spin, slip = -0.5 / math.sqrt(size), mode.slip * 0.4 * math.sqrt(size)
+        rise = footing.rise_on(RIGHT, 0.2) + (0.1 * size if mode == FLIGHT else 0.0)
+        state = State(0.0, rise, 0.2, slip - r_z * spin, r_x * spin, spin, mode.feet)
+        found = course(footing, state, mode, Ground([1.0], [G + 0.4], unit), 0.3, 12)
+        made = margins(footing, mode, found, 0.3, 12.0)
+        return [(margin.kind, margin.series[margin.exact] / margin.scale) for margin in made]
+
+    kinds, parts = zip(*measured(size, unit), strict=True)
+    expected_kinds, expected = zip(*measured(1.0, 0.3), strict=True)
+    assert kinds == expected_kinds
+    assert parts == pytest.approx(expected, rel=1e-12)
+    assert all(part != 0.0 for kind, part in zip(kinds, parts, strict=True) if kind is not Kind.LYING)
+
+
+@pytest.mark.parametrize(("foot", "spin"), [(RIGHT, 0.8), (LEFT, -0.8)])
+@pytest.mark.parametrize("friction", [0.05, 0.15, 10.0])
+def test_impulses_of_an_imposed_coefficient_change_the_momenta(foot, spin, friction):
+    """Of a body whose feet differ: all three momenta, friction within its cone, the new foot neither leaves nor sinks;
+    with enough friction theta' keeps the coefficient, and where it slides it slides against the friction."""
+    old = UNEVEN.lever(-foot)
+    state = State(0.0, 0.0, 0.0, UNEVEN.height * spin, old * spin, spin, BOTH)
+    found = strike_with(UNEVEN, state, foot, friction, 0.6)
+    assert isinstance(found, Struck)
+    normal, after = found.normal, found.state
+    total = sum(normal.values())
+    moment = -found.tangential * UNEVEN.height - sum(p * UNEVEN.lever(each) for each, p in normal.items())
+    assert after.u - state.u == pytest.approx(found.tangential, rel=1e-12)
+    assert after.w - state.w == pytest.approx(total, rel=1e-12)
+    assert UNEVEN.inertia * (after.spin - state.spin) == pytest.approx(moment, rel=1e-12)
+    assert away(UNEVEN, after, foot) == pytest.approx(0.0, abs=1e-14)
+    assert kinetic(UNEVEN, after) < kinetic(UNEVEN, state)
+    if friction == 10.0:
+        assert found.slip == 0
+        assert after.spin / spin == pytest.approx(0.6, rel=1e-12)
+        assert along(UNEVEN, after, foot) == pytest.approx(0.0, abs=1e-14)
+    else:
+        assert found.slip != 0
+        assert found.tangential == pytest.approx(-found.slip * friction * total, rel=1e-12)
+        assert along(UNEVEN, after, foot) * found.slip > 0.0
+
+
+def test_forces_are_measured_by_the_motion_of_the_moment():
+    """|g + a_z| + |a_x| now, whatever the ground does afterwards, and something where it falls freely."""
+    assert weight_of(Ground([2.0, -30.0], [G - 1.0, 50.0], 0.3)) == pytest.approx(G + 1.0, rel=1e-15)
+    assert weight_of(Ground([-2.0, 30.0], [-3.0, 50.0], 0.3)) == pytest.approx(5.0, rel=1e-15)
+    assert 0.0 < weight_of(Ground([0.0, 1.0], [0.0, 1.0], 0.3)) < 0.01

@@ -1,6 +1,7 @@
 """The planar response at its doors: refusals, outcomes, exports, forces, positions between samples."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -262,3 +263,61 @@ def test_any_history_keeps_its_books_and_stays_above_the_ground(
         gap = response.rise + 1.0 - lever * np.sin(response.rotation) - np.cos(response.rotation)
         assert gap.min() > -1e-11
     assert min(response.forces.left.min(), response.forces.right.min()) >= -1e-9 * body.mass * G
+
+
+def test_summary_tells_the_largest_rotation_in_degrees(rocked):
+    """Of a body that stands, beside how far it slid; a body that was only pushed along has not rotated."""
+    told = re.search(r"largest rotation (\S+) degrees, slid (\S+) m in all", rocked.summary)
+    largest = math.degrees(np.abs(rocked.rotation).max())
+    assert [float(each) for each in told.groups()] == pytest.approx([largest, rocked.sliding_distance], rel=5e-3)
+    assert "rotation" not in simulate_with_contact(BODY, rectangular(4.0, 0.5), 0.3).summary
+
+
+def test_response_goes_on_as_long_as_its_docstring_says():
+    """15 sqrt(R / g) after a motion and 60 on ground at rest, to a step of at most a tenth; as long as asked for; and
+    a duration far below a step is one step."""
+    slow = math.sqrt(math.hypot(0.5, 1.0) / G)
+    after = simulate_with_contact(BODY, rectangular(1.0, 0.5), 0.5)
+    alone = simulate_with_contact(BODY, None, 0.5)
+    assert 0.0 <= after.time[-1] - (0.5 + 15.0 * slow) < after.time[1] <= 0.1 * slow
+    assert alone.time[-1] == pytest.approx(60.0 * slow, rel=1e-12)
+    assert alone.time[1] <= 0.1 * slow * (1.0 + 1e-12)
+    record = GroundMotion(np.full(50, 0.5), 0.01)
+    assert simulate_with_contact(BODY, record, 0.4, duration=0.2).time[-1] == pytest.approx(0.2, rel=1e-12)
+    assert simulate_with_contact(BODY, record, 0.4, duration=1e-13).time.tolist() == [0.0, 0.01]
+
+
+def test_a_single_event_is_the_least_limit():
+    """A body that rests has none, and may be held to one."""
+    assert simulate_with_contact(BODY, rectangular(1.0, 0.5), 0.5, most_events=1).status is Status.GOOD
+
+
+@pytest.mark.parametrize("push", [1e-16, 1e-13])
+def test_without_friction_any_push_uses_all_of_it(push):
+    """A push of rounding size moves nothing, and all the friction there is, none, is used: 1, not more."""
+    response = simulate_with_contact(BODY, GroundMotion(np.full(20, push), 0.01), 0.0, duration=0.2)
+    assert response.outcome is Outcome.NO_UPLIFT
+    assert response.friction_usage == 1.0
+
+
+@pytest.mark.parametrize("rotation", [1.2, -1.2])
+def test_dropped_without_turning_beyond_balance(rotation):
+    """A body that falls without turning, its centre beyond the lower foot, was over from the start."""
+    response = simulate_with_contact(BODY, None, 0.5, start=Start(rotation=rotation, height=1.0))
+    assert response.outcome is Outcome.OVERTURNED
+    assert response.overturning_time == 0.0
+
+
+def test_forces_of_a_body_that_rests_follow_the_motion():
+    """Under a record that moves nothing, at each sample m a along the ground and m (g + a_z) across it, the left foot
+    with m ((g + a_z) b + a h) / (2 b)."""
+    time = np.arange(60) * 0.02
+    push, lift = 1.5 * np.sin(9.0 * time), 0.8 * np.cos(7.0 * time)
+    response = simulate_with_contact(BODY, GroundMotion(push, 0.02, vertical=lift), 0.6, duration=1.0)
+    assert response.outcome is Outcome.NO_UPLIFT
+    count = len(response.time)
+    assert count == 51
+    weight = BODY.mass * (G + lift[:count])
+    np.testing.assert_allclose(response.forces.horizontal, BODY.mass * push[:count], rtol=0.0, atol=1e-9 * BODY.mass)
+    np.testing.assert_allclose(response.forces.vertical, weight, rtol=1e-12)
+    np.testing.assert_allclose(response.forces.left, 0.5 * weight + BODY.mass * push[:count], rtol=1e-12)

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody, SpatialSettings, attitude
+from rocking.dynamics.spatial import Contact, SpatialBody, SpatialSettings, attitude
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial, law_of
-from rocking.dynamics.spatial.landing import landed
-from rocking.dynamics.spatial.selection import State, forces, of_impact
-from rocking.dynamics.spatial.stance import edge, face, rise
+from rocking.dynamics.spatial.landing import landed, started
+from rocking.dynamics.spatial.selection import State, forces, impulses, of_impact
+from rocking.dynamics.spatial.stance import edge, face, rise, vertex
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution.spatial import SpatialHousner
 
@@ -109,6 +109,56 @@ def test_components_with_different_steps_are_one_motion():
         ground_of([1.0, 2.0])
 
 
+@pytest.mark.parametrize(("start", "length"), [(0.0, 1.0), (0.25, 1.0), (0.5, 0.5), (0.3, 0.2)])
+def test_part_of_a_stretch_is_the_motion_there(start, length):
+    """The line of a record with samples 1 s apart, from any instant on and over any unit of time."""
+    ground = ground_of(rk.GroundMotion([0.0, 1.0, -2.0, 0.0], 1.0), rk.GroundMotion([0.5, -1.0, 4.0, 0.0], 1.0))
+    found = ground.part(1, 1.0 + start, length)
+    np.testing.assert_allclose(found[0, :2], [1.0 - 3.0 * start, -3.0 * length], rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(found[1, :2], [-1.0 + 5.0 * start, 5.0 * length], rtol=0.0, atol=1e-14)
+    assert not found[:, 2:].any()
+    assert not found[2].any()
+    assert not ground.part(3, 3.0, length).any()
+
+
+def test_where_nothing_stays_without_a_pull_the_least_pull_is_taken():
+    """Bodies that spin fast as they fall flat on their base: no gap closes after it, and the face, on which a body
+    stops, would be pulled at least as much; for some it is the face."""
+    law, random, faces, none = law_of("housner-3d"), np.random.default_rng(1), 0, 0
+    for _ in range(40):
+        count = int(random.integers(3, 7))
+        angle = np.sort((np.arange(count) + random.uniform(-0.3, 0.3, count)) * 2.0 * np.pi / count)
+        base, every = np.column_stack([np.cos(angle), np.sin(angle)]), tuple(range(count))
+        centre = np.append(base.mean(axis=0) + 0.03 * random.normal(size=2), random.uniform(1.5, 3.0))
+        arms = random.normal(size=(6, 3)) * random.uniform(0.05, 2.0, 3)
+        arms -= arms.mean(axis=0)
+        body = SpatialBody(6.0, centre, np.square(arms).sum() * np.eye(3) - arms.T @ arms, base)
+        for _ in range(30):
+            pivot, velocity = body.vertices[random.integers(count)], random.normal(size=3) * [1.0, 1.0, 30.0]
+            state = State(pivot, velocity, UP, -9.81 * UP)
+            if (np.cross(velocity, body.vertices - pivot) @ UP).max() > 0.0 or of_impact(body, state, every, law):
+                continue
+            none += 1
+            found = landed(body, state, every, law)
+            opens = np.cross(found.velocity, body.vertices - found.stance.pivot) @ UP
+            assert opens.min() >= -1e-8 * np.abs(velocity).max()
+            assert found.supports.min() < 0.0
+            assert found.supports.min() >= impulses(body, state, face(body), np.zeros(3)).min()
+            if found.stance.contact is Contact.REST:
+                faces += 1
+                np.testing.assert_array_equal(found.velocity, np.zeros(3))
+    assert none > 30
+    assert faces > 5
+
+
+def test_a_coefficient_of_nothing_is_nothing():
+    """A body without velocity has none after an impact by a coefficient."""
+    body, none = SpatialBody.box(0.8, 1.1, 3.0), np.zeros(3)
+    for axis in (None, body.edges[1]):
+        found = FixedSpatial(0.9).velocity_after(body, body.vertices[0], body.vertices[1], axis, UP, none)
+        np.testing.assert_array_equal(found, none)
+
+
 def test_laws_by_name_by_number_and_by_interface():
     """Names, coefficients and objects are laws; others are refused with what there is."""
     assert law_of("housner-3d").label == law_of("housner").label == law_of(SpatialHousner()).label == "housner-3d"
@@ -158,3 +208,45 @@ def test_rise_at_any_tilt(tilt):
         )
         up = UP * math.cos(tilt) - np.cross(axis, UP) * math.sin(tilt)
         assert rise(body, pivot, up) == pytest.approx(turned[2] - arm[2], rel=1e-9, abs=1e-15)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e4])
+def test_a_start_that_turns_about_an_edge_stands_on_it(size):
+    """Of a base of five sides that lies flat, of any size: a turn about an edge stands on that edge, and one that is
+    askew to it by a thousandth on the one of its two corners that does not rise."""
+    angle = np.array([0.3, 1.1, 2.9, 4.0, 5.2])
+    base = size * np.column_stack([np.cos(angle), 0.8 * np.sin(angle)])
+    body = SpatialBody(700.0, size * np.array([0.07, -0.05, 1.1]), size**2 * np.diag([400.0, 450.0, 90.0]), base)
+    for number, axis in enumerate(body.edges):
+        stance, touching = started(body, 0.7 * axis, UP)
+        assert touching == (0, 1, 2, 3, 4)
+        assert (stance.contact, stance.points) == (Contact.EDGE, (number, (number + 1) % 5))
+        for askew in (1e-3, -1e-3):
+            stance, _ = started(body, 0.7 * axis + askew * np.cross(UP, axis), UP)
+            # the turn about the inward normal lowers the far end of the edge, or lifts it
+            stays = (number + 1) % 5 if askew > 0.0 else number
+            assert (stance.contact, stance.points) == (Contact.VERTEX, (stays,))
+
+
+def test_the_point_at_rest_that_is_nearest_to_a_new_stance():
+    """Of an edge that lies on the ground the point nearest to a corner, or to the middle of another edge, is as near
+    as the nearest of ten thousand points along it; of a corner it is the corner."""
+    angle = np.array([0.3, 1.1, 2.9, 4.0, 5.2])
+    base = np.column_stack([2.0 + np.cos(angle), 0.8 * np.sin(angle) - 1.0])
+    body = SpatialBody(700.0, np.array([2.07, -1.05, 1.1]), np.diag([400.0, 450.0, 90.0]), base)
+    share, inside = np.linspace(0.0, 1.0, 10_001)[:, None], 0
+    for number in range(5):
+        old = edge(body, number)
+        state = State(old.pivot, np.zeros(3), UP, -9.81 * UP, old.length * old.axis)
+        for other in range(5):
+            for new in (edge(body, other), vertex(body, other)):
+                target = new.pivot if new.axis is None else new.pivot + 0.5 * new.length * new.axis
+                least = np.linalg.norm(old.pivot + share * state.along - target, axis=1).min()
+                found = state.nearest(new)
+                assert np.linalg.norm(found - target) == pytest.approx(least, abs=1e-7)
+                part = (found - old.pivot) @ old.axis / old.length
+                assert found == pytest.approx(old.pivot + min(max(part, 0.0), 1.0) * state.along, abs=1e-14)
+                inside += 0.01 < part < 0.99
+        alone = State(old.pivot, np.zeros(3), UP, -9.81 * UP)
+        assert alone.nearest(edge(body, (number + 2) % 5)) == pytest.approx(old.pivot, abs=0.0)
+    assert inside > 10

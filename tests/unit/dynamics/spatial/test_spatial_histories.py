@@ -112,6 +112,28 @@ def test_times_outside_are_refused():
     np.testing.assert_allclose(np.linalg.norm(run.quaternion, axis=1), 1.0, atol=1e-15)
 
 
+def test_nothing_of_a_response_lies_beyond_its_end():
+    """Thrown so that it overturns over the other edge, of the 0.02 s asked for only the first edge is told, and no
+    impact, though the engine went on until the fate was known."""
+    run = free_rocking_spatial(BOX, 0.1, angular_velocity=(0.0, -1.2, 0.0), duration=0.02)
+    assert run.outcome is Outcome.OVERTURNED
+    assert run.trajectory.pieces[-1].end > run.overturning_time > run.end == 0.02
+    assert run.intervals == [(0.0, 0.02, Contact.EDGE, (1, 2))]
+    assert run.impacts.size == 0
+    assert run.time[-1] <= 0.02
+
+
+def test_energy_closes_where_steps_hold_several_samples():
+    """Under slow pulses the steps of a body that rocks are longer than its samples are apart, and the work is right at
+    each of them."""
+    pulse = rk.pulses.half_sine(amplitude=1.0, period=12.0)
+    run = simulate_spatial(BOX, pulse, pulse.scaled(0.3), pulse.scaled(-0.2), tilt=0.15, azimuth=0.3, duration=4.0)
+    starts = np.array([piece.start for piece in run.trajectory.pieces if piece.stance.contact is not Contact.REST])
+    assert np.bincount(np.searchsorted(starts, run.time[run.time < 4.0], side="right"))[1:].max() > 2
+    assert np.abs(run.energy.work).max() > 100.0
+    assert run.energy.closure < 1e-9
+
+
 def test_files_hold_the_samples_with_units(tmp_path):
     """CSV to the last digit; netCDF with units, provenance and impacts."""
     xarray = pytest.importorskip("xarray")

@@ -8,12 +8,13 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics.outcome import Status
-from rocking.dynamics.spatial import SpatialBody
+from rocking.dynamics.spatial import SpatialBody, SpatialSettings
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial
 from rocking.dynamics.spatial_batch import SpatialStart, engine, run, simulate_spatial_batch
 from rocking.dynamics.spatial_batch.ground import joined
 from rocking.dynamics.spatial_batch.laws import batch_law
+from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning, UnknownModelError
 
 BOX = SpatialBody.box(0.5, 0.6, 2.0)
@@ -141,6 +142,20 @@ def test_still_ground_ends_at_rest():
 
 
 @built
+@pytest.mark.parametrize("size", [1.0, 50.0])
+def test_ground_at_rest_is_followed_for_300_over_p(size):
+    """A slender box that loses nothing, let go at half its slenderness angle, meets the ground first after
+    acosh(2) / p and then every 2 acosh(2) / p: 114 times, whatever its size; half as long, half as often."""
+    body = SpatialBody.box(0.2 * size, 0.2 * size, 4.0 * size)
+    start = SpatialStart(0.5 * math.atan(0.05))
+    p = math.sqrt(0.75 * rk.conventions.g / (size * math.hypot(0.1, 2.0)))
+    half = math.acosh(2.0)
+    for duration, length in ((None, 300.0), (150.0 / p, 150.0)):
+        batch = simulate_spatial_batch(body, None, 1.0, start=start, duration=duration)
+        assert batch["impacts"].item() == pytest.approx((length + half) / (2.0 * half), abs=1.5)
+
+
+@built
 @pytest.mark.parametrize("sides", [3, 8, 20])
 def test_bases_of_many_sides(sides):
     """Regular polygons of any number of sides; more than 64 vertices are refused in words, round bases too."""
@@ -247,3 +262,33 @@ def test_components_with_one_step_are_joined_as_others_are(until):
         quick, general = joined(parts, until), ground_of(*parts, until=until)
         np.testing.assert_array_equal(quick.times, general.times)
         np.testing.assert_array_equal(quick.coefficients, general.coefficients)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"tilt": 0.5 * math.pi},
+        {"tilt": -1e-9},
+        {"tilt": math.nan},
+        {"azimuth": math.inf},
+        {"yaw": math.nan},
+        {"angular_velocity": (0.0, 1.0)},
+        {"angular_velocity": (0.0, math.nan, 0.0)},
+        {"angular_velocity": (0.0, 0.0, math.inf)},
+    ],
+)
+def test_a_start_knows_whether_it_can_be(wrong):
+    """Tilts from zero to below a quarter turn and finite numbers; anything else is refused by the row."""
+    assert SpatialStart(0.2, 7.0, -3.0, (0.1, -20.0, 3.0)).valid
+    assert not SpatialStart(**wrong).valid
+    if engine.available():
+        batch = simulate_spatial_batch(BOX, None, start=[SpatialStart(**wrong), SpatialStart(0.02)], duration=0.1)
+        assert batch.status.ravel().tolist()[0] == Status.INVALID.code
+        assert batch.status.ravel().tolist()[1] == Status.GOOD.code
+
+
+def test_settings_of_the_batch_are_those_of_one_history():
+    """But for step and tolerance, which each engine has its own."""
+    batch, one = SpatialBatchSettings(), SpatialSettings()
+    for name in ("gravity", "rest_speed", "most_events"):
+        assert getattr(batch, name) == getattr(one, name)

@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -11,8 +12,10 @@ from scipy import stats
 import rocking as rk
 from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
+from rocking.studies.fragility.barely_lifted import ClearShare
 from rocking.studies.fragility.cloud import cloud, cloud_plan
 from rocking.studies.fragility.regression import regression
+from rocking.studies.fragility.states import Responses
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 
@@ -180,12 +183,38 @@ def test_dataset_and_summary(found):
     assert told["definition"].startswith("cloud")
 
 
+def test_share_of_what_was_clearly_lifted():
+    """Of what rocked and stands: by hand where all are at one level, one where all are, and never above one."""
+    levels, codes = np.full(5, 2.0), [Outcome.ROCKED.code] * 4 + [Outcome.OVERTURNED.code]
+    rotation = np.array([0.3, 0.001, 0.2, 0.5, math.inf])
+
+    def share(outcome, rotation):
+        answers = Responses(np.array(outcome), np.asarray(rotation), np.zeros(5, np.int8))
+        return ClearShare(levels, answers, 0.01).at(np.array([1.0, 4.0])).tolist()
+
+    assert share(codes, rotation) == [0.75, 0.75]
+    assert share(codes, np.maximum(rotation, 0.1)) == [1.0, 1.0]
+    assert share(codes, np.minimum(rotation, 0.001)) == [0.0, 0.0]
+    assert share([Outcome.OVERTURNED.code] * 5, np.full(5, math.inf)) == [1.0, 1.0]
+
+
 def test_a_line_without_scatter():
     """Points on a line leave no scatter: the probability above it is a step, and the slope is certain."""
     x = np.arange(4.0)
     line, flat = regression(x, 2.0 * x), regression(x, np.ones(4))
     assert line.probability_above(3.0, [1.0, 2.0]).tolist() == [0.0, 1.0]
     assert (line.p_value, flat.p_value) == (0.0, 1.0)
+
+
+def test_places_that_differ_by_more_than_rounding():
+    """Points a hundred-millionth apart give their line; those that only rounding tells apart give none."""
+    x = np.array([0.0, 1e-8, 3e-8])
+    assert regression(x, 5.0 - 3.0 * x).slope == pytest.approx(-3.0, rel=1e-6)
+    far = 1e6 + 1e-3 * np.arange(3.0)
+    assert regression(far, 2.0 * (far - 1e6)).slope == pytest.approx(2.0, rel=1e-9)
+    for same in (np.full(3, 0.7), np.array([1e6, np.nextafter(1e6, 2e6), 1e6]), np.array([0.7, 0.7 - 1e-15, 0.7])):
+        with pytest.raises(InvalidValueError, match=re.escape(f"different places, got 3 at {same[0]:g}")):
+            regression(same, np.array([1.0, 3.0, 2.0]))
 
 
 def test_summary_without_a_line():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
+from rocking.studies.fragility.counts import count_outcomes
 from rocking.studies.fragility.estimate import Scale
 from rocking.studies.fragility.likelihood import Probit
 from rocking.studies.fragility.lognormal import fit_lognormal
@@ -22,6 +23,13 @@ def study(capacities, levels=LEVELS):
 
 
 SPREAD = study(np.exp(0.5 * np.random.default_rng(3).normal(size=30)))
+
+
+@pytest.mark.parametrize("kind", ["parametric", "cases", "clusters", "capacities"])
+def test_a_bootstrap_knows_how_often_it_was_repeated(kind):
+    """Thirty motions at nine levels, the study repeated 47 times: each kind says 47, and its own name."""
+    sample = SPREAD.bootstrap(kind, repetitions=47, seed=1)
+    assert (sample.kind, sample.repetitions) == (kind, 47)
 
 
 def test_one_cluster_gives_no_bootstrap_and_no_certainty():
@@ -46,6 +54,21 @@ def test_fewer_than_five_distinct_clusters_are_refused(capacities):
     assert fit.interval_method == "profile"
     with pytest.raises(InvalidValueError, match="too narrow"):
         fit.bootstrap("clusters")
+
+
+@pytest.mark.parametrize(("levels", "needed"), [(1, 2), (2, 3), (3, 4), (4, 5), (9, 5)])
+def test_how_many_outcomes_must_differ(levels, needed):
+    """One more than there are levels, five at most: so many of 42 clusters are enough, one less is told."""
+    heights = np.arange(1.0, levels + 1.0)
+
+    def scarcity(distinct):
+        # the weakest clusters fail at all levels, each next kind at one less
+        failed = (np.arange(42) % distinct + 0.5)[:, None] < heights
+        names = np.repeat(np.arange(42), levels)
+        return count_outcomes(np.tile(heights, 42), failed.ravel(), clusters=names.tolist()).scarcity
+
+    assert scarcity(needed) == ""
+    assert scarcity(needed - 1) == f"42 clusters of {needed - 1} distinct outcomes, where {needed} are needed"
 
 
 def test_few_levels_leave_few_outcomes_that_can_differ():

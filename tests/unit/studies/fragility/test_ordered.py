@@ -53,6 +53,19 @@ def test_common_dispersion_recovers_the_truth():
     np.testing.assert_allclose([*fit.rocked, *fit.overturned], [0.7, 0.5, 1.3, 0.5], rtol=5e-3)
 
 
+@pytest.mark.parametrize(
+    ("medians", "dispersion"),
+    [((2.0, 3.0), 0.3), ((0.1, 0.3, 1.0), 1.5), ((10.0, 30.0), 1.2), ((0.1, 2.0), 2.5), ((0.05, 1.5, 40.0), 3.0)],
+)
+def test_known_curves_steep_and_shallow(medians, dispersion):
+    """Counts as the curves themselves say, of 100 000 trials, give medians and dispersion back, also far outside."""
+    levels, trials = np.geomspace(0.5, 8.0, 7), np.full(7, 1e5)
+    reached = np.round(trials * ndtr(np.log(levels / np.array(medians)[:, None]) / dispersion))
+    curves = nested_curves(levels, reached, trials)
+    # the counts are rounded to one in 100 000
+    np.testing.assert_allclose(curves, [(median, dispersion) for median in medians], rtol=1e-4)
+
+
 def test_three_curves_of_one_dispersion_against_a_direct_search():
     """The medians of three nested states and their one dispersion agree with a simplex search of the likelihood."""
     reached, n = np.array([[3, 10, 19, 20], [2, 7, 14, 18], [0, 3, 9, 15]]), 20

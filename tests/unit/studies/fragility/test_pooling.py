@@ -51,6 +51,21 @@ def test_same_counts_as_one_by_one():
     assert not np.array_equal(found.distinct_clusters[1], apart.distinct_clusters[1])
 
 
+def test_levels_of_each_motion_its_own():
+    """Motions that were brought to different levels count as the list of their histories does, cluster by cluster."""
+    good, reached, cluster = outcomes(motions=130)
+    levels = LEVELS * np.where(np.arange(130) % 3 == 1, 1.5, 1.0)[:, None]
+    found = pooled(levels, good, [reached, ~reached], cluster)
+    names = np.repeat(cluster, LEVELS.size)[good.ravel()].tolist()
+    for one, state in zip(found, (reached, ~reached), strict=True):
+        wanted = count_outcomes(levels[good], state[good], clusters=names)
+        assert wanted.clusters == 125
+        for name in ("levels", "failures", "trials"):
+            assert np.array_equal(getattr(one, name), getattr(wanted, name))
+        for mine, others in zip(one.distinct_clusters, wanted.distinct_clusters, strict=True):
+            assert np.array_equal(mine, others)
+
+
 def test_many_motions_in_pieces(monkeypatch):
     """The size of the pieces does not matter."""
     good, reached, cluster = outcomes()

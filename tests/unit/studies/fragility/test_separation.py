@@ -33,6 +33,16 @@ def test_kind_is_known(levels, failures, kind, interval):
     assert fit.median_interval == interval
 
 
+@pytest.mark.parametrize(("levels", "failures", "kind", "interval"), [case for case in CASES if case[2].step])
+def test_the_verdict_names_the_step(levels, failures, kind, interval):
+    """The step lies between the highest survival and the lowest failure, or at the level that has both."""
+    low, high = interval
+    where = f"between {low:g} and {high:g}" if low < high else f"at {low:g}"
+    verdict = fit_lognormal(levels, failures).verdict
+    assert f"towards a step {where}, with dispersion 0." in verdict
+    assert f"{len(levels)} outcomes at {len(set(levels))} levels" in verdict
+
+
 @pytest.mark.parametrize(("levels", "failures", "kind", "interval"), CASES)
 def test_maximum_likelihood_is_refused_where_it_does_not_exist(levels, failures, kind, interval):
     """Asked for by name, a likelihood without maximum is refused, with the kind of separation in the sentence."""

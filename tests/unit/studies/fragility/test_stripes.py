@@ -10,7 +10,7 @@ import rocking as rk
 from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.stripes import multiple_stripes, stripes_plan
-from rocking.studies.fragility.subject import Subject
+from rocking.studies.fragility.subject import Subject, checked_levels
 from rocking.studies.fragility.uplift import uplift_check
 from rocking.studies.motion_set import MotionSet
 
@@ -34,6 +34,15 @@ MOTIONS, LEVELS = records(12), np.array([1.5, 3.0, 4.5, 6.0, 8.0, 10.0])
 @pytest.fixture(scope="module")
 def stripes():
     return multiple_stripes(BLOCK, MOTIONS, LEVELS, restitution=0.9, states=(0.2, 0.5))
+
+
+@pytest.mark.parametrize("bad", [[], [1.5, 1.5], [3.0, 1.5], [0.0, 1.0], [[1.5, 3.0], [4.5, 6.0]], [[1.5], [3.0]]])
+def test_levels_are_a_row_that_rises(bad):
+    """No levels, equal ones, falling ones and tables of them are refused by name; a single one is a row of one."""
+    with pytest.raises(InvalidValueError, match="levels must be"):
+        checked_levels("levels", bad, "m/s2")
+    assert checked_levels("levels", 1.5, "m/s2").tolist() == [1.5]
+    assert checked_levels("levels", (1.5, 1.6, 6.0), "m/s2").tolist() == [1.5, 1.6, 6.0]
 
 
 def test_counts_against_single_simulations(stripes):
