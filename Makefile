@@ -14,7 +14,7 @@ help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
 	@echo "make test     set up, run linters, type checker, docstring and import checks, tests"
 	@echo "make coverage the unit tests, and which lines they run"
-	@echo "make portable the tests once under each of seven settings that stand for other processors"
+	@echo "make portable the tests, save those that measure time, once under each of seven settings that stand for other processors"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make gallery  run every example         make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"

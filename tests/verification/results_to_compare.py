@@ -81,19 +81,21 @@ def spatial_batch() -> list[Any]:
     bodies, motions = [SpatialBody.of(STATUE), tower(), tower(0.3)], [shaking(k) for k in range(6)]
     laws: list[Any] = ["housner-3d", "horizontal-momentum-3d", 0.9, 0.97]
     found = simulate_spatial_batch(bodies, motions, laws, scales=[0.3, 0.6, 1.2])
-    return list(found.values.values())
+    statue = simulate_spatial_batch(bodies[:1], motions[:2], ["ked-3d"], scales=[0.6])
+    return [*found.values.values(), *statue.values.values()]
 
 
 def plane(engine: str) -> list[Any]:
     """Histories in the plane of one engine: records with a vertical part, and pulses of degree seven."""
     bodies = [PEDESTAL, rk.Block(width=0.5, height=2.0)]
     both = [rk.GroundMotion(noise(37 + k, 3.0).acceleration, STEP, noise(91 + k, 1.0).acceleration) for k in range(4)]
-    pulses = [rk.pulses.sine(amplitude, 0.8) for amplitude in (2.0, 4.0, 9.0)]
+    kinds = (rk.pulses.sine, rk.pulses.cosine, rk.pulses.rectangular, rk.pulses.ricker, rk.pulses.antisymmetric_ricker)
+    pulses = [kind(amplitude, 0.8) for kind in kinds for amplitude in (3.0, 7.0)]
     found = [
         rk.simulate_many(bodies, motions, ["ked", "housner"], scale=[0.4, 1.0], engine=engine)
         for motions in (both, pulses)
     ]
-    return [found_one[name].values for found_one in found for name in ("outcome", "peak_rotation", "impacts")]
+    return [table.values for one in found for table in one.data_vars.values()]
 
 
 def response() -> list[Any]:
@@ -107,6 +109,13 @@ def contact() -> list[Any]:
     motion = rk.GroundMotion(noise(37, 3.0).acceleration, STEP, noise(91, 4.0).acceleration)
     made = [rk.simulate_with_contact(PEDESTAL, motion, friction, scale=0.6) for friction in (0.15, 0.4, 2.0)]
     return [[r.rotation, r.displacement, r.rise, r.outcome.value] for r in made]
+
+
+def corrected() -> list[Any]:
+    """Records with their trends, means and ends taken off, and their intensity."""
+    trends = [rk.motions.detrended(noise(37, 3.0), n, fit) for n in (1, 2, 3) for fit in ("velocity", "acceleration")]
+    made = [*trends, rk.motions.demeaned(noise(53, 3.0)), rk.motions.tapered(noise(91, 3.0), 0.1)]
+    return [motion.acceleration for motion in made]
 
 
 def bed(engine: Any) -> list[Any]:
@@ -159,6 +168,7 @@ RESULTS: dict[str, Callable[[], list[Any]]] = {
     "plane, response": response,
     "plane, contact": contact,
     "plane, coefficients": coefficients,
+    "motions, corrected": corrected,
     "bed, reference": lambda: bed("reference"),
     "bed, fast": lambda: bed("fast"),
 }

@@ -10,6 +10,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.kinematics import ground_velocity
 from rocking.motions.motion import GroundMotion, checked_motion
+from rocking.motions.portable import cosine_sine
 
 
 def demeaned(motion: GroundMotion) -> GroundMotion:
@@ -99,7 +100,7 @@ def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
     fraction = checks.within("fraction", fraction, 0.0, 0.5, open_low=True, hint="share of the duration at each end")
     place = np.linspace(0.0, 1.0, len(motion))
     edge = np.minimum(np.minimum(place, 1.0 - place) / fraction, 1.0)
-    window = 0.5 * (1.0 - np.cos(np.pi * edge))
+    window = 0.5 * (1.0 - cosine_sine(np.pi * edge)[0])
     return _each(motion, lambda part: part.acceleration * window, f"cosine taper over {fraction:g} of each end")
 
 
@@ -158,10 +159,23 @@ def _each(motion: GroundMotion, correct: Any, what: str) -> GroundMotion:
 
 
 def _trend(part: GroundMotion, order: int, fit: str) -> FloatArray:
-    place = np.linspace(0.0, 1.0, len(part))
-    if fit == "acceleration":
-        powers = np.vander(place, order + 1, increasing=True)
-        return np.asarray(powers @ np.linalg.lstsq(powers, part.acceleration)[0])
-    exponents = np.arange(1, order + 1)
-    coefficients = np.linalg.lstsq(place[:, None] ** exponents, ground_velocity(part))[0]
-    return np.asarray((exponents * place[:, None] ** (exponents - 1)) @ coefficients / part.duration)
+    """Fit by polynomials that are orthogonal over the samples, from Stieltjes' recurrence: no matrix is solved."""
+    x = np.linspace(0.0, 1.0, len(part))
+    velocity = fit == "velocity"
+    weight, values = (x, ground_velocity(part)) if velocity else (np.ones_like(x), part.acceleration)
+    trend, before, p, slope_before, slope = 0.0 * x, 0.0 * x, np.ones_like(x), 0.0 * x, 0.0 * x
+    last = 1.0
+    for _ in range(order if velocity else order + 1):
+        q = weight * p
+        size = (q * q).sum()
+        term = (p + x * slope) / part.duration if velocity else p
+        trend += (q * values).sum() / size * term
+        middle, ratio = (x * q * q).sum() / size, size / last
+        before, p, slope_before, slope = (
+            p,
+            (x - middle) * p - ratio * before,
+            slope,
+            p + (x - middle) * slope - ratio * slope_before,
+        )
+        last = size
+    return trend

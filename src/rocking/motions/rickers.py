@@ -4,10 +4,9 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
-import numpy as np
-
 from rocking import checks
 from rocking.conventions import FloatArray
+from rocking.motions.portable import exponential
 from rocking.motions.pulse import Pulse
 
 _SQRT3 = math.sqrt(3.0)
@@ -82,8 +81,8 @@ class Ricker(Pulse):
         if self.shape == "symmetric":
             x2 = (math.pi / self.period * t) ** 2
             part = (-0.5 * (self.period / math.pi) ** 2, t, 1.0 - 2.0 * x2)[derivative]
-            return self.amplitude * part * np.exp(-x2)
+            return self.amplitude * part * exponential(-x2)
         unit = _SQRT3 * self.period / (2.0 * math.pi)
         z = t / unit
         part = (unit**2 * z, -unit * (z * z - 1.0), (z * z - 3.0) * z)[derivative]
-        return self.amplitude / _PEAK * part * np.exp(-0.5 * z * z)
+        return self.amplitude / _PEAK * part * exponential(-0.5 * z * z)

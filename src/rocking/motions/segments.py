@@ -1,5 +1,6 @@
 """What an engine integrates: a motion as polynomials on equal stretches of time."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -7,6 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from rocking.conventions import FloatArray
+from rocking.portable import each, times
 
 SMOOTH_DEGREE = 7
 """Degree of the polynomials that stand for a smooth pulse; with 32 of them a period they agree to rounding."""
@@ -92,13 +94,14 @@ class Segments:
             Of degree 7: interpolation in Chebyshev points.
         """
         n = SMOOTH_DEGREE + 1
-        nodes = np.cos(np.pi * (np.arange(n) + 0.5) / n)
+        angles = np.pi * (np.arange(n) + 0.5) / n
+        nodes = each(math.cos, angles)
         step = duration / count
         values = acceleration(((np.arange(count)[:, None] + 0.5 * (1.0 + nodes)) * step).ravel()).reshape(count, n)
-        weights = 2.0 / n * np.cos(np.outer(np.arange(n), np.pi * (np.arange(n) + 0.5) / n))
-        weights[0] *= 0.5
+        weights = 2.0 / n * each(math.cos, np.outer(angles, np.arange(n)))
+        weights[:, 0] *= 0.5
         # two stages: the small high coefficients come first, so that their rounding stays small
-        return cls(step, np.ascontiguousarray(values @ weights.T @ _SHIFTED))
+        return cls(step, times(times(values, weights), _SHIFTED))
 
     def refined(self, parts: int) -> "Segments":
         """Return the same polynomials on shorter stretches.
@@ -117,7 +120,7 @@ class Segments:
             return self
         cut = _cutting(self.degree, parts)
         pieces = [
-            None if c is None else np.ascontiguousarray(np.einsum("nk,pkj->npj", c, cut).reshape(-1, c.shape[1]))
+            None if c is None else times(c, cut).swapaxes(0, 1).reshape(-1, c.shape[1])
             for c in (self.horizontal, self.vertical)
         ]
         assert pieces[0] is not None
@@ -167,9 +170,8 @@ def _cutting(degree: int, parts: int) -> FloatArray:
     """Return the matrices that rewrite powers of tau on each of `parts` equal pieces; shape (parts, k, j)."""
     cut = np.zeros((parts, degree + 1, degree + 1))
     for piece in range(parts):
-        inner = np.polynomial.Polynomial([piece / parts, 1.0 / parts])
         for k in range(degree + 1):
-            cut[piece, k, : k + 1] = (inner**k).coef
+            cut[piece, k, : k + 1] = [math.comb(k, j) * piece ** (k - j) / parts**k for j in range(k + 1)]
     return cut
 
 
