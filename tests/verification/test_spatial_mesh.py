@@ -10,7 +10,7 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Part, RoundBase, Solid, box, revolution
-from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial, simulate_spatial
+from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial, reference, simulate_spatial
 from rocking.dynamics.spatial_batch import SpatialStart, engine, simulate_spatial_batch
 from rocking.restitution.spatial import edge_coefficient
 
@@ -126,6 +126,18 @@ def test_what_comes_to_rest_is_not_still_rocking():
 
 
 @built
+def test_a_spin_nearly_flat_ends_after_so_many_steps(monkeypatch):
+    """A disc that spins on its rim without loss takes thousands of steps a second; it is left still rocking."""
+    monkeypatch.setattr(reference, "_MOST_LATE", 40)
+    tilt = 2.4e-3
+    spin = (-0.1, 100.0 * math.sin(tilt), 15.0)
+    ended = free_rocking_spatial(
+        SpatialBody.cylinder(0.5, 2.0), tilt, -0.5 * math.pi, gravity=9.81, duration=0.02, angular_velocity=spin
+    )
+    assert ended.still_rocking
+    assert ended.end < 0.2
+
+
 def test_batches_say_what_is_still_rocking():
     """Both engines: cut short 1, come to rest 0, overturned 0, never lifted 0; files have the column."""
     tower = SpatialBody.box(1.0, 1.3, 4.0)

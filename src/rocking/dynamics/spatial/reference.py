@@ -25,7 +25,7 @@ from rocking.portable import applied, norm
 
 _PULL = 1e-9
 _STUCK, _PILED = 100, 60
-_PATIENCE = 300.0
+_PATIENCE, _MOST_LATE = 300.0, 10_000  # time over 1 / p, and steps, after the end
 
 
 class SpatialReference:
@@ -57,6 +57,7 @@ class SpatialReference:
         self.place = np.zeros(2)
         self.touching: tuple[int, ...] = ()
         self.at_once, self.moment = 0, -1.0  # events at one moment
+        self.late = 0  # steps after the end
         self.sticks = False  # whether impacts piled up on this edge, so that no end of it is released
 
     # ---- the course of a history ------------------------------------------------------------------------------------
@@ -126,6 +127,7 @@ class SpatialReference:
     def _move(self) -> tuple[Outcome, Status] | None:
         """Advance to the end of the step, or to the first event before it."""
         step, piece, whole = self._step()
+        self.late += self._final is not False
         if step is None or piece is None:
             return Outcome.FAILED, Status.NOT_FINITE
         contact = events.first_contact(self.body, self.stance, step, self.touching)
@@ -323,7 +325,7 @@ class SpatialReference:
     def _final(self) -> bool | None:
         """Whether the motion is over: None after a patience beyond which nothing is decided any more."""
         end = max(self.horizon, self.ground.end)
-        if self.time > end + _PATIENCE / self.p:
+        if self.time > end + _PATIENCE / self.p or self.late > _MOST_LATE:
             return None
         return self.time >= end
 

@@ -8,12 +8,11 @@ import numpy as np
 from rocking.bodies.solid import Corner, Edge, RoundBase, Solid, SolidMoments, SupportPolygon
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.portable import norm
 from rocking.restitution.spatial.rigid import RigidImpact
 
 UP = np.array([0.0, 0.0, 1.0])
 """Normal of the ground."""
-
-_RIM = 64
 
 
 @dataclass(frozen=True)
@@ -79,20 +78,17 @@ class SpatialImpact(RigidImpact):
         float
             Vertical velocity [m/s]; below zero the base would go through the ground.
         """
-        return float(np.cross(velocity, self._rim() - self.onto.point)[:, 2].min())
+        base = self.solid.local_base
+        points = base.vertices if isinstance(base, SupportPolygon) else self._middle[None, :2]
+        arms = points - self.onto.point[:2]
+        least = float((velocity[0] * arms[:, 1] - velocity[1] * arms[:, 0]).min())
+        return least - base.radius * norm(velocity[:2]) if isinstance(base, RoundBase) else least
 
     @property
     def _middle(self) -> FloatArray:
-        middle: FloatArray = self._rim().mean(axis=0)
-        return middle
-
-    def _rim(self) -> FloatArray:
         base = self.solid.local_base
-        if isinstance(base, SupportPolygon):
-            flat = base.vertices
-        elif isinstance(base, RoundBase):
-            phi = np.linspace(0.0, 2.0 * np.pi, _RIM, endpoint=False)
-            flat = base.centre + base.radius * np.stack([np.cos(phi), np.sin(phi)], axis=1)
+        if isinstance(base, RoundBase):
+            flat = base.centre
         else:
-            flat = self.solid.local_moments.centre[None, :2]
-        return np.column_stack([flat, np.zeros(len(flat))])
+            flat = base.vertices.mean(axis=0) if isinstance(base, SupportPolygon) else self.solid.local_moments.centre
+        return np.array([flat[0], flat[1], 0.0])

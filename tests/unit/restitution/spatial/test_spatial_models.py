@@ -64,6 +64,20 @@ def test_flags():
     assert impact_in_space(PRISM, **DIAGONAL).flags == ()
 
 
+@pytest.mark.parametrize("azimuth", [0.0, 0.03, 0.05, 2.0])
+def test_a_round_base_turned_about_its_axis_is_the_same_base(azimuth):
+    """Its base sinks as fast as the fastest of a hundred thousand points of the rim, at any azimuth."""
+    arm = 0.5 * np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
+    ahead = azimuth + 0.02
+    turning = np.array([-math.sin(ahead), math.cos(ahead), 0.0])
+    result = impact_in_space(Solid(cylinder(1.0, 3.0)), turning, pivot=-arm, onto=arm, model="housner-3d")
+    around = np.linspace(0.0, 2.0 * math.pi, 100_001)
+    rim = 0.5 * np.stack([np.cos(around), np.sin(around), 0.0 * around], axis=1)
+    least = np.cross(result.raw_velocity, rim - arm)[:, 2].min()
+    assert result.impact.rise(result.raw_velocity) == pytest.approx(least, rel=1e-4)
+    assert result.flags == (SpatialFlag.PENETRATES,)
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
