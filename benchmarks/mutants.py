@@ -259,7 +259,9 @@ def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[
     """Judge what is not in the ledger yet, and survivors of tests that have changed since, until the time is up."""
     ledger, covering = folder / "verdicts.jsonl", Covering(folder)
     lines = ledger.read_text(encoding="utf-8").splitlines() if ledger.exists() else []
-    known = {entry["key"]: entry for entry in map(json.loads, lines)}
+    known: dict[str, dict[str, object]] = {}
+    for entry in map(json.loads, lines):
+        known[entry["key"]] = entry | {"first": known.get(entry["key"], {"first": entry["killed"]})["first"]}
     reasons = harmless()
 
     def stands(mutant: Mutant) -> bool:
@@ -295,7 +297,7 @@ def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[
 
     with ThreadPoolExecutor(workers) as pool, ledger.open("a", encoding="utf-8") as out:
         for entry in filter(None, (each.result() for each in as_completed([pool.submit(judge, one) for one in left]))):
-            known[str(entry["key"])] = entry
+            known[str(entry["key"])] = entry | {"first": known.get(str(entry["key"]), {}).get("first", entry["killed"])}
             noticed[str(entry["key"]).partition(":")[0]][str(entry["by"])] += 1
             out.write(json.dumps(entry) + "\n")
             out.flush()
@@ -413,6 +415,14 @@ def page(
                 f"| {package} | {count:,} | {len(of)} | {killed} | {same} | {killed / (len(of) - same):.1%} "
                 f"| {low:.1%} to {high:.1%} |"
             )
+    first, same = sum(known[mutant.key]["first"] is True for mutant in judged), len(same_results)
+    low_first, high_first = wilson(first, len(judged) - same)
+    text += [
+        "",
+        "Tests were written for errors of this sample that nothing had noticed. As each was judged first, before them, "
+        f"{first} were noticed: {first / (len(judged) - same):.1%} ({low_first:.1%} to {high_first:.1%}) of those that "
+        "change a result. Another seed takes another sample.",
+    ]
     text += ["", "Survivors, with the reason where they change no result:", ""]
     for mutant, (old, new) in survivors.items():
         text.append(f"- `{mutant.path}`: `{old}` -> `{new}`: {reasons.get((mutant.path, new), 'not noticed')}")
