@@ -14,7 +14,7 @@ help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
 	@echo "make test     set up, run linters, type checker, docstring and import checks, tests"
 	@echo "make coverage the unit tests, and which lines they run"
-	@echo "make portable the tests, save those that measure time, once under each of seven settings that stand for other processors"
+	@echo "make portable the tests, save those of time and of browsers, once under each of seven settings that stand for other processors"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make gallery  run every example         make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
@@ -88,7 +88,7 @@ coverage: $(VENV)/dev $(ENGINE)
 	$(BIN)/python -m pytest tests/unit src -n 2 --dist loadfile -m "not timed" --cov
 
 portable: $(VENV)/dev $(ENGINE)
-	$(BIN)/python tests/portable.py -n 2 --dist loadfile -q -m "not timed"
+	$(BIN)/python tests/portable.py -n 2 --dist loadfile -q -m "not timed and not browser"
 
 # What decides events, under the same settings.
 portable-quick: $(VENV)/dev $(ENGINE)
