@@ -116,7 +116,7 @@ def fragility(
     if as_json:
         print(fragility_page_output.as_json(answer))
     else:
-        fragility_page_output.show(answer)
+        fragility_page_output.show(answer, unit or "m")
     for path in files.write(answer, name):
         if not as_json:
             print(f"wrote {path}")
