@@ -221,7 +221,7 @@ def test_summary_without_a_line():
     """Too few motions that rocked leave no line: the summary says why, and the rest stands."""
     told = cloud(BLOCK, MOTIONS[:3], restitution=0.9).summary()
     assert "at least 3 points" in told["regression"]["none"]
-    assert told["states"]["no_rocking"] > 0
+    assert told["outcomes"]["no_uplift"] > 0
 
 
 def test_what_is_refused(found):
