@@ -176,10 +176,10 @@ def test_rocking_gets_a_curve_where_no_level_decides():
 
 
 def test_dataset_and_summary(found):
-    """Outcomes with units, and a summary that names definition, line and states."""
+    """Outcomes with units, and a summary that names definition, line and outcomes."""
     assert found.dataset.level.attrs["units"] == "m/s2"
     told = json.loads(json.dumps(found.summary()))
-    assert sum(told["states"].values()) == 80
+    assert sum(told["outcomes"].values()) == 80
     assert told["definition"].startswith("cloud")
 
 
