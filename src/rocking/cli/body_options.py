@@ -6,8 +6,9 @@ from pathlib import Path
 from rocking.bodies import Block, Body
 from rocking.checks import length_unit
 from rocking.cli.shared_options import in_unit
+from rocking.cli.solid_options import is_body
 from rocking.conventions import FEET, Foot
-from rocking.errors import InvalidValueError
+from rocking.errors import BodyFileError, InvalidValueError
 
 
 def body_from(
@@ -47,6 +48,8 @@ def body_from(
     ------
     InvalidValueError
         If it is given twice, in part, or not at all.
+    BodyFileError
+        If the file is none of a body.
     """
     sizes = {"--width": width, "--height": height, "--angle": angle, "--semi-diagonal": semi_diagonal}
     given = [name for name, value in sizes.items() if value is not None]
@@ -55,7 +58,12 @@ def body_from(
             raise InvalidValueError("give a body file or dimensions, not both")
         from rocking.bodies.formats import read_body
 
-        return read_body(file, units=unit)
+        try:
+            return read_body(file, units=unit)
+        except BodyFileError as error:
+            if is_body(file):
+                raise
+            raise BodyFileError(f"{error}. Is it a record? Then see rocking motion {file}") from error
     scale = length_unit(unit or "m")
     options: dict[str, float] = {} if density is None else {"density": density}
     if depth is not None:
