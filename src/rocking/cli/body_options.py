@@ -63,7 +63,7 @@ def body_from(
         except BodyFileError as error:
             if is_body(file):
                 raise
-            raise BodyFileError(f"{error}. Is it a record? Then see rocking motion {file}") from error
+            raise BodyFileError(f"{error}; perhaps a record: see rocking motion {file}") from error
     scale = length_unit(unit or "m")
     options: dict[str, float] = {} if density is None else {"density": density}
     if depth is not None:

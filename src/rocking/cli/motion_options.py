@@ -127,7 +127,7 @@ def _from_file(
     except RecordError as error:
         from rocking.cli.solid_options import is_body
 
-        body = f". Is it a body? Then see rocking cor {word}" if is_body(word) else ""
+        body = f"; perhaps a body: see rocking cor {word}" if is_body(word) else ""
         raise RecordError(_in_options(error) + body) from error
 
 

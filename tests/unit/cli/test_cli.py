@@ -143,9 +143,9 @@ def test_model_of_the_user_is_told_like_the_others(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("motion", "body.toml"), "Is it a body? Then see rocking cor"),
-        (("spectrum", "body.toml"), "Is it a body? Then see rocking cor"),
-        (("cor", "m.csv"), "Is it a record? Then see rocking motion"),
+        (("motion", "body.toml"), "perhaps a body: see rocking cor body.toml"),
+        (("spectrum", "body.toml"), "perhaps a body: see rocking cor body.toml"),
+        (("cor", "m.csv"), "perhaps a record: see rocking motion m.csv"),
         (("fragility", "m.csv", "body.toml"), "the body comes first, then the motion: body.toml m.csv"),
     ],
 )
