@@ -1,10 +1,14 @@
 """The body of a command: a file, or dimensions on the command line."""
 
+import math
 from pathlib import Path
 
 from rocking.bodies import Block, Body
 from rocking.checks import length_unit
-from rocking.errors import InvalidValueError
+from rocking.cli.shared_options import in_unit
+from rocking.cli.solid_options import is_body
+from rocking.conventions import FEET, Foot
+from rocking.errors import BodyFileError, InvalidValueError
 
 
 def body_from(
@@ -44,6 +48,8 @@ def body_from(
     ------
     InvalidValueError
         If it is given twice, in part, or not at all.
+    BodyFileError
+        If the file is none of a body.
     """
     sizes = {"--width": width, "--height": height, "--angle": angle, "--semi-diagonal": semi_diagonal}
     given = [name for name, value in sizes.items() if value is not None]
@@ -52,7 +58,12 @@ def body_from(
             raise InvalidValueError("give a body file or dimensions, not both")
         from rocking.bodies.formats import read_body
 
-        return read_body(file, units=unit)
+        try:
+            return read_body(file, units=unit)
+        except BodyFileError as error:
+            if is_body(file):
+                raise
+            raise BodyFileError(f"{error}; perhaps a record: see rocking motion {file}") from error
     scale = length_unit(unit or "m")
     options: dict[str, float] = {} if density is None else {"density": density}
     if depth is not None:
@@ -65,3 +76,31 @@ def body_from(
         "a body is a file, or --width and --height, or --angle and --semi-diagonal; "
         f"got {' '.join(given) if given else 'none of them'}"
     )
+
+
+def body_words(body: Body, gravity: float, length: str = "m") -> str:
+    """Return a plane body in a line.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    length : str
+        Unit of length of the line.
+
+    Returns
+    -------
+    str
+        Kind, mass, and what decides how it rocks, of both feet where they differ.
+    """
+    feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
+    sides = {foot: body.side(foot, gravity) for foot in feet}
+    shape = "; ".join(
+        f"{'' if body.is_symmetric else f'{foot} '}alpha = {side.slenderness_angle:.4g} rad "
+        f"({math.degrees(side.slenderness_angle):.3g} deg), R = {in_unit(side.semi_diagonal, length)}, "
+        f"p = {side.frequency_parameter:.4g} rad/s"
+        for foot, side in sides.items()
+    )
+    return f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"

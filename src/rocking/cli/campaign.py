@@ -8,7 +8,7 @@ import typer
 _CODES = (
     "Exit codes: 0 done; 2 bad input, or nothing to export yet; 3 interrupted, what is finished is safe; "
     "4 the disk is full or cannot be written; 5 another process runs this campaign; "
-    "6 verify found something damaged or missing."
+    "6 something is damaged, or verify found it missing."
 )
 
 campaign = typer.Typer(

@@ -13,6 +13,7 @@ import typer
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import (
     CampaignBusyError,
+    CampaignDamagedError,
     CampaignInterrupted,
     CampaignStorageError,
     DaskExecutor,
@@ -26,6 +27,13 @@ from rocking.studies.job.round_status import resume
 
 INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6
 """Exit codes beside 0 (done) and 2 (bad input)."""
+
+_CODES: dict[type[BaseException], int] = {
+    CampaignInterrupted: INTERRUPTED,
+    CampaignStorageError: STORAGE,
+    CampaignBusyError: BUSY,
+    CampaignDamagedError: DAMAGED,
+}
 
 
 @contextmanager
@@ -49,11 +57,9 @@ def codes(folder: Path | None = None) -> Iterator[None]:
     """
     try:
         yield
-    except (CampaignInterrupted, CampaignStorageError, CampaignBusyError) as error:
+    except tuple(_CODES) as error:
         print(f"rocking: {error}", file=sys.stderr)
-        kinds = ((CampaignInterrupted, INTERRUPTED), (CampaignStorageError, STORAGE), (CampaignBusyError, BUSY))
-        code = next(code for kind, code in kinds if isinstance(error, kind))
-        raise typer.Exit(code) from error
+        raise typer.Exit(next(code for kind, code in _CODES.items() if isinstance(error, kind))) from error
     except KeyboardInterrupt as error:
         begun = folder is not None and (folder / JOB).exists()
         safe = "what was recorded before is safe" if begun else "nothing was begun"
@@ -140,14 +146,22 @@ def show_status(folder: Path, as_json: bool) -> None:
         The campaign.
     as_json : bool
         Whether to print JSON.
+
+    Raises
+    ------
+    typer.Exit
+        With `DAMAGED`, if something that was finished is damaged now.
     """
     found = status_of(folder)
+    status = found.status
     if as_json:
         print(json.dumps(_facts(found), indent=1))
-        return
-    print(_words(found))
-    for sentence in (*found.status.damaged, *found.status.broken) if found.status else ():
-        print(f"note: {sentence}")
+    else:
+        print(_words(found))
+        for sentence in (*status.damaged, *status.broken) if status else ():
+            print(f"note: {sentence}")
+    if status and status.broken:
+        raise typer.Exit(DAMAGED)
 
 
 def show_verification(folder: Path, as_json: bool) -> None:

@@ -4,7 +4,9 @@ import json
 import math
 from typing import Any
 
+from rocking.cli.shared_options import in_unit
 from rocking.cli.simulate_question import Question, restitution_from
+from rocking.conventions import LENGTH_UNITS
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.planar import PlanarResponse, Regime, Start, simulate_with_contact
 from rocking.errors import RockingError
@@ -119,13 +121,15 @@ def as_json(response: PlanarResponse) -> str:
     return json.dumps(contact_facts(response), indent=2, allow_nan=False)
 
 
-def show(response: PlanarResponse) -> None:
+def show(response: PlanarResponse, length: str = "m") -> None:
     """Print contact, outcome, modes, impacts and measures.
 
     Parameters
     ----------
     response : PlanarResponse
         The response.
+    length : str
+        Unit of lengths.
     """
     from rich.console import Console
 
@@ -134,14 +138,15 @@ def show(response: PlanarResponse) -> None:
         console.print(f"{word + ':':<13} {value}", markup=False)
     console.print()
     console.print(f"{response.summary[:1].upper()}{response.summary[1:]}.", style="bold", markup=False)
-    for rows, table in ((response.regimes, _modes), (response.impacts, _impacts)):
+    modes, impacts = (rows[:_FIRST] for rows in (response.regimes, response.impacts))
+    for rows, table in ((response.regimes, _modes(modes, length)), (response.impacts, _impacts(impacts))):
         if rows.size:
             console.print()
-            console.print(table(rows[:_FIRST]))
+            console.print(table)
             if rows.size > _FIRST:
                 console.print(f"... and {rows.size - _FIRST} more; --json has them all", style="dim")
     console.print()
-    for word, value in _measures(response):
+    for word, value in _measures(response, length):
         console.print(f"{word + ':':<16} {value}", markup=False)
 
 
@@ -166,10 +171,11 @@ def _facts(response: PlanarResponse) -> list[tuple[str, str]]:
     ]
 
 
-def _modes(rows: Any) -> Any:
-    table = _table(("from [s]", "to [s]", "mode", "feet", "slid [m]"), left=("mode", "feet"))
+def _modes(rows: Any, length: str) -> Any:
+    table = _table(("from [s]", "to [s]", "mode", "feet", f"slid [{length}]"), left=("mode", "feet"))
     for start, end, regime, feet, _, distance in rows.tolist():
-        table.add_row(f"{start:.6f}", f"{end:.6f}", Regime[regime].value, feet, f"{distance:+.6f}" if distance else "")
+        slid = f"{distance / LENGTH_UNITS[length]:+.6f}" if distance else ""
+        table.add_row(f"{start:.6f}", f"{end:.6f}", Regime[regime].value, feet, slid)
     return table
 
 
@@ -182,11 +188,12 @@ def _impacts(rows: Any) -> Any:
     return table
 
 
-def _measures(response: PlanarResponse) -> list[tuple[str, str]]:
+def _measures(response: PlanarResponse, length: str) -> list[tuple[str, str]]:
     fell, energy = response.outcome is Outcome.OVERTURNED, response.energy
+    at_the_end = in_unit(float(response.displacement[-1]), length, "+.6g")
     return [
         ("peak rotation", "it overturned" if fell else f"{math.degrees(response.peak_rotation):.6g} deg"),
-        ("slid", f"{response.sliding_distance:.6g} m in all, {float(response.displacement[-1]):+.6g} m at the end"),
+        ("slid", f"{in_unit(response.sliding_distance, length, '.6g')} in all, {at_the_end} at the end"),
         ("friction used", f"{100.0 * response.friction_usage:.4g} % of what there is, at most"),
         (
             "energy lost",

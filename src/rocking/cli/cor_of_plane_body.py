@@ -60,7 +60,7 @@ def answer(
     if as_json:
         print(cor_output.as_json(found))
         return
-    cor_output.show(found)
+    cor_output.show(found, size["unit"] or "m")
     for path in filter(None, files.values()):
         print(f"wrote {path}")
 

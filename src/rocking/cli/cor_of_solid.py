@@ -85,7 +85,7 @@ def answer(
         facts = json.loads(solid_cor_output.as_json(found))
         print(json.dumps({**facts, "notes": notes(found)}, indent=2, allow_nan=False))
         return
-    solid_cor_output.show(found)
+    solid_cor_output.show(found, told["unit"] or "m")
     for sentence in notes(found):
         print(f"! {sentence}")
     for path in filter(None, (csv, picture)):

@@ -6,24 +6,27 @@ import math
 from pathlib import Path
 from typing import Any
 
+from rocking.cli.shared_options import in_unit
 from rocking.conventions import FEET, Foot
 from rocking.evidence.coefficient_table import CoefficientRow, outside_evidence
 from rocking.report.facts.impact import ImpactAnswer, impact_facts
 from rocking.restitution import energy_ledger
 
 
-def show(answer: ImpactAnswer) -> None:
+def show(answer: ImpactAnswer, length: str = "m") -> None:
     """Print body, tables and warnings.
 
     Parameters
     ----------
     answer : ImpactAnswer
         What `ImpactAnswer.of` computed.
+    length : str
+        Unit of lengths.
     """
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
-    for line in _body_lines(answer):
+    for line in _body_lines(answer, length):
         console.print(line, markup=False)
     for foot, rows in answer.tables.items():
         console.print()
@@ -116,10 +119,10 @@ def draw_stages(answer: ImpactAnswer, path: Path) -> None:
     write(figure_2(answer.body, onto=next(reversed(answer.tables))), path)
 
 
-def _body_lines(answer: ImpactAnswer) -> list[str]:
+def _body_lines(answer: ImpactAnswer, length: str) -> list[str]:
     body = answer.body
-    x, y = body.centre
-    lines = [f"{type(body).__name__}: mass {body.mass:.4g} kg, centre of mass at x = {x:.4g} m, y = {y:.4g} m"]
+    x, y = (in_unit(place, length) for place in body.centre)
+    lines = [f"{type(body).__name__}: mass {body.mass:.4g} kg, centre of mass at x = {x}, y = {y}"]
     lines += body.assumed
     feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
     for foot in feet:
@@ -127,7 +130,7 @@ def _body_lines(answer: ImpactAnswer) -> list[str]:
         where = "" if body.is_symmetric else f"{foot} foot: "
         lines.append(
             f"{where}h/b = {side.slenderness_ratio:.4g}, alpha = {side.slenderness_angle:.4g} rad "
-            f"({math.degrees(side.slenderness_angle):.3g} deg), R = {side.semi_diagonal:.4g} m, "
+            f"({math.degrees(side.slenderness_angle):.3g} deg), R = {in_unit(side.semi_diagonal, length)}, "
             f"p = {side.frequency_parameter:.4g} rad/s, "
             f"uplift at {side.uplift_acceleration:.3g} m/s2 ({side.uplift_acceleration / answer.gravity:.3g} g)"
         )

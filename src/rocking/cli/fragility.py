@@ -13,14 +13,14 @@ _OUTPUT = "Output"
 
 def fragility(
     body: Annotated[
-        Path | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --units; left out with --width.")
+        str | None, typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF with --units; left out with --width.")
+    ] = None,
+    motions: Annotated[
+        list[str] | None, typer.Argument(help="Record files, or pulses such as sine:amplitude=1,period=0.5.")
     ] = None,
     record: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Record file, or a pulse such as sine:amplitude=1,period=0.5; again for more.",
-            rich_help_panel=_SHAKING,
-        ),
+        typer.Option(help="The same, as an option; again for more.", rich_help_panel=_SHAKING),
     ] = None,
     synthetic: Annotated[
         str | None,
@@ -96,27 +96,31 @@ def fragility(
     """Print how likely a body is to rock or to overturn at a level of shaking, and how well that is known."""
     from rocking.cli import fragility_output, fragility_page_output
     from rocking.cli.body_options import body_from
+    from rocking.cli.fragility_motions import body_and_records
     from rocking.cli.fragility_question import FragilityQuestion
     from rocking.cli.study_output import settings_from
     from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 
     unit, units = shared.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
     size = {"width": width, "height": height, "depth": depth, "density": density}
+    sized = any(one is not None for one in (width, height, angle, semi_diagonal))
+    file, records = body_and_records(body, motions or [], sized=sized)
     files = fragility_output.Files(picture, csv, p58, nrml, excel, mat, netcdf, common_dispersion)
     question = FragilityQuestion.of(
-        body_from(body, **size, angle=angle, semi_diagonal=semi_diagonal, unit=unit),
+        body_from(file, **size, angle=angle, semi_diagonal=semi_diagonal, unit=unit),
         {"analysis": analysis, "measure": measure, "levels": levels, "states": states, "factor": factor},
         restitution,
         settings_from(gravity, engine, linear, threads),
     )
     files.check(question)
     told = {"format": format, "units": units, "time_step": time_step, "component": component}
-    answer = question.answered({"record": record, "synthetic": synthetic, "count": count, "seed": seed}, told, as_json)
+    sources = {"record": [*records, *(record or [])], "synthetic": synthetic, "count": count, "seed": seed}
+    answer = question.answered(sources, told, as_json)
     # the numbers are shown even if a file cannot be made of them
     if as_json:
         print(fragility_page_output.as_json(answer))
     else:
-        fragility_page_output.show(answer)
+        fragility_page_output.show(answer, unit or "m")
     for path in files.write(answer, name):
         if not as_json:
             print(f"wrote {path}")

@@ -1,9 +1,12 @@
 """The motions of `rocking fragility`: record files, pulses, or a family of synthetic motions."""
 
+from pathlib import Path
 from typing import Any
 
 from rocking.cli import study_output as shared
 from rocking.cli.motion_options import motion_from
+from rocking.cli.simulate_question import refuse_reversed
+from rocking.cli.solid_options import is_body
 from rocking.errors import InvalidValueError
 from rocking.studies.motion_set import MotionList
 
@@ -14,6 +17,37 @@ MOST_MOTIONS = 5000
 """All of them are held in memory."""
 
 _SOURCES = ("record", "synthetic", "count", "seed")
+
+
+def body_and_records(body: str | None, motions: list[str], *, sized: bool) -> tuple[Path | None, list[str]]:
+    """Return which word names the body and which ones the motions.
+
+    Parameters
+    ----------
+    body : str, optional
+        First word of the command.
+    motions : list of str
+        The other words.
+    sized : bool
+        Whether the body is given by its size, so that all words are motions.
+
+    Returns
+    -------
+    body : Path, optional
+        Body file.
+    records : list of str
+        Record files and pulses.
+
+    Raises
+    ------
+    InvalidValueError
+        If a motion stands before the body.
+    """
+    if sized and body is not None and not is_body(body):
+        return None, [body, *motions]
+    for motion in motions:
+        refuse_reversed(body, motion)
+    return None if body is None else Path(body), motions
 
 
 def motions_from(

@@ -16,6 +16,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rocking.cli import study_output as shared
+from rocking.cli.body_options import body_words
 from rocking.cli.fragility_question import FragilityAnswer
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.incremental import IncrementalAnalysis
@@ -94,20 +95,22 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def show(answer: FragilityAnswer) -> None:
+def show(answer: FragilityAnswer, length: str = "m") -> None:
     """Print the curves, and what is to be known of them.
 
     Parameters
     ----------
     answer : FragilityAnswer
         What was found.
+    length : str
+        Unit of lengths.
     """
     from rich.console import Console
 
     console, found = Console(highlight=False, soft_wrap=True), answer.found
     labels = dict.fromkeys(one.subject.rocker.label for one in answer.results.values())
     head = {
-        "body": repr(answer.question.body),
+        "body": body_words(answer.question.body, answer.question.settings["gravity"], length),
         "motions": _motions(answer.motions),
         "restitution": ", ".join(labels),
         "measure": f"{found.subject.measure.name}, {found.subject.measure.words}",

@@ -79,6 +79,6 @@ def map(
     if as_json:
         print(map_page_output.as_json(answer))
         return
-    map_page_output.show(answer)
+    map_page_output.show(answer, unit or "m")
     for path in written:
         print(f"wrote {path}")

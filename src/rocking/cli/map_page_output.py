@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from rocking.cli.body_options import body_words
 from rocking.cli.files_output import plain
 from rocking.cli.map_output import MapAnswer
 from rocking.cli.study_output import motion_facts, table
@@ -65,19 +66,21 @@ def as_json(answer: MapAnswer) -> str:
     return json.dumps(facts, indent=1, allow_nan=False)
 
 
-def show(answer: MapAnswer) -> None:
+def show(answer: MapAnswer, length: str = "m") -> None:
     """Print the map in words.
 
     Parameters
     ----------
     answer : MapAnswer
         The map.
+    length : str
+        Unit of lengths.
     """
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
     asked, found = answer.question, answer.found
-    console.print(f"body:         {asked.body!r}", markup=False)
+    console.print(f"body:         {body_words(asked.body, asked.settings['gravity'], length)}", markup=False)
     console.print(f"motion:       {asked.motion.name}", markup=False)
     console.print(f"restitution:  {found.attrs['restitution']};  engine: {found.attrs['engine']}", markup=False)
     for name, axis in (("x", asked.x), ("y", asked.y)):

@@ -73,6 +73,6 @@ def minimum(
     if as_json:
         print(minimum_output.as_json(answer))
         return
-    minimum_output.show(answer)
+    minimum_output.show(answer, unit or "m", units or "m/s2")
     for path in written:
         print(f"wrote {path}")

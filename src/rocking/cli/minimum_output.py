@@ -18,9 +18,11 @@ from typing import Any
 
 from rocking.bodies import Body
 from rocking.cli import study_output as shared
+from rocking.cli.body_options import body_words
 from rocking.cli.files_output import write_csv
+from rocking.cli.shared_options import beside_g, in_unit
 from rocking.cli.simulate_question import restitution_from
-from rocking.conventions import g
+from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.dynamics.response import Motion
 from rocking.studies.crossings import Crossings
 
@@ -255,30 +257,35 @@ def write(answer: MinimumAnswer, picture: Path | None, csv: Path | None) -> list
     return [path for path in (picture, csv) if path is not None]
 
 
-def show(answer: MinimumAnswer) -> None:
+def show(answer: MinimumAnswer, length: str = "m", acceleration: str = "m/s2") -> None:
     """Print all crossings.
 
     Parameters
     ----------
     answer : MinimumAnswer
         What was found.
+    length : str
+        Unit of lengths.
+    acceleration : str
+        Unit of accelerations beside g.
     """
     from rich.console import Console
 
     console, found = Console(highlight=False, soft_wrap=True), answer.found
-    console.print(f"body:         {answer.body!r}", markup=False)
+    unit, lifts = beside_g(acceleration), found.uplift_acceleration
+    console.print(f"body:         {body_words(answer.body, answer.settings['gravity'], length)}", markup=False)
     console.print(f"motion:       {answer.motion.name}, scaled", markup=False)
     console.print(f"restitution:  {answer.label}", markup=False)
-    console.print(f"lifts it:     {_g(found.uplift_acceleration)}, {found.uplift_acceleration:.6g} m/s2", markup=False)
+    console.print(f"lifts it:     {_g(lifts)}, {in_unit(lifts, unit, '.6g')}", markup=False)
     console.print()
     words = sentence(found)
     console.print(f"{words[:1].upper()}{words[1:]}.", style="bold", markup=False)
     if len(found):
-        head = ("PGA [g]", "[m/s2]", "/ uplift", "below", "above")
+        head = ("PGA [g]", f"[{unit}]", "/ uplift", "below", "above")
         rows: list[tuple[str, ...]] = [
             (
                 f"{one['acceleration_g']:.6f}",
-                f"{one['acceleration_m_s2']:.6f}",
+                f"{one['acceleration_m_s2'] / ACCELERATION_UNITS[unit]:.6f}",
                 f"{one['ratio']:.6f}",
                 _short(int(one["mode_below"])),
                 _short(int(one["mode_above"])),

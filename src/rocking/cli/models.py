@@ -9,16 +9,19 @@ import typer
 
 
 def models(
-    name: Annotated[str | None, typer.Argument(help="One model; all if left out.")] = None,
+    name: Annotated[str | None, typer.Argument(help="One model, or my_file.py:MyModel; all if left out.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """List the restitution models, in the plane and in space: reference, assumptions, domain, known defects."""
     from rocking import checks
     from rocking.restitution import RestitutionModel
     from rocking.restitution import models as registered
+    from rocking.restitution.from_file import file_of, model_in_file
     from rocking.restitution.spatial import SpatialModel, spatial_models
 
     found: dict[str, type[RestitutionModel] | type[SpatialModel]] = {**registered(), **spatial_models()}
+    if name is not None and file_of(name):
+        found[name] = type(model_in_file(name))
     name = checks.spelling(name, found)
     if name is not None and name not in found:
         from rocking.errors import UnknownModelError

@@ -35,8 +35,10 @@ def motion(
     """Print what a record or a pulse is, its intensity measures and its response spectrum."""
     from rocking.cli import motion_output
     from rocking.cli.motion_options import motion_from
+    from rocking.conventions import ACCELERATION_UNITS
     from rocking.report.facts.motion import MotionAnswer
 
+    (units,) = shared.units_of(units, ACCELERATION_UNITS)
     subject = motion_from(
         record,
         format=format,
@@ -55,6 +57,6 @@ def motion(
     if as_json:
         print(motion_output.as_json(answer))
     else:
-        motion_output.show(answer)
+        motion_output.show(answer, units or "m/s2")
         for path in filter(None, (csv, picture)):
             print(f"wrote {path}")

@@ -125,7 +125,10 @@ def _from_file(
             cause += "; " + _hint([name for name in names if name.casefold() != taken])
         raise InvalidValueError(cause) from error
     except RecordError as error:
-        raise RecordError(_in_options(error)) from error
+        from rocking.cli.solid_options import is_body
+
+        body = f"; perhaps a body: see rocking cor {word}" if is_body(word) else ""
+        raise RecordError(_in_options(error) + body) from error
 
 
 def _hint(names: list[str]) -> str:

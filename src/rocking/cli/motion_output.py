@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import FloatArray, g
+from rocking.cli.shared_options import beside_g, in_unit
+from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import Measure
 from rocking.motions.kinematics import ground_displacement, ground_velocity
@@ -55,32 +56,36 @@ def periods_from(words: str) -> list[float]:
     return [checks.positive("periods", number, "s", hint) for number in numbers]
 
 
-def show(answer: MotionAnswer) -> None:
+def show(answer: MotionAnswer, acceleration: str = "m/s2") -> None:
     """Print what it is, its intensity measures and its spectrum.
 
     Parameters
     ----------
     answer : MotionAnswer
         What `MotionAnswer.of` computed.
+    acceleration : str
+        Unit of accelerations beside g.
     """
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
     console.print(answer.motion.name, style="bold", markup=False)
-    for word, value in _facts(answer):
+    unit = beside_g(acceleration)
+    for word, value in _facts(answer, unit):
         console.print(f"  {word + ':':<12} {value}", markup=False)
     for line in answer.samples.provenance if isinstance(answer.motion, GroundMotion) else ():
         console.print(f"  {line}", style="dim", markup=False)
     console.print()
-    rows = [(one.name, f"{one.value:.4g}", one.unit, _in_g(one)) for one in answer.measures.values()]
+    rows = [_row(one, unit) for one in answer.measures.values()]
     console.print(_table(("intensity measure", "value", "unit", ""), rows))
     console.print()
     spectrum = answer.spectrum
     console.print(f"Response spectrum, {100.0 * spectrum.damping:.4g} % damping", style="bold")
-    columns = (spectrum.periods, spectrum.pseudo_acceleration, spectrum.pseudo_acceleration / g)
+    size = ACCELERATION_UNITS[unit]
+    columns = (spectrum.periods, spectrum.pseudo_acceleration / size, spectrum.pseudo_acceleration / g)
     values = zip(*columns, spectrum.pseudo_velocity, spectrum.displacement, strict=True)
     lines = [tuple(f"{value:.4g}" for value in row) for row in values]
-    console.print(_table(("T [s]", "PSA [m/s2]", "PSA [g]", "PSV [m/s]", "Sd [m]"), lines))
+    console.print(_table(("T [s]", f"PSA [{unit}]", "PSA [g]", "PSV [m/s]", "Sd [m]"), lines))
 
 
 def as_json(answer: MotionAnswer) -> str:
@@ -141,7 +146,7 @@ def draw(answer: MotionAnswer, path: Path) -> None:
     write(ground_motion_picture(answer.motion), path)
 
 
-def _facts(answer: MotionAnswer) -> list[tuple[str, str]]:
+def _facts(answer: MotionAnswer, unit: str) -> list[tuple[str, str]]:
     motion = answer.motion
     if isinstance(motion, Pulse):
         return [("kind", "pulse, known at every instant"), ("duration", f"{motion.duration:.6g} s")]
@@ -151,12 +156,14 @@ def _facts(answer: MotionAnswer) -> list[tuple[str, str]]:
     facts.append(("samples", f"{len(motion)} at {motion.time_step:.6g} s, the file in {told.get('unit', 'm/s2')}"))
     facts.append(("duration", f"{motion.duration:.6g} s"))
     if motion.vertical is not None:
-        facts.append(("upwards", f"{motion.peak_vertical:.4g} m/s2 ({motion.peak_vertical / g:.4g} g) at most"))
+        facts.append(("upwards", f"{in_unit(motion.peak_vertical, unit)} ({motion.peak_vertical / g:.4g} g) at most"))
     return facts
 
 
-def _in_g(measure: Measure) -> str:
-    return f"= {measure.value / g:.4g} g" if measure.unit == "m/s2" else ""
+def _row(measure: Measure, unit: str) -> tuple[str, ...]:
+    if measure.unit != "m/s2":
+        return measure.name, f"{measure.value:.4g}", measure.unit, ""
+    return measure.name, *in_unit(measure.value, unit).split(), f"= {measure.value / g:.4g} g"
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Any:

@@ -104,3 +104,46 @@ def units_of(word: str | None, *kinds: Mapping[str, float]) -> tuple[str | None,
             raise InvalidValueError(f"--units must have one unit of a kind, got {found[place]} and {name}")
         found[place] = name
     return tuple(found)
+
+
+def in_unit(value: float, unit: str, digits: str = ".4g") -> str:
+    """Return a length or an acceleration in the unit in which the question was asked.
+
+    Parameters
+    ----------
+    value : float
+        Length or acceleration [m or m/s2].
+    unit : str
+        Unit to write it in.
+    digits : str
+        Format of the number.
+
+    Returns
+    -------
+    str
+        Number and unit.
+
+    Examples
+    --------
+    >>> in_unit(0.5, "mm"), in_unit(1.0, "gal")
+    ('500 mm', '100 gal')
+    """
+    from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
+
+    return f"{value / {**LENGTH_UNITS, **ACCELERATION_UNITS}[unit]:{digits}} {unit}"
+
+
+def beside_g(unit: str) -> str:
+    """Return the unit in which an acceleration is written where it stands in g too.
+
+    Parameters
+    ----------
+    unit : str
+        Unit in which the question was asked.
+
+    Returns
+    -------
+    str
+        The same, and m/s2 in place of g.
+    """
+    return "m/s2" if unit == "g" else unit

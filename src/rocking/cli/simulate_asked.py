@@ -62,6 +62,11 @@ class Asked:
         word = self.values["body"]
         return word if self.document is None and is_solid(word) else None
 
+    @property
+    def units(self) -> tuple[str, str]:
+        """Units of lengths and of accelerations, SI where none was typed."""
+        return self.values["unit"] or "m", self.values["units"] or "m/s2"
+
     def some(self, names: tuple[str, ...]) -> dict[str, Any]:
         """Return some options.
 

@@ -40,7 +40,7 @@ def answer(asked: Asked, files: Files, *, as_json: bool) -> None:
     if as_json:
         print(contact_page.as_json(response))
         return
-    contact_page.show(response)
+    contact_page.show(response, asked.units[0])
     for path in written:
         print(f"wrote {path}")
 

@@ -27,6 +27,6 @@ def answer(asked: Asked, files: Files, *, as_json: bool) -> None:
     if as_json:
         print(simulate_json.as_json(found))
         return
-    simulate_page.show(found)
+    simulate_page.show(found, *asked.units)
     for path in written:
         print(f"wrote {path}")

@@ -48,7 +48,7 @@ def answer(asked: Asked, files: Files, *, as_json: bool) -> None:
     if as_json:
         print(spatial_page.as_json(response, file))
         return
-    spatial_page.show(response, file)
+    spatial_page.show(response, file, asked.units[0])
     for path in written:
         print(f"wrote {path}")
 

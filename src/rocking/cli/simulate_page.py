@@ -3,6 +3,8 @@
 import math
 from typing import Any
 
+from rocking.cli.body_options import body_words
+from rocking.cli.shared_options import in_unit
 from rocking.cli.simulate_output import Answer
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
@@ -15,19 +17,23 @@ _FIRST = 10
 _IN_PYTHON = "simulate_with_contact(body, motion, friction=...)"
 
 
-def show(answer: Answer) -> None:
+def show(answer: Answer, length: str = "m", acceleration: str = "m/s2") -> None:
     """Print body, motion, outcome, impacts, doubts, and what other models say.
 
     Parameters
     ----------
     answer : Answer
         What `Answer.of` computed.
+    length : str
+        Unit of lengths.
+    acceleration : str
+        Unit of accelerations.
     """
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
     response = answer.response
-    for word, value in _facts(response):
+    for word, value in _facts(response, length, acceleration):
         console.print(f"{word + ':':<13} {value}", markup=False)
     console.print()
     console.print(_sentence(response.summary) + ".", style="bold", markup=False)
@@ -52,15 +58,8 @@ def show(answer: Answer) -> None:
     console.print(_verdict(answer), markup=False)
 
 
-def _facts(response: Response) -> list[tuple[str, str]]:
+def _facts(response: Response, length: str, acceleration: str) -> list[tuple[str, str]]:
     body, rocker, motion = response.body, response.rocker, response.motion
-    same = math.isclose(rocker.right.slenderness_angle, rocker.left.slenderness_angle, rel_tol=1e-12)
-    sides = (("", rocker.right),) if same else (("left ", rocker.left), ("right ", rocker.right))
-    shape = "; ".join(
-        f"{foot}alpha = {side.slenderness_angle:.4g} rad ({math.degrees(side.slenderness_angle):.3g} deg), "
-        f"R = {side.semi_diagonal:.4g} m, p = {side.frequency_parameter:.4g} rad/s"
-        for foot, side in sides
-    )
     r = {rocker.left.coefficient, rocker.right.coefficient}
     value = f"r = {rocker.left.coefficient:.6f}"
     if len(r) > 1:
@@ -69,7 +68,7 @@ def _facts(response: Response) -> list[tuple[str, str]]:
         ground = f"none; let go at {math.degrees(float(response.rotation[0])):.4g} deg"
     else:
         times = "" if response.scale == 1.0 else f"{response.scale:g} times "
-        peak = f", peak {abs(response.scale) * motion.peak:.4g} m/s2"
+        peak = f", peak {in_unit(abs(response.scale) * motion.peak, acceleration)}"
         ground = times + motion.name
         if not isinstance(motion, Pulse):
             ground += f", {motion.duration:.4g} s{peak}"
@@ -77,7 +76,7 @@ def _facts(response: Response) -> list[tuple[str, str]]:
             ground += peak
     equations = ", slender-linear equations" if response.settings.linear else ""
     return [
-        ("body", f"{type(body).__name__}, {body.mass:.4g} kg, {shape}"),
+        ("body", body_words(body, response.settings.gravity, length)),
         *(("density", sentence.removeprefix("density ")) for sentence in body.assumed),
         ("motion", ground),
         ("restitution", f"{rocker.label}, {value}"),

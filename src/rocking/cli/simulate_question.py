@@ -8,7 +8,7 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.cli.model_options import models_from
 from rocking.cli.motion_options import motion_from
-from rocking.cli.solid_options import is_solid
+from rocking.cli.solid_options import is_body
 from rocking.conventions import g
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
@@ -108,8 +108,7 @@ def body_and_motion(
     """
     if sized and record is None:
         body, record = None, body
-    if body is not None and record is not None and _is_body(record) and not _is_body(body):
-        raise InvalidValueError(f"the body comes first, then the motion: {record[:100]} {body[:100]}, not the reverse")
+    refuse_reversed(body, record)
     if record is not None and motion is not None:
         # a word that is a file beside dimensions is more likely a body
         raise InvalidValueError(f"one motion and one body, please: got {record[:100]!r} and --motion {motion[:100]!r}")
@@ -123,10 +122,21 @@ def body_and_motion(
     return None if body is None else Path(body), word
 
 
-def _is_body(word: str) -> bool:
-    from rocking.bodies.formats.reader import FORMATS
+def refuse_reversed(body: str | None, record: str | None) -> None:
+    """Refuse a motion before its body.
 
-    return Path(word).suffix.lower() in FORMATS or is_solid(word)
+    Parameters
+    ----------
+    body, record : str, optional
+        First and second word of the command.
+
+    Raises
+    ------
+    InvalidValueError
+        If the second one names a body, and the first one does not.
+    """
+    if body is not None and record is not None and is_body(record) and not is_body(body):
+        raise InvalidValueError(f"the body comes first, then the motion: {record[:100]} {body[:100]}, not the reverse")
 
 
 def motion_asked(word: str | None, told: dict[str, Any], scale: float) -> Motion | None:

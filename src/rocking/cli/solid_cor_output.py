@@ -8,27 +8,31 @@ from typing import Any
 
 from rocking.bodies.formats import SolidFile
 from rocking.bodies.solid import RoundBase
+from rocking.cli.shared_options import in_unit
 from rocking.cli.solid_impact import EdgeImpact, SolidAnswer, edge_facts, solid_facts
+from rocking.conventions import LENGTH_UNITS
 
 _MOST = 12
 """Corners of a base that are printed."""
 
 
-def show(answer: SolidAnswer) -> None:
+def show(answer: SolidAnswer, length: str = "m") -> None:
     """Print body, repairs, base, and edges with the coefficients of every model.
 
     Parameters
     ----------
     answer : SolidAnswer
         What `SolidAnswer.of` computed.
+    length : str
+        Unit of lengths.
     """
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
-    show_body(answer.file)
+    show_body(answer.file, length)
     console.print()
     console.print("Edges it may rock about" if _numbered(answer) else "Directions it may be tipped in", style="bold")
-    console.print(_geometry(answer.edges))
+    console.print(_geometry(answer.edges, length))
     console.print()
     console.print("Coefficient of restitution, angular velocity after / before", style="bold")
     console.print(_coefficients(answer.edges))
@@ -38,28 +42,31 @@ def show(answer: SolidAnswer) -> None:
         console.print(f"! {sentence}", style="yellow", markup=False)
 
 
-def show_body(file: SolidFile) -> None:
+def show_body(file: SolidFile, length: str = "m") -> None:
     """Print mass, centre, base and repairs of a body in space.
 
     Parameters
     ----------
     file : SolidFile
         The body.
+    length : str
+        Unit of lengths.
     """
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
     solid = file.solid
     x, y, z = (solid.centre - [0.0, 0.0, solid.ground]).tolist()
-    size = " x ".join(f"{side:.4g}" for side in (solid.box[1] - solid.box[0]).tolist())
+    size = " x ".join(f"{side / LENGTH_UNITS[length]:.4g}" for side in (solid.box[1] - solid.box[0]).tolist())
     parts = len(solid.local_parts)
     console.print(
-        f"{file.name}: {size} m, {parts} part{'s' * (parts > 1)}, mass {solid.mass:.6g} kg, "
+        f"{file.name}: {size} {length}, {parts} part{'s' * (parts > 1)}, mass {solid.mass:.6g} kg, "
         f"volume {solid.volume:.6g} m3",
         markup=False,
     )
-    console.print(f"centre of mass at x = {_rounded(x)} m, y = {_rounded(y)} m, {z:.5g} m above the ground")
-    console.print(_base(file), markup=False)
+    middle = f"x = {_rounded(x, length)} {length}, y = {_rounded(y, length)} {length}"
+    console.print(f"centre of mass at {middle}, {in_unit(z, length, '.5g')} above the ground")
+    console.print(_base(file, length), markup=False)
     for sentence in solid.assumed:
         console.print(sentence, markup=False)
     for sentence in file.repairs:
@@ -134,37 +141,39 @@ def _numbered(answer: SolidAnswer) -> bool:
     return not isinstance(answer.file.solid.base, RoundBase)
 
 
-def _base(file: SolidFile) -> str:
+def _base(file: SolidFile, length: str) -> str:
     base = file.solid.base
     if isinstance(base, RoundBase):
         x, y = base.centre.tolist()
-        return f"base: a circle of radius {base.radius:.5g} m about ({_rounded(x)}, {_rounded(y)}) m"
+        middle = f"({_rounded(x, length)}, {_rounded(y, length)}) {length}"
+        return f"base: a circle of radius {in_unit(base.radius, length, '.5g')} about {middle}"
     vertices = getattr(base, "vertices", None)
     points = [] if vertices is None else vertices.tolist()
-    listed = ", ".join(f"({_rounded(x)}, {_rounded(y)})" for x, y in points[:_MOST])
-    return f"base: {len(points)} corners, {listed}{' ...' if len(points) > _MOST else ''} m"
+    listed = ", ".join(f"({_rounded(x, length)}, {_rounded(y, length)})" for x, y in points[:_MOST])
+    return f"base: {len(points)} corners, {listed}{' ...' if len(points) > _MOST else ''} {length}"
 
 
-def _rounded(place: float) -> str:
+def _rounded(place: float, length: str) -> str:
     # a nanometre is rounding
-    return f"{round(place, 9) + 0.0:.5g}"
+    return f"{(round(place, 9) + 0.0) / LENGTH_UNITS[length]:.5g}"
 
 
-def _geometry(edges: tuple[EdgeImpact, ...]) -> Any:
+def _geometry(edges: tuple[EdgeImpact, ...], length: str) -> Any:
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False, header_style="bold")
-    for word in ("edge", "from (x, y) m", "to (x, y) m", "alpha rad", "deg", "h/b", "R m", "p rad/s"):
+    places = (f"from (x, y) {length}", f"to (x, y) {length}")
+    for word in ("edge", *places, "alpha rad", "deg", "h/b", f"R {length}", "p rad/s"):
         table.add_column(word, justify="left" if word == "edge" else "right")
     for edge in edges:
-        ends = (f"{_rounded(x)}, {_rounded(y)}" for x, y in edge.ends)
+        ends = (f"{_rounded(x, length)}, {_rounded(y, length)}" for x, y in edge.ends)
         table.add_row(
             edge.name,
             *ends,
             f"{edge.slenderness_angle:.4f}",
             f"{math.degrees(edge.slenderness_angle):.2f}",
             f"{1.0 / math.tan(edge.slenderness_angle):.3f}",
-            f"{edge.semi_diagonal:.4f}",
+            f"{edge.semi_diagonal / LENGTH_UNITS[length]:.{4 if length == 'm' else 2}f}",
             f"{edge.frequency_parameter:.4f}",
         )
     return table

@@ -32,6 +32,24 @@ def is_solid(word: str | Path | None) -> bool:
     return word is not None and describes_solid(word)
 
 
+def is_body(word: str | Path) -> bool:
+    """Return whether a word names a body, plane or in space, by how it ends.
+
+    Parameters
+    ----------
+    word : str or Path
+        The word.
+
+    Returns
+    -------
+    bool
+        Whether a body file is named so.
+    """
+    from rocking.bodies.formats.reader import FORMATS
+
+    return Path(word).suffix.lower() in FORMATS or is_solid(word)
+
+
 def solid_from(
     path: Path,
     *,

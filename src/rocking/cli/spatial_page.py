@@ -86,7 +86,7 @@ def as_json(response: SpatialResponse, file: SolidFile) -> str:
     return json.dumps(spatial_facts(response, file), indent=2, allow_nan=False)
 
 
-def show(response: SpatialResponse, file: SolidFile) -> None:
+def show(response: SpatialResponse, file: SolidFile, length: str = "m") -> None:
     """Print body, motion, outcome, contacts, impacts and measures.
 
     Parameters
@@ -95,11 +95,13 @@ def show(response: SpatialResponse, file: SolidFile) -> None:
         The response.
     file : SolidFile
         The body.
+    length : str
+        Unit of lengths.
     """
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
-    show_body(file)
+    show_body(file, length)
     for axis, name in zip(("x", "y", "vertical"), response.names, strict=True):
         console.print(f"{'motion ' + axis + ':':<16} {name}", markup=False)
     console.print(f"{'restitution:':<16} {response.law.label}", markup=False)

@@ -276,10 +276,37 @@ def test_verify_names_what_is_damaged(run, job, tmp_path, harm):
     told = json.loads(run("verify", folder, "--json")[1])
     assert (told["whole"], told["verified"], told["missing"]) == (False, 500, [[first, first + 100]])
     code, out, _ = run("status", folder)
-    assert (code, "500 of 600 histories (5 of 6 chunks) are safe" in out, one.name in out) == (0, True, True)
+    assert (code, "500 of 600 histories (5 of 6 chunks) are safe" in out, one.name in out) == (6, True, True)
     assert json.loads(run("status", folder, "--json")[1])["broken"]
     assert run("resume", folder)[0] == 0
     assert run("verify", folder)[0] == 0
+
+
+def test_damaged_ledger_is_told_and_mended(run, job, tmp_path):
+    """Verify, status and export say that the ledger is damaged, with exit code 6; resume mends it, as verify says."""
+    folder = tmp_path / "c"
+    assert run("run", job(), "--out", folder)[0] == 0
+    (folder / "histories" / "ledger.sqlite").write_bytes(b"xx")
+    code, out, err = run("verify", folder)
+    assert (code, "ledger.sqlite is damaged" in out, err) == (6, True, "")
+    assert out.endswith(f"go on with: rocking campaign resume {folder}\n")
+    assert json.loads(run("verify", folder, "--json")[1])["whole"] is False
+    for words in (("status", folder), ("export", folder, "--to", tmp_path / "r.csv")):
+        code, _, err = run(*words)
+        assert (code, "run the campaign again: its shards make it anew" in err, len(err.splitlines())) == (6, True, 1)
+    code, out, _ = run("resume", folder)
+    assert (code, "kept as ledger.sqlite.damaged-1" in out) == (0, True)
+    assert run("verify", folder)[0] == 0
+
+
+def test_changed_job_is_told_alike(run, job, tmp_path):
+    """Verify, status and resume refuse a job that was edited with the same sentence, and none sends to another one."""
+    folder = tmp_path / "c"
+    assert run("run", job(), "--out", folder)[0] == 0
+    (folder / "job.toml").write_text((folder / "job.toml").read_text() + "# mine\n")
+    told = {run(word, folder) for word in ("verify", "status", "resume")}
+    (((code, out, err)),) = told
+    assert (code, out, "job.toml has changed since the campaign began; restore it" in err) == (6, "", True)
 
 
 def test_verify_of_what_is_not_finished(run, job, tmp_path):
@@ -287,7 +314,7 @@ def test_verify_of_what_is_not_finished(run, job, tmp_path):
     folder = begun(tmp_path, job())
     code, out, _ = run("verify", folder)
     assert (code, "missing: histories 100 to 599" in out) == (6, True)
-    assert run("verify", tmp_path)[0] == 2
+    assert run("verify", tmp_path / "none")[0] == 2
 
 
 def test_verify_reads_every_round(run, job, tmp_path):

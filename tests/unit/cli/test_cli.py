@@ -130,6 +130,35 @@ def test_models(capsys):
     assert len(json.loads(out)["ked"]["known_defects"]) >= 6
 
 
+def test_model_of_the_user_is_told_like_the_others(capsys, tmp_path):
+    """A class in a file is named, with its title, as `rocking models ked` is."""
+    own = tmp_path / "mine.py"
+    own.write_text("import rocking as rk\nclass Mine(rk.RestitutionModel):\n    name = 'mine'\n    title = 'of mine'\n")
+    code, out, _ = run(capsys, "models", f"{own}:Mine", "--json")
+    assert (code, json.loads(out)[f"{own}:Mine"]["title"]) == (0, "of mine")
+    code, _, err = run(capsys, "models", f"{own}:Yours")
+    assert (code, "mine.py has no restitution model Yours; it has Mine" in err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("motion", "body.toml"), "perhaps a body: see rocking cor body.toml"),
+        (("spectrum", "body.toml"), "perhaps a body: see rocking cor body.toml"),
+        (("cor", "m.csv"), "perhaps a record: see rocking motion m.csv"),
+        (("fragility", "m.csv", "body.toml"), "the body comes first, then the motion: body.toml m.csv"),
+    ],
+)
+def test_body_in_place_of_a_record_and_the_reverse(words, told, capsys, tmp_path, monkeypatch):
+    """A file of the other kind is met with what it probably is, and with what to type."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "body.toml").write_text('units = "m"\nwidth = 0.5\nheight = 2.0\n')
+    (tmp_path / "m.csv").write_text("".join(f"{0.01 * k},{k % 3}\n" for k in range(50)))
+    code, out, err = run(capsys, *words)
+    assert (code, out, len(err.splitlines())) == (2, "", 1)
+    assert told in err
+
+
 def test_paper_summary_and_json(capsys):
     """`rocking paper` prints tables, claims, league and verdict; --json holds them all as numbers."""
     code, out, _ = run(capsys, "paper")

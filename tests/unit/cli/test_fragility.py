@@ -55,6 +55,18 @@ def motions():
     return [made[k] for k in range(16)]
 
 
+def test_motions_follow_the_body(capsys, tmp_path):
+    """Motions are words after the body, as of other commands; --record says the same, and dimensions need no body."""
+    file = tmp_path / "body.wkt"
+    file.write_text("POLYGON ((0 0, 250 0, 250 1250, 0 1250, 0 0))")
+    pulses, levels = SINES[1::2], ("--levels", "0.2g,0.6g")
+    first = told(capsys, *SIZE, *SINES, *levels)
+    assert first["motions"]["count"] == 2
+    assert told(capsys, *SIZE, *pulses, *levels) == told(capsys, *SIZE, pulses[0], *SINES[2:], *levels) == first
+    drawn = told(capsys, file, *pulses, "--units", "mm", *levels)
+    assert drawn["results"][0]["reached"] == first["results"][0]["reached"]
+
+
 def test_json_is_the_python_call(capsys, motions):
     """Counts, medians and dispersions of stripes are those of the study, bit by bit; intervals hold them."""
     answer = told(capsys, *SIZE, *FAMILY, *LEVELS, "--states", "0.2,0.5")

@@ -2,6 +2,7 @@
 
 import pytest
 
+from rocking.bodies.solid import box
 from rocking.cli import main
 from rocking.plots.study_words import shown_in
 
@@ -109,3 +110,78 @@ def test_units_that_are_none(units, said, capsys):
         main(("cor", "--width", "5", "--height", "20", "--units", units))
     assert end.value.code == 2
     assert said in capsys.readouterr().err
+
+
+@pytest.fixture
+def record(tmp_path):
+    """Half a second of a third of g, in a file that states no unit."""
+    path = tmp_path / "third.txt"
+    path.write_text("".join(f"{0.01 * k:.2f} {0.33 if k < 50 else 0.0}\n" for k in range(200)))
+    return str(path)
+
+
+IN_MM = ("--width", "500", "--height", "2000", "--density", "2000", "--units", "mm,g")
+RADIUS = "alpha = 0.245 rad (14 deg), R = 1031 mm, p = 2.671 rad/s"  # R = sqrt(250^2 + 1000^2), p^2 = 3 g/(4 R)
+
+
+@pytest.mark.parametrize(
+    ("command", "more"),
+    [
+        ("simulate", ()),
+        ("map", ("--x", "scale=1:2:3", "--y", "slenderness_angle=5deg:20deg:3")),
+        ("minimum", ("--points", "12", "--levels", "1")),
+        ("fragility", ("--levels", "0.2g,0.4g")),
+    ],
+)
+def test_block_in_mm_is_told_in_mm(command, more, record, capsys):
+    """A block and a record that are given in mm and g are described in mm and g, by every command alike."""
+    out = run(capsys, command, *IN_MM, "--record" if command == "fragility" else "--motion", record, *more)
+    assert RADIUS in out
+    assert " m," not in out
+    if command == "simulate":
+        assert "third, 1.99 s, peak 0.33 g" in out
+
+
+def test_centre_of_a_block_in_mm(capsys):
+    """Half of 500 and of 2000 mm."""
+    out = run(capsys, "cor", *IN_MM[:-1], "mm")
+    assert "centre of mass at x = 250 mm, y = 1000 mm" in out
+    assert RADIUS in out
+
+
+def test_slip_in_mm(record, capsys):
+    """What slides is told in the unit of lengths; the numbers are those in m, times a thousand."""
+    options = ("--motion", record, "--contact", "--friction", "0.2")
+    metres = run(capsys, "simulate", "--width", "1", "--height", "1", "--units", "g", *options)
+    millimetres = run(capsys, "simulate", "--width", "1000", "--height", "1000", "--units", "mm,g", *options)
+    assert ("slid [m]" in metres, "slid [mm]" in millimetres) == (True, True)
+    slid = [float(out.partition("slid: ")[2].split()[0]) for out in (metres, millimetres)]
+    assert slid[1] == pytest.approx(1000.0 * slid[0], rel=1e-5)
+
+
+@pytest.mark.parametrize("command", ["cor", "simulate"])
+def test_mesh_in_mm_is_told_in_mm(command, record, capsys, tmp_path):
+    """A mesh of 500 x 600 x 2000 mm: its size, centre, base and edges in mm."""
+    shape = box(500.0, 600.0, 2000.0)
+    lines = [f"v {x} {y} {z}" for x, y, z in shape.vertices] + [f"f {a} {b} {c}" for a, b, c in shape.faces + 1]
+    path = tmp_path / "box.obj"
+    path.write_text("\n".join(lines))
+    ground = (record, "--units", "mm,g") if command == "simulate" else ("--units", "mm")
+    out = run(capsys, command, str(path), *ground)
+    assert "500 x 600 x 2000 mm" in out
+    assert "1000 mm above the ground" in out
+    assert "(-250, -300)" in out
+    if command == "cor":
+        assert "R mm" in out
+        assert "1030.78" in out  # sqrt(250^2 + 1000^2)
+
+
+def test_accelerations_stand_in_the_unit_of_the_record_beside_g(record, capsys):
+    """A record in gal: its peak, its spectrum, and what lifts and overturns a block are in gal; one in g, in m/s2."""
+    out = run(capsys, "motion", record, "--units", "gal")
+    assert ("PSA [gal]" in out, "m/s2" in out) == (True, False)
+    assert "0.33  gal" in out
+    assert "PSA [m/s2]" in run(capsys, "motion", record, "--units", "g")
+    out = run(capsys, "minimum", *IN_MM[:-1], "mm,gal", "--motion", record, "--points", "12", "--levels", "1")
+    assert "lifts it:     0.25 g, 245.166 gal" in out  # g tan(alpha) = 980.665 / 4
+    assert "m/s2" not in out

@@ -39,7 +39,6 @@ def test_there_is_no_second_list():
     assert {f"{c.__module__}.{c.__name__}" for c in found} == {
         "rocking.dynamics.outcome.Outcome",
         "rocking.dynamics.outcome.Status",
-        "rocking.studies.fragility.states.RockingState",  # of damage: no rocking, rocking, overturned
         "rocking.dynamics.bed.emergent.BedStatus",  # of one impact on a bed
     }
 

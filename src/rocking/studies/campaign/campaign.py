@@ -19,12 +19,9 @@ from rocking.studies.campaign.ledger import NAME as LEDGER
 from rocking.studies.campaign.ledger import Ledger
 from rocking.studies.campaign.lock import NAME as LOCK
 from rocking.studies.campaign.lock import FolderLock, holder
-from rocking.studies.campaign.recovery import rebuild
 from rocking.studies.campaign.running import run
 from rocking.studies.campaign.status import Progress, Status, Summary
 from rocking.studies.histories import Histories
-
-_UNKNOWN = "nothing that was recorded before is lost"
 
 
 @dataclass(frozen=True)
@@ -99,7 +96,7 @@ class Campaign:
             With all that is finished.
         """
         path = Path(folder)
-        with disk.guarded(path, lambda: _UNKNOWN):
+        with disk.guarded(path):
             identity = Identity.read(path)
         identity.refuse_other(path, _histories(histories))
         return cls(path, histories, identity)
@@ -121,7 +118,7 @@ class Campaign:
             As recorded at this instant.
         """
         path = Path(folder)
-        with disk.guarded(path, lambda: _UNKNOWN):
+        with disk.guarded(path):
             plan = Identity.read(path).plan
             running = holder(path)
             nothing = Status(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software, None)
@@ -135,7 +132,7 @@ class Campaign:
                 work = ledger.costs(plan.count).left()
             broken: tuple[str, ...] = ()
             if verify:
-                found = reading.verified(path, plan)
+                found = reading.verified(path)
                 chunks, histories, broken = found.chunks, found.verified, found.damaged
             numbers = (plan.count, histories, plan.chunks, chunks)
             return Status(path, *numbers, running, *effort, damaged, plan.software, work, broken)
@@ -184,7 +181,7 @@ class Campaign:
         order_seed: int | None = None,
         progress: Callable[[Progress], object] | None = None,
     ) -> Summary:
-        """Compute what is missing.
+        """Compute what is missing or damaged; a damaged ledger is set aside, and made anew from the shards.
 
         Parameters
         ----------
@@ -216,7 +213,7 @@ class Campaign:
         CampaignStorageError
             If the disk is full or cannot be written.
         CampaignDamagedError
-            If the ledger is not what was written.
+            If a file changes while it runs.
         CampaignWorkerError
             If a chunk cannot be computed.
         CampaignInterrupted
@@ -240,7 +237,7 @@ class Campaign:
         Piece
             First history, last one (not included), and their results.
         """
-        with disk.guarded(self.folder, lambda: _UNKNOWN):
+        with disk.guarded(self.folder):
             yield from reading.pieces(self.folder, self.plan)
 
     def results(self, *names: str) -> Arrays:
@@ -256,7 +253,7 @@ class Campaign:
         dict of str to ndarray
             Those keys, one entry a history.
         """
-        with disk.guarded(self.folder, lambda: _UNKNOWN):
+        with disk.guarded(self.folder):
             return reading.results(self.folder, self.plan, names)
 
     def column(self, name: str) -> Iterator[np.ndarray]:
@@ -272,7 +269,7 @@ class Campaign:
         ndarray
             Its values for one chunk after another.
         """
-        with disk.guarded(self.folder, lambda: _UNKNOWN):
+        with disk.guarded(self.folder):
             yield from reading.column(self.folder, self.plan, name)
 
     def sha256(self) -> str:
@@ -293,19 +290,7 @@ class Campaign:
         Verification
             What is damaged or missing; a run computes that.
         """
-        with disk.guarded(self.folder, lambda: _UNKNOWN):
-            return reading.verified(self.folder, self.plan)
-
-    def rebuild_ledger(self) -> int:
-        """Make the ledger anew from the shards; the old one is kept beside it.
-
-        Returns
-        -------
-        int
-            Chunks that are finished.
-        """
-        with disk.guarded(self.folder, lambda: _UNKNOWN), FolderLock(self.folder):
-            return rebuild(self.folder, self.plan)
+        return reading.verified(self.folder)
 
 
 def _refuse_used(folder: Path) -> None:

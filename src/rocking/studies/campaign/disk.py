@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rocking.studies.campaign.errors import CampaignBusyError, CampaignDamagedError, CampaignStorageError
 
+NOTHING_LOST = "nothing that was recorded before is lost"
 _UNFINISHED = ".part"
 _FULL = {sqlite3.SQLITE_FULL}
 _DENIED = {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}
@@ -109,7 +110,9 @@ def set_aside(path: Path) -> Path:
 
 @contextmanager
 def guarded(
-    folder: Path, safe: Callable[[], str], foreign: Callable[[BaseException], bool] = lambda _: False
+    folder: Path,
+    safe: Callable[[], str] = lambda: NOTHING_LOST,
+    foreign: Callable[[BaseException], bool] = lambda _: False,
 ) -> Iterator[None]:
     """Turn what disk and database say into one sentence that a user can act on.
 
@@ -172,7 +175,7 @@ def ledger_damaged(folder: Path, why: str) -> str:
     str
         A sentence with the way out.
     """
-    return f"{folder}: ledger.sqlite is damaged ({why}); the shards are intact: Campaign.rebuild_ledger makes it anew"
+    return f"{folder}: ledger.sqlite is damaged ({why}); run the campaign again: its shards make it anew"
 
 
 _ADVICE = "make room or allow writing, then run the campaign again: it goes on where it stopped"

@@ -277,12 +277,16 @@ class Ledger:
 def _writable(path: Path) -> sqlite3.Connection:
     fresh = not path.exists()
     database = sqlite3.connect(path, timeout=30.0, isolation_level=None)
-    database.execute("PRAGMA journal_mode = WAL")
-    database.execute("PRAGMA synchronous = FULL")
-    database.execute("PRAGMA fullfsync = ON")
-    (version,) = database.execute("PRAGMA user_version").fetchone()
-    if version == 0:
-        database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {FORMAT}; COMMIT;")
+    try:
+        database.execute("PRAGMA journal_mode = WAL")
+        database.execute("PRAGMA synchronous = FULL")
+        database.execute("PRAGMA fullfsync = ON")
+        (version,) = database.execute("PRAGMA user_version").fetchone()
+        if version == 0:
+            database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {FORMAT}; COMMIT;")
+    except sqlite3.DatabaseError:
+        database.close()  # now: later it would remove the log of the ledger that takes its place
+        raise
     if fresh:
         sync_folder(path.parent)
     return database

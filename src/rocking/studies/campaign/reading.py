@@ -10,11 +10,11 @@ import numpy as np
 
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
-from rocking.studies.campaign import shard
+from rocking.studies.campaign import disk, shard
 from rocking.studies.campaign.chunks import Chunk, Plan
 from rocking.studies.campaign.errors import CampaignDamagedError, CampaignIncompleteError
 from rocking.studies.campaign.executors import path_of
-from rocking.studies.campaign.identity import SHARDS
+from rocking.studies.campaign.identity import SHARDS, Identity
 from rocking.studies.campaign.ledger import NAME, Ledger
 
 
@@ -151,7 +151,8 @@ class Verification:
     chunks : int
         Whole chunks among the latter.
     damaged : tuple of str
-        A sentence for each shard that the ledger has and that is changed, cut short, of other histories, or missing.
+        A sentence for each shard that the ledger has and that is changed, cut short, of other histories, or missing;
+        one for a ledger that cannot be read, without which nothing counts.
     missing : tuple of tuple of int
         Histories that are not there: from the first up to but not including the last.
     """
@@ -168,22 +169,30 @@ class Verification:
         return not self.damaged and not self.missing
 
 
-def verified(folder: Path, plan: Plan) -> Verification:
+def verified(folder: Path) -> Verification:
     """Read every shard that the ledger has, and see that they hold all histories, and none of them twice.
 
     Parameters
     ----------
     folder : Path
         The campaign; another process may run it.
-    plan : Plan
-        How it is cut.
 
     Returns
     -------
     Verification
         What was found.
     """
-    records = _records(folder, plan)
+    with disk.guarded(folder):
+        plan = Identity.read(folder).plan
+        try:
+            with disk.guarded(folder):
+                records = _records(folder, plan)
+        except CampaignDamagedError as error:
+            return Verification(plan.count, 0, 0, (str(error),), ())
+        return _verified(folder, plan, records)
+
+
+def _verified(folder: Path, plan: Plan, records: list[tuple[Chunk, str]]) -> Verification:
     damaged: list[str] = []
     there: list[tuple[int, int]] = []
     chunks = 0
@@ -192,7 +201,7 @@ def verified(folder: Path, plan: Plan) -> Verification:
             _read(folder, chunk, sealed)
         except CampaignDamagedError as error:
             if chunk.of and not any(each == chunk for each, _ in _records(folder, plan)):
-                return verified(folder, plan)  # meanwhile whoever runs it has made a chunk of it
+                return verified(folder)  # meanwhile whoever runs it has made a chunk of it
             damaged.append(str(error))
         else:
             there.append((chunk.first, chunk.last))

@@ -118,8 +118,8 @@ def _adopt_piece(path: Path, plan: Plan, ledger: Ledger, found: Found) -> bool:
     return True
 
 
-def rebuild(folder: Path, plan: Plan) -> int:
-    """Make the ledger anew from the shards; the old one is kept beside it.
+def set_aside_if_damaged(folder: Path, plan: Plan) -> list[str]:
+    """Set a ledger aside that cannot be believed: a new one adopts the shards, each of which bears its own seal.
 
     Parameters
     ----------
@@ -130,17 +130,17 @@ def rebuild(folder: Path, plan: Plan) -> int:
 
     Returns
     -------
-    int
-        Chunks that are finished.
+    list of str
+        A sentence, if it was damaged.
     """
-    for path in sorted(folder.glob(f"{NAME}*")):
-        if ".damaged-" not in path.name:
-            disk.set_aside(path)
-    for name in (SHARDS, PIECES):
-        disk.make_folder(folder / name)
-    with Ledger(folder, writable=True) as ledger:
-        ledger.note("rebuilt", None, "from the shards")
-        return int(recover(folder / SHARDS, plan, ledger).finished.sum())
+    try:
+        with disk.guarded(folder), Ledger(folder, writable=True) as ledger:
+            ledger.check(plan)
+        return []
+    except CampaignDamagedError as error:
+        there = sorted(path for path in folder.glob(f"{NAME}*") if ".damaged-" not in path.name)
+        kept = [disk.set_aside(path).name for path in there]
+        return [f"{str(error).split('; run ')[0]}; kept as {kept[0]}, and made anew from the shards"]
 
 
 def now() -> str:

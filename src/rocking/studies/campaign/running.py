@@ -17,7 +17,7 @@ from rocking.studies.campaign.identity import SHARDS, Identity
 from rocking.studies.campaign.interruption import Interruption
 from rocking.studies.campaign.ledger import Ledger, Record
 from rocking.studies.campaign.lock import FolderLock
-from rocking.studies.campaign.recovery import Found, now, recover
+from rocking.studies.campaign.recovery import Found, now, recover, set_aside_if_damaged
 from rocking.studies.campaign.remaining import Remaining
 from rocking.studies.campaign.status import Meter, Progress, Summary
 from rocking.studies.histories import Histories
@@ -63,8 +63,10 @@ def run(
         for name in (SHARDS, PIECES):
             disk.make_folder(folder / name)
         disk.remove_unfinished(folder)
+        anew = set_aside_if_damaged(folder, identity.plan)
         with Ledger(folder, writable=True) as ledger:
-            ledger.check(identity.plan)
+            for sentence in anew:
+                ledger.note("damaged", None, sentence)
             found = recover(folder / SHARDS, identity.plan, ledger, interruption.asked)
             before = ledger.finished()[0]
             meter.begin(before, ((record.first, record.last) for record in (*ledger.records(), *ledger.pieces())))
@@ -81,7 +83,7 @@ def run(
         with suppress(OSError):  # damaged pieces that were set aside stay
             (folder / PIECES).rmdir()
     return Summary(
-        meter.chunks - before, before, found.adopted, tuple(found.set_aside), tuple(meter.retries), meter.seconds
+        meter.chunks - before, before, found.adopted, (*anew, *found.set_aside), tuple(meter.retries), meter.seconds
     )
 
 

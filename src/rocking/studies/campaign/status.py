@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rocking.studies.campaign import disk
 from rocking.studies.campaign.chunks import Chunk, Plan
 from rocking.studies.campaign.estimate import Costs, Estimate, Speed
 
@@ -30,7 +31,7 @@ class Status:
     retries : int
         Attempts of finished chunks beyond the first.
     damaged : tuple of str
-        Shards that were found damaged or missing so far, and computed again.
+        Shards that were found damaged or missing so far, and computed again; a ledger that was made anew.
     software : str
         Version of this package that computes it.
     work : Estimate or None
@@ -110,7 +111,7 @@ class Summary:
     adopted : int
         Those of them that had been written but not recorded when an earlier run was killed.
     set_aside : tuple of str
-        Shards that were damaged or missing, and computed again.
+        Shards that were damaged or missing, and computed again; a damaged ledger, made anew.
     retries : tuple of str
         Chunks that were tried again, and why.
     seconds : float
@@ -204,7 +205,7 @@ class Meter:
             Part of a sentence.
         """
         if not self.known:
-            return "nothing that was recorded before is lost"
+            return disk.NOTHING_LOST
         total = self._plan.chunks
         if self.chunks == total:
             return f"all {total} chunks are safe"

@@ -15,7 +15,7 @@ from rocking.studies.fragility.measures import IntensityMeasure, measure, measur
 from rocking.studies.fragility.nrml import to_nrml
 from rocking.studies.fragility.ordered import OrderedFit, fit_ordered
 from rocking.studies.fragility.separation import Separation
-from rocking.studies.fragility.states import LimitState, RockingState, limit_states
+from rocking.studies.fragility.states import LimitState, limit_states
 from rocking.studies.fragility.stripes import StripeAnalysis, multiple_stripes, stripes_plan
 from rocking.studies.fragility.tables import fema_p58_table
 
@@ -35,7 +35,6 @@ __all__ = [
     "MeasureScore",
     "OrderedFit",
     "OverturningInterval",
-    "RockingState",
     "Separation",
     "StateCounts",
     "StripeAnalysis",

@@ -100,8 +100,8 @@ def cloud(
     >>> import rocking as rk
     >>> pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.0, 3.2, 6.0, 8.0)]
     >>> found = cloud(rk.Block(width=0.4, height=1.6), pulses)
-    >>> {state.name: n for state, n in found.responses.counts().items()}
-    {'NO_ROCKING': 1, 'ROCKING': 4, 'OVERTURNED': 2}
+    >>> {outcome.name: n for outcome, n in found.responses.counts().items()}
+    {'NO_UPLIFT': 1, 'ROCKED': 4, 'OVERTURNED': 2}
     """
     threads = options.pop("threads", None)
     histories, finish = cloud_plan(body, motions, restitution, measure, states, factor=factor, least=least, **options)

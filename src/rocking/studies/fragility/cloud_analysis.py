@@ -209,7 +209,7 @@ class CloudAnalysis:
             "uplift": self.uplift.verdict,
             "failed": self.failed,
             "contact": self.responses.contact,
-            "states": {state.name.lower(): n for state, n in self.responses.counts().items()},
+            "outcomes": {outcome.name.lower(): n for outcome, n in self.responses.counts().items()},
             "regression": _told(self),
             "least": self.least,
             "barely lifted": self.barely_lifted,

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any
 
 import numpy as np
@@ -14,14 +13,6 @@ from rocking.dynamics.engine import Arrays
 from rocking.dynamics.lost_contact import FORCES, contact_words, lost_contact
 from rocking.dynamics.outcome import Outcome, of_results, overturned
 from rocking.errors import InvalidValueError
-
-
-class RockingState(Enum):
-    """The three states of a body after a motion; the values are the sentences that a user reads."""
-
-    NO_ROCKING = "no rocking: the ground never lifted it"
-    ROCKING = "rocked and stayed standing"
-    OVERTURNED = "overturned"
 
 
 @dataclass(frozen=True)
@@ -196,17 +187,13 @@ class Responses:
             made["lost_contact"] = (dimensions, self.lost, {"units": unit, "long_name": words})
         return made
 
-    def counts(self) -> dict[RockingState, int]:
-        """Return how many histories ended in which state.
+    def counts(self) -> dict[Outcome, int]:
+        """Return how many histories ended in which way.
 
         Returns
         -------
-        dict of RockingState to int
-            Failed histories are in none.
+        dict of Outcome to int
+            Not lifted, rocked and stayed standing, overturned; those without a result are in none.
         """
-        codes = {
-            RockingState.NO_ROCKING: Outcome.NO_UPLIFT,
-            RockingState.ROCKING: Outcome.ROCKED,
-            RockingState.OVERTURNED: Outcome.OVERTURNED,
-        }
-        return {state: int((self.outcome == outcome.code).sum()) for state, outcome in codes.items()}
+        outcomes = Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED
+        return {outcome: int((self.outcome == outcome.code).sum()) for outcome in outcomes}

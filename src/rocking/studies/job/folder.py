@@ -24,18 +24,22 @@ from rocking.studies.campaign import (
     disk,
     reading,
 )
-from rocking.studies.campaign.identity import NAME, Identity
+from rocking.studies.campaign.identity import NAME
 from rocking.studies.job.inputs import Inputs, refuse_changes
 from rocking.studies.job.job import Job
 from rocking.studies.job.reading import document_of, located
-from rocking.studies.job.round_status import resume, round_folder, status_of_rounds, verified_rounds, way_out
+from rocking.studies.job.round_status import (
+    finished_rounds,
+    resume,
+    round_folder,
+    status_of_rounds,
+    verified_rounds,
+    way_out,
+)
 from rocking.studies.job.rounds import opened, run_rounds
 
 JOB, INPUTS, HISTORIES = "job.toml", "inputs.json", "histories"
 """Files of the folder, and its folder of results."""
-
-
-_NOTHING_LOST = "nothing that was recorded before is lost"
 
 
 @dataclass(frozen=True)
@@ -105,16 +109,11 @@ class JobFolder:
         ------
         InvalidValueError
             If a file that the job names is not what it was.
-        CampaignMismatchError
+        CampaignDamagedError
             If the job itself is not.
         """
         path = Path(folder)
         text, content = _kept(path)
-        if content.get("job_sha256", _sha256(text.encode())) != _sha256(text.encode()):  # older folders have none
-            raise CampaignMismatchError(
-                f"{path / JOB} has changed since the campaign began; restore it, or begin a new campaign in another "
-                "folder"
-            )
         base = Path(content["job_folder"] if inputs is None else inputs)
         if not base.is_dir() and content["files"]:
             raise InvalidValueError(f"{path}: the folder of its inputs, {base}, is not there; give --inputs")
@@ -244,17 +243,16 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
     path = Path(folder)
     text, content = _kept(path)
     wrong: list[str] = []
-    if content.get("job_sha256", _sha256(text.encode())) != _sha256(text.encode()):
-        wrong.append(f"{path / JOB} has changed since the campaign began")
     with located(content["job_file"]):
         adaptive = document_of(text).is_adaptive
     if adaptive:
         found = verified_rounds(path)
-        if not status_of_rounds(path, verify=False)[2]:
+        told = finished_rounds(path)
+        if told is None or told["rounds"] != len(found):
             wrong.append(f"{path} is not finished, and more rounds may follow")
     else:
         there = (path / HISTORIES / NAME).exists()
-        found = [reading.verified(path / HISTORIES, Identity.read(path / HISTORIES).plan)] if there else []
+        found = [reading.verified(path / HISTORIES)] if there else []
         wrong += [] if there else [f"{path}: nothing is computed yet"]
     begins = np.cumsum([0, *(each.histories for each in found)]).tolist()
     return Verification(
@@ -268,7 +266,7 @@ def verified(folder: str | os.PathLike[str]) -> Verification:
 
 def _kept(path: Path) -> tuple[str, dict[str, Any]]:
     """Return the job as it was copied, and what was noted of its inputs."""
-    with disk.guarded(path, lambda: _NOTHING_LOST):
+    with disk.guarded(path):
         if not (path / JOB).is_file():
             raise CampaignMismatchError(f"{path}: no campaign of a job file here ({JOB} is missing)")
         text, noted = (path / JOB).read_bytes(), (path / INPUTS).read_bytes() if (path / INPUTS).exists() else b""
@@ -276,6 +274,11 @@ def _kept(path: Path) -> tuple[str, dict[str, Any]]:
         content = json.loads(noted)
         files = [(item["path"], item["sha256"], item["bytes"]) for item in content["files"]]
         assert all(isinstance(name, str) and isinstance(sha, str) for name, sha, _ in files)
+        if content.get("job_sha256", _sha256(text)) != _sha256(text):  # older folders have none
+            raise CampaignDamagedError(
+                f"{path / JOB} has changed since the campaign began; restore it, or begin a new campaign in another "
+                "folder"
+            )
         return text.decode(), {
             **content,
             "job_folder": str(content["job_folder"]),

@@ -7,8 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from rocking.studies.campaign import Campaign, CampaignDamagedError, Status, Verification
-from rocking.studies.campaign.identity import NAME, Identity
-from rocking.studies.campaign.ledger import NAME as LEDGER
+from rocking.studies.campaign.identity import NAME
 from rocking.studies.campaign.lock import holder
 from rocking.studies.campaign.reading import verified
 
@@ -80,11 +79,10 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
         yield
     except CampaignDamagedError as error:
         path = round_folder(folder, number)
-        whole = next((name for name in (NAME, LEDGER) if name in str(error)), None)
-        if whole is None:  # a shard: whoever goes on computes it again
+        if NAME not in str(error):  # a shard or the ledger: whoever goes on makes it anew
             raise CampaignDamagedError(f"{str(error).split('; run ')[0]}; go on with: {resume(folder)}") from error
         raise CampaignDamagedError(
-            f"{path / whole} is damaged; remove {path} and go on with: {resume(folder)}; the other rounds are kept"
+            f"{path / NAME} is damaged; remove {path} and go on with: {resume(folder)}; the other rounds are kept"
         ) from error
 
 
@@ -141,7 +139,7 @@ def verified_rounds(folder: Path) -> list[Verification]:
     found: list[Verification] = []
     while ((path := round_folder(folder, len(found))) / NAME).exists():
         with way_out(folder, len(found)):
-            found.append(verified(path, Identity.read(path).plan))
+            found.append(verified(path))
     return found
 
 

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -33,7 +33,6 @@ from rocking.studies.job.round_status import FINISHED, finished_rounds, resume, 
 NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time", "least_force")
 """What studies decide on: no more of a round is held in memory."""
 
-_SAFE = "nothing that was recorded before is lost"
 
 Search = Callable[[Compute], Answer]
 
@@ -99,11 +98,9 @@ class Rounds:
     def _results(self, campaign: Campaign) -> Arrays:
         if self.advance is None:
             return _held(campaign)
-        if campaign.status(verify=False).complete:
-            try:
+        with suppress(CampaignDamagedError):  # what is damaged is set aside, said, and computed again
+            if campaign.status(verify=False).complete:
                 return _held(campaign)
-            except CampaignDamagedError:  # what is damaged is set aside, said, and computed again
-                pass
         self.advance(campaign)
         return _held(campaign)
 
@@ -129,7 +126,7 @@ def _of_the_job(folder: Path, number: int) -> Iterator[None]:
         cause = error.__cause__
         why = getattr(cause, "strerror", None) or cause or error
         advice = f"make room or allow writing, then go on with: {resume(folder)}"
-        raise CampaignStorageError(f"{folder}: {why} in round {number + 1}; {_SAFE}; {advice}") from error
+        raise CampaignStorageError(f"{folder}: {why} in round {number + 1}; {disk.NOTHING_LOST}; {advice}") from error
 
 
 def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
@@ -262,12 +259,12 @@ def run_rounds(
     run = _Run(executor, workers, progress, **{"order_seed": None, **options})
     rounds = Rounds(folder, chunk, run.advance, run.asked_to_stop)
     with ExitStack() as stack:
-        with disk.guarded(folder, lambda: _SAFE):
+        with disk.guarded(folder):
             stack.enter_context(FolderLock(folder))
             disk.remove_unfinished(folder)
         with run.watched():
             search(rounds.compute)
-        with disk.guarded(folder, lambda: _SAFE):
+        with disk.guarded(folder):
             disk.write_new(folder / FINISHED, (json.dumps(_facts(rounds), indent=1) + "\n").encode())
     return run.summary()
 
@@ -283,7 +280,7 @@ def _check(executor: str | Executor, workers: int | None, search: Search, start_
 
 
 def _stopped(folder: Path, number: int) -> str:
-    return f"{folder}: stopped in round {number + 1}; {_SAFE}; go on with: {resume(folder)}"
+    return f"{folder}: stopped in round {number + 1}; {disk.NOTHING_LOST}; go on with: {resume(folder)}"
 
 
 def _facts(rounds: Rounds) -> dict[str, int]:

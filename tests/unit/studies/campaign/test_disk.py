@@ -120,8 +120,8 @@ def test_set_aside_deletes_nothing(tmp_path: Path) -> None:
         (sqlite3.SQLITE_READONLY, CampaignStorageError, "allow writing"),
         (sqlite3.SQLITE_IOERR_FSYNC, CampaignStorageError, "run the campaign again"),
         (sqlite3.SQLITE_BUSY, CampaignBusyError, "another process holds the ledger"),
-        (sqlite3.SQLITE_CORRUPT, CampaignDamagedError, "rebuild_ledger"),
-        (sqlite3.SQLITE_NOTADB, CampaignDamagedError, "the shards are intact"),
+        (sqlite3.SQLITE_CORRUPT, CampaignDamagedError, "run the campaign again"),
+        (sqlite3.SQLITE_NOTADB, CampaignDamagedError, "its shards make it anew"),
     ],
 )
 def test_database_errors_have_sentences(tmp_path: Path, code: int, kind: type, words: str) -> None:

@@ -1,5 +1,6 @@
 """The ledger: damage is noticed, never believed, and the shards make it anew."""
 
+import random
 import shutil
 import sqlite3
 from collections.abc import Callable
@@ -39,11 +40,11 @@ def test_flipped_ledger_never_lies(finished: Campaign, tmp_path: Path) -> None:
         shutil.copy(copy, path)
         flip(path, int(bit))
         try:
-            assert finished.verify().whole
             assert records(finished) == good
-        except CampaignDamagedError as error:
-            refused.append(str(error))
-    assert all("ledger.sqlite is damaged" in text and "rebuild_ledger" in text for text in refused)
+            assert finished.verify().whole
+        except (CampaignDamagedError, sqlite3.DatabaseError):
+            refused.extend(finished.verify().damaged)
+    assert all("ledger.sqlite is damaged" in text and "run the campaign again" in text for text in refused)
     assert len(refused) > FLIPS / 20  # most bytes of the small file are empty room
 
 
@@ -56,22 +57,33 @@ def test_flips_within_rows_are_all_refused(finished: Campaign) -> None:
         path.write_bytes(good)
         flip(path, bit)
         with pytest.raises(CampaignDamagedError, match=r"ledger\.sqlite is damaged"):
-            finished.run(workers=1)
+            finished.results()
 
 
-def test_rebuilt_ledger_has_everything(finished: Campaign, shards: Shards) -> None:
-    """After the ledger was overwritten, the shards make it anew; nothing is computed again, nothing deleted."""
+HARMS: dict[str, Callable[[bytes], bytes]] = {
+    "overwritten": lambda data: b"no database at all" * 100,
+    "cut short": lambda data: data[: len(data) // 2],
+    "scrambled": lambda data: data[:100] + bytes(random.Random(1).sample(data[100:], len(data) - 100)),
+    "without its version": lambda data: data[:60] + bytes(4) + data[64:4096] + b"?" * (len(data) - 4096),
+}
+
+
+@pytest.mark.parametrize("harm", HARMS)
+def test_run_makes_a_damaged_ledger_anew(finished: Campaign, shards: Shards, harm: str) -> None:
+    """Whatever became of the ledger, a run says so and adopts all shards; nothing is computed again or deleted."""
     before, digest = shards(finished), finished.sha256()
     path = finished.folder / "ledger.sqlite"
-    path.write_bytes(b"no database at all" * 100)
-    with pytest.raises(CampaignDamagedError, match=r"Campaign\.rebuild_ledger"):
-        finished.run()
-    with pytest.raises(CampaignDamagedError, match="the shards are intact"):
+    path.write_bytes(HARMS[harm](path.read_bytes()))
+    found = finished.verify()
+    assert (found.whole, found.verified) == (False, 0)
+    with pytest.raises(CampaignDamagedError, match=r"ledger\.sqlite is damaged .* run the campaign again"):
         finished.results()
-    assert finished.rebuild_ledger() == 6
-    assert finished.run().computed == 0
-    assert (shards(finished), finished.sha256()) == (before, digest)
-    assert (finished.folder / "ledger.sqlite.damaged-1").read_bytes().startswith(b"no database")
+    summary = finished.run(workers=1)
+    assert (summary.adopted, summary.computed) == (6, 0)
+    assert "kept as ledger.sqlite.damaged-1, and made anew from the shards" in summary.set_aside[0]
+    assert finished.status().damaged == summary.set_aside
+    assert (finished.verify().whole, shards(finished), finished.sha256()) == (True, before, digest)
+    assert (finished.folder / "ledger.sqlite.damaged-1").exists()
 
 
 def test_lost_ledger_is_made_by_the_next_run(finished: Campaign) -> None:
@@ -90,16 +102,17 @@ def test_rows_that_were_meddled_with_are_refused(finished: Campaign, order: str)
         database.execute(order)
     database.close()
     with pytest.raises(CampaignDamagedError, match=r"row .* has changed"):
-        finished.run()
+        finished.results()
 
 
 def test_ledger_of_another_campaign_is_refused(finished: Campaign, make: Any, tmp_path: Path) -> None:
-    """A ledger that was copied from elsewhere is not of this campaign."""
+    """A ledger that was copied from elsewhere is not of this campaign, and a run takes nothing from it."""
     other = Campaign.create(tmp_path / "other", make(seed=8), 50)
     other.run(workers=1)
     shutil.copy(other.folder / "ledger.sqlite", finished.folder / "ledger.sqlite")
     with pytest.raises(CampaignDamagedError, match="chunk 0 is not of this campaign"):
-        finished.run()
+        finished.results()
+    assert finished.run(workers=1).computed == 0
 
 
 def test_a_ledger_that_is_just_being_made_says_nothing_is_done(tmp_path: Path, work: Any) -> None:

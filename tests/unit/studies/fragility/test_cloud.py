@@ -176,10 +176,10 @@ def test_rocking_gets_a_curve_where_no_level_decides():
 
 
 def test_dataset_and_summary(found):
-    """Outcomes with units, and a summary that names definition, line and states."""
+    """Outcomes with units, and a summary that names definition, line and outcomes."""
     assert found.dataset.level.attrs["units"] == "m/s2"
     told = json.loads(json.dumps(found.summary()))
-    assert sum(told["states"].values()) == 80
+    assert sum(told["outcomes"].values()) == 80
     assert told["definition"].startswith("cloud")
 
 
@@ -221,7 +221,7 @@ def test_summary_without_a_line():
     """Too few motions that rocked leave no line: the summary says why, and the rest stands."""
     told = cloud(BLOCK, MOTIONS[:3], restitution=0.9).summary()
     assert "at least 3 points" in told["regression"]["none"]
-    assert told["states"]["no_rocking"] > 0
+    assert told["outcomes"]["no_uplift"] > 0
 
 
 def test_what_is_refused(found):

@@ -8,7 +8,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics.rocker import Rocker, RockingSide
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.states import Responses, RockingState, limit_states
+from rocking.studies.fragility.states import Responses, limit_states
 
 SIDES = RockingSide(0.2, 2.0, 1.0, 0.9), RockingSide(0.4, 2.0, 1.0, 0.9)
 ROCKER = Rocker(*SIDES, None, "")  # type: ignore[arg-type]
@@ -32,7 +32,7 @@ def test_states_are_nested():
     assert reached[:, :4].tolist() == [[0, 1, 1, 1], [0, 1, 1, 1], [0, 1, 0, 1], [0, 0, 0, 1]]
     assert np.isnan(reached[:, 4]).all()
     assert found.good.tolist() == [True] * 4 + [False]
-    assert found.counts() == {RockingState.NO_ROCKING: 1, RockingState.ROCKING: 2, RockingState.OVERTURNED: 1}
+    assert found.counts() == {rk.Outcome.NO_UPLIFT: 1, rk.Outcome.ROCKED: 2, rk.Outcome.OVERTURNED: 1}
 
 
 def test_levels_may_be_absent_or_above_one():

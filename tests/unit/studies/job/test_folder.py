@@ -6,7 +6,7 @@ import pytest
 
 from rocking.errors import InvalidValueError
 from rocking.studies.campaign import CampaignDamagedError, CampaignMismatchError
-from rocking.studies.job import Job, JobFolder, forecast, status_of
+from rocking.studies.job import Job, JobFolder, forecast, status_of, verified
 
 
 @pytest.fixture
@@ -113,13 +113,14 @@ def test_damaged_notes(job, tmp_path, data):
 
 
 def test_changed_copy_is_refused(job, tmp_path):
-    """A copied job that somebody edits is said to have changed; of older folders, without its hash, the difference."""
+    """A copied job that was edited is refused by all that read it; without its hash, by what differs."""
     folder = JobFolder.create(tmp_path / "c", Job.read(job))
     assert folder.campaign.plan.size == 4
     copy = tmp_path / "c" / "job.toml"
     copy.write_text(copy.read_text().replace("8.0", "8.5"))
-    with pytest.raises(CampaignMismatchError, match=r"job\.toml has changed since the campaign began"):
-        JobFolder.open(tmp_path / "c")
+    for ask in (JobFolder.open, status_of, verified):
+        with pytest.raises(CampaignDamagedError, match=r"job\.toml has changed since the campaign began; restore it"):
+            ask(tmp_path / "c")
     noted = tmp_path / "c" / "inputs.json"
     noted.write_text(json.dumps({k: v for k, v in json.loads(noted.read_text()).items() if k != "job_sha256"}))
     with pytest.raises(CampaignMismatchError, match=r"this campaign is of other histories: content\.scales"):

@@ -339,7 +339,7 @@ def test_another_job_is_refused(tmp_path, kind, old, new):
     folder.run(workers=1)
     path = tmp_path / "c" / "job.toml"
     path.write_text(path.read_text().replace(old, new, 1))
-    with pytest.raises(CampaignMismatchError, match=r"job\.toml has changed since the campaign began"):
+    with pytest.raises(CampaignDamagedError, match=r"job\.toml has changed since the campaign began"):
         JobFolder.open(tmp_path / "c")
     noted = tmp_path / "c" / "inputs.json"  # without the hash of the job, the rounds themselves tell
     noted.write_text(json.dumps({k: v for k, v in json.loads(noted.read_text()).items() if k != "job_sha256"}))

@@ -14,7 +14,6 @@ from rocking.studies.campaign import (
     CampaignDamagedError,
     CampaignIncompleteError,
     CampaignInterrupted,
-    CampaignMismatchError,
     CampaignStorageError,
     CampaignWorkerError,
     DaskExecutor,
@@ -22,7 +21,7 @@ from rocking.studies.campaign import (
 )
 from rocking.studies.campaign.identity import Identity
 from rocking.studies.campaign.serial import Serial
-from rocking.studies.job import Job, JobFolder, answer, export, forecast, rounds, status_of
+from rocking.studies.job import Job, JobFolder, answer, export, forecast, rounds, status_of, verified
 from rocking.studies.lattice import absent, merged
 
 MAP = """[campaign]
@@ -136,15 +135,28 @@ def test_full_disk_names_the_job(tmp_path, monkeypatch):
     assert str(told.value).endswith(f"go on with: rocking campaign resume {folder.path}")
 
 
-@pytest.mark.parametrize("name", ["campaign.json", "ledger.sqlite"])
-def test_damaged_round_and_its_way_out(tmp_path, name):
-    """A round's files damaged: status, answers and runs say which folder to remove, and doing so is the way out."""
+def test_damaged_ledger_of_a_round_is_made_anew(tmp_path):
+    """Status and answers say how to go on, and going on computes nothing again."""
+    folder = begun(tmp_path / "c")
+    folder.run(workers=1)
+    before = digests(folder)
+    (folder.path / "round-001" / "ledger.sqlite").write_bytes(b"this is not what was written" * 40)
+    for call in (lambda: status_of(folder.path), lambda: answer(folder)):
+        with pytest.raises(CampaignDamagedError, match=r"sqlite is damaged .*; go on with: rocking campaign resume"):
+            call()
+    assert "round-001: ledger.sqlite is damaged" in verified(folder.path).damaged[0]
+    assert folder.run(workers=1).computed == 0
+    assert (verified(folder.path).whole, digests(folder)) == (True, before)
+
+
+def test_damaged_round_and_its_way_out(tmp_path):
+    """A round's plan damaged: status, answers and runs say which folder to remove, and doing so is the way out."""
     folder = begun(tmp_path / "c")
     folder.run(workers=1)
     before = digests(folder)
     inner = folder.path / "round-001"
-    (inner / name).write_bytes(b"this is not what was written" * 40)
-    words = f"{inner / name} is damaged; remove {inner} and go on with: rocking campaign resume {folder.path}"
+    (inner / "campaign.json").write_bytes(b"this is not what was written" * 40)
+    words = f"{inner}/campaign.json is damaged; remove {inner} and go on with: rocking campaign resume {folder.path}"
     for call in (lambda: status_of(folder.path), lambda: answer(folder), lambda: folder.run(workers=1)):
         with pytest.raises(CampaignDamagedError) as told:
             call()
@@ -163,7 +175,7 @@ def test_changed_job_is_named(tmp_path):
     folder = begun(tmp_path / "c")
     path = folder.path / "job.toml"
     path.write_text(path.read_text().replace("height = 2.0", "height = 2.1"))
-    with pytest.raises(CampaignMismatchError, match=r"job\.toml has changed since the campaign began; restore it"):
+    with pytest.raises(CampaignDamagedError, match=r"job\.toml has changed since the campaign began; restore it"):
         JobFolder.open(folder.path)
     path.write_text(SMALL)
     assert JobFolder.open(folder.path).job.text == SMALL
