@@ -8,6 +8,7 @@ import sys
 import warnings
 from collections.abc import Iterable
 
+from rocking.conventions import percent
 from rocking.errors import InvalidValueError, PlausibilityWarning
 
 CENTRE_HEIGHTS = 0.025, 50.0
@@ -180,14 +181,14 @@ def of_truncation(cut: float, onto: str, most: float) -> tuple[str, ...]:
     """
     if not cut <= MOST_CUT[1]:
         raise InvalidValueError(
-            f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], and {100.0 * cut:.4g} % "
+            f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], and {percent(cut)} "
             "of the distribution that it is drawn from is outside: the impact would create energy; is it meant for "
             "another body, or given in percent?"
         )
     if cut <= MOST_CUT[0]:
         return ()
     return (
-        f"{100.0 * cut:.3g} % of the distribution of the coefficient of restitution onto the {onto} foot lies outside "
+        f"{percent(cut)} of the distribution of the coefficient of restitution onto the {onto} foot lies outside "
         f"[0, {most:.4g}], where an impact would create energy, and is cut off; is it meant for another body?",
     )
 

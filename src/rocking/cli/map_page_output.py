@@ -20,7 +20,7 @@ import numpy as np
 from rocking.cli.files_output import plain
 from rocking.cli.map_output import MapAnswer
 from rocking.cli.study_output import motion_facts, table
-from rocking.conventions import FloatArray, IntArray
+from rocking.conventions import FloatArray, IntArray, percent
 from rocking.studies.axis import Axis
 
 _LAST = 3
@@ -217,7 +217,7 @@ def _pairs(answer: MapAnswer) -> list[tuple[str, str, Any]]:
 def _flip_rows(answer: MapAnswer) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     head = ("restitution", "against", "flips", "share", "only with the second", "only with the first")
     rows: list[tuple[str, ...]] = [
-        (a, b, str(f.count), f"{100.0 * f.share:.3g} %", str(f.gained), str(f.lost)) for a, b, f in _pairs(answer)
+        (a, b, str(f.count), percent(f.share), str(f.gained), str(f.lost)) for a, b, f in _pairs(answer)
     ]
     return head, rows
 

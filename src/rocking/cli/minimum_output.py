@@ -20,7 +20,7 @@ from rocking.bodies import Body
 from rocking.cli import study_output as shared
 from rocking.cli.files_output import write_csv
 from rocking.cli.simulate_question import restitution_from
-from rocking.conventions import g
+from rocking.conventions import g, percent
 from rocking.dynamics.response import Motion
 from rocking.studies.crossings import Crossings
 
@@ -131,9 +131,9 @@ def sentence(found: Crossings) -> str:
         One sentence; with many crossings the first and the last.
     """
     falls = found.overturning_intervals
-    scanned = f"scanned from {_g(found.lowest)} to {_g(found.highest)}, resolution {100.0 * found.resolution:.2g} %"
+    scanned = f"scanned from {_g(found.lowest)} to {_g(found.highest)}, resolution {percent(found.resolution)}"
     if found.minimum is not None and found.resolution_below < 0.5 * found.resolution:
-        scanned += f" ({100.0 * found.resolution_below:.2g} % below the first crossing); thinner stretches may exist"
+        scanned += f" ({percent(found.resolution_below)} below the first crossing); thinner stretches may exist"
     if not falls:
         return f"survives everything; {scanned}"
     if falls == ((found.lowest, found.highest),):
