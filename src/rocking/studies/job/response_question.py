@@ -4,7 +4,7 @@ import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.dynamics.histories import free_rocking, simulate
 from rocking.dynamics.response import Motion, Response
@@ -52,7 +52,7 @@ class ResponseQuestion:
 
     def __post_init__(self) -> None:
         """Check what the engines do not check."""
-        checks.positive("friction", self.friction)
+        plausibility.warn(plausibility.of_friction(checks.positive("friction", self.friction)))
         if self.free is not None:
             checks.number("free", self.free)
         if (self.motion is None) != (self.free is not None):
