@@ -40,6 +40,26 @@ class Assumed(float):
     """A value that nobody gave: a float that is told apart wherever it is printed."""
 
 
+DEFAULT_FRICTION: Final = Assumed(0.5)
+"""Coefficient of friction where nobody gave one [-]."""
+
+
+def given_or_assumed(value: float) -> str:
+    """Return how a value is to be spoken of.
+
+    Parameters
+    ----------
+    value : float
+        The value.
+
+    Returns
+    -------
+    {"given", "assumed"}
+        Whether anybody gave it.
+    """
+    return "assumed" if isinstance(value, Assumed) else "given"
+
+
 def percent(share: float) -> str:
     """Return a share in percent, with as many digits as a reader needs; what is not quite all is not told as 100 %.
 

@@ -123,7 +123,12 @@ def test_assumed_density_is_said(tmp_path):
     assert "rotations do not" in plain.assumed[0]
     assert rk.Block(width=0.8, height=1.8, density=2400.0).assumed == ()
     assert plain.scaled(size=2.0).assumed == plain.assumed
-    assert plain.scaled(density=0.1).assumed == ()
+    (heavier,) = plain.scaled(density=2.0).assumed
+    assert "2400 kg/m3 assumed, that of plain concrete, scaled to 4800;" in heavier
+    assert plain.scaled(density=2.0).to_section().assumed == (heavier,)
+    assert plain.to_section().scaled(density=2.0).assumed == (heavier,)
+    assert Solid(box(0.8, 0.8, 1.8)).scaled(density=2.0).assumed == (heavier,)
+    assert rk.Block(width=0.8, height=1.8, density=2400.0).scaled(density=2.0).assumed == ()
     assert body_facts(plain, 9.81)["assumed"] == list(plain.assumed)
     mixed = rk.Section(
         [rk.Region([(0, 0), (1, 0), (1, 1), (0, 1)], 7850.0), rk.Region([(0, 1), (1, 1), (1, 2), (0, 2)])]
@@ -167,6 +172,41 @@ def test_command_line_says_it(capsys):
     told, err = run(capsys, "cor", "--width", "0.5", "--height", "2", "--density", "500")
     assert err == ""
     assert "assumed" not in told
+
+
+ASKED = {
+    "map": ("map", "sine:amplitude=3,period=.5", "--x", "scale=1:2:2", "--y", "restitution=.8:.9:2"),
+    "minimum": ("minimum", "sine:amplitude=3,period=.5", "--highest", "6"),
+    "fragility": ("fragility", "--record", "sine:amplitude=3,period=.5", "--levels", "2:6:3"),
+}
+
+
+@pytest.mark.parametrize("command", ASKED)
+def test_studies_say_what_was_assumed(capsys, command):
+    """Pages and JSON of studies tell an assumed density from one that was given."""
+    words = (*ASKED[command], "--width", "0.5", "--height", "2")
+    assert "density:      2400 kg/m3 assumed" in run(capsys, *words)[0]
+    assert "assumed" in json.loads(run(capsys, *words, "--json")[0])["assumed"][0]
+    out, _ = run(capsys, *words, "--density", "2400")
+    assert "assumed" not in out
+    assert json.loads(run(capsys, *words, "--density", "2400", "--json")[0])["assumed"] == []
+
+
+def test_assumed_friction_is_said(capsys, tmp_path):
+    """Friction that nobody gave is assumed on page, in JSON, and in documents; what is given is given."""
+    words = ("simulate", "--width", "0.5", "--height", "2", "sine:amplitude=3,period=.5")
+    assert "needed, 0.5 assumed" in run(capsys, *words)[0]
+    assert "needed, 0.5 given" in run(capsys, *words, "--friction", "0.5")[0]
+    assert "friction 0.5, assumed" in run(capsys, *words, "--contact")[0]
+    assert json.loads(run(capsys, *words, "--contact", "--friction", "0.5", "--json")[0])["friction_assumed"] is False
+    for given in ((), ("--friction", "0.5")):
+        friction = json.loads(run(capsys, *words, *given, "--json")[0])["friction"]
+        assert (friction["given"], friction["assumed"]) == (0.5, not given)
+    question = tmp_path / "question.toml"
+    question.write_text(
+        '[body]\nunits = "m"\nwidth = 0.5\nheight = 2\n[motion]\npulse = "sine:amplitude=3,period=.5"\n[response]\n'
+    )
+    assert "needed, 0.5 assumed" in run(capsys, "simulate", str(question))[0]
 
 
 def test_the_api_and_the_page_say_it():

@@ -2,7 +2,8 @@
 
 Keys of the JSON
 ----------------
-- ``body``, ``motion`` (kind, name, duration_s, peak_acceleration_m_s2), ``restitution``, ``engine``, ``gravity_m_s2``,
+- ``body``, ``assumed`` (sentences),
+  ``motion`` (kind, name, duration_s, peak_acceleration_m_s2), ``restitution``, ``engine``, ``gravity_m_s2``,
   ``linear``.
 - ``x``, ``y``: name, unit, values. ``mode`` and ``peak_ratio``: rows along y, null where there is no number.
 - ``cells``, ``modes`` (mode, meaning, count, share), ``refined_points`` (null without ``--refine``).
@@ -19,7 +20,7 @@ import numpy as np
 
 from rocking.cli.files_output import plain
 from rocking.cli.map_output import MapAnswer
-from rocking.cli.study_output import motion_facts, table
+from rocking.cli.study_output import body_lines, motion_facts, table
 from rocking.conventions import FloatArray, IntArray, percent
 from rocking.studies.axis import Axis
 
@@ -45,6 +46,7 @@ def as_json(answer: MapAnswer) -> str:
     asked, found = answer.question, answer.found
     facts = {
         "body": repr(asked.body),
+        "assumed": list(asked.body.assumed),
         "motion": motion_facts(asked.motion),
         "restitution": found.attrs["restitution"],
         "engine": found.attrs["engine"],
@@ -77,7 +79,8 @@ def show(answer: MapAnswer) -> None:
 
     console = Console(highlight=False, soft_wrap=True)
     asked, found = answer.question, answer.found
-    console.print(f"body:         {asked.body!r}", markup=False)
+    for name, words in body_lines(asked.body):
+        console.print(f"{name + ':':13} {words}", markup=False)
     console.print(f"motion:       {asked.motion.name}", markup=False)
     console.print(f"restitution:  {found.attrs['restitution']};  engine: {found.attrs['engine']}", markup=False)
     for name, axis in (("x", asked.x), ("y", asked.y)):

@@ -2,7 +2,8 @@
 
 Keys of the JSON
 ----------------
-- ``body``, ``motion`` (kind, name, duration_s, peak_acceleration_m_s2), ``restitution``, ``gravity_m_s2``, ``linear``.
+- ``body``, ``assumed`` (sentences),
+  ``motion`` (kind, name, duration_s, peak_acceleration_m_s2), ``restitution``, ``gravity_m_s2``, ``linear``.
 - ``crossings``: in order, each with acceleration_m_s2, acceleration_g (standard gravity), ratio (over what lifts the
   body), scale (factor on the motion), width_m_s2 (of its bracket), mode_below, mode_above (-2 not lifted, -1 survives,
   n >= 0 overturns after n impacts).
@@ -175,6 +176,7 @@ def as_json(answer: MinimumAnswer) -> str:
     found = answer.found
     facts = {
         "body": repr(answer.body),
+        "assumed": list(answer.body.assumed),
         "motion": shared.motion_facts(answer.motion),
         "restitution": answer.label,
         "gravity_m_s2": answer.settings["gravity"],
@@ -266,7 +268,8 @@ def show(answer: MinimumAnswer) -> None:
     from rich.console import Console
 
     console, found = Console(highlight=False, soft_wrap=True), answer.found
-    console.print(f"body:         {answer.body!r}", markup=False)
+    for name, words in shared.body_lines(answer.body):
+        console.print(f"{name + ':':13} {words}", markup=False)
     console.print(f"motion:       {answer.motion.name}, scaled", markup=False)
     console.print(f"restitution:  {answer.label}", markup=False)
     console.print(f"lifts it:     {_g(found.uplift_acceleration)}, {found.uplift_acceleration:.6g} m/s2", markup=False)

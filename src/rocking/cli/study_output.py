@@ -180,6 +180,22 @@ def body_and_motion_of(
     return body_from(file, **size), motion_from(str(word), **told)
 
 
+def body_lines(body: Body) -> list[tuple[str, str]]:
+    """Return what is printed of the body of a study.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+
+    Returns
+    -------
+    list of (str, str)
+        Its numbers, and what nobody gave.
+    """
+    return [("body", repr(body)), *(("density", each.removeprefix("density ")) for each in body.assumed)]
+
+
 def motion_facts(motion: Motion) -> dict[str, Any]:
     """Return a motion as plain values for JSON.
 

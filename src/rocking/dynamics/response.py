@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, given_or_assumed
 from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.rocker import Rocker
@@ -219,7 +219,7 @@ class Response(Exportable):
             found = self.with_contact(friction)
         except InvalidValueError as error:
             return f"{lost}nothing is known: {error}"
-        why = "since none was given" if friction is None else "as given"
+        why = "since none was given" if friction is None else f"as {given_or_assumed(friction)}"
         return f"{lost}with a coefficient of friction of {found.law.friction:g}, {why}: {found.summary}"
 
     @property

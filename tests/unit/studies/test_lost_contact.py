@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.conventions import percent
+from rocking.conventions import DEFAULT_FRICTION, percent
 from rocking.dynamics.lost_contact import contact_words
 from rocking.dynamics.rocker import cut_words
 from rocking.report.facts.response import response_facts
@@ -83,4 +83,6 @@ def test_one_history_tells_both_verdicts():
     (words, *_) = response_facts(rk.simulate(LEANING, HEAVY[0], 0.8), 0.5)["warnings"]
     assert "rocking alone: " in words
     assert "if it may fly, with a coefficient of friction of 0.5, as given: " in words
+    (words, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts(DEFAULT_FRICTION)
+    assert "with a coefficient of friction of 0.5, as assumed: " in words
     assert not any("pull" in each for each in response_facts(rk.simulate(LEANING, LIGHT[0], 0.8), 0.5)["warnings"])

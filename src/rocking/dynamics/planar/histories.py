@@ -85,7 +85,9 @@ def simulate_with_contact(
     settings = _settings(options)
     footing = Footing.of_body(body)
     law = ContactLaw(
-        checks.number("friction", friction), checks.number("bounce", bounce), _imposed(body, restitution, settings)
+        friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
+        checks.number("bounce", bounce),
+        _imposed(body, restitution, settings),
     )
     scale = checks.within("scale", scale, -1e6, 1e6)
     segments = _segments(motion, footing, settings.gravity, duration)

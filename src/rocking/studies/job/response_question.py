@@ -6,6 +6,7 @@ from typing import Any
 
 from rocking import checks, plausibility
 from rocking.bodies import Body
+from rocking.conventions import DEFAULT_FRICTION
 from rocking.dynamics.histories import free_rocking, simulate
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.settings import Settings
@@ -46,7 +47,7 @@ class ResponseQuestion:
     choices: dict[str, Any] = field(default_factory=lambda: {"ked": "ked"})
     settings: Settings = field(default_factory=Settings)
     engine: str = "auto"
-    friction: float = 0.5
+    friction: float = DEFAULT_FRICTION
     free: float | None = None
     scale: float = 1.0
 
