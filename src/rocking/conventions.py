@@ -40,6 +40,51 @@ class Assumed(float):
     """A value that nobody gave: a float that is told apart wherever it is printed."""
 
 
+DEFAULT_FRICTION: Final = Assumed(0.5)
+"""Coefficient of friction where nobody gave one [-]."""
+
+
+def given_or_assumed(value: float) -> str:
+    """Return how a value is to be spoken of.
+
+    Parameters
+    ----------
+    value : float
+        The value.
+
+    Returns
+    -------
+    {"given", "assumed"}
+        Whether anybody gave it.
+    """
+    return "assumed" if isinstance(value, Assumed) else "given"
+
+
+def percent(share: float) -> str:
+    """Return a share in percent, with as many digits as a reader needs; what is not quite all is not told as 100 %.
+
+    Parameters
+    ----------
+    share : float
+        The share, or a relative change [-].
+
+    Returns
+    -------
+    str
+        With its sign of percent.
+
+    Examples
+    --------
+    >>> percent(0.14), percent(0.0078), percent(0.00031), percent(1.0), percent(0.99987)
+    ('14 %', '0.78 %', '0.031 %', '100 %', '99.987 %')
+    """
+    value = 100.0 * share
+    rest = 100.0 - value
+    if 0.0 < rest < 0.5:
+        return f"{100.0 - float(f'{rest:.2g}'):.10g} %"
+    return f"{float(f'{value:.{3 if abs(value) >= 1.0 else 2}g}'):.10g} %"
+
+
 def opposite(foot: Foot) -> Foot:
     """Return the other foot.
 

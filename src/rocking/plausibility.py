@@ -7,7 +7,11 @@ it, for studies without dimensions: ``warnings.simplefilter("ignore", rocking.er
 import sys
 import warnings
 from collections.abc import Iterable
+from typing import Any
 
+import numpy as np
+
+from rocking.conventions import percent
 from rocking.errors import InvalidValueError, PlausibilityWarning
 
 CENTRE_HEIGHTS = 0.025, 50.0
@@ -21,6 +25,12 @@ DENSITIES = 10.0, 23000.0
 
 LARGEST_PGA = 41.0
 """No record has more: 40.2 m/s2, all components, Iwate-Miyagi 2008 (Aoi et al. 2008, Science 322:727) [m/s2]."""
+
+GRAVITIES = 1.6, 25.0
+"""Of the Moon, 1.62, and of Jupiter, 24.8 [m/s2]."""
+
+FRICTIONS = 3.0, 100.0
+"""More than rubber on dry rock has; from there on feet are meant that never slide [-]."""
 
 PERIODS = 0.01, 60.0
 """Of a pulse: shorter than records resolve; longer than the slowest pulses near a fault, of about 14 s [s]."""
@@ -95,6 +105,72 @@ def of_acceleration(peak: float) -> tuple[str, ...]:
     return (
         f"a ground acceleration of {peak:.4g} m/s2 ({peak / 9.80665:.3g} g) is more than any recorded, {LARGEST_PGA:g} "
         "m/s2; is its unit or its scale another?",
+    )
+
+
+def of_scaled(motions: Iterable[Any], scales: Any) -> tuple[str, ...]:
+    """Return the doubt about motions that are scaled; as they are they were doubted when they were made.
+
+    Parameters
+    ----------
+    motions : iterable of GroundMotion, Pulse or None
+        The motions; None for a component that is still.
+    scales : array_like, shape (), (scales,) or (motions, scales)
+        Factors on all of them, or for each its own [-].
+
+    Returns
+    -------
+    tuple of str
+        One sentence on the largest acceleration, or none.
+    """
+    factors = np.atleast_1d(np.asarray(scales, dtype=np.float64))
+    most = np.where(factors == 1.0, 0.0, np.abs(factors)).max(axis=-1)
+    if not most.any():
+        return ()
+    peaks = [max(each.peak, getattr(each, "peak_vertical", 0.0)) for each in motions if each is not None]
+    return of_acceleration(float(np.multiply(most, peaks).max())) if peaks else ()
+
+
+def of_gravity(gravity: float) -> tuple[str, ...]:
+    """Return the doubt about an acceleration of gravity.
+
+    Parameters
+    ----------
+    gravity : float
+        The acceleration [m/s2].
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none.
+    """
+    low, high = GRAVITIES
+    if low <= gravity <= high:
+        return ()
+    return (
+        f"a gravity of {gravity:.4g} m/s2 is outside {low:g} (the Moon) to {high:g} (Jupiter); is it in cm/s2 or in g?",
+    )
+
+
+def of_friction(coefficient: float) -> tuple[str, ...]:
+    """Return the doubt about a coefficient of friction.
+
+    Parameters
+    ----------
+    coefficient : float
+        The coefficient [-].
+
+    Returns
+    -------
+    tuple of str
+        One sentence, or none.
+    """
+    low, high = FRICTIONS
+    if not low < coefficient < high:
+        return ()
+    return (
+        f"a coefficient of friction of {coefficient:.4g} is more than {low:g}, which no surface has; is it in percent, "
+        f"or an angle in degrees? Feet that never slide have {high:g} or more",
     )
 
 
@@ -180,14 +256,14 @@ def of_truncation(cut: float, onto: str, most: float) -> tuple[str, ...]:
     """
     if not cut <= MOST_CUT[1]:
         raise InvalidValueError(
-            f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], and {100.0 * cut:.4g} % "
+            f"the coefficient of restitution onto the {onto} foot must be in [0, {most:.6g}], and {percent(cut)} "
             "of the distribution that it is drawn from is outside: the impact would create energy; is it meant for "
             "another body, or given in percent?"
         )
     if cut <= MOST_CUT[0]:
         return ()
     return (
-        f"{100.0 * cut:.3g} % of the distribution of the coefficient of restitution onto the {onto} foot lies outside "
+        f"{percent(cut)} of the distribution of the coefficient of restitution onto the {onto} foot lies outside "
         f"[0, {most:.4g}], where an impact would create energy, and is cut off; is it meant for another body?",
     )
 

@@ -15,11 +15,13 @@ from rocking.errors import PlausibilityWarning
 from rocking.evidence.measurements import all_measurements
 from rocking.report.facts.body import body_facts
 from rocking.restitution import model
+from rocking.studies.fragility import multiple_stripes
 
 pytestmark = pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWarning")
 BLOCK = rk.Block(width=0.5, height=2.0, density=500.0)
 PULSE = rk.pulses.sine(amplitude=3.0, period=0.8)
 TOWER = rk.Block(width=12.0, height=95.0, density=1800.0)
+SLOW, BOX, HEIGHTS = PULSE.scaled(0.5), rk.SpatialBody.box(0.5, 0.5, 2.0), ("height", [2.0, 3.0])
 STATUE_2_CM = [(0.0, 0.0), (0.008, 0.0), (0.005, 0.02)]
 
 DOUBTFUL = {
@@ -37,6 +39,20 @@ DOUBTFUL = {
     "period in ms": (lambda: rk.pulses.sine(amplitude=3.0, period=800.0), "period of 800 s.*in ms"),
     "step in ms": (lambda: rk.GroundMotion(np.array([0.0, 3.0]), 5.0), "step of 5 s.*in ms"),
     "scale": (lambda: rk.simulate(BLOCK, PULSE, scale=-9000.0), "2.7e[+]04 m/s2"),
+    "scales of many": (lambda: rk.simulate_many(BLOCK, [PULSE, PULSE], scale=[1.0, -9000.0]), "2.7e[+]04 m/s2.*scale"),
+    "scale with contact": (lambda: rk.simulate_with_contact(BLOCK, PULSE, 0.5, scale=20.0), "60 m/s2.*scale"),
+    "scale in space": (lambda: rk.simulate_spatial(BOX, y=PULSE, scale=20.0), "60 m/s2.*scale"),
+    "scales in space": (lambda: rk.simulate_spatial_batch(BOX, (None, PULSE), scales=[1.0, 20.0]), "60 m/s2.*scale"),
+    "scale of a spectrum": (lambda: rk.rocking_spectrum(PULSE, [0.2], [2.0], 0.9, scale=20.0), "60 m/s2.*scale"),
+    "scale of a map": (lambda: rk.overturning_map(BLOCK, PULSE, ("scale", [1.0, 9000.0]), HEIGHTS), "2.7e[+]04 m/s2"),
+    "pga of a map": (lambda: rk.overturning_map(BLOCK, PULSE, ("pga", [1.0, 300.0]), HEIGHTS), "300 m/s2"),
+    "levels": (lambda: multiple_stripes(BLOCK, [PULSE, SLOW], [2.0, 3000.0], 0.9), "3000 m/s2.*unit"),
+    "upwards": (lambda: rk.simulate_many(BLOCK, rk.GroundMotion([0, 1], 0.01, vertical=[0, 9]), scale=5.0), "45 m/s2"),
+    "gravity in cm/s2": (lambda: rk.simulate(BLOCK, PULSE, gravity=981.0), "gravity of 981 m/s2.*1.6.*25.*cm/s2"),
+    "gravity in g": (lambda: rk.simulate_with_contact(BLOCK, None, 0.5, gravity=1.0), "gravity of 1 m/s2.*or in g"),
+    "gravity in space": (lambda: rk.free_rocking_spatial(BOX, 0.01, gravity=981.0), "gravity of 981 m/s2"),
+    "friction in percent": (lambda: rk.simulate(BLOCK, PULSE, friction=40.0), "friction of 40 is more than 3.*percent"),
+    "friction in degrees": (lambda: rk.simulate_with_contact(BLOCK, PULSE, 35.0), "friction of 35.*degrees"),
     "loss for coefficient": (lambda: rk.simulate(BLOCK, PULSE, 0.07), "restitution of 0.07.*what is lost"),
     "loss for a model": (lambda: model("fixed", r=0.05), "restitution of 0.05"),
 }
@@ -66,6 +82,10 @@ MEANT = {
     "stops at once": lambda: rk.simulate(BLOCK, PULSE, 0.0),
     "everyday": lambda: rk.simulate(BLOCK, PULSE, 0.9, scale=-1.5),
     "bodies that identities try": lambda: rk.restitution.identity_report(TOWER, rk.restitution.Ked()),
+    "feet that never slide": lambda: rk.simulate_with_contact(BLOCK, PULSE, 1e6),
+    "on the Moon": lambda: rk.simulate(BLOCK, PULSE.scaled(0.1), gravity=1.62),
+    "levels of a study": lambda: multiple_stripes(BLOCK, [PULSE, SLOW], [2.0, 20.0], 0.9),
+    "ratios of a map": lambda: rk.overturning_map(BLOCK, PULSE, ("amplitude_ratio", [1.0, 30.0]), HEIGHTS),
     "several scales": lambda: rk.simulate_many(BLOCK, PULSE, "ked", scale=[0.5, 2.0]),
 }
 
@@ -103,7 +123,12 @@ def test_assumed_density_is_said(tmp_path):
     assert "rotations do not" in plain.assumed[0]
     assert rk.Block(width=0.8, height=1.8, density=2400.0).assumed == ()
     assert plain.scaled(size=2.0).assumed == plain.assumed
-    assert plain.scaled(density=0.1).assumed == ()
+    (heavier,) = plain.scaled(density=2.0).assumed
+    assert "2400 kg/m3 assumed, that of plain concrete, scaled to 4800;" in heavier
+    assert plain.scaled(density=2.0).to_section().assumed == (heavier,)
+    assert plain.to_section().scaled(density=2.0).assumed == (heavier,)
+    assert Solid(box(0.8, 0.8, 1.8)).scaled(density=2.0).assumed == (heavier,)
+    assert rk.Block(width=0.8, height=1.8, density=2400.0).scaled(density=2.0).assumed == ()
     assert body_facts(plain, 9.81)["assumed"] == list(plain.assumed)
     mixed = rk.Section(
         [rk.Region([(0, 0), (1, 0), (1, 1), (0, 1)], 7850.0), rk.Region([(0, 1), (1, 1), (1, 2), (0, 2)])]
@@ -147,6 +172,41 @@ def test_command_line_says_it(capsys):
     told, err = run(capsys, "cor", "--width", "0.5", "--height", "2", "--density", "500")
     assert err == ""
     assert "assumed" not in told
+
+
+ASKED = {
+    "map": ("map", "sine:amplitude=3,period=.5", "--x", "scale=1:2:2", "--y", "restitution=.8:.9:2"),
+    "minimum": ("minimum", "sine:amplitude=3,period=.5", "--highest", "6"),
+    "fragility": ("fragility", "--record", "sine:amplitude=3,period=.5", "--levels", "2:6:3"),
+}
+
+
+@pytest.mark.parametrize("command", ASKED)
+def test_studies_say_what_was_assumed(capsys, command):
+    """Pages and JSON of studies tell an assumed density from one that was given."""
+    words = (*ASKED[command], "--width", "0.5", "--height", "2")
+    assert "density:      2400 kg/m3 assumed" in run(capsys, *words)[0]
+    assert "assumed" in json.loads(run(capsys, *words, "--json")[0])["assumed"][0]
+    out, _ = run(capsys, *words, "--density", "2400")
+    assert "assumed" not in out
+    assert json.loads(run(capsys, *words, "--density", "2400", "--json")[0])["assumed"] == []
+
+
+def test_assumed_friction_is_said(capsys, tmp_path):
+    """Friction that nobody gave is assumed on page, in JSON, and in documents; what is given is given."""
+    words = ("simulate", "--width", "0.5", "--height", "2", "sine:amplitude=3,period=.5")
+    assert "needed, 0.5 assumed" in run(capsys, *words)[0]
+    assert "needed, 0.5 given" in run(capsys, *words, "--friction", "0.5")[0]
+    assert "friction 0.5, assumed" in run(capsys, *words, "--contact")[0]
+    assert json.loads(run(capsys, *words, "--contact", "--friction", "0.5", "--json")[0])["friction_assumed"] is False
+    for given in ((), ("--friction", "0.5")):
+        friction = json.loads(run(capsys, *words, *given, "--json")[0])["friction"]
+        assert (friction["given"], friction["assumed"]) == (0.5, not given)
+    question = tmp_path / "question.toml"
+    question.write_text(
+        '[body]\nunits = "m"\nwidth = 0.5\nheight = 2\n[motion]\npulse = "sine:amplitude=3,period=.5"\n[response]\n'
+    )
+    assert "needed, 0.5 assumed" in run(capsys, "simulate", str(question))[0]
 
 
 def test_the_api_and_the_page_say_it():

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 import rocking as rk
-from rocking.conventions import FEET, Foot
+from rocking.conventions import FEET, Foot, percent
 from rocking.dynamics import RandomRestitution, Rocker, RockingSide, Settings, engine
 from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.impact_law import uniform
@@ -107,7 +107,7 @@ def test_what_is_cut_off_is_stated(body: Any, mean: float, sd: float) -> None:
     for foot in FEET:
         share = rocker.side(SIGNS[foot]).share
         assert share == pytest.approx(whole.cdf(bound(body, foot)), abs=1e-4)  # of a step of 1/1024 between quantiles
-        assert (share < 1.0) == (f"{100.0 * (1.0 - share):.2g} % onto {foot}" in rocker.label)
+        assert (share < 1.0) == (f"{percent(1.0 - share)} onto {foot}" in rocker.label)
 
 
 def one_point(eta: float, k: float, s: float) -> Calibration:
@@ -132,11 +132,11 @@ def test_posterior_is_truncated_on_both_sides(body: Any, point: tuple[float, flo
         assert found.tables[foot][1:-1] == pytest.approx(exact.ppf(levels[1:-1]), abs=1e-9)
         assert found.cut[foot] == pytest.approx(1.0 - whole.cdf(most) + whole.cdf(0.0), abs=1e-12)
         assert found.bounds[foot] == pytest.approx(most, rel=1e-12)
-        assert f"{foot}={100.0 * found.cut[foot]:.2g} %" in repr(found)
+        assert f"{foot}={percent(found.cut[foot])}" in repr(found)
         for law in (found.per_history(3), found.per_impact(3)):
             rocker = Rocker.of_body(body, law, 9.81)
             assert rocker.side(SIGNS[foot]).share == 1.0
-            assert (f"{100.0 * found.cut[foot]:.2g} % onto {foot}" in rocker.label) == (found.cut[foot] > 1e-4)
+            assert (f"{percent(found.cut[foot])} onto {foot}" in rocker.label) == (found.cut[foot] > 1e-4)
             assert stats.kstest(coefficients(rocker, foot), exact.cdf).pvalue > ALARM
             clipped = np.minimum(whole.ppf([uniform(3, key, 3 * (not law.per_history)) for key in range(2000)]), most)
             if found.cut[foot] > 0.1:

@@ -172,7 +172,7 @@ class Block(Body):
             width=self.width * size,
             height=self.height * size,
             depth=self.depth * size,
-            density=self.density if density == 1.0 else self.density * density,
+            density=type(self.density)(self.density * density),
         )
 
     def with_feet(self, left: float, right: float) -> "Section":

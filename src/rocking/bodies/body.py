@@ -220,13 +220,14 @@ def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
     tuple of str
         One sentence, or none where every density was given.
     """
-    count = sum(isinstance(value, Assumed) for value in densities)
-    if count == 0:
+    assumed = [value for value in densities if isinstance(value, Assumed)]
+    if not assumed:
         return ()
-    parts = "" if count == len(densities) else f" for {count} of {len(densities)} parts"
+    parts = "" if len(assumed) == len(densities) else f" for {len(assumed)} of {len(densities)} parts"
+    scaled = "" if assumed[0] == DEFAULT_DENSITY else f", scaled to {assumed[0]:.6g}"
     effect = (
         "mass and forces depend on it, rotations do not"
         if not parts
         else "the centre of mass and rotations depend on it"
     )
-    return (f"density {DEFAULT_DENSITY:g} kg/m3 assumed{parts}, that of plain concrete; {effect}",)
+    return (f"density {DEFAULT_DENSITY:g} kg/m3 assumed{parts}, that of plain concrete{scaled}; {effect}",)

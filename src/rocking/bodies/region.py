@@ -96,7 +96,7 @@ class Region:
         """
         region = object.__new__(Region)
         outline, *holes = (change(ring) for ring in self.rings)
-        region._set(outline, self.density if density == 1.0 else self.density * density, holes)
+        region._set(outline, type(self.density)(self.density * density), holes)
         return region
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking.cli.shared_options import in_unit
 from rocking.cli.simulate_question import Question, restitution_from
-from rocking.conventions import LENGTH_UNITS
+from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.planar import PlanarResponse, Regime, Start, simulate_with_contact
 from rocking.errors import RockingError
@@ -87,6 +87,7 @@ def contact_facts(response: PlanarResponse) -> dict[str, Any]:
         "motion": moved_facts(response.motion, response.scale),
         "initial_rotation_rad": float(response.rotation[0]),
         "friction": law.friction,
+        "friction_assumed": isinstance(law.friction, Assumed),
         "bounce": law.bounce,
         "imposed_restitution": imposed,
         "gravity_m_s2": response.settings.gravity,
@@ -166,7 +167,7 @@ def _facts(response: PlanarResponse) -> list[tuple[str, str]]:
         ("body", f"{type(response.body).__name__}, {response.body.mass:.4g} kg"),
         *(("density", sentence.removeprefix("density ")) for sentence in response.body.assumed),
         ("motion", let_go if motion is None else times + motion.name),
-        ("contact", f"friction {law.friction:g}, bounce {law.bounce:g}"),
+        ("contact", f"friction {law.friction:g}, {given_or_assumed(law.friction)}; bounce {law.bounce:g}"),
         ("restitution", imposed),
     ]
 

@@ -2,7 +2,8 @@
 
 Keys of the JSON
 ----------------
-- ``body``, ``motions`` (kind, count, and family and seed, or names), ``gravity_m_s2``, ``linear``, ``analysis``,
+- ``body``, ``assumed`` (sentences),
+  ``motions`` (kind, count, and family and seed, or names), ``gravity_m_s2``, ``linear``, ``analysis``,
   ``measure``, ``unit``, ``states``, ``uplift_threshold`` (null if no level decides), ``levels``.
 - ``results``: one for every restitution, each with restitution, definition, uplift, failed, trials, reached (by state),
   curves (by state: those of `LognormalFit.summary`); of a cloud regression; of an incremental analysis
@@ -16,7 +17,6 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rocking.cli import study_output as shared
-from rocking.cli.body_options import body_words
 from rocking.cli.fragility_question import FragilityAnswer
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.incremental import IncrementalAnalysis
@@ -46,6 +46,7 @@ def as_json(answer: FragilityAnswer) -> str:
     compared = answer.compared
     facts = {
         "body": repr(asked.body),
+        "assumed": list(asked.body.assumed),
         "motions": answer.motions,
         "gravity_m_s2": asked.settings["gravity"],
         "linear": asked.settings["linear"],
@@ -110,7 +111,7 @@ def show(answer: FragilityAnswer, length: str = "m") -> None:
     console, found = Console(highlight=False, soft_wrap=True), answer.found
     labels = dict.fromkeys(one.subject.rocker.label for one in answer.results.values())
     head = {
-        "body": body_words(answer.question.body, answer.question.settings["gravity"], length),
+        **dict(shared.body_lines(answer.question.body, answer.question.settings["gravity"], length)),
         "motions": _motions(answer.motions),
         "restitution": ", ".join(labels),
         "measure": f"{found.subject.measure.name}, {found.subject.measure.words}",

@@ -2,7 +2,8 @@
 
 Keys of the JSON
 ----------------
-- ``body``, ``motion`` (kind, name, duration_s, peak_acceleration_m_s2), ``restitution``, ``engine``, ``gravity_m_s2``,
+- ``body``, ``assumed`` (sentences),
+  ``motion`` (kind, name, duration_s, peak_acceleration_m_s2), ``restitution``, ``engine``, ``gravity_m_s2``,
   ``linear``.
 - ``x``, ``y``: name, unit, values. ``mode`` and ``peak_ratio``: rows along y, null where there is no number.
 - ``cells``, ``modes`` (mode, meaning, count, share), ``refined_points`` (null without ``--refine``).
@@ -17,11 +18,10 @@ from typing import Any
 
 import numpy as np
 
-from rocking.cli.body_options import body_words
 from rocking.cli.files_output import plain
 from rocking.cli.map_output import MapAnswer
-from rocking.cli.study_output import motion_facts, table
-from rocking.conventions import FloatArray, IntArray
+from rocking.cli.study_output import body_lines, motion_facts, table
+from rocking.conventions import FloatArray, IntArray, percent
 from rocking.studies.axis import Axis
 
 _LAST = 3
@@ -46,6 +46,7 @@ def as_json(answer: MapAnswer) -> str:
     asked, found = answer.question, answer.found
     facts = {
         "body": repr(asked.body),
+        "assumed": list(asked.body.assumed),
         "motion": motion_facts(asked.motion),
         "restitution": found.attrs["restitution"],
         "engine": found.attrs["engine"],
@@ -80,7 +81,8 @@ def show(answer: MapAnswer, length: str = "m") -> None:
 
     console = Console(highlight=False, soft_wrap=True)
     asked, found = answer.question, answer.found
-    console.print(f"body:         {body_words(asked.body, asked.settings['gravity'], length)}", markup=False)
+    for name, words in body_lines(asked.body, asked.settings["gravity"], length):
+        console.print(f"{name + ':':13} {words}", markup=False)
     console.print(f"motion:       {asked.motion.name}", markup=False)
     console.print(f"restitution:  {found.attrs['restitution']};  engine: {found.attrs['engine']}", markup=False)
     for name, axis in (("x", asked.x), ("y", asked.y)):
@@ -220,7 +222,7 @@ def _pairs(answer: MapAnswer) -> list[tuple[str, str, Any]]:
 def _flip_rows(answer: MapAnswer) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     head = ("restitution", "against", "flips", "share", "only with the second", "only with the first")
     rows: list[tuple[str, ...]] = [
-        (a, b, str(f.count), f"{100.0 * f.share:.3g} %", str(f.gained), str(f.lost)) for a, b, f in _pairs(answer)
+        (a, b, str(f.count), percent(f.share), str(f.gained), str(f.lost)) for a, b, f in _pairs(answer)
     ]
     return head, rows
 

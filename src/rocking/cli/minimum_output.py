@@ -2,7 +2,8 @@
 
 Keys of the JSON
 ----------------
-- ``body``, ``motion`` (kind, name, duration_s, peak_acceleration_m_s2), ``restitution``, ``gravity_m_s2``, ``linear``.
+- ``body``, ``assumed`` (sentences),
+  ``motion`` (kind, name, duration_s, peak_acceleration_m_s2), ``restitution``, ``gravity_m_s2``, ``linear``.
 - ``crossings``: in order, each with acceleration_m_s2, acceleration_g (standard gravity), ratio (over what lifts the
   body), scale (factor on the motion), width_m_s2 (of its bracket), mode_below, mode_above (-2 not lifted, -1 survives,
   n >= 0 overturns after n impacts).
@@ -18,11 +19,10 @@ from typing import Any
 
 from rocking.bodies import Body
 from rocking.cli import study_output as shared
-from rocking.cli.body_options import body_words
 from rocking.cli.files_output import write_csv
 from rocking.cli.shared_options import beside_g, in_unit
 from rocking.cli.simulate_question import restitution_from
-from rocking.conventions import ACCELERATION_UNITS, g
+from rocking.conventions import ACCELERATION_UNITS, g, percent
 from rocking.dynamics.response import Motion
 from rocking.studies.crossings import Crossings
 
@@ -133,9 +133,9 @@ def sentence(found: Crossings) -> str:
         One sentence; with many crossings the first and the last.
     """
     falls = found.overturning_intervals
-    scanned = f"scanned from {_g(found.lowest)} to {_g(found.highest)}, resolution {100.0 * found.resolution:.2g} %"
+    scanned = f"scanned from {_g(found.lowest)} to {_g(found.highest)}, resolution {percent(found.resolution)}"
     if found.minimum is not None and found.resolution_below < 0.5 * found.resolution:
-        scanned += f" ({100.0 * found.resolution_below:.2g} % below the first crossing); thinner stretches may exist"
+        scanned += f" ({percent(found.resolution_below)} below the first crossing); thinner stretches may exist"
     if not falls:
         return f"survives everything; {scanned}"
     if falls == ((found.lowest, found.highest),):
@@ -177,6 +177,7 @@ def as_json(answer: MinimumAnswer) -> str:
     found = answer.found
     facts = {
         "body": repr(answer.body),
+        "assumed": list(answer.body.assumed),
         "motion": shared.motion_facts(answer.motion),
         "restitution": answer.label,
         "gravity_m_s2": answer.settings["gravity"],
@@ -273,7 +274,8 @@ def show(answer: MinimumAnswer, length: str = "m", acceleration: str = "m/s2") -
 
     console, found = Console(highlight=False, soft_wrap=True), answer.found
     unit, lifts = beside_g(acceleration), found.uplift_acceleration
-    console.print(f"body:         {body_words(answer.body, answer.settings['gravity'], length)}", markup=False)
+    for name, words in shared.body_lines(answer.body, answer.settings["gravity"], length):
+        console.print(f"{name + ':':13} {words}", markup=False)
     console.print(f"motion:       {answer.motion.name}, scaled", markup=False)
     console.print(f"restitution:  {answer.label}", markup=False)
     console.print(f"lifts it:     {_g(lifts)}, {in_unit(lifts, unit, '.6g')}", markup=False)

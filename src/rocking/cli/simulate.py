@@ -22,7 +22,9 @@ def simulate(
     ] = None,
     restitution: shared.Restitution = "ked",
     scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
-    friction: Annotated[float, typer.Option(help="Coefficient of friction between body and ground.")] = 0.5,
+    friction: Annotated[
+        float | None, typer.Option(help="Coefficient of friction between body and ground; 0.5 is assumed.")
+    ] = None,
     contact: Annotated[
         bool,
         typer.Option("--contact", help="Let it slide, hop and fly with --friction.", rich_help_panel=_CONTACT),

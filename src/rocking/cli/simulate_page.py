@@ -6,6 +6,7 @@ from typing import Any
 from rocking.cli.body_options import body_words
 from rocking.cli.shared_options import in_unit
 from rocking.cli.simulate_output import Answer
+from rocking.conventions import given_or_assumed
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.motions.pulse import Pulse
@@ -109,7 +110,7 @@ def _measures(answer: Answer) -> list[tuple[str, str]]:
     return [
         ("peak rotation", "it overturned" if fell else peak),
         ("energy closure", f"{response.energy.closure:.1e} of the largest energy"),
-        ("friction", f"{needed} needed, {answer.friction:g} given"),
+        ("friction", f"{needed} needed, {answer.friction:g} {given_or_assumed(answer.friction)}"),
         ("error estimate", doubt),
     ]
 

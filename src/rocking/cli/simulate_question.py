@@ -9,7 +9,7 @@ from rocking.bodies import Body
 from rocking.cli.model_options import models_from
 from rocking.cli.motion_options import motion_from
 from rocking.cli.solid_options import is_body
-from rocking.conventions import g
+from rocking.conventions import DEFAULT_FRICTION, g
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
@@ -28,7 +28,7 @@ def question_of(
     gravity: float | None,
     engine: str,
     linear: bool,
-    friction: float,
+    friction: float | None,
 ) -> Question:
     """Put the question together.
 
@@ -48,8 +48,8 @@ def question_of(
         Which engine.
     linear : bool
         Whether to solve the slender-linear equations.
-    friction : float
-        Coefficient of friction between body and ground, above zero [-].
+    friction : float, optional
+        Coefficient of friction between body and ground, above zero; assumed if not given [-].
 
     Returns
     -------
@@ -64,7 +64,7 @@ def question_of(
     pull = g if gravity is None else checks.positive("--gravity", gravity, "m/s2")
     share = None if free is None else _share(body, checks.number("--free", free))
     settings = Settings(gravity=pull, linear=linear)
-    mu = checks.positive("--friction", friction)
+    mu = DEFAULT_FRICTION if friction is None else checks.positive("--friction", friction)
     return Question(body, motion, {}, settings, engine, friction=mu, free=share, scale=scale)
 
 

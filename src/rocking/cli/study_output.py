@@ -9,6 +9,7 @@ from typing import Any
 
 from rocking import checks
 from rocking.bodies import Body
+from rocking.cli.body_options import body_words
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray, g
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
@@ -178,6 +179,27 @@ def body_and_motion_of(
         )
     file, word = body_and_motion(body, record, motion, sized=sized, free=False)
     return body_from(file, **size), motion_from(str(word), **told)
+
+
+def body_lines(body: Body, gravity: float, length: str = "m") -> list[tuple[str, str]]:
+    """Return what is printed of the body of a study.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    length : str
+        Unit of length.
+
+    Returns
+    -------
+    list of (str, str)
+        Its numbers, and what nobody gave.
+    """
+    words = body_words(body, gravity, length)
+    return [("body", words), *(("density", each.removeprefix("density ")) for each in body.assumed)]
 
 
 def motion_facts(motion: Motion) -> dict[str, Any]:

@@ -88,7 +88,7 @@ def simulate(  # noqa: PLR0913 - every one of them is a question that users ask
     if not isinstance(motion, (GroundMotion, Pulse)):
         raise InvalidValueError(f"motion must be a GroundMotion or a pulse, got {motion!r:.60}")
     scale = checks.within("scale", scale, -1e6, 1e6)
-    plausibility.warn(plausibility.of_acceleration(abs(scale) * motion.peak) if scale != 1.0 else ())
+    plausibility.warn(plausibility.of_scaled([motion], scale))
     settings = settings_of(gravity, options)
     rocker = Rocker.of_body(body, restitution, settings.gravity)
     rotation, velocity = initial_state(rocker, rotation, angular_velocity)
@@ -264,6 +264,8 @@ def _until_rest(found: Any, segments: Segments) -> tuple[Any, Segments]:
 
 
 def _credible(response: Response, friction: float | None) -> Response:
+    if friction is not None:
+        plausibility.warn(plausibility.of_friction(checks.positive("friction", friction)))
     for sentence in response.doubts(friction):
         warnings.warn(sentence, PureRockingWarning, stacklevel=3)
     return response

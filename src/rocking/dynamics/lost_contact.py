@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, percent
 from rocking.dynamics.outcome import Outcome
 
 FORCES: dict[str, tuple[str, str]] = {
@@ -54,12 +54,12 @@ def contact_words(flags: Any) -> str:
     Examples
     --------
     >>> contact_words([1.0, 0.0, 0.0, np.nan])
-    'in 1 of 3 histories (33 %) the ground would have to pull; their verdicts assume contact'
+    'in 1 of 3 histories (33.3 %) the ground would have to pull; their verdicts assume contact'
     """
     known = np.asarray(flags, dtype=np.float64)
     known = known[np.isfinite(known)]
     lost = int((known == 1.0).sum())
     if not lost:
         return ""
-    share = f"{100.0 * lost / known.size:.2g} %"
+    share = percent(lost / known.size)
     return f"in {lost} of {known.size} histories ({share}) the ground would have to pull; their verdicts assume contact"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking import checks, conventions
+from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.histories import settings_of
@@ -115,6 +115,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     body_list, motion_list = _several("bodies", bodies, (Body,)), _several("motions", motions, (GroundMotion, Pulse))
     choices = restitution if isinstance(restitution, (list, tuple)) else [restitution]
     scales = _scales(scale)
+    plausibility.warn(plausibility.of_scaled(motion_list, scales))
     if not choices:
         raise InvalidValueError("restitution must be at least one model, got none")
     law = _common_law(choices)

@@ -1,5 +1,6 @@
 """The response of a body to a ground motion: rotation, impacts, energy, forces, outcome."""
 
+import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -8,13 +9,13 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, given_or_assumed
 from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
@@ -180,11 +181,13 @@ class Response(Exportable):
             raise InvalidValueError(f"restitution must be constant where the body may fly, got {rocker.label}")
         start = Start(rotation=float(run.rotation[0]), angular_velocity=float(run.angular_velocity[0]))
         for mu in (friction,) if friction is not None else (10.0, 3.0, 1.0):
-            found = simulate_with_contact(
-                self.body, self.motion, mu, restitution={f: getattr(rocker, f).coefficient for f in ("left", "right")},
-                scale=self.scale, duration=self.segments.count * self.segments.step, start=start,
-                gravity=self.settings.gravity,
-            )  # fmt: skip
+            with warnings.catch_warnings():  # what was asked has been doubted
+                warnings.simplefilter("ignore", PlausibilityWarning)
+                found = simulate_with_contact(
+                    self.body, self.motion, mu, start=start,
+                    restitution={f: getattr(rocker, f).coefficient for f in ("left", "right")},
+                    scale=self.scale, duration=self.segments.count * self.segments.step, gravity=self.settings.gravity,
+                )  # fmt: skip
             if found.outcome is not Outcome.FAILED:
                 break
         return found
@@ -216,7 +219,7 @@ class Response(Exportable):
             found = self.with_contact(friction)
         except InvalidValueError as error:
             return f"{lost}nothing is known: {error}"
-        why = "since none was given" if friction is None else "as given"
+        why = "since none was given" if friction is None else f"as {given_or_assumed(friction)}"
         return f"{lost}with a coefficient of friction of {found.law.friction:g}, {why}: {found.summary}"
 
     @property

@@ -6,7 +6,7 @@ from typing import Any
 
 from rocking import checks, plausibility
 from rocking.bodies import Body
-from rocking.conventions import FEET, Foot
+from rocking.conventions import FEET, Foot, percent
 from rocking.dynamics.impact_law import ConstantRestitution, DrawnRestitution, ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
@@ -217,9 +217,9 @@ def cut_words(cut: Mapping[Foot, float]) -> str:
     str
         For the end of a label; nothing where less than a ten-thousandth is cut off.
     """
-    said = [f"{100.0 * cut[foot]:.2g} % onto {foot}" for foot in FEET if cut[foot] > _SAID]
+    said = [f"{percent(cut[foot])} onto {foot}" for foot in FEET if cut[foot] > _SAID]
     if said and cut["left"] == cut["right"]:
-        said = [f"{100.0 * cut['left']:.2g} %"]
+        said = [percent(cut["left"])]
     return f" (of the distribution {' and '.join(said)} cut off, where impacts would create energy)" if said else ""
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking import checks, conventions
+from rocking import checks, conventions, plausibility
 from rocking.errors import InvalidValueError
 
 ORDERS = (4, 6, 8)
@@ -72,6 +72,7 @@ class Settings:
             raise InvalidValueError(f"order must be one of {ORDERS}, got {self.order!r}")
         for name, value in made.items():  # numbers of one kind: 9 and 9.0 are the same settings
             object.__setattr__(self, name, value)
+        plausibility.warn(plausibility.of_gravity(self.gravity))
 
 
 def _whole(name: str, value: object) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.bodies import Block, Body
-from rocking.conventions import FEET, FloatArray, Foot
+from rocking.conventions import FEET, FloatArray, Foot, percent
 from rocking.dynamics.impact_law import RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration, calibrate
@@ -54,7 +54,7 @@ class RestitutionDistribution:
 
     def __repr__(self) -> str:
         """Return the numbers that matter, with what was cut off."""
-        cut = ", ".join(f"{foot}={100.0 * self.cut[foot]:.2g} % outside [0, {self.bounds[foot]:.6g}]" for foot in FEET)
+        cut = ", ".join(f"{foot}={percent(self.cut[foot])} outside [0, {self.bounds[foot]:.6g}]" for foot in FEET)
         return (
             f"RestitutionDistribution(onto={self.onto!r}, mean={self.mean:.4g}, "
             f"standard_deviation={self.standard_deviation:.2g}, cut off: {cut}, extrapolated={self.extrapolated})"

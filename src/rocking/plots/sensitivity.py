@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rocking.conventions import percent
 from rocking.errors import InvalidValueError
 from rocking.plots.overturning_map import CLASSES, classes_of, draw_map
 from rocking.plots.study_words import PEAK, axis_label, geometric, look, plain, plain_log
@@ -108,7 +109,7 @@ def _flips(axes: "Axes", found: Sensitivity, label: str) -> None:
         rasterized=True,
     )  # fmt: skip
     flips = found.flips_between(found.baseline, label)
-    words = f"{flips.count:,} of {flips.compared:,} flip ({100.0 * flips.share:.2g} %)"
+    words = f"{flips.count:,} of {flips.compared:,} flip ({percent(flips.share)})"
     axes.set_title(words, loc="left", fontsize=7)
 
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from rocking.conventions import Foot, g
+from rocking.conventions import Foot, g, given_or_assumed
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.evidence.coefficient_table import CALIBRATED, CoefficientRow
@@ -84,7 +84,8 @@ def outcomes_table(responses: Mapping[str, Response], friction: float) -> Table:
     rows = [_outcome(label, response, friction) for label, response in responses.items()]
     note = (
         "A peak beyond 1 means that the centre of mass passed the foot and came back. Friction taken: largest ratio of "
-        f"horizontal to vertical force while the body stands on one foot; {friction:g} was given."
+        "horizontal to vertical force while the body stands on one foot; "
+        f"{friction:g} was {given_or_assumed(friction)}."
     )
     return Table("How it ends", header, rows, note)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.conventions import FloatArray
 from rocking.dynamics.batch import ROWS, SIDES_UNTOLD, Batch, Rows
 from rocking.dynamics.content import full_name, hash_of
@@ -330,6 +330,8 @@ class Product(Histories):
         sides = {name: checks.real_array(name, values) for name, values in self.sides.items()}
         object.__setattr__(self, "sides", {name: _own(array, self.sides[name]) for name, array in sides.items()})
         object.__setattr__(self, "scales", _own(scales, self.scales))
+        if self.motions.in_memory:
+            plausibility.warn(plausibility.of_scaled([self.motions[k] for k in range(len(self.motions))], scales))
 
     @property
     def shape(self) -> tuple[int, int, int, int]:

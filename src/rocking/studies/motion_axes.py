@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rocking import plausibility
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.studies.axis import AMPLITUDE, TIME, VELOCITY, Axis
@@ -77,11 +78,21 @@ class Scale(_AmplitudeAxis):
 
     name, unit, words, low, high = "scale", "1", "factor on the motion", -1e6, 1e6
 
+    def _fits(self, question: Question) -> None:
+        """Doubt a motion that is stronger than any recorded."""
+        super()._fits(question)
+        plausibility.warn(plausibility.of_scaled([question.motion], self.values))
+
 
 class PeakAcceleration(_AmplitudeAxis):
     """Peak ground acceleration."""
 
     name, unit, words, high = "pga", "m/s2", "peak ground acceleration", 1e6
+
+    def _fits(self, question: Question) -> None:
+        """Doubt a motion that is stronger than any recorded."""
+        super()._fits(question)
+        plausibility.warn(plausibility.of_acceleration(float(self.values.max())))
 
     def _factors(self, case: Case, values: FloatArray) -> FloatArray:
         """Return the PGA over that of the motion."""

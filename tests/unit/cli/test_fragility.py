@@ -94,8 +94,8 @@ def test_keys_are_stable(capsys):
     many, none = (
         told(capsys, *SIZE, *FAMILY, "--levels", levels) for levels in ("0.1g:0.9g:9", "0.05g,0.1g")
     )  # the second overturns nothing
-    keys = ["body", "motions", "gravity_m_s2", "linear", "analysis", "measure", "unit", "states", "uplift_threshold",
-            "levels", "results", "comparison"]  # fmt: skip
+    keys = ["body", "assumed", "motions", "gravity_m_s2", "linear", "analysis", "measure", "unit", "states",
+            "uplift_threshold", "levels", "results", "comparison"]  # fmt: skip
     assert list(many) == list(none) == keys
     first, second = many["results"][0], none["results"][0]
     wanted = ["restitution", "definition", "uplift", "failed", "contact", "trials", "reached", "curves"]

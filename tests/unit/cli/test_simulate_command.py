@@ -201,7 +201,7 @@ def test_printed_page(capsys):
     for time in response.impacts["time"][:10]:
         assert f"{time:.6f}" in out
     assert f"... and {response.impacts.size - 10} more" in out
-    for words in ("of the slenderness angle", "of the largest energy", "needed, 0.5 given", "error estimate"):
+    for words in ("of the slenderness angle", "of the largest energy", "needed, 0.5 assumed", "error estimate"):
         assert words in out
     statue = run(capsys, STATUE, "--free", "-0.3")[1]
     table = statue[statue.index("With other") :].splitlines()

@@ -93,7 +93,12 @@ def test_page_and_files(capsys, tmp_path):
     slides = ("--width", "1.2", "--height", "2", "sine:amplitude=9,period=0.9", "--contact", "--friction", "0.62")
     code, out, err = run(capsys, *slides, *words)
     assert (code, err) == (0, "")
-    for said in ("friction 0.62, bounce 0", "rocking about one foot that slides", "in friction", "friction used:"):
+    for said in (
+        "friction 0.62, given; bounce 0",
+        "rocking about one foot that slides",
+        "in friction",
+        "friction used:",
+    ):
         assert said in out
     for path in files.values():
         assert f"wrote {path}" in out

@@ -31,7 +31,7 @@ def test_maps_and_flips(maps):
         drawn = np.asarray(axes[3 + place].collections[-1].get_array()).reshape(over[label].shape)
         np.testing.assert_array_equal(drawn, over[label].astype(int) - over["housner"].astype(int))
         count = int((over[label] != over["housner"]).sum())
-        assert axes[3 + place].get_title(loc="left").startswith(f"{count} of 480 flip ({100.0 * count / 480:.2g} %)")
+        assert axes[3 + place].get_title(loc="left").startswith(f"{count} of 480 flip ({100.0 * count / 480:.3g} %)")
         assert count > 0
     assert axes[0].get_xlabel() == r"$\omega_p\,/\,p$ [-]"
     words = [text.get_text() for text in axes[3].get_legend().get_texts()]

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.conventions import DEFAULT_FRICTION, percent
 from rocking.dynamics.lost_contact import contact_words
+from rocking.dynamics.rocker import cut_words
 from rocking.report.facts.response import response_facts
 from rocking.studies.fragility.cloud import cloud
 from rocking.studies.fragility.stripes import multiple_stripes
@@ -25,6 +27,15 @@ def record(vertical: float, phase: float = 0.0) -> rk.GroundMotion:
 
 
 HEAVY, LIGHT = [record(1.5, k) for k in range(4)], [record(0.05, k) for k in range(4)]
+
+
+def test_shares_in_words():
+    """All is 100 %, not 1e+02 %, what is not quite all is less, and small shares keep two digits."""
+    assert "in 45 of 45 histories (100 %) " in contact_words([1.0] * 45)
+    assert "in 2999 of 3000 histories (99.967 %) " in contact_words([1.0] * 2999 + [0.0])
+    assert "distribution 99.7 % cut off" in cut_words({"left": 0.997, "right": 0.997})
+    shares = {0.0: "0 %", 3.1e-4: "0.031 %", 0.0078: "0.78 %", 0.14: "14 %", 0.9949: "99.5 %", 12.344: "1230 %"}
+    assert {share: percent(share) for share in shares} == shares
 
 
 def test_maps_spectra_and_searches_say_it():
@@ -72,4 +83,6 @@ def test_one_history_tells_both_verdicts():
     (words, *_) = response_facts(rk.simulate(LEANING, HEAVY[0], 0.8), 0.5)["warnings"]
     assert "rocking alone: " in words
     assert "if it may fly, with a coefficient of friction of 0.5, as given: " in words
+    (words, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts(DEFAULT_FRICTION)
+    assert "with a coefficient of friction of 0.5, as assumed: " in words
     assert not any("pull" in each for each in response_facts(rk.simulate(LEANING, LIGHT[0], 0.8), 0.5)["warnings"])

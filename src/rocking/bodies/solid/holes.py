@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rocking.conventions import FloatArray, IntArray
+from rocking.conventions import FloatArray, IntArray, percent
 from rocking.errors import GeometryError
 
 SMALL = 0.01
@@ -122,10 +122,10 @@ def filled(points: FloatArray, faces: IntArray, loops: list[IntArray], said: lis
     share = _area(points[fans]) / whole
     if share > SMALL:
         raise GeometryError(
-            f"{len(loops)} hole(s) are {100.0 * share:.2g} % of the surface; only up to 1 % is filled, as a larger "
+            f"{len(loops)} hole(s) are {percent(share)} of the surface; only up to 1 % is filled, as a larger "
             "patch would invent part of the body: close them in the program that made the mesh"
         )
-    said.append(f"filled {len(loops)} hole(s), together {100.0 * share:.2g} % of the surface, each with a fan")
+    said.append(f"filled {len(loops)} hole(s), together {percent(share)} of the surface, each with a fan")
     return points, np.concatenate([faces, fans])
 
 

@@ -114,7 +114,7 @@ class Part:
         """
         scaled = self._with(self.shape.scaled(size), self.rotation, self.translation * size)
         factor = checks.positive("density", density)
-        return scaled if factor == 1.0 else replace_density(scaled, self.density * factor)
+        return scaled if factor == 1.0 else replace_density(scaled, type(self.density)(self.density * factor))
 
     def mirrored(self) -> "Part":
         """Return the part seen in the mirror x -> -x.

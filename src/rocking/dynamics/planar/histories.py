@@ -4,7 +4,7 @@ import math
 from dataclasses import fields
 from typing import Any
 
-from rocking import checks, conventions
+from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.planar.engine import Planar
@@ -85,10 +85,13 @@ def simulate_with_contact(
     settings = _settings(options)
     footing = Footing.of_body(body)
     law = ContactLaw(
-        checks.number("friction", friction), checks.number("bounce", bounce), _imposed(body, restitution, settings)
+        friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
+        checks.number("bounce", bounce),
+        _imposed(body, restitution, settings),
     )
     scale = checks.within("scale", scale, -1e6, 1e6)
     segments = _segments(motion, footing, settings.gravity, duration)
+    plausibility.warn(plausibility.of_scaled([motion], scale))
     history = Planar(footing, segments, law, settings, scale).run(start.state(footing))
     return PlanarResponse(body, motion, footing, law, settings, segments, scale, history)
 

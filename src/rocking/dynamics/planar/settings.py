@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from rocking import checks, conventions
+from rocking import checks, conventions, plausibility
 from rocking.errors import InvalidValueError
 
 
@@ -41,6 +41,7 @@ class PlanarSettings:
         most: object = self.most_events
         if isinstance(most, bool) or not isinstance(most, int) or most < 1:
             raise InvalidValueError(f"most_events must be a whole number >= 1, got {most!r:.60}")
+        plausibility.warn(plausibility.of_gravity(self.gravity))
 
 
 @dataclass(frozen=True)
@@ -72,3 +73,4 @@ class ContactLaw:
         checks.within("friction", self.friction, 0.0, 1e6, hint="1e6 for feet that never slide")
         hint = "a ratio of normal velocities; at 1 bounces never end"
         checks.within("bounce", self.bounce, 0.0, 1.0, open_high=True, hint=hint)
+        plausibility.warn(plausibility.of_friction(self.friction))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking import checks, conventions
+from rocking import checks, conventions, plausibility
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial.ground import Component, ground_of
@@ -99,6 +99,7 @@ def simulate_spatial(  # noqa: PLR0913 - every one of them is a question that us
     ends = max(motion.duration for motion in motions if motion is not None)
     length = ends + _AFTER / p if duration is None else checks.positive("duration", duration, "s")
     ground = ground_of(x, y, vertical, until=length, scale=scale)
+    plausibility.warn(plausibility.of_scaled(motions, scale))
     steps = [motion.time_step for motion in motions if isinstance(motion, GroundMotion)]
     names = tuple("none" if motion is None else motion.name for motion in motions)
     start = _initial(made, tilt, azimuth, yaw, angular_velocity)

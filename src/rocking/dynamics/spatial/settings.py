@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking import checks, conventions
+from rocking import checks, conventions, plausibility
 from rocking.errors import InvalidValueError
 
 
@@ -53,6 +53,7 @@ class SpatialSettings:
         }
         for name, value in made.items():
             object.__setattr__(self, name, value)
+        plausibility.warn(plausibility.of_gravity(self.gravity))
 
 
 def _whole(name: str, value: object, low: int, high: int) -> int:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking import checks, conventions
+from rocking import checks, conventions, plausibility
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial_batch import engine as engines
@@ -93,6 +93,8 @@ def simulate_spatial_batch(  # noqa: PLR0913 - every one of them is a question t
     starts = [SpatialStart()] if start is None else _listed("start", start)
     if factors.ndim != 1 or not factors.size or not all(isinstance(s, SpatialStart) for s in starts):
         raise InvalidValueError("scales must be one number or a row of them, and start one or more SpatialStart")
+    for motion in _listed("motions", motions):
+        plausibility.warn(plausibility.of_scaled(motion if isinstance(motion, tuple) else [motion], factors))
     if progress is not None and not callable(progress):
         raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")
     shape = (len(made), len(grounds), factors.size, len(laws), len(starts))

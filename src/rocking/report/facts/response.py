@@ -14,14 +14,15 @@ What the keys mean:
   ``onto``.
 - ``energy_closure``: what does not add up over the largest energy; ``error_estimate_rad``: None if another step changes
   the outcome.
-- ``friction``: ``given``, ``of_motion`` (None if infinite), ``of_impacts``; ``least_vertical_force_N``; ``warnings``.
+- ``friction``: ``given``, ``assumed`` (whether nobody gave it), ``of_motion`` (None if infinite), ``of_impacts``;
+  ``least_vertical_force_N``; ``warnings``.
 """
 
 import math
 from typing import Any
 
 from rocking import plausibility
-from rocking.conventions import FEET
+from rocking.conventions import FEET, Assumed
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.rocker import Rocker
 from rocking.motions.motion import GroundMotion
@@ -81,6 +82,7 @@ def credibility_facts(response: Response, friction: float) -> dict[str, Any]:
     return {
         "friction": {
             "given": friction,
+            "assumed": isinstance(friction, Assumed),
             "of_motion": finite(contact.friction_of_motion),
             "of_impacts": finite(contact.friction_of_impacts),
         },

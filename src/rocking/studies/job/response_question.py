@@ -4,8 +4,9 @@ import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.bodies import Body
+from rocking.conventions import DEFAULT_FRICTION
 from rocking.dynamics.histories import free_rocking, simulate
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.settings import Settings
@@ -46,13 +47,13 @@ class ResponseQuestion:
     choices: dict[str, Any] = field(default_factory=lambda: {"ked": "ked"})
     settings: Settings = field(default_factory=Settings)
     engine: str = "auto"
-    friction: float = 0.5
+    friction: float = DEFAULT_FRICTION
     free: float | None = None
     scale: float = 1.0
 
     def __post_init__(self) -> None:
         """Check what the engines do not check."""
-        checks.positive("friction", self.friction)
+        plausibility.warn(plausibility.of_friction(checks.positive("friction", self.friction)))
         if self.free is not None:
             checks.number("free", self.free)
         if (self.motion is None) != (self.free is not None):

@@ -5,6 +5,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from rocking.conventions import DEFAULT_FRICTION
 from rocking.studies.job.restitution_tables import RestitutionTable
 from rocking.studies.job.table import JobTable, Positive, Seed, Words, refused
 from rocking.studies.job.tables import SettingsTable
@@ -23,7 +24,9 @@ class ResponseTable(JobTable):
     """How the body starts, and on what it stands."""
 
     free: Annotated[float | None, Field(description="first rotation over the slenderness angle [-]")] = None
-    friction: Annotated[float, Field(gt=0.0, description="between body and ground [-]")] = 0.5
+    friction: float = Field(
+        gt=0.0, default_factory=lambda: DEFAULT_FRICTION, description="between body and ground; 0.5 is assumed [-]"
+    )
 
 
 class OneMotionTable(JobTable):

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, percent
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.estimate import Scale, find_curves, log_dispersion, log_fractile
 
@@ -82,28 +82,6 @@ class CurveChange:
             f"the probability by at most {self.distance.value:.3f} "
             f"({_interval(self.distance.interval, '{:.3f}'.format)}) at {self.level / size:.4g} {unit}"
         )
-
-
-def percent(share: float) -> str:
-    """Return a share in percent, with as many digits as a reader needs.
-
-    Parameters
-    ----------
-    share : float
-        The share [-].
-
-    Returns
-    -------
-    str
-        With its sign of percent.
-
-    Examples
-    --------
-    >>> percent(0.14), percent(0.0078), percent(0.00031), percent(1.0)
-    ('14 %', '0.78 %', '0.031 %', '100 %')
-    """
-    value = 100.0 * share
-    return f"{value:.3g} %" if abs(value) >= 1.0 else f"{value:.2g} %"
 
 
 def signed(share: float) -> str:

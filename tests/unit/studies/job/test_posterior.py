@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.conventions import percent
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence import restitution_distribution
 from rocking.studies import overturning_map
@@ -63,9 +64,9 @@ def test_label():
     (label,) = job_of("posterior = true\ncount = 30").parts.choices
     assert label == "drawn per impact: 30 values of the posterior of the measurements, seed 8"
     (label,) = job_of("posterior = true", body=BODY.replace("2.0", "40.0")).parts.choices
-    cut = 100.0 * restitution_distribution(80.0).cut["left"]
+    cut = restitution_distribution(80.0).cut["left"]
     assert label == "drawn per impact: posterior of the measurements (extrapolated in slenderness), seed 8" + (
-        f" (of the distribution {cut:.2g} % cut off, where impacts would create energy)"
+        f" (of the distribution {percent(cut)} cut off, where impacts would create energy)"
     )
 
 
@@ -144,7 +145,7 @@ def test_the_label_says_what_is_cut_off():
         (label,) = job_of("mean = 0.9\ndeviation = 0.05", "histories", body=text, rest="").parts.choices
     with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the distribution"):
         told = rk.simulate_many(body, rk.pulses.sine(3.0, 0.6), rk.RandomRestitution.normal(0.9, 0.05, seed=8))
-    words = " (of the distribution 9.8 % onto right cut off, where impacts would create energy)"
+    words = " (of the distribution 9.78 % onto right cut off, where impacts would create energy)"
     assert label == f"drawn per impact: 0.9 +- 0.05, seed 8{words}"
     assert str(told["restitution"].values[0]).endswith(words)
     with pytest.raises(

@@ -58,7 +58,8 @@ class ImpactFacts(Answer):
 class FrictionFacts(Answer):
     """Friction that rocking without slip takes."""
 
-    given: float = Field(description="coefficient of friction that was given [-]")
+    given: float = Field(description="coefficient of friction that was given, or assumed [-]")
+    assumed: bool = Field(description="whether nobody gave it")
     of_motion: float | None = Field(description="demand while it rocks; null if no friction suffices [-]")
     of_impacts: float | None = Field(description="demand at impacts; null if no friction suffices [-]")
 
