@@ -24,12 +24,9 @@ class ResponseTable(JobTable):
     """How the body starts, and on what it stands."""
 
     free: Annotated[float | None, Field(description="first rotation over the slenderness angle [-]")] = None
-    friction: Annotated[
-        float,
-        Field(
-            gt=0.0, default_factory=lambda: DEFAULT_FRICTION, description="between body and ground; 0.5 is assumed [-]"
-        ),
-    ]
+    friction: float = Field(
+        gt=0.0, default_factory=lambda: DEFAULT_FRICTION, description="between body and ground; 0.5 is assumed [-]"
+    )
 
 
 class OneMotionTable(JobTable):
