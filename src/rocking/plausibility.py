@@ -29,8 +29,8 @@ LARGEST_PGA = 41.0
 GRAVITIES = 1.6, 25.0
 """Of the Moon, 1.62, and of Jupiter, 24.8 [m/s2]."""
 
-FRICTIONS = 3.0, 100.0
-"""More than rubber on dry rock has; from there on feet are meant that never slide [-]."""
+FRICTIONS = 10.0, 100.0
+"""Feet that should not slide are often given 10, more than any surface has; from 100 on they never slide [-]."""
 
 PERIODS = 0.01, 60.0
 """Of a pulse: shorter than records resolve; longer than the slowest pulses near a fault, of about 14 s [s]."""

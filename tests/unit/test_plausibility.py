@@ -51,7 +51,10 @@ DOUBTFUL = {
     "gravity in cm/s2": (lambda: rk.simulate(BLOCK, PULSE, gravity=981.0), "gravity of 981 m/s2.*1.6.*25.*cm/s2"),
     "gravity in g": (lambda: rk.simulate_with_contact(BLOCK, None, 0.5, gravity=1.0), "gravity of 1 m/s2.*or in g"),
     "gravity in space": (lambda: rk.free_rocking_spatial(BOX, 0.01, gravity=981.0), "gravity of 981 m/s2"),
-    "friction in percent": (lambda: rk.simulate(BLOCK, PULSE, friction=40.0), "friction of 40 is more than 3.*percent"),
+    "friction in percent": (
+        lambda: rk.simulate(BLOCK, PULSE, friction=40.0),
+        "friction of 40 is more than 10.*percent",
+    ),
     "friction in degrees": (lambda: rk.simulate_with_contact(BLOCK, PULSE, 35.0), "friction of 35.*degrees"),
     "loss for coefficient": (lambda: rk.simulate(BLOCK, PULSE, 0.07), "restitution of 0.07.*what is lost"),
     "loss for a model": (lambda: model("fixed", r=0.05), "restitution of 0.05"),

@@ -15,6 +15,7 @@ from rocking.app.takeaway.command_words import simulate_words
 from rocking.app.takeaway.plain_text import plain_line, record_file_name
 from rocking.app.takeaway.toml_words import toml_of, toml_value
 from rocking.bodies.formats.words import sentence
+from rocking.conventions import Assumed
 
 FILE_NAME = "response.toml"
 """What such a file is called."""
@@ -111,9 +112,9 @@ def inputs_as_toml(inputs: Inputs) -> str:
     str
         TOML; numbers keep every digit.
     """
-    told = plain_inputs(inputs)
+    told, friction = plain_inputs(inputs), inputs.response.friction
     tables: dict[str, Any] = {
-        "response": {"friction": inputs.response.friction, **told.get("response", {})},
+        "response": {**({} if isinstance(friction, Assumed) else {"friction": friction}), **told.get("response", {})},
         "body": told["body"],
         "motion": _motion_on_disk(told.get("motion"), record_name(inputs)),
         "restitution": told.get("restitution", {"model": "ked"}),
