@@ -75,7 +75,7 @@ struct Rows {
     const double *scale, *rotation, *velocity;
     const std::int64_t *motion, *key;
     // results
-    std::int8_t *outcome, *status, *side;
+    std::int8_t *outcome, *status, *side, *still;
     double *peak, *peak_time, *peak_velocity, *overturning_time, *first_uplift, *error, *least_force, *friction;
     std::int64_t *impacts, *uplifts;
     const std::int64_t* list = nullptr;  // the rows to be done; all of them if there is none

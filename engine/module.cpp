@@ -151,6 +151,7 @@ static Rows rows_of(const nb::dict& in, const nb::dict& out) {
     rows.outcome = small("outcome");
     rows.status = small("status");
     rows.side = small("side");
+    rows.still = small("still_rocking");
     rows.peak = real("peak_rotation");
     rows.peak_time = real("peak_time");
     rows.peak_velocity = real("peak_velocity");

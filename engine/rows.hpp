@@ -19,6 +19,7 @@ void Kernel<G, U, N, D, Z, L>::finish(int i, Outcome outcome, Status status) {
     rows.outcome[row] = outcome;
     rows.status[row] = status;
     rows.side[row] = outcome == kOverturned ? static_cast<std::int8_t>(lane.side) : 0;
+    rows.still[row] = 0;
     rows.peak[row] = down ? lane.side * kHalfPi : good ? lane.peak_signed : nan;  // it lies at a quarter turn
     rows.peak_time[row] = down ? lane.over_time : good ? lane.peak_time : nan;
     rows.peak_velocity[row] = good ? fastest[i] / lane.step : nan;
@@ -132,7 +133,7 @@ void Kernel<G, U, N, D, Z, L>::write_invalid(std::int64_t row) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     rows.outcome[row] = kFailed;
     rows.status[row] = kInvalid;
-    rows.side[row] = 0;
+    rows.side[row] = rows.still[row] = 0;
     rows.peak[row] = rows.peak_time[row] = rows.peak_velocity[row] = nan;
     rows.overturning_time[row] = rows.first_uplift[row] = rows.error[row] = nan;
     rows.least_force[row] = rows.friction[row] = nan;
@@ -145,7 +146,7 @@ void Kernel<G, U, N, D, Z, L>::write_still(std::int64_t row) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     rows.outcome[row] = kNoUplift;
     rows.status[row] = kGood;
-    rows.side[row] = 0;
+    rows.side[row] = rows.still[row] = 0;
     rows.peak[row] = rows.peak_time[row] = rows.peak_velocity[row] = rows.error[row] = 0.0;
     rows.overturning_time[row] = rows.first_uplift[row] = rows.least_force[row] = rows.friction[row] = nan;
     rows.impacts[row] = rows.uplifts[row] = 0;

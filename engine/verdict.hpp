@@ -90,7 +90,9 @@ void Kernel<G, U, N, D, Z, L>::conclude(int i) {
         raise_peak(i, height(here(i), f), now(i, 0.0));
     }
     lane.impacts -= 2;  // those to come are not counted unless they end in overturning
+    const std::int64_t row = lane.row;
     finish(i, kRocked, kGood);
+    rows.still[row] = rows.outcome[row] == kRocked;
 }
 
 ROCKING_KERNEL

@@ -214,7 +214,7 @@ class Batch:
     def _one(self, row: dict[str, float], motion: int, key: int) -> dict[str, float]:
         if not valid_row(row) or not 0 <= motion < len(self.motions):
             bad = dict.fromkeys(fast_engine.RESULTS, np.nan) | {"outcome": Outcome.FAILED.code, "side": 0}
-            return bad | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0}
+            return bad | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0, "still_rocking": 0}
         from rocking.dynamics.reference import Reference
 
         sides = [
@@ -232,7 +232,7 @@ class Batch:
             "peak_rotation": run.peak_rotation, "peak_time": run.peak_time, "peak_velocity": run.peak_angular_velocity,
             "first_uplift": uplift, "overturning_time": run.overturning_time,
             "impacts": run.impacts, "uplifts": run.uplifts, "least_force": run.least_force,
-            "friction_demand": run.friction_demand,
+            "friction_demand": run.friction_demand, "still_rocking": run.still_rocking,
         }  # fmt: skip
 
 

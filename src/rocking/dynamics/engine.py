@@ -23,6 +23,7 @@ RESULTS: dict[str, Any] = {
     "peak_rotation": np.float64, "peak_time": np.float64, "peak_velocity": np.float64,
     "overturning_time": np.float64, "first_uplift": np.float64, "truncation": np.float64,
     "impacts": np.int64, "uplifts": np.int64, "least_force": np.float64, "friction_demand": np.float64,
+    "still_rocking": np.int8,
 }  # fmt: skip
 """What the fast engine reports for every history."""
 

@@ -12,7 +12,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.lost_contact import FORCES, contact_words, lost_contact
-from rocking.dynamics.outcome import OVERTURNED, Outcome, Status, overturned
+from rocking.dynamics.outcome import OVERTURNED, STILL_ROCKING, Outcome, Status, overturned
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import SHORTEST_STEP
@@ -41,6 +41,7 @@ _UNITS = {
     "twin_flips": ("1", "1 where only one of history and twin overturns, 0 not, NaN where one has no result"),
     "impacts": ("1", "number of impacts during the motion"),
     "uplifts": ("1", "number of uplifts from rest"),
+    "still_rocking": STILL_ROCKING,
 }
 
 

@@ -96,3 +96,8 @@ class Trajectory:
     least_force: float
     friction_demand: float
     engine: str
+
+    @property
+    def still_rocking(self) -> bool:
+        """Whether the body stands, but does not yet rest at the last sample."""
+        return self.outcome is Outcome.ROCKED and bool(self.rotation[-1] != 0.0 or self.angular_velocity[-1] != 0.0)

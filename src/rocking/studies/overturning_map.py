@@ -7,7 +7,7 @@ from rocking import conventions
 from rocking.bodies import Body
 from rocking.dynamics.export import extra
 from rocking.dynamics.lost_contact import FORCES, contact_words
-from rocking.dynamics.outcome import OVERTURNED, Outcome, Status
+from rocking.dynamics.outcome import OVERTURNED, STILL_ROCKING, Outcome, Status
 from rocking.dynamics.response import Motion
 from rocking.studies.axis import Axis
 from rocking.studies.plane import Plane
@@ -23,6 +23,7 @@ VARIABLES = {
     "peak_rotation": ("rad", "rotation of largest size; a quarter turn if it overturned"),
     "peak_ratio": ("1", "peak rotation over the slenderness angle of its side; beyond 1 is not overturning"),
     "impacts": ("1", "number of impacts during the motion, and after it those that end in overturning"),
+    "still_rocking": STILL_ROCKING,
     "side": ("1", "side to which it overturned: 1 right, -1 left"),
     "overturning_time": ("s", "when the centre passed over the foot for good; the end of the motion if it is later"),
     "status": ("1", ", ".join(f"{s.code} {s.value}" for s in Status)),
