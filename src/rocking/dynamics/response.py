@@ -221,8 +221,8 @@ class Response(Exportable):
 
     @property
     def summary(self) -> str:
-        """The outcome in one sentence; it also says where the motion was cut, if that may have decided."""
-        return self._ending + self._cut
+        """The outcome in one sentence; also where the motion was cut, if that may have decided, and if it rocks on."""
+        return self._ending + self._cut + (f"; {self.unfinished}" if self.still_rocking else "")
 
     @property
     def still_rocking(self) -> bool:
