@@ -10,7 +10,7 @@ from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
 from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.planar import PlanarResponse, Regime, Start, simulate_with_contact
 from rocking.errors import RockingError
-from rocking.report.facts.response import finite, moved_facts
+from rocking.report.facts.response import finite, moved_facts, still_rocking_facts
 
 _FIRST = 12
 """Modes and impacts that are printed."""
@@ -93,6 +93,7 @@ def contact_facts(response: PlanarResponse) -> dict[str, Any]:
         "gravity_m_s2": response.settings.gravity,
         "outcome": response.outcome.name.lower(),
         "summary": response.summary,
+        "still_rocking": still_rocking_facts(response),
         "overturning_time_s": finite(response.overturning_time),
         "peak_rotation_rad": response.peak_rotation,
         "sliding_distance_m": response.sliding_distance,

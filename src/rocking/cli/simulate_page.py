@@ -38,8 +38,6 @@ def show(answer: Answer, length: str = "m", acceleration: str = "m/s2") -> None:
         console.print(f"{word + ':':<13} {value}", markup=False)
     console.print()
     console.print(_sentence(response.summary) + ".", style="bold", markup=False)
-    if response.still_rocking:
-        console.print(_sentence(response.unfinished) + ".", markup=False)
     if response.impacts.size:
         console.print()
         console.print(_impacts(response))
@@ -139,7 +137,9 @@ def _verdict(answer: Answer) -> str:
 def _short(response: Response) -> str:
     if response.outcome is Outcome.OVERTURNED:
         return f"overturned {'right' if response.trajectory.side > 0 else 'left'}"
-    return "rocked" if response.outcome is Outcome.ROCKED else "no uplift"
+    if response.outcome is Outcome.ROCKED:
+        return "still rocking" if response.still_rocking else "rocked"
+    return "no uplift"
 
 
 def _over_alpha(response: Response) -> float:

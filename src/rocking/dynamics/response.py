@@ -224,15 +224,13 @@ class Response(Exportable):
 
     @property
     def summary(self) -> str:
-        """The outcome in one sentence; it also says where the motion was cut, if that may have decided."""
-        return self._ending + self._cut
+        """The outcome in one sentence; also where the motion was cut, if that may have decided, and if it rocks on."""
+        return self._ending + self._cut + (f"; {self.unfinished}" if self.still_rocking else "")
 
     @property
     def still_rocking(self) -> bool:
         """Whether it stands, but does not yet rest at the last sample; later impacts are then not among `impacts`."""
-        if self.outcome is not Outcome.ROCKED:
-            return False
-        return bool(self.rotation[-1] != 0.0 or self.angular_velocity[-1] != 0.0)
+        return self.trajectory.still_rocking
 
     @property
     def unfinished(self) -> str:

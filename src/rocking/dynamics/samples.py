@@ -76,6 +76,7 @@ def provenance(response: "Response") -> dict[str, Any]:
         "engine": response.engine,
         "outcome": response.outcome.name,
         "status": response.status.name,
+        "still_rocking": response.still_rocking,
         "summary": response.summary,
         "side": response.side,
         "impacts": int(response.trajectory.impacts),

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.transforms import Affine2D
 
 _DOTS, _WIDTH = 100, 4.8
+_LINE = 80
+"""Characters that fit into one line of the title."""
 _HEAD, _CURVE, _LEAST, _MOST = 0.42, 1.35, 1.4, 3.4
 _HATCHES = 40
 _ROTATION, _IMPACT = "#0072B2", "#D55E00"
@@ -80,12 +83,12 @@ def _stage(response: Response, scene: Scene) -> _Stage:
 
     x0, y0, x1, y1 = scene.window
     tall = min(max(_WIDTH * (y1 - y0) / (x1 - x0), _LEAST), _MOST)
-    whole = _HEAD + tall + _CURVE
-    figure = Figure(figsize=(_WIDTH, whole), facecolor="white")
     title = response.summary[:1].upper() + response.summary[1:]
     first, _, rest = title.partition(": ")
-    words = f"{first}\n{rest}" if rest else first.replace(", past", ",\npast")
-    figure.text(0.02, 1.0 - 0.06 / whole, words, va="top", fontsize=7.5)
+    lines = [first, *wrap(rest, _LINE)] if rest else first.replace(", past", ",\npast").split("\n")
+    whole = _HEAD + 0.125 * max(len(lines) - 2, 0) + tall + _CURVE
+    figure = Figure(figsize=(_WIDTH, whole), facecolor="white")
+    figure.text(0.02, 1.0 - 0.06 / whole, "\n".join(lines), va="top", fontsize=7.5)
     view = figure.add_axes((0.0, _CURVE / whole, 1.0, tall / whole))
     view.set_axis_off()
     wide, high = _span(scene, tall)

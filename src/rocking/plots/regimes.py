@@ -1,5 +1,6 @@
 """Regimes in pictures: Shenton's map, and a planar response with its regimes coloured."""
 
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,9 @@ from rocking.plots.style import DOUBLE, GREY, INK, PALE, SINGLE, in_journal_styl
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+_WIDTH = 88
+"""Characters that fit into one line of the title."""
 
 COLOURS = {
     Regime.REST: "#ffffff",
@@ -131,7 +135,7 @@ def regimes_picture(response: PlanarResponse) -> "Figure":
     """
     figure, axes = new_figure(DOUBLE, 5.2, rows=4, sharex=True, height_ratios=[1.5, 1.0, 0.8, 1.2])
     title = response.summary[:1].upper() + response.summary[1:]
-    figure.suptitle(title[:118], x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    figure.suptitle("\n".join(wrap(title, _WIDTH)), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
     panels = (
         (np.degrees(response.rotation), "rotation\n[degrees]"),
         (response.displacement, "centre to\nthe right [m]"),

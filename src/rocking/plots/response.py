@@ -79,9 +79,9 @@ def _title(response: Response) -> list[str]:
     if response.scale != 1.0:
         ground = f"{response.scale:g} times {ground}"
     summary = response.summary[:1].upper() + response.summary[1:]
-    lines = [summary, ground, f"restitution: {response.rocker.label};  engine: {response.engine}"]
+    lines = [ground, f"restitution: {response.rocker.label};  engine: {response.engine}"]
     short = [line if len(line) <= _LONGEST_LINE else line[: _LONGEST_LINE - 3] + "..." for line in lines]
-    return [line.replace("$", r"\$") for line in short]
+    return [summary, *(line.replace("$", r"\$") for line in short)]
 
 
 def _ground(axes: "Axes", response: Response) -> None:

@@ -1,6 +1,7 @@
 """Several responses over one time axis: where the models part, and where they agree."""
 
 from collections.abc import Mapping
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,7 +46,9 @@ def comparison_picture(responses: Mapping[str, Response]) -> "Figure":
     first = next(iter(responses.values()))
     figure, axes = new_figure(DOUBLE, 5.6, rows=4, sharex=True, height_ratios=[0.7, 1.8, 1.0, 1.0])
     verdict = Verdict.of({restitution_words(label): one for label, one in responses.items()})
-    figure.suptitle(drawn_text(verdict.sentence, 110), x=0.01, ha="left", fontsize=8.5, fontweight="bold")
+    figure.suptitle(
+        "\n".join(wrap(drawn_text(verdict.sentence, 330), 110)), x=0.01, ha="left", fontsize=8.5, fontweight="bold"
+    )
     time, values = ground_curve(first)
     axes[0].plot(time, values, color=INK, linewidth=0.7)
     axes[0].set_title(_ground(first), loc="left", fontsize=7.5)

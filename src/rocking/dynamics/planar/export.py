@@ -86,6 +86,7 @@ def provenance(response: "PlanarResponse") -> dict[str, Any]:
         "engine": "planar: Taylor series with events and complementarity",
         "outcome": response.outcome.name,
         "status": response.status.name,
+        "still_rocking": response.still_rocking,
         "summary": response.summary,
         "body": type(response.body).__name__,
         "mass_kg": footing.mass,

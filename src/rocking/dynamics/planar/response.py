@@ -188,8 +188,26 @@ class PlanarResponse(Exportable):
         return Outcome.SLID if slid else Outcome.NO_UPLIFT
 
     @property
+    def still_rocking(self) -> bool:
+        """Whether it stands, but rocks or flies where the response ends; later impacts are not among `impacts`."""
+        moving = {Regime.ROCK.name, Regime.SLIDE_ROCK.name, Regime.FLIGHT.name}
+        stands = self.outcome not in {Outcome.FAILED, Outcome.OVERTURNED}
+        return stands and self.regimes["regime"][-1] in moving
+
+    @property
+    def unfinished(self) -> str:
+        """A sentence that says when and how it still rocks where the response ends; empty if it does not."""
+        if not self.still_rocking:
+            return ""
+        angle, rate = np.degrees(self.rotation[-1]), self.angular_velocity[-1]
+        return (
+            f"it is still {Regime[self.regimes['regime'][-1]].value} when the computation ends at "
+            f"{self.time[-1]:.4g} s, at {angle:.3g} degrees and {rate:.3g} rad/s; later impacts are not counted"
+        )
+
+    @property
     def summary(self) -> str:
-        """The outcome in one sentence."""
+        """The outcome in one sentence; also whether it still rocks where the response ends."""
         if self.outcome is Outcome.FAILED:
             return f"{self.outcome.value}: {self.status.value}"
         told = [self.outcome.value]
@@ -197,7 +215,7 @@ class PlanarResponse(Exportable):
             told.append(f"largest rotation {np.degrees(self.peak_rotation):.4g} degrees")
         if self.sliding_distance > 0.0:
             told.append(f"slid {self.sliding_distance:.4g} m in all")
-        return ", ".join(told)
+        return ", ".join(told) + (f"; {self.unfinished}" if self.still_rocking else "")
 
     def at(self, time: Any) -> FloatArray:
         """Return the position at any times within the response.

@@ -9,7 +9,8 @@ What the keys mean:
 - ``initial_rotation_rad``, ``restitution`` (label), ``engine`` (which one ran), ``gravity_m_s2``, ``linear``.
 - ``outcome``: no_uplift, rocked or overturned; ``summary``: the same in a sentence; ``overturned_to``: foot or None;
   ``overturning_time_s`` or None; ``peak_rotation_rad`` (a quarter turn if it overturned) and
-  ``peak_rotation_over_alpha``.
+  ``peak_rotation_over_alpha``; ``still_rocking``: None where the body rests or has overturned at the end,
+  else ``time_s``, ``rotation_rad`` and ``angular_velocity_rad_s`` of that instant, and ``sentence``, the same in words.
 - ``uplifts_s``: times; ``impacts``: ``time_s``, ``velocity_before_rad_s``, ``velocity_after_rad_s``, ``coefficient``,
   ``onto``.
 - ``energy_closure``: what does not add up over the largest energy; ``error_estimate_rad``: None if another step changes
@@ -23,6 +24,7 @@ from typing import Any
 
 from rocking import plausibility
 from rocking.conventions import FEET, Assumed
+from rocking.dynamics.planar import PlanarResponse
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.rocker import Rocker
 from rocking.motions.motion import GroundMotion
@@ -161,7 +163,7 @@ def outcome_facts(response: Response) -> dict[str, Any]:
     Returns
     -------
     dict
-        Outcome, its sentence, overturning and peak.
+        Outcome, its sentence, overturning, peak, and whether it still rocks.
     """
     run = response.trajectory
     return {
@@ -171,6 +173,30 @@ def outcome_facts(response: Response) -> dict[str, Any]:
         "overturning_time_s": finite(response.overturning_time),
         "peak_rotation_rad": response.peak_rotation,
         "peak_rotation_over_alpha": response.peak_rotation / response.rocker.side(run.peak_rotation).slenderness_angle,
+        "still_rocking": still_rocking_facts(response),
+    }
+
+
+def still_rocking_facts(response: Response | PlanarResponse) -> dict[str, float | str] | None:
+    """Return the last state of a body that does not yet rest.
+
+    Parameters
+    ----------
+    response : Response or PlanarResponse
+        The response.
+
+    Returns
+    -------
+    dict, optional
+        Time, rotation, angular velocity and a sentence; None if it rests or has overturned.
+    """
+    if not response.still_rocking:
+        return None
+    return {
+        "time_s": float(response.time[-1]),
+        "rotation_rad": float(response.rotation[-1]),
+        "angular_velocity_rad_s": float(response.angular_velocity[-1]),
+        "sentence": response.unfinished,
     }
 
 

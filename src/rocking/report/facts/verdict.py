@@ -41,8 +41,10 @@ class Verdict:
         groups: dict[str, list[str]] = {}
         for name, one in found.items():
             groups.setdefault(_WORDS[one.outcome], []).append(name)
+        rocking = ", ".join(name for name, one in found.items() if one.still_rocking)
+        unfinished = f" Still rocking when the computation ends: with {rocking}." if rocking else ""
         if len(groups) > 1:
             parts = ", ".join(f"{word} with {', '.join(names)}" for word, names in groups.items())
-            return cls(True, f"The model decides: the body {parts}.")
+            return cls(True, f"The model decides: the body {parts}.{unfinished}")
         (word,) = groups
-        return cls(False, f"With every one of these models the body {word}.")
+        return cls(False, f"With every one of these models the body {word}.{unfinished}")

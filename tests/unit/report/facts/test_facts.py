@@ -87,10 +87,19 @@ def test_motion_facts_of_a_record_and_a_pulse():
 
 def test_the_verdict_names_who_says_what():
     """Two outcomes are a decision, with the names of the models on both sides; one is none."""
-    stands, falls = rk.simulate(BLOCK, MOTION, scale=1.0), rk.simulate(BLOCK, MOTION, scale=3.0)
+    stands, falls = rk.simulate(BLOCK, MOTION, duration=60.0), rk.simulate(BLOCK, MOTION, scale=3.0)
     both = Verdict.of({"a": stands, "b": falls, "c": stands})
     assert both == Verdict(True, "The model decides: the body stays standing with a, c, overturns with b.")
     assert Verdict.of({"b": falls}) == Verdict(False, "With every one of these models the body overturns.")
+
+
+def test_the_verdict_names_who_still_rocks():
+    """Of three responses one is cut while it rocks: the sentence says which, and the outcome is the same."""
+    rests, cut = rk.simulate(BLOCK, MOTION, duration=60.0), rk.simulate(BLOCK, MOTION, duration=1.0)
+    together = Verdict.of({"a": rests, "b": cut, "c": rests})
+    assert together.sentence.endswith("the body stays standing. Still rocking when the computation ends: with b.")
+    assert not together.decides
+    assert Verdict.of({"a": rests}).sentence.endswith("the body stays standing.")
 
 
 def test_curves_follow_the_formula_of_housner():

@@ -45,6 +45,15 @@ class MovedFacts(Answer):
     warnings: list[str] = Field(description="what was hardly meant, in sentences; none if all is well")
 
 
+class StillRocking(Answer):
+    """The last state of a body that does not yet rest when the computation ends."""
+
+    time_s: float = Field(description="[s]")
+    rotation_rad: float = Field(description="theta [rad]")
+    angular_velocity_rad_s: float = Field(description="[rad/s]")
+    sentence: str = Field(description="the same in words")
+
+
 class ImpactFacts(Answer):
     """One impact."""
 
@@ -107,6 +116,7 @@ class ResponseFacts(Answer):
     overturning_time_s: float | None = Field(description="null if it stands [s]")
     peak_rotation_rad: float = Field(description="a quarter turn if it overturned [rad]")
     peak_rotation_over_alpha: float = Field(description="over the slenderness angle of that side [-]")
+    still_rocking: StillRocking | None = Field(description="null where it rests or has overturned at the end")
     uplifts_s: list[float] = Field(description="times at which it leaves the ground [s]")
     impacts: list[ImpactFacts]
     energy_closure: float = Field(description="energy that does not add up, over the largest energy [-]")
