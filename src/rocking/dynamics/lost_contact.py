@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, percent
-from rocking.dynamics.outcome import Outcome
+from rocking.dynamics.outcome import Outcome, of_results, overturned
 
 FORCES: dict[str, tuple[str, str]] = {
     "least_force": ("1", "smallest normal force of the ground while rocking, over the weight; below 0 it would pull"),
@@ -36,6 +36,24 @@ def lost_contact(results: Any) -> FloatArray:
     force = np.asarray(results["least_force"], dtype=np.float64)
     unknown = np.isnan(force) & (np.asarray(results["outcome"]) != Outcome.NO_UPLIFT.code)
     return np.where(unknown, np.nan, force < 0.0)
+
+
+def flags(results: Any) -> dict[str, FloatArray]:
+    """Return what is true or false of histories, as numbers.
+
+    Parameters
+    ----------
+    results : mapping of str to array_like
+        With outcome, still_rocking and least_force.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Overturned, still_rocking, lost_contact: 1, 0, NaN where there is no result [-].
+    """
+    outcome = results["outcome"]
+    still = of_results(outcome, np.asarray(results["still_rocking"]) == 1)
+    return {"overturned": overturned(outcome), "still_rocking": still, "lost_contact": lost_contact(results)}
 
 
 def contact_words(flags: Any) -> str:

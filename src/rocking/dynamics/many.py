@@ -11,7 +11,7 @@ from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
-from rocking.dynamics.lost_contact import FORCES, contact_words, lost_contact
+from rocking.dynamics.lost_contact import FORCES, contact_words, flags
 from rocking.dynamics.outcome import OVERTURNED, STILL_ROCKING, Outcome, Status, overturned
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
@@ -130,7 +130,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
         halved = replace(batch, motions=[segments.refined(2) for segments in batch.motions], settings=finer)
         results |= _twin(results, halved.run(count, _pieces(rockers, scales, shape))[0])
     dims = ("body", "motion", "scale", "restitution")
-    results |= {"overturned": overturned(results["outcome"]), "lost_contact": lost_contact(results)}
+    results |= flags(results)
     data = {
         name: (dims, values.reshape(shape), {"units": _UNITS[name][0], "long_name": _UNITS[name][1]})
         for name, values in results.items()

@@ -52,7 +52,9 @@ class Status(Enum):
 OVERTURNED = ("1", "1 it overturned, 0 it did not, NaN where there is no result: neither")
 """Unit and meaning of what `overturned` returns."""
 
-STILL_ROCKING = ("1", "1 where it stands, but did not yet rest when the motion ended; impacts after that do not count")
+STILL_ROCKING = (
+    "1", "1 where it stands, but did not yet rest when the motion ended, and later impacts do not count; NaN no result"
+)  # fmt: skip
 """Unit and meaning of `still_rocking`."""
 
 

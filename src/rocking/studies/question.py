@@ -12,8 +12,8 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.batch import SIDES, Batch, Rows
 from rocking.dynamics.engine import Arrays, instruction_set
 from rocking.dynamics.impact_law import ImpactLaw
-from rocking.dynamics.lost_contact import lost_contact
-from rocking.dynamics.outcome import Outcome, overturned
+from rocking.dynamics.lost_contact import flags
+from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
@@ -133,11 +133,7 @@ class Question:
         for name in ("peak_time", "overturning_time", "first_uplift"):
             found[name] = found[name] * stretch
         found["peak_velocity"] = found["peak_velocity"] / stretch
-        found |= {
-            "mode": modes_of(found),
-            "overturned": overturned(found["outcome"]),
-            "lost_contact": lost_contact(found),
-        }
+        found |= {"mode": modes_of(found), **flags(found)}
         found["peak_ratio"] = peak_ratio(found["peak_rotation"], values["alpha_right"], values["alpha_left"])
         return found, work
 

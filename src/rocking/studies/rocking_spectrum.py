@@ -13,8 +13,7 @@ from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.export import extra
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution
-from rocking.dynamics.lost_contact import contact_words, lost_contact
-from rocking.dynamics.outcome import overturned
+from rocking.dynamics.lost_contact import contact_words, flags
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
@@ -100,8 +99,7 @@ def rocking_spectrum(
     results = _computed(histories, threads, progress)
     shape = (len(given), angles.size, times.size)
     alpha = np.tile(sides["alpha_right"], len(given))
-    results |= {"mode": modes_of(results), "overturned": overturned(results["outcome"])}
-    results["lost_contact"] = lost_contact(results)
+    results |= {"mode": modes_of(results), **flags(results)}
     results["peak_ratio"] = peak_ratio(results["peak_rotation"], alpha, alpha)
     data = {name: (_DIMENSIONS, results[name].reshape(shape), _about(name)) for name in VARIABLES}
     constant = isinstance(question.law, ConstantRestitution)

@@ -245,3 +245,18 @@ def test_speed_of_the_first_impact_after_the_motion(name: str) -> None:
     landing = p * math.sqrt(2.0 * (math.cos(alpha - start) - math.cos(alpha)))
     assert found["peak_velocity"][0] == pytest.approx(landing, rel=1e-12)
     assert found["impacts"][0] == 0
+
+
+@every_engine
+def test_what_still_rocks_when_the_motion_ends(name: str) -> None:
+    """A pulse that ends abruptly leaves the body rocking; with a minute of rest after it nothing rocks."""
+    push = 4.0 * np.sin(0.3 * np.arange(60))
+    long = Segments.between_samples(0.05, np.concatenate([push, np.zeros(1200)]))
+    short, rested = (run(name, motion=k, motions=(MOTION, long)) for k in (0, 1))
+    rocked = short["outcome"] == Outcome.ROCKED.code
+    assert rocked.any()
+    assert (short["outcome"] == Outcome.OVERTURNED.code).any()
+    assert (short["outcome"] == Outcome.NO_UPLIFT.code).any()
+    np.testing.assert_array_equal(short["still_rocking"], rocked)
+    assert not rested["still_rocking"].any()
+    assert (rested["outcome"] == Outcome.ROCKED.code).any()

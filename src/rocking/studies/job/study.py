@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from rocking.dynamics.engine import RESULTS, Arrays
-from rocking.dynamics.lost_contact import lost_contact
-from rocking.dynamics.outcome import overturned
+from rocking.dynamics.lost_contact import flags
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories
 from rocking.studies.job.answer import Answer
@@ -24,6 +23,7 @@ VARIABLES: dict[str, tuple[Any, str, str]] = {
     "first_uplift": (np.float64, "s", "first uplift"),
     "uplifts": (np.int64, "1", "number of uplifts from rest"),
     "overturned": (np.float64, *OF_MAPS["overturned"]),
+    "still_rocking": (np.float64, *OF_MAPS["still_rocking"]),
     "lost_contact": (np.float64, *OF_MAPS["lost_contact"]),
     "mode": (np.int64, *OF_MAPS["mode"]),
     "peak_ratio": (np.float64, *OF_MAPS["peak_ratio"]),
@@ -125,8 +125,7 @@ class Study:
         found = results if self.rescale is None else self.rescale(first, last, dict(results))
         sides = self.histories.rows(first, last).values
         ratio = peak_ratio(found["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
-        whole = {**found, "mode": modes_of(found), "peak_ratio": ratio}
-        whole |= {"overturned": overturned(found["outcome"]), "lost_contact": lost_contact(found)}
+        whole = {**found, **flags(found), "mode": modes_of(found), "peak_ratio": ratio}
         return {name: whole[name] for name in VARIABLES}
 
     def places(self, first: int, last: int) -> dict[str, np.ndarray]:
