@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody, attitude, free_rocking_spatial
+from rocking.dynamics.spatial import SpatialBody, attitude, free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial_batch import SpatialBatchSettings, SpatialStart, engine, simulate_spatial_batch
 from rocking.dynamics.spatial_batch.course import course_of
@@ -102,3 +102,15 @@ def test_ked_on_a_rim_is_that_of_the_plane():
     for ratio in (hits["after"] / hits["before"], slow.impacts["energy_after"] / slow.impacts["energy_before"]):
         # the rim rolls down to tilts of 1e-11, where rounding turns the last bit of the motion sideways
         np.testing.assert_allclose(np.sqrt(ratio[:3]), 0.9501165798529068, rtol=1e-7)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.75])
+def test_a_round_base_that_is_pushed_comes_to_rest(share):
+    """Pushed by a share of what tips it, it lies still after as many impacts as in the reference engine."""
+    push = rk.GroundMotion(np.full(101, share * G * RADIUS / HEIGHT), 0.01)
+    batch = simulate_spatial_batch([CYLINDER], [push], [0.2], start=SpatialStart(0.02), gravity=G)
+    slow = simulate_spatial(CYLINDER, push, None, None, 0.2, tilt=0.02, azimuth=0.0, gravity=G)
+    assert slow.impacts.size > 3
+    assert batch.values["impacts"].item() == slow.impacts.size
+    assert not batch.still_rocking.item()
+    assert not slow.still_rocking
