@@ -129,7 +129,7 @@ def test_whole_shards_elsewhere_are_refused() -> None:
 def test_damage_is_named() -> None:
     """The sentence says which column changed, or that the file was cut short."""
     data = shard.pack(CHUNK, arrays())
-    with pytest.raises(CampaignDamagedError, match="column friction_demand has changed"):
+    with pytest.raises(CampaignDamagedError, match="column still_rocking has changed"):
         shard.unpack(flipped(data, 8 * (len(data) - 40)), CHUNK)
     with pytest.raises(CampaignDamagedError, match="are due: cut short"):
         shard.unpack(data[:-100], CHUNK)
