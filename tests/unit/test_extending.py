@@ -12,7 +12,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions import Pulse, pulses
 
 PAGE = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding="utf-8")
-BLOCK = rk.Block(width=0.5, height=2.0)
+BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 
 
 def section(title):
@@ -27,7 +27,7 @@ def section(title):
 def test_the_model_of_the_page():
     """The page's model, 1 - (b/h)^2, is 15/16 for a block of h/b = 4."""
     _, names = section("A restitution model in your own file")
-    assert rk.coefficient_of_restitution(BLOCK, names["Mine"]()) == pytest.approx(15.0 / 16.0, rel=1e-14)
+    assert rk.coefficient_of_restitution(BODY, names["Mine"]()) == pytest.approx(15.0 / 16.0, rel=1e-14)
 
 
 def test_the_pulse_of_the_page():
@@ -42,8 +42,8 @@ def test_the_pulse_of_the_page():
     with pytest.raises(InvalidValueError, match="peak of a pulse"):
         pulse.scaled(1e9)
     # 3 m/s2 is more than g b/h = 2.45 m/s2, half of it is not
-    assert rk.simulate(BLOCK, pulse, 0.9).peak_rotation > 0.0
-    assert rk.simulate(BLOCK, pulse, 0.9, scale=0.5).peak_rotation == 0.0
+    assert rk.simulate(BODY, pulse, 0.9).peak_rotation > 0.0
+    assert rk.simulate(BODY, pulse, 0.9, scale=0.5).peak_rotation == 0.0
     # every method that must be answered is named in the text, and without one there is no pulse
     for missing in Pulse.__abstractmethods__:
         assert missing in text
@@ -77,8 +77,8 @@ def test_a_law_of_ones_own():
             return 0.9**impact
 
     with pytest.raises(InvalidValueError, match="engine must be reference"):
-        rk.free_rocking(BLOCK, 0.1, Wearing(), engine="fast")
-    response = rk.free_rocking(BLOCK, 0.1, Wearing(), most_impacts=3)
+        rk.free_rocking(BODY, 0.1, Wearing(), engine="fast")
+    response = rk.free_rocking(BODY, 0.1, Wearing(), most_impacts=3)
     assert response.engine.startswith("reference")
     ratios = response.impacts["velocity_after"] / response.impacts["velocity_before"]
     np.testing.assert_allclose(np.abs(ratios), [0.9, 0.81, 0.729], rtol=1e-12)

@@ -12,7 +12,7 @@ from rocking.dynamics import Outcome, Status, engine
 from rocking.errors import RockingError
 
 HALF_PI = 0.5 * math.pi
-BLOCK = rk.Block(width=0.5, height=2.0)
+BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 MOTION = rk.GroundMotion(3.0 * np.sin(0.1 * np.arange(60)), 0.05)
 
 NUMBERS = (math.nan, math.inf, -math.inf, 1.0 + 2.0j, "0.1", None, [0.1, 0.2], np.array([0.1, 0.2]), True, b"1", object)
@@ -33,9 +33,9 @@ OPTIONS: dict[str, tuple[Any, ...]] = {
     "engine": ("quick", 1),
 }
 DOORS: dict[str, Callable[..., Any]] = {
-    "simulate": lambda **options: rk.simulate(BLOCK, MOTION, **options),
-    "free_rocking": lambda **options: rk.free_rocking(BLOCK, **({"rotation": 0.05} | options)),
-    "simulate_many": lambda **options: rk.simulate_many([BLOCK], [MOTION], **options),
+    "simulate": lambda **options: rk.simulate(BODY, MOTION, **options),
+    "free_rocking": lambda **options: rk.free_rocking(BODY, **({"rotation": 0.05} | options)),
+    "simulate_many": lambda **options: rk.simulate_many([BODY], [MOTION], **options),
 }
 LACKING = {
     "free_rocking": {"scale"},
@@ -69,7 +69,7 @@ def test_refused_at_the_door(door: str, option: str, value: Any) -> None:
     assert named, words
 
 
-@pytest.mark.parametrize("body", [None, "block", 1.0, math.nan, [BLOCK], np.zeros(3), MOTION])
+@pytest.mark.parametrize("body", [None, "block", 1.0, math.nan, [BODY], np.zeros(3), MOTION])
 @pytest.mark.parametrize("door", [rk.simulate, rk.simulate_many])
 def test_no_body(door: Callable[..., Any], body: Any) -> None:
     """What is not a body is refused."""
@@ -81,12 +81,12 @@ def test_no_body(door: Callable[..., Any], body: Any) -> None:
         rk.free_rocking(None, 0.1)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("motion", [None, "record.at2", 1.0, np.zeros(30), [0.0, 1.0], BLOCK, MOTION.segments()])
+@pytest.mark.parametrize("motion", [None, "record.at2", 1.0, np.zeros(30), [0.0, 1.0], BODY, MOTION.segments()])
 @pytest.mark.parametrize("door", [rk.simulate, rk.simulate_many])
 def test_no_motion(door: Callable[..., Any], motion: Any) -> None:
     """What is not a motion is refused, bare arrays too: their step and unit would be guesses."""
     with pytest.raises(RockingError, match="motion"):
-        door(BLOCK, motion)
+        door(BODY, motion)
 
 
 @pytest.mark.parametrize("poison", [math.nan, math.inf, 1e7, 1.0 + 1.0j, "1.0", None])
@@ -102,24 +102,24 @@ def test_no_poisoned_record(part: str, poison: Any) -> None:
 def test_the_value_is_named() -> None:
     """The message shows the number that was given and says what it may have been."""
     with pytest.raises(RockingError, match=r"rotation.*got 15.*degrees"):
-        rk.free_rocking(BLOCK, 15.0)
+        rk.free_rocking(BODY, 15.0)
     with pytest.raises(RockingError, match=r"angular_velocity.*got 720.*degrees"):
-        rk.simulate(BLOCK, MOTION, angular_velocity=720.0)
+        rk.simulate(BODY, MOTION, angular_velocity=720.0)
     with pytest.raises(RockingError, match=r"restitution.*got 85.*percent"):
-        rk.simulate(BLOCK, MOTION, 85.0)
+        rk.simulate(BODY, MOTION, 85.0)
     with pytest.raises(RockingError, match=r"got 1\.01.*create energy"):
-        rk.simulate(BLOCK, MOTION, 1.01)
+        rk.simulate(BODY, MOTION, 1.01)
     with pytest.raises(RockingError, match="no option named 'rest_sped'"):
-        rk.simulate(BLOCK, MOTION, rest_sped=0.1)
+        rk.simulate(BODY, MOTION, rest_sped=0.1)
 
 
 def test_good_input_passes() -> None:
     """Negative control: what was refused for its values is taken with others."""
     good: dict[str, Any] = {"gravity": 9.81, "rest_speed": 1e-3, "longest_step": 0.1, "most_impacts": 500}
-    one = rk.simulate(BLOCK, MOTION, 0.9, scale=1.5, rotation=0.1, duration=2.0, key=3, tolerance=1e-12, **good)
+    one = rk.simulate(BODY, MOTION, 0.9, scale=1.5, rotation=0.1, duration=2.0, key=3, tolerance=1e-12, **good)
     assert one.status is Status.GOOD
-    assert rk.free_rocking(BLOCK, 0.1, "ked", angular_velocity=-0.1).outcome is Outcome.ROCKED
-    many = rk.simulate_many([BLOCK], [MOTION], 0.9, scale=[1.0, 2.0], **good)
+    assert rk.free_rocking(BODY, 0.1, "ked", angular_velocity=-0.1).outcome is Outcome.ROCKED
+    many = rk.simulate_many([BODY], [MOTION], 0.9, scale=[1.0, 2.0], **good)
     assert many["status"].values.ravel().tolist() == [0, 0]
 
 
@@ -130,7 +130,7 @@ def test_good_input_passes() -> None:
 def test_every_combination(motion: Any, order: int, linear: bool, name: str) -> None:
     """Orders, models and motions that are each allowed are computed together, or refused with our own error."""
     try:
-        many = rk.simulate_many(BLOCK, motion, 0.9, order=order, linear=linear, engine=name)
+        many = rk.simulate_many(BODY, motion, 0.9, order=order, linear=linear, engine=name)
     except RockingError as error:
         assert "order" in str(error)  # noqa: PT017 - either way out is right
     else:
@@ -143,7 +143,7 @@ def test_every_combination(motion: Any, order: int, linear: bool, name: str) -> 
 def test_monstrous_records(peak: float) -> None:
     """Up to the strongest records that are let in the fast engine agrees with the reference, or says that it failed."""
     motion = rk.GroundMotion(peak * np.array([0.0, 1.0, 0.0, -1.0, 0.0, 0.0]), 0.02)
-    fast, slow = (rk.simulate(BLOCK, motion, 0.9, engine=name).trajectory for name in ("fast", "reference"))
+    fast, slow = (rk.simulate(BODY, motion, 0.9, engine=name).trajectory for name in ("fast", "reference"))
     assert slow.status is Status.GOOD
     if fast.status is Status.GOOD:
         assert (fast.outcome, fast.side, fast.impacts) == (slow.outcome, slow.side, slow.impacts)

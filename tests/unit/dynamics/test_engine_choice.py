@@ -12,7 +12,7 @@ from rocking.dynamics import engine
 from rocking.dynamics.batch import Batch
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
-BLOCK = rk.Block(width=0.5, height=2.0)
+BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 RECORD = rk.GroundMotion(4.0 * np.sin(0.3 * np.arange(43)), 0.05)
 built = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
 
@@ -30,9 +30,9 @@ def test_without_the_module_the_reference_runs() -> None:
     """ "auto" warns, at the user's own line, and gives the reference engine's numbers bit for bit."""
     assert not engine.available()
     calls: tuple[Any, ...] = (
-        lambda name: rk.simulate(BLOCK, RECORD, 0.9, duration=2.0, engine=name).rotation,
-        lambda name: rk.free_rocking(BLOCK, 0.1, 0.9, duration=1.0, engine=name).rotation,
-        lambda name: rk.simulate_many(BLOCK, RECORD, 0.9, engine=name)["peak_rotation"].to_numpy(),
+        lambda name: rk.simulate(BODY, RECORD, 0.9, duration=2.0, engine=name).rotation,
+        lambda name: rk.free_rocking(BODY, 0.1, 0.9, duration=1.0, engine=name).rotation,
+        lambda name: rk.simulate_many(BODY, RECORD, 0.9, engine=name)["peak_rotation"].to_numpy(),
     )
     for call in calls:
         with pytest.warns(SlowEngineWarning, match="was not built.*; the reference engine runs instead") as caught:
@@ -48,9 +48,9 @@ def test_without_the_module_the_fast_one_is_refused() -> None:
     """ "fast" is refused, saying what it takes and what serves instead; so is the list of instruction sets."""
     message = 'C\\+\\+17 compiler .*; engine="reference" gives the same results, slowly'
     for call in (
-        lambda: rk.simulate(BLOCK, RECORD, engine="fast"),
-        lambda: rk.free_rocking(BLOCK, 0.1, engine="fast"),
-        lambda: rk.simulate_many(BLOCK, RECORD, engine="fast"),
+        lambda: rk.simulate(BODY, RECORD, engine="fast"),
+        lambda: rk.free_rocking(BODY, 0.1, engine="fast"),
+        lambda: rk.simulate_many(BODY, RECORD, engine="fast"),
         engine.instruction_sets,
         engine.module,
     ):
@@ -63,7 +63,7 @@ def test_without_the_module_the_fast_one_is_refused() -> None:
 def test_asking_for_the_reference_does_not_warn(monkeypatch: pytest.MonkeyPatch) -> None:
     """ "reference" runs in silence, whatever the environment says about a module that is not there."""
     monkeypatch.setenv("ROCKING_ISA", "nonsense")
-    assert rk.simulate(BLOCK, RECORD, engine="reference", duration=0.5).engine.startswith("reference")
+    assert rk.simulate(BODY, RECORD, engine="reference", duration=0.5).engine.startswith("reference")
 
 
 @pytest.mark.parametrize("name", ["", "FA ST", "slow", None, 3, True, ["fast"], ("auto",)])
@@ -81,7 +81,7 @@ def test_auto_is_the_fast_one() -> None:
     assert engine.available()
     assert (engine.chosen("auto"), engine.chosen("fast"), engine.chosen("reference")) == ("fast", "fast", "reference")
     assert isinstance(engine.module(), ModuleType)
-    auto, fast = (rk.simulate(BLOCK, RECORD, engine=name, duration=2.0) for name in ("auto", "fast"))
+    auto, fast = (rk.simulate(BODY, RECORD, engine=name, duration=2.0) for name in ("auto", "fast"))
     assert auto.engine == fast.engine
     np.testing.assert_array_equal(auto.rotation, fast.rotation)
 
@@ -96,7 +96,7 @@ def test_instruction_sets(monkeypatch: pytest.MonkeyPatch) -> None:
     for wanted in known:
         monkeypatch.setenv("ROCKING_ISA", wanted)
         assert engine.instruction_set() == wanted
-        response = rk.simulate(BLOCK, RECORD, 0.9, engine="fast", duration=2.1)
+        response = rk.simulate(BODY, RECORD, 0.9, engine="fast", duration=2.1)
         assert response.engine == f"fast (Taylor, order 8, {wanted})"
         peaks.append(response.peak_rotation)
     np.testing.assert_allclose(peaks, peaks[0], rtol=1e-10)
@@ -113,9 +113,9 @@ def test_wrong_instruction_sets(wanted: str, monkeypatch: pytest.MonkeyPatch) ->
     message = f"ROCKING_ISA must be one of .*plain, got '{wanted}'"
     for call in (
         engine.instruction_set,
-        lambda: rk.simulate(BLOCK, RECORD, engine="fast"),
-        lambda: rk.simulate_many(BLOCK, RECORD, engine="auto"),
+        lambda: rk.simulate(BODY, RECORD, engine="fast"),
+        lambda: rk.simulate_many(BODY, RECORD, engine="auto"),
     ):
         with pytest.raises(InvalidValueError, match=message):
             call()
-    assert rk.simulate(BLOCK, RECORD, engine="reference", duration=0.2).status.name == "GOOD"
+    assert rk.simulate(BODY, RECORD, engine="reference", duration=0.2).status.name == "GOOD"

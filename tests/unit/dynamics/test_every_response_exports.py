@@ -11,13 +11,13 @@ import rocking as rk
 from rocking.dynamics.planar import Start
 from rocking.errors import InvalidValueError
 
-BLOCK = rk.Block(width=0.5, height=2.0)
+BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 SQUAT = rk.Block(width=1.2, height=2.0)
 BOX = rk.SpatialBody.box(0.5, 0.5, 2.0)
 WAVE = rk.GroundMotion(3.5 * np.sin(0.4 * np.arange(60)), 0.03, name="wave", provenance=("made by hand",))
 RESPONSES = {
-    "pure": rk.simulate(BLOCK, WAVE, "housner"),
-    "pure, at rest": rk.simulate(BLOCK, rk.pulses.sine(1.0, 0.5), "ked"),
+    "pure": rk.simulate(BODY, WAVE, "housner"),
+    "pure, at rest": rk.simulate(BODY, rk.pulses.sine(1.0, 0.5), "ked"),
     "slide and rock": rk.simulate_with_contact(SQUAT, rk.pulses.sine(9.0, 0.9), 0.62),
     "slide": rk.simulate_with_contact(SQUAT, WAVE, 0.2),
     "no force": rk.simulate_with_contact(SQUAT, None, 2.5, start=Start(rotation=0.1, horizontal_velocity=1.0)),

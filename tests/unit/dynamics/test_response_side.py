@@ -11,7 +11,7 @@ import rocking as rk
 from rocking.dynamics import engine as fast_engine
 from rocking.dynamics.export import provenance
 
-BLOCK = rk.Block(width=0.5, height=2.0)
+BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 # a ground that goes to the left throws the body to the right: the half sine is far above what the block can bear
 PUSH = rk.pulses.half_sine(30.0, 0.5)
 FALLS = {1: -1.0, -1: 1.0}
@@ -22,15 +22,15 @@ ENGINES = [
     "reference",
 ]
 STOOD = {
-    "rocked": lambda: rk.free_rocking(BLOCK, 0.1, 0.9),
-    "no uplift": lambda: rk.simulate(BLOCK, rk.pulses.sine(1.0, 0.5), "ked"),
-    "stopped": lambda: rk.free_rocking(BLOCK, 0.1, 0.95, most_impacts=4, duration=3.0),
+    "rocked": lambda: rk.free_rocking(BODY, 0.1, 0.9),
+    "no uplift": lambda: rk.simulate(BODY, rk.pulses.sine(1.0, 0.5), "ked"),
+    "stopped": lambda: rk.free_rocking(BODY, 0.1, 0.95, most_impacts=4, duration=3.0),
 }
 
 
 def fallen(side: int, engine: str = "auto") -> rk.Response:
     """Return a response that overturns to a side."""
-    return rk.simulate(BLOCK, PUSH, "ked", scale=FALLS[side], engine=engine)
+    return rk.simulate(BODY, PUSH, "ked", scale=FALLS[side], engine=engine)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -59,7 +59,7 @@ def test_no_side_without_a_fall(kind: str) -> None:
 def test_batches_say_the_same(side: int) -> None:
     """`simulate_many` has the same side under the same name."""
     pytest.importorskip("xarray")
-    found = rk.simulate_many(BLOCK, PUSH, "ked", scale=FALLS[side])
+    found = rk.simulate_many(BODY, PUSH, "ked", scale=FALLS[side])
     assert found["side"].item() == fallen(side).side
 
 

@@ -10,7 +10,7 @@ from rocking.motions.pulses import sine
 from rocking.plots.regimes import regime_map_picture, regimes_picture
 from rocking.plots.style import write
 
-SLENDER = Block(width=1.0, height=4.0)
+SLENDER = Block(width=1.0, height=4.0).with_feet(0.1, 1)
 
 
 def test_map_shows_four_regimes_and_the_closed_form():

@@ -7,7 +7,7 @@ import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.restitution import Fixed, Housner, Ked, ShiftedImpulse, energy_ledger, identity_report, implied
 
-BLOCK = rk.Block(width=1.0, height=2.0)
+BODY = rk.Block(width=1.0, height=2.0).with_feet(0.1, 1)
 ASYMMETRIC = rk.Block(width=2.0, height=1.0).with_feet(0.8, 2.0)
 
 
@@ -51,17 +51,17 @@ def test_implied_energy():
     assert not too_much.within_energy
     assert not too_much.admissible
     assert "creates energy" in " ".join(too_much.objections)
-    assert "outside the base (k = " in " ".join(implied(BLOCK, 0.1).objections)
-    assert implied(BLOCK, 0.8).objections == ()
+    assert "outside the base (k = " in " ".join(implied(BODY, 0.1).objections)
+    assert implied(BODY, 0.8).objections == ()
 
 
 @pytest.mark.parametrize("value", [-0.1, float("nan"), float("inf"), "0.9", None, True], ids=repr)
 def test_implied_refuses(value):
     """A coefficient is a finite number from zero up, and lands on a foot."""
     with pytest.raises(InvalidValueError, match=r"^coefficient must be"):
-        implied(BLOCK, value)
+        implied(BODY, value)
     with pytest.raises(InvalidValueError, match=r"left.* or .*right"):
-        implied(BLOCK, 0.9, onto="up")
+        implied(BODY, 0.9, onto="up")
 
 
 def test_ledger_totals():
@@ -102,7 +102,7 @@ def test_ledger_fields_integrate_to_totals(onto):
 def test_ledger_refuses(value):
     """The angular velocity is above zero; mass points have no density field."""
     with pytest.raises(InvalidValueError, match=r"^angular_velocity must be"):
-        energy_ledger(BLOCK, angular_velocity=value)
+        energy_ledger(BODY, angular_velocity=value)
     lumped = rk.MassPoints([(0, 2)], [1.0], (-1, 1))
     with pytest.raises(InvalidValueError, match="MassPoints body has no density field"):
         energy_ledger(lumped).energy_density(np.zeros(1), np.zeros(1))
@@ -114,13 +114,13 @@ def broken(body, model):
 
 def test_identity_report():
     """The report finds KED's two breaches (physics 1.7), clears Housner, and catches what creates energy."""
-    assert broken(BLOCK, Ked()) == {"coincident pivots", "inertia alone"}
-    assert broken(BLOCK, Housner()) == set()
+    assert broken(BODY, Ked()) == {"coincident pivots", "inertia alone"}
+    assert broken(BODY, Housner()) == set()
     assert "energy bound" in broken(ASYMMETRIC, Fixed(r=0.99))
     assert "energy bound" in broken(ASYMMETRIC, ShiftedImpulse(k=0.0))
     assert "energy bound" not in broken(ASYMMETRIC, ShiftedImpulse(k=0.6))
-    assert "impulse on the base" in broken(BLOCK, Fixed(r=0.2))
-    sentences = [check.sentence for check in identity_report(BLOCK, Ked())]
+    assert "impulse on the base" in broken(BODY, Fixed(r=0.2))
+    sentences = [check.sentence for check in identity_report(BODY, Ked())]
     assert "scale: holds" in sentences
     assert any(words.startswith("inertia alone: violated for this body (") for words in sentences)
 
@@ -137,7 +137,7 @@ def test_identity_report_catches_a_broken_model():
         def raw_coefficient(self, body, onto):
             return 1.0 + 1e-6 * body.mass + (0.1 if onto == "right" else 0.0)
 
-    assert {"scale", "density", "mirror", "round trip", "energy bound"} <= broken(BLOCK, Bad())
+    assert {"scale", "density", "mirror", "round trip", "energy bound"} <= broken(BODY, Bad())
 
 
 def test_twins_have_the_same_mass_centre_and_inertia():

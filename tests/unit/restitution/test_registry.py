@@ -7,7 +7,7 @@ import rocking as rk
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution import Interface, Ked, ShiftedImpulse, model, models, register, registry
 
-BLOCK = rk.Block(width=1.0, height=2.0)
+BODY = rk.Block(width=1.0, height=2.0).with_feet(0.1, 1)
 
 
 class Half(rk.RestitutionModel):
@@ -47,7 +47,7 @@ def test_names():
 def test_unknown_names(which):
     """An unknown name is refused with the list of those that exist."""
     with pytest.raises(RockingError, match=r"no restitution model named .*housner.*ked|must be a number"):
-        rk.coefficient_of_restitution(BLOCK, which)
+        rk.coefficient_of_restitution(BODY, which)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_unknown_names(which):
 def test_what_is_no_model(which):
     """What is neither a name nor a model object is refused: also the class instead of an object."""
     with pytest.raises(UnknownModelError, match="a restitution model is a name or a RestitutionModel object"):
-        rk.coefficient_of_restitution(BLOCK, which)
+        rk.coefficient_of_restitution(BODY, which)
 
 
 PARAMETERS = {
@@ -118,7 +118,7 @@ PARAMETERS = {
 def test_parameters_that_are_none(which, parameters, kind, words):
     """Wrong parameters give the right error with value, range and cause; never a number."""
     with pytest.raises(kind, match=words):
-        rk.coefficient_of_restitution(BLOCK, which, **parameters)
+        rk.coefficient_of_restitution(BODY, which, **parameters)
 
 
 @pytest.mark.parametrize("body", [None, "block", 4.0, rk.Block, {"width": 1}], ids=repr)
@@ -134,7 +134,7 @@ def test_what_is_no_foot(onto):
     """The new foot is "left" or "right" for every model, also those that do not use it."""
     for name, parameters in (("ked", {}), ("housner", {}), ("fixed", {"r": 0.5})):
         with pytest.raises(InvalidValueError, match='onto must be "left" or "right"'):
-            rk.coefficient_of_restitution(BLOCK, name, onto=onto, **parameters)
+            rk.coefficient_of_restitution(BODY, name, onto=onto, **parameters)
 
 
 @pytest.mark.parametrize(
@@ -152,20 +152,18 @@ def test_what_is_no_slenderness(ratios):
 
 def test_text_forms():
     """Parameters and factor in the name equal those given as arguments; spaces do no harm."""
-    expected = 0.98 * ShiftedImpulse(k=0.6).coefficient(BLOCK)
+    expected = 0.98 * ShiftedImpulse(k=0.6).coefficient(BODY)
     for words in ("0.98*shifted-impulse:k=0.6", " 0.98 * shifted-impulse: k = 0.6 "):
-        assert rk.coefficient_of_restitution(BLOCK, words) == pytest.approx(expected, rel=1e-15)
-    assert rk.coefficient_of_restitution(BLOCK, "shifted-impulse", k=0.6, eta=0.98) == pytest.approx(
-        expected, rel=1e-15
-    )
-    assert rk.coefficient_of_restitution(BLOCK, "0.5*ked", eta=0.5) == pytest.approx(0.25 * Ked().coefficient(BLOCK))
-    assert expected != pytest.approx(ShiftedImpulse(k=0.6).coefficient(BLOCK))
+        assert rk.coefficient_of_restitution(BODY, words) == pytest.approx(expected, rel=1e-15)
+    assert rk.coefficient_of_restitution(BODY, "shifted-impulse", k=0.6, eta=0.98) == pytest.approx(expected, rel=1e-15)
+    assert rk.coefficient_of_restitution(BODY, "0.5*ked", eta=0.5) == pytest.approx(0.25 * Ked().coefficient(BODY))
+    assert expected != pytest.approx(ShiftedImpulse(k=0.6).coefficient(BODY))
 
 
 def test_own_model():
     """A class with a name and an equation is a model: by object at once, by name after `register`."""
-    assert rk.coefficient_of_restitution(BLOCK, Half()) == 0.5
-    assert rk.coefficient_of_restitution(BLOCK, Half(), eta=0.5) == 0.25
+    assert rk.coefficient_of_restitution(BODY, Half()) == 0.5
+    assert rk.coefficient_of_restitution(BODY, Half(), eta=0.5) == 0.25
     assert Half().of_slenderness([1.0, 4.0]).tolist() == [0.5, 0.5]
     assert Half().parameters == {}
     assert Half().label == "half"
@@ -178,7 +176,7 @@ def test_register():
     """`register` makes a model known by name, twice the same is no harm, another of that name is refused."""
     assert register(Half) is Half
     assert register(Half) is Half
-    assert rk.coefficient_of_restitution(BLOCK, "half") == 0.5
+    assert rk.coefficient_of_restitution(BODY, "half") == 0.5
 
     class Other(Half):
         """Same name."""
@@ -215,7 +213,7 @@ def test_own_model_that_returns_no_number(value):
             return value
 
     with pytest.raises(InvalidValueError, match="coefficient of model half must be"):
-        rk.coefficient_of_restitution(BLOCK, Bad())
+        rk.coefficient_of_restitution(BODY, Bad())
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf")], ids=repr)
@@ -235,15 +233,15 @@ def test_own_model_that_returns_no_number_for_arrays(value):
 def test_interface():
     """The wrapper multiplies by eta, per body and for arrays, and tells of the model inside."""
     wrapped = Interface(ShiftedImpulse(k=0.6), eta=0.9)
-    assert wrapped.coefficient(BLOCK) == pytest.approx(0.9 * ShiftedImpulse(k=0.6).coefficient(BLOCK), rel=1e-15)
+    assert wrapped.coefficient(BODY) == pytest.approx(0.9 * ShiftedImpulse(k=0.6).coefficient(BODY), rel=1e-15)
     inside = ShiftedImpulse(k=0.6).of_slenderness([0.3, 3.0])
     assert wrapped.of_slenderness([0.3, 3.0]) == pytest.approx(0.9 * inside, rel=1e-15)
     assert wrapped.label == "0.9*shifted-impulse:k=0.6"
     assert wrapped.parameters == {"k": 0.6, "eta": 0.9}
     assert (wrapped.domain, wrapped.inertia_only) == (ShiftedImpulse.domain, True)
     assert not Interface(Ked(), eta=0.9).inertia_only
-    assert Interface(Ked(), eta=1.0).coefficient(BLOCK) == Ked().coefficient(BLOCK)
-    assert wrapped.coefficient(BLOCK) != pytest.approx(ShiftedImpulse(k=0.6).coefficient(BLOCK))
+    assert Interface(Ked(), eta=1.0).coefficient(BODY) == Ked().coefficient(BODY)
+    assert wrapped.coefficient(BODY) != pytest.approx(ShiftedImpulse(k=0.6).coefficient(BODY))
 
 
 @pytest.mark.parametrize("inner", ["ked", None, Ked, 0.9], ids=repr)

@@ -6,7 +6,7 @@ import rocking as rk
 from rocking.app.takeaway.comparison_picture import _looks, comparison_picture
 from rocking.evidence.coefficient_table import default_models
 
-BLOCK = rk.Block(width=0.5, height=2.0)
+BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 PULSE = rk.pulses.sine(3.0, 0.8)
 LABELS = [each.label for each in default_models()] + [
     "0.98*ked", "shifted-impulse:k=0.5", "shifted-impulse:k=0.6", "0.8", "0.9", "left 0.9, right 0.8",
@@ -40,8 +40,8 @@ def test_no_two_curves_look_alike() -> None:
 
 def test_every_response_has_its_curve() -> None:
     """Each of three responses is in each of three panels."""
-    found = {label: rk.simulate(BLOCK, PULSE, label) for label in ("ked", "housner")} | {
-        "0.8": rk.simulate(BLOCK, PULSE, 0.8)
+    found = {label: rk.simulate(BODY, PULSE, label) for label in ("ked", "housner")} | {
+        "0.8": rk.simulate(BODY, PULSE, 0.8)
     }
     figure = comparison_picture(found)
     colors = [look["color"] for look in _looks(list(found)).values()]

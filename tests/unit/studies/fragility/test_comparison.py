@@ -13,7 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.cloud import cloud, cloud_plan
 from rocking.studies.fragility.comparison import compare_measures, replace_measure
 
-BLOCK = rk.Block(width=0.5, height=2.0)
+BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 RANDOM = np.random.default_rng(11)
 PEAKS, PERIODS = RANDOM.uniform(2.6, 6.0, 120), RANDOM.uniform(0.1, 0.6, 120)
 MOTIONS = [rk.pulses.half_sine(a, t) for a, t in zip(PEAKS, PERIODS, strict=True)]
@@ -22,7 +22,7 @@ NOISE = RANDOM.normal(size=120)
 
 @pytest.fixture(scope="module")
 def analysis():
-    return cloud(BLOCK, MOTIONS, restitution=0.9)
+    return cloud(BODY, MOTIONS, restitution=0.9)
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def test_velocity_beats_acceleration_for_short_pulses(ranking):
 
 def test_barely_lifted_histories_do_not_rank_measures():
     """A cloud with rotations of 1e-7 alpha ranks as the one without those histories; with them it does not."""
-    histories, finish = cloud_plan(BLOCK, MOTIONS, restitution=0.9)
+    histories, finish = cloud_plan(BODY, MOTIONS, restitution=0.9)
     arrays = histories.run(0, 120)
     chosen = np.flatnonzero(arrays["outcome"] == Outcome.ROCKED.code)[:20]
     arrays["peak_rotation"][chosen] *= 1e-7 / np.abs(arrays["peak_rotation"][chosen]) * math.atan(0.25)
@@ -105,10 +105,10 @@ def test_the_table(ranking):
 def test_overturning_dispersion_is_that_of_the_curve():
     """The dispersion of overturning is the one that a cloud analysis against that measure fits."""
     pulses = [rk.pulses.sine(a, t) for a in np.linspace(2.6, 9.0, 12) for t in (0.4, 0.55, 0.7, 0.85)]
-    over = cloud(BLOCK, pulses, restitution=0.9)
+    over = cloud(BODY, pulses, restitution=0.9)
     scores = {s.measure: s for s in compare_measures(over, ["pga", "pgv"]).scores}
     for name in ("pga", "pgv"):
-        fit = cloud(BLOCK, pulses, restitution=0.9, measure=name).fits["overturned"]
+        fit = cloud(BODY, pulses, restitution=0.9, measure=name).fits["overturned"]
         assert scores[name].overturning_dispersion == pytest.approx(fit.dispersion, rel=1e-12)
         assert scores[name].overturned == over.responses.overturned.sum() > 0
 
@@ -117,7 +117,7 @@ def test_the_same_histories_serve_all_measures(analysis):
     """Another measure changes levels, never outcomes; a factor counts with the power of the measure."""
     other = replace_measure(analysis, "arias")
     assert other.responses is analysis.responses
-    doubled = replace_measure(cloud(BLOCK, MOTIONS, restitution=0.9, factor=2.0), "arias")
+    doubled = replace_measure(cloud(BODY, MOTIONS, restitution=0.9, factor=2.0), "arias")
     np.testing.assert_allclose(doubled.motion_levels, 4.0 * other.motion_levels, rtol=1e-13)
 
 
@@ -131,7 +131,7 @@ def test_measures_of_nothing_overturned_say_so(ranking):
 
 def test_a_measure_that_does_not_vary_is_left_out():
     """Pulses of one amplitude: PGA says nothing about them and is named, the others are ranked."""
-    same = cloud(BLOCK, [rk.pulses.half_sine(4.0, t) for t in (0.2, 0.3, 0.4, 0.5, 0.6)], restitution=0.9)
+    same = cloud(BODY, [rk.pulses.half_sine(4.0, t) for t in (0.2, 0.3, 0.4, 0.5, 0.6)], restitution=0.9)
     found = compare_measures(same, ["pga", "pgv"])
     assert [s.measure for s in found.scores] == ["pgv"]
     assert list(found.left_out) == ["pga"]

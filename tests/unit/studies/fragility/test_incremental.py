@@ -17,14 +17,14 @@ from rocking.studies.fragility.crossings import Brackets, brackets_of, intervals
 from rocking.studies.fragility.incremental import incremental, incremental_plan
 from rocking.studies.fragility.stripes import multiple_stripes
 
-BLOCK = rk.Block(width=0.4, height=1.6)
+BODY = rk.Block(width=0.4, height=1.6).with_feet(0.04, 0.4)
 PULSES = [rk.pulses.sine(1.0, period) for period in np.linspace(0.35, 0.9, 12)]
 LEVELS = np.linspace(2.0, 12.0, 41)
 
 
 @pytest.fixture(scope="module")
 def found():
-    return incremental(BLOCK, PULSES, LEVELS, restitution=0.9, tolerance=1e-10)
+    return incremental(BODY, PULSES, LEVELS, restitution=0.9, tolerance=1e-10)
 
 
 def inside(intervals, motion, level):
@@ -43,7 +43,7 @@ def test_intervals_agree_with_levels_in_between(found):
     """The same holds at random levels that were never among those tried, by single simulations."""
     random = np.random.default_rng(1)
     for motion, level in zip(random.integers(0, 12, 60), random.uniform(2.0, 12.0, 60), strict=True):
-        one = rk.simulate(BLOCK, PULSES[motion].scaled(float(level)), restitution=0.9)
+        one = rk.simulate(BODY, PULSES[motion].scaled(float(level)), restitution=0.9)
         assert (one.outcome is Outcome.OVERTURNED) == inside(found.intervals, motion, level)
 
 
@@ -54,7 +54,7 @@ def test_boundaries_are_as_close_as_wanted(found):
             if math.isinf(end):
                 continue
             over = [
-                rk.simulate(BLOCK, PULSES[interval.motion].scaled(end * f), restitution=0.9).outcome
+                rk.simulate(BODY, PULSES[interval.motion].scaled(end * f), restitution=0.9).outcome
                 is Outcome.OVERTURNED
                 for f in (1.0 - 1e-9, 1.0 + 1e-9)
             ]
@@ -64,7 +64,7 @@ def test_boundaries_are_as_close_as_wanted(found):
 
 def test_fraction_is_that_of_the_stripes(found):
     """The definition "fraction" is the multiple-stripe analysis at the same levels, curve and all."""
-    stripes = multiple_stripes(BLOCK, PULSES, LEVELS, restitution=0.9)
+    stripes = multiple_stripes(BODY, PULSES, LEVELS, restitution=0.9)
     np.testing.assert_array_equal(found.fractions, stripes.counts["overturned"] / 12)
     assert found.fits["overturned"].median == stripes.fits["overturned"].median
 
@@ -90,7 +90,7 @@ def test_survivals_by_their_width(found):
     assert shares == sorted(shares, reverse=True)
     assert shares[0] > shares[-1]
     for motion, low, high in found.survivals:
-        middle = rk.simulate(BLOCK, PULSES[motion].scaled(0.5 * (low + high)), restitution=0.9)
+        middle = rk.simulate(BODY, PULSES[motion].scaled(0.5 * (low + high)), restitution=0.9)
         assert middle.outcome is not Outcome.OVERTURNED
     with pytest.raises(InvalidValueError):
         found.resurrected(-1.0)
@@ -108,14 +108,14 @@ def test_both_definitions_are_printed(found):
 
 def test_levels_that_start_above_the_crossing():
     """With the first level already overturning, the crossing below it is found all the same."""
-    low = incremental(BLOCK, PULSES[3], [3.0, 3.5, 4.0, 4.5, 5.0], restitution=0.9, tolerance=1e-10)
-    high = incremental(BLOCK, PULSES[3], [5.0], restitution=0.9, tolerance=1e-10)
+    low = incremental(BODY, PULSES[3], [3.0, 3.5, 4.0, 4.5, 5.0], restitution=0.9, tolerance=1e-10)
+    high = incremental(BODY, PULSES[3], [5.0], restitution=0.9, tolerance=1e-10)
     assert high.first_crossings[0] == pytest.approx(low.first_crossings[0], rel=1e-9)
 
 
 def test_motions_that_never_overturn_are_censored():
     """Levels below all crossings leave no crossing, no fit, and the right words."""
-    none = incremental(BLOCK, PULSES[:3], [2.5, 2.6], restitution=0.9)
+    none = incremental(BODY, PULSES[:3], [2.5, 2.6], restitution=0.9)
     assert none.first_crossings.tolist() == [math.inf] * 3
     assert none.first_crossing_fit is None
     assert none.summary()["first crossing"] is None
@@ -124,7 +124,7 @@ def test_motions_that_never_overturn_are_censored():
 
 def test_motions_with_a_failure_have_no_crossing_and_are_named(found):
     """A failed history takes its motion out of the first crossings and leaves the others bitwise as they were."""
-    histories, finish = incremental_plan(BLOCK, PULSES, LEVELS, restitution=0.9, tolerance=1e-10)
+    histories, finish = incremental_plan(BODY, PULSES, LEVELS, restitution=0.9, tolerance=1e-10)
     arrays = histories.run(0, histories.count)
     arrays["outcome"][5], arrays["peak_rotation"][5] = Outcome.FAILED.code, math.nan
     hurt = finish(arrays)
@@ -286,4 +286,4 @@ def test_crossings_with_and_without_bounds():
 def test_bad_questions_are_refused(change):
     """Nothing outside its range becomes a number."""
     with pytest.raises(InvalidValueError):
-        incremental(**({"body": BLOCK, "motions": PULSES, "levels": [3.0, 4.0]} | change))
+        incremental(**({"body": BODY, "motions": PULSES, "levels": [3.0, 4.0]} | change))
