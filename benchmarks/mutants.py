@@ -12,7 +12,6 @@ import hashlib
 import json
 import math
 import os
-import random
 import shutil
 import subprocess
 import sys
@@ -21,6 +20,7 @@ import tomllib
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import cache
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, NamedTuple
@@ -149,14 +149,27 @@ def _quiet_lines(tree: ast.AST) -> Iterator[int]:
 
 
 def sample(seed: int, count: int) -> tuple[list[Mutant], dict[str, int]]:
-    """The same number of every package, in an order that mixes them; and how many there are in all."""
-    draw, every, found = random.Random(seed), {}, []
+    """The same number of every package, in an order that mixes them; and how many there are in all.
+
+    Each has a rank by seed, file, line and operator, and the first ranks are taken: an edit elsewhere leaves them.
+    """
+    every, ranks = {}, {}
     for package in CORE:
         there = mutants(package)
-        every[package] = len(there)
-        found += draw.sample(there, min(count, len(there)))
-    draw.shuffle(found)
-    return found, every
+        every[package], place = len(there), Counter[str]()
+        ranked = {}
+        for mutant in there:
+            line = _lines(mutant.path)[mutant.first - 1].strip()
+            of = f"{seed} {mutant.path} {mutant.operator} {line}"
+            ranked[mutant] = hashlib.sha256(f"{of} {place[of]}".encode()).hexdigest()
+            place[of] += 1
+        ranks |= dict(sorted(ranked.items(), key=lambda item: item[1])[:count])
+    return sorted(ranks, key=lambda mutant: ranks[mutant]), every
+
+
+@cache
+def _lines(path: str) -> list[str]:
+    return (ROOT / path).read_text(encoding="utf-8").splitlines()
 
 
 class Worker:
