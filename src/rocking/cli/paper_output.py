@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from rocking.evidence.claims import FAILS, HOLDS, IN_PART
+from rocking.evidence.claims import FAILS, HOLDS, IN_PART, UNRESOLVED
 from rocking.report.folder import as_plain, steps
 from rocking.report.paper_document import look_at
 from rocking.report.reproduction import Reproduction
 
-_STYLE = {HOLDS: "green", IN_PART: "yellow", FAILS: "red"}
+_STYLE = {HOLDS: "green", IN_PART: "yellow", FAILS: "red", UNRESOLVED: "cyan"}
 
 
 def as_json(result: Reproduction) -> str:

@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 
 from rocking.conventions import FloatArray
+from rocking.evidence.comparison import Difference
 from rocking.evidence.measurements import DataSet, datasets
 from rocking.restitution import Housner, Ked
 
 HOLDS, IN_PART, FAILS, UNTESTABLE = "holds", "holds in part", "does not hold", "not testable"
+UNRESOLVED = "not resolved"
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +22,7 @@ class Claim:
     quote : str
         The claim, in the paper's words or close to them.
     verdict : str
-        ``"holds"``, ``"holds in part"``, ``"does not hold"`` or ``"not testable"``.
+        ``"holds"``, ``"holds in part"``, ``"does not hold"``, ``"not resolved"`` or ``"not testable"``.
     evidence : str
         The numbers.
     test : str
@@ -67,3 +69,35 @@ def verdict_of(holds: bool) -> str:
         ``"holds"`` or ``"does not hold"``.
     """
     return HOLDS if holds else FAILS
+
+
+def all_or_open(*differences: Difference) -> str:
+    """Return the verdict on a claim that several differences are all positive.
+
+    Parameters
+    ----------
+    *differences : Difference
+        The differences.
+
+    Returns
+    -------
+    str
+        ``"does not hold"`` if one is negative, ``"holds"`` if all are positive, else ``"not resolved"``.
+    """
+    return resolved(min(each.sign for each in differences))
+
+
+def resolved(sign: int) -> str:
+    """Return the verdict on a claim that one thing is larger than another.
+
+    Parameters
+    ----------
+    sign : int
+        1 where the interval of their difference is above zero, -1 where it is below, 0 where it includes zero.
+
+    Returns
+    -------
+    str
+        ``"holds"``, ``"does not hold"`` or ``"not resolved"``.
+    """
+    return {1: HOLDS, -1: FAILS, 0: UNRESOLVED}[sign]

@@ -11,7 +11,8 @@ from functools import lru_cache
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.evidence.measurements import DataSet
+from rocking.evidence.measurements import DataSet, blocks
+from rocking.restitution import RestitutionModel
 
 _RESAMPLES = 4000
 _SEED = 20240710
@@ -23,6 +24,46 @@ MEASURES: dict[str, Callable[[FloatArray], FloatArray]] = {
     "relative error of the loss": lambda r: np.log1p(-(r**2)),
 }
 """What is compared: root mean square differences of these functions of r."""
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A difference, and its 95 % bootstrap interval.
+
+    Parameters
+    ----------
+    value, low, high : float
+        The difference and the ends of its interval.
+    """
+
+    value: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, values: FloatArray) -> "Difference":
+        """Return it from its value and those of the resamples.
+
+        Parameters
+        ----------
+        values : ndarray, shape (1 + resamples,)
+            The value first.
+
+        Returns
+        -------
+        Difference
+            With the quantiles of the resamples.
+        """
+        return cls(float(values[0]), *np.quantile(values[1:], [0.025, 0.975]).tolist())
+
+    @property
+    def sign(self) -> int:
+        """1 where the interval is above zero, -1 where it is below, 0 where it includes zero."""
+        return int(self.low > 0.0) - int(self.high < 0.0)
+
+    def __str__(self) -> str:
+        """Return the difference and its interval."""
+        return f"{self.value:+.4f} ({self.low:+.4f} to {self.high:+.4f})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +151,35 @@ def _compared(
         low, high = -np.inf, np.inf
     parts = {name: _compared([each[rows] for each in squares], own, {}) for name, (rows, own) in groups.items()}
     return Comparison(first, second, low, high, parts)
+
+
+def errors_of_groups(
+    model: RestitutionModel, one: str, other: str, against: RestitutionModel | None = None
+) -> Difference:
+    """Return how much larger a model's error is in one group of blocks than in another, drawn independently.
+
+    Parameters
+    ----------
+    model : RestitutionModel
+        The model.
+    one, other : str
+        Names of the groups.
+    against : RestitutionModel, optional
+        A model whose error in the same group is taken off before.
+
+    Returns
+    -------
+    Difference
+        Of root mean square errors of r [-].
+    """
+    data = blocks()
+    weight, group = np.vstack([np.ones(len(data)), drawn(data)]), np.array(data.group)
+    error = np.zeros((2, len(weight)))
+    for sign, each in ((1.0, model), (-1.0, against)):
+        if each is not None:
+            squares = (each.of_slenderness(data.slenderness) - data.coefficient) ** 2
+            error += [sign * resampled(squares, weight * (group == name)) for name in (one, other)]
+    return Difference.of(error[0] - error[1])
 
 
 def resampled(squares: FloatArray, weight: FloatArray) -> FloatArray:

@@ -145,6 +145,18 @@ def all_measurements() -> DataSet:
 
 
 @lru_cache(maxsize=1)
+def blocks() -> DataSet:
+    """Return the measurements of single blocks, Table 3.
+
+    Returns
+    -------
+    DataSet
+        27 rows, of the groups S, M and L.
+    """
+    every = all_measurements()
+    return every.rows([k for k, group in enumerate(every.group) if group != "table1"])
+
+
 def provenance() -> dict[str, object]:
     """Return where the measurements come from, and how their rounding was read.
 

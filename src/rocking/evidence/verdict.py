@@ -52,10 +52,9 @@ def _against_free(ked: LeagueRow, free: Sequence[LeagueRow]) -> str:
     names = ", ".join(row.name for row in better) or "none"
     if best is ked:
         return "Among the models without a fitted parameter, KED has the smallest error."
-    less = ked.bic - best.bic
     return (
         f"Models without a fitted parameter that are closer than KED: {names}. The smallest error is that of "
-        f"{best.name}: {_between(best, ked, 'r')}; its BIC is {abs(less):.1f} {'lower' if less > 0.0 else 'higher'}."
+        f"{best.name}: {_between(best, ked, 'r')}."
     )
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from rocking.evidence.claims import FAILS, HOLDS, IN_PART, Claim
+from rocking.evidence.claims import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
 from rocking.evidence.explanation import explanation
 from rocking.evidence.league import LeagueRow
 from rocking.evidence.measurements import BANDS, GROUPS
@@ -90,7 +90,7 @@ def look_at(result: Reproduction) -> list[tuple[str, str]]:
     list of (str, str)
         Name and sentence.
     """
-    counts = {word: sum(claim.verdict == word for claim in result.claims) for word in (HOLDS, IN_PART, FAILS)}
+    counts = {one: sum(c.verdict == one for c in result.claims) for one in (HOLDS, IN_PART, FAILS, UNRESOLVED)}
     found = sum(erratum.found for erratum in result.errata)
     best = result.league[0]
     return [
@@ -100,7 +100,8 @@ def look_at(result: Reproduction) -> list[tuple[str, str]]:
         ),
         (
             "Claims",
-            f"{len(result.claims)} claims: {counts[HOLDS]} hold, {counts[IN_PART]} in part, {counts[FAILS]} do not",
+            f"{len(result.claims)} claims: {counts[HOLDS]} hold, {counts[IN_PART]} in part, {counts[FAILS]} do not, "
+            f"{counts[UNRESOLVED]} cannot be resolved from so few blocks",
         ),
         (
             "League table",

@@ -95,9 +95,7 @@ def test_verdict_is_made_from_the_numbers():
     words = verdict(league())
     assert words[0].startswith("Error of r: ked is closer (")
     assert words[3].startswith("Relative error of the loss: not resolved (")
-    # the two likelihoods differ by 23 and 15.5 in BIC: the one that knows the rounding is quoted
-    assert "its BIC is 15.5 lower" in words[1]
-    assert "23" not in words[1]
+    assert "BIC" not in words[1]  # one rule for a comparison: the interval of the difference
     exchanged = {
         "ked": dataclasses.replace(ROWS["ked"], model=ROWS["housner"].model),
         "housner": dataclasses.replace(ROWS["housner"], model=ROWS["ked"].model),
