@@ -20,9 +20,9 @@ extern "C" void count_operations(const double* data, std::int64_t motions, const
     for (std::int64_t k = 0; k < count; ++k) own[k] = k;
     std::vector<double> real(8 * count);
     std::vector<std::int64_t> whole(2 * count);
-    std::vector<std::int8_t> small(2 * count);
+    std::vector<std::int8_t> small(3 * count);
     Rows rows{count, alpha, alpha, p, p, r, r, spread.data(), spread.data(), {share.data(), share.data()}, scale, rotation,
-              still.data(), own.data(), own.data(), outcome, small.data(), small.data() + count,
+              still.data(), own.data(), own.data(), outcome, small.data(), small.data() + count, small.data() + 2 * count,
               real.data(), real.data() + count, real.data() + 2 * count, real.data() + 3 * count,
               real.data() + 4 * count, real.data() + 5 * count,
               real.data() + 6 * count, real.data() + 7 * count, whole.data(), whole.data() + count};

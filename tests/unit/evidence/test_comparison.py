@@ -80,9 +80,9 @@ def test_few_specimens_resolve_nothing():
 
 
 def test_groups_differ_by_the_interval_of_an_own_bootstrap():
-    """KED's error in S, M and L, blocks drawn anew in each group by themselves: the ends of 20,000 draws to 1e-3.
+    """KED's error in S, M and L, blocks drawn anew in each group by themselves: the ends of 20,000 draws to 2e-3.
 
-    A quantile of 4,000 draws scatters by about that much.
+    Quantiles of 4,000 draws scatter by about 1e-3, and come in lumps: one block, M1, makes most of the error of M.
     """
     random, drawn_errors = np.random.default_rng(5), {}
     for name in "SML":
@@ -92,7 +92,7 @@ def test_groups_differ_by_the_interval_of_an_own_bootstrap():
     for one, other in ("SL", "ML", "SM"):
         found = errors_of_groups(Ked(), one, other)
         ends = np.quantile(drawn_errors[one] - drawn_errors[other], [0.025, 0.975])
-        assert (found.low, found.high) == pytest.approx(ends.tolist(), abs=1e-3)
+        assert (found.low, found.high) == pytest.approx(ends.tolist(), abs=2e-3)
         turned = errors_of_groups(Ked(), other, one)
         assert (turned.value, turned.low, turned.high) == pytest.approx(
             (-found.value, -found.high, -found.low), rel=1e-12
@@ -101,6 +101,6 @@ def test_groups_differ_by_the_interval_of_an_own_bootstrap():
 
 @pytest.mark.parametrize(("ends", "verdict"), [((0.1, 0.2), HOLDS), ((-0.1, 0.2), UNRESOLVED), ((-0.2, -0.1), FAILS)])
 def test_a_claim_that_something_is_larger(ends, verdict):
-    """It holds where the interval lies above zero, fails below, and is not resolved between; the worst of several counts."""
+    """It holds where the interval is above zero, fails below, is not resolved between; the worst of several counts."""
     sure = Difference(0.1, 0.05, 0.2)
     assert all_or_open(sure, Difference(0.0, *ends), sure) == verdict
