@@ -235,3 +235,10 @@ def test_a_law_derived_from_a_table() -> None:
     response = rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, Capped([0.0, 1.0], [0.9, 0.8]))
     assert response.engine.startswith("reference")
     assert set(response.impacts["coefficient"]) == {0.5}
+
+
+def test_ends_of_a_cut_normal_stand_a_quarter_of_a_step_inside() -> None:
+    """N(.9, .05) cut to [0, 1], as 5 quantiles: at 1/20, 1/4, 1/2, 3/4 and 19/20 of what is left."""
+    law = rk.RandomRestitution.normal(0.9, 0.05, seed=1, points=5)
+    wanted = stats.truncnorm((0.0 - 0.9) / 0.05, (1.0 - 0.9) / 0.05, 0.9, 0.05).ppf([0.05, 0.25, 0.5, 0.75, 0.95])
+    np.testing.assert_allclose(law.factors, wanted, rtol=1e-12)

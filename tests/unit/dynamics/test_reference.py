@@ -153,3 +153,9 @@ def test_numbers_that_run_out() -> None:
         for segments in (Segments(0.1, lines), Segments(0.1, 0.0 * np.ones((5, 2)), lines)):
             with pytest.raises(InvalidValueError, match="must be finite"):
                 run(segments)
+
+
+def test_a_body_that_never_moves_has_its_peak_at_the_start() -> None:
+    """Nothing moves: the largest rotation is 0, at 0 s."""
+    still = run(Segments(1.0, np.zeros((3, 8))))
+    assert (still.peak_rotation, still.peak_time) == (0.0, 0.0)

@@ -200,3 +200,11 @@ def test_parameters_at_the_ends_of_their_ranges_are_named():
             values = {**inside, name: low + share * (high - low)}
             fit = BedFit(physics, 5, values, 0.02, 1.0, 0.0, 0.0, 0.0, np.zeros(39))
             assert fit.at_a_limit == ((name,) if told else ())
+
+
+def test_widths_are_those_of_the_mass():
+    """A block twice as wide and as deep, three times as slender: 2 x 2 x 6 times the mass, at any unit of mass."""
+    data = all_measurements().rows([0, 1])
+    data = replace(data, mass=np.array([5.0, 5.0 * 24.0]), slenderness=np.array([2.0, 6.0]))
+    narrow, wide = relative_width(data)
+    assert wide / narrow == pytest.approx(2.0, rel=1e-14)

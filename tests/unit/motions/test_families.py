@@ -172,6 +172,7 @@ def test_every_family_says_where_it_comes_from():
         (lambda: Lognormal(1.0, 2.0, median=3.0, deviation=0.1), "median must be in"),
         (lambda: Lognormal(1.0, 2.0, median=1.5, deviation=0.0), "deviation must be > 0"),
         (lambda: Uniform(0.0, 1.0).value_at(1.5), "share must be in"),
+        (lambda: Uniform(0.0, 1.0).value_at(-0.5), "share must be in"),
     ],
 )
 def test_refusals(call, words):

@@ -1,6 +1,7 @@
 """miniSEED through ObsPy: counts are no accelerations."""
 
 import importlib.util
+import io
 import os
 import random
 from io import BytesIO
@@ -129,6 +130,7 @@ def test_real_numbers_need_a_unit_and_come_back() -> None:
         np.testing.assert_array_equal(part.acceleration, other.acceleration)
     with pytest.raises(RecordError, match="units="):
         MiniSeed().read(source)
+    assert not MiniSeed.states_unit
     with pytest.raises(RecordError, match="channel codes"):
         MiniSeed().write(Record("", given.components[:1] * 2))
 
@@ -202,3 +204,12 @@ def test_the_real_file(shared_records: Path) -> None:
     (part,) = made.read(Source.of_path(path)).components
     assert (part.acceleration.size, part.time_step) == (39001, 0.01)
     assert part.peak / g == pytest.approx(0.343, abs=5e-4)
+
+
+def test_codes_are_cut_to_the_places_that_the_format_has() -> None:
+    """Two characters for a network, five for a station (SEED 2.4 manual, Chapter 8, fixed section of data header)."""
+    obspy = pytest.importorskip("obspy")
+    part = Component("HNE", np.sin(np.arange(90.0)), "g", 0.005)
+    content = MiniSeed().write(Record("", (part,), "", {"network": "NETW", "station": "STATION"}))
+    (trace,) = obspy.read(io.BytesIO(content), format="MSEED")
+    assert (trace.stats.network, trace.stats.station) == ("NE", "STATI")

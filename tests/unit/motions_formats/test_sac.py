@@ -157,3 +157,11 @@ def test_the_real_file(shared_records: Path) -> None:
     (part,) = Sac().read(Source.of_path(path), units="m/s2").components
     assert (part.acceleration.size, part.time_step) == (15001, 0.02)
     assert part.peak / g == pytest.approx(0.00348981, rel=2e-6)
+
+
+def test_two_samples_are_a_record() -> None:
+    """One interval is the least that has a time step; one sample has none."""
+    pytest.importorskip("obspy")
+    assert Sac().read(Source("a", typed([0.5, -1.25], e=0.02)), units="g").components[0].acceleration.size == 2
+    with pytest.raises(RecordError, match="at least 2"):
+        Sac().read(Source("a", typed([0.5], e=0.0)), units="g")

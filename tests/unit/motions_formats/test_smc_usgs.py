@@ -140,6 +140,7 @@ def test_what_is_written_is_read_back(made_up: Callable[..., Record]) -> None:
     """A record in m/s2 comes back in cm/s2 to the five digits of the format, with its name."""
     record = made_up("45", scale=3.0)
     content = SmcUsgs().write(record)
+    assert {len(line) for line in content.decode().splitlines()[:11]} == {80}
     (part,) = SmcUsgs().read(Source("written", content)).components
     np.testing.assert_allclose(part.acceleration, 100.0 * record.components[0].acceleration, rtol=5.1e-5, atol=1e-9)
     assert (part.name, part.time_step) == ("45", 0.02)

@@ -25,7 +25,7 @@ from rocking.dynamics.planar.power_series import value
 from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
 from rocking.dynamics.planar.state import State, away, kept, kinetic
 from rocking.dynamics.planar.stirring import stirring
-from rocking.dynamics.taylor import shifted
+from rocking.dynamics.taylor import first_fall, shifted
 from rocking.motions.segments import Segments
 
 _ORDER = 30
@@ -173,13 +173,13 @@ class Planar:
 
     def _watch_top(self, whole: Course, at: float) -> None:
         """Note when the centre passes over the foot."""
-        start, end = value(whole.rotation, 0.0), value(whole.rotation, at)
-        alpha = self.footing.slenderness_angle(1 if end > 0.0 else -1)
-        if abs(end) <= alpha:
+        side = 1 if value(whole.rotation, at) > 0.0 else -1
+        gap = -side * whole.rotation
+        gap[0] += self.footing.slenderness_angle(side)
+        if value(gap, at) >= 0.0:
             self.passed = math.nan
-        elif not abs(start) > alpha or math.isnan(self.passed):
-            share = (alpha - abs(start)) / (abs(end) - abs(start)) if abs(end) > abs(start) else 0.0
-            self.passed = self._now + max(share, 0.0) * at * whole.unit
+        elif gap[0] > 0.0 or math.isnan(self.passed):
+            self.passed = self._now + ((first_fall(gap.tolist()) or 0.0) if gap[0] > 0.0 else 0.0) * whole.unit
 
     # ---- events -----------------------------------------------------------------------------------------------------
 

@@ -289,3 +289,13 @@ def test_scans_stand_on_a_tolerance(tmp_path):
     with pytest.raises(GeometryError, match="raise base_tolerance"):
         solid_from_mesh(path, units="m")
     assert len(solid_from_mesh(path, units="m", base_tolerance=0.003)[0].base.vertices) == 4
+
+
+def test_a_tetrahedron_loses_its_doubled_face_alone():
+    """Four faces are a body, and stay one when a fifth lies on one of them: volume abc / 6."""
+    corners = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.4, 2.0, 0.0], [0.7, 0.5, 5.0]])
+    faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3], [1, 3, 0]])
+    done = repaired(corners, faces)
+    assert len(done.shape.faces) == 4
+    assert done.shape.moments().mass == pytest.approx(3.0 * 2.0 * 5.0 / 6.0, rel=1e-14)
+    assert any("removed 1 face" in each for each in done.repairs)

@@ -1,8 +1,14 @@
 """Laws of a contact point against their formulas, written with branches, point by point."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
+from rocking.bodies import Block
+from rocking.dynamics.bed import ContactBed, KelvinVoigt
+from rocking.dynamics.bed.impact import setup_of
 from rocking.dynamics.bed.law import LawKind, LawNumbers, force, stored
 
 K, C, CHI, N = 3.0e5, 700.0, 1.7, 1.5
@@ -54,3 +60,18 @@ def test_stored_energy_is_what_unloading_at_rest_gives_back(name: str) -> None:
     given = np.trapezoid(out, depth)
     assert stored(law, np.array([4e-3]), np.array([deepest])) == pytest.approx([given], rel=1e-8, abs=1e-12)
     assert (given == 0.0) == (name == "without rebound")
+
+
+@pytest.mark.parametrize(("kinematics", "along"), [("exact", True), ("small", False)])
+def test_a_body_that_starts_on_a_raised_foot_turns_about_it(kinematics: Any, along: bool) -> None:
+    """The old foot, 40 mm above the base line, is at rest: v_B + omega x (s, zeta) = 0; small angles leave zeta out."""
+    body = Block(width=1.0, height=4.0)
+    rows = ContactBed.uniform(body, 3, KelvinVoigt(1e7, 1e4)).with_profile([0.04, 0.0, 0.02])
+    bed = replace(rows, kinematics=kinematics)
+    start = setup_of(body, bed, angular_velocity=9.0).start
+    _, _, u, w, omega = start.state
+    s, zeta = float(bed.positions[start.old_foot]), float(bed.heights[start.old_foot])
+    assert omega > 1.0
+    assert zeta != 0.0
+    assert w - s * omega == pytest.approx(0.0, abs=1e-12)
+    assert u + zeta * omega * along == pytest.approx(0.0, abs=1e-12)

@@ -18,6 +18,7 @@ from rocking.dynamics.planar.margins import Kind, Margin, consistent, first_end,
 from rocking.dynamics.planar.mode import FLIGHT, REST, Mode, Regime
 from rocking.dynamics.planar.power_series import derivative, integral, value
 from rocking.dynamics.planar.state import State, along, away, kept, kinetic
+from rocking.dynamics.planar.turning import turning
 
 G = 9.80665
 TALL = Footing.of_body(Block(width=1.0, height=2.0))
@@ -282,3 +283,9 @@ def test_forces_are_measured_by_the_motion_of_the_moment():
     assert weight_of(Ground([2.0, -30.0], [G - 1.0, 50.0], 0.3)) == pytest.approx(G + 1.0, rel=1e-15)
     assert weight_of(Ground([-2.0, 30.0], [-3.0, 50.0], 0.3)) == pytest.approx(5.0, rel=1e-15)
     assert 0.0 < weight_of(Ground([0.0, 1.0], [0.0, 1.0], 0.3)) < 0.01
+
+
+def test_a_push_that_sets_in_late_turns_a_body():
+    """theta'' = -a_x h / (j + h^2) without weight: under a_x = t^5 theta is -t^7 / 84, its six terms before that zero."""
+    found = turning(1.0, (0.0, -1.0), (0.0, 0.0), ([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0], 1.0), None, 9)
+    assert found.rotation == pytest.approx([0.0] * 7 + [-1.0 / 84.0, 0.0, 0.0], abs=1e-16)

@@ -250,3 +250,10 @@ def test_the_point_at_rest_that_is_nearest_to_a_new_stance():
         alone = State(old.pivot, np.zeros(3), UP, -9.81 * UP)
         assert alone.nearest(edge(body, (number + 2) % 5)) == pytest.approx(old.pivot, abs=0.0)
     assert inside > 10
+
+
+def test_at_least_one_event_is_allowed():
+    """Both ends of the range of most_events."""
+    assert SpatialSettings(most_events=1).most_events == 1
+    with pytest.raises(InvalidValueError, match="most_events"):
+        SpatialSettings(most_events=0)

@@ -10,6 +10,7 @@ from scipy.special import ndtr
 from scipy.stats import norm
 
 from rocking.studies.fragility.agreement import STATISTICS, agreement_of, repeated_of
+from rocking.studies.fragility.bootstrap import _order_statistic
 from rocking.studies.fragility.curves import FragilityModel, curve_of, with_evidence
 from rocking.studies.fragility.export import to_csv, to_excel, to_mat, to_netcdf
 from rocking.studies.fragility.lognormal import fit_lognormal
@@ -172,3 +173,10 @@ def test_too_few_clusters_and_too_many_levels():
     assert np.isnan(list(agreement_of(many).numbers.values())).all()
     assert agreement_of(many).words.startswith("none: 25000 levels are too many")
     assert repeated_of(many, many.counts.levels, 3000).words.startswith("none: 3000 repetitions at 25000 levels")
+
+
+def test_an_order_statistic_is_rounded_outwards():
+    """Of 19 values, which cut a line in 20 equal parts, the lowest has 1/20 below it; with less nothing is known."""
+    values = np.random.default_rng(2).permutation(19.0 * np.arange(19.0)).reshape(19, 1)
+    assert [_order_statistic(values, share)[0] for share in (0.05, 0.5, 0.549, 0.55)] == [0.0, 171.0, 171.0, 190.0]
+    assert _order_statistic(values, 0.049)[0] == -np.inf

@@ -87,3 +87,13 @@ def test_too_little_is_refused():
         fit.goodness(repetitions=5)
     with pytest.raises(InvalidValueError, match="must be refitted"):
         fit_lognormal([1, 1, 2.05, 4, 4], [0, 0, 1, 0, 0]).goodness()
+
+
+def test_repetitions_as_far_off_as_the_data_count_as_far_off():
+    """One failure of 2 at each of two levels: the curve lies in the middle, a repetition is off by 0 or by as much.
+
+    Statistics of so few trials tie, and a tie counts (Davison & Hinkley 1997, eq. 4.11): where every statistic is zero
+    or equal, p is 1.
+    """
+    found = fit_lognormal([0.5, 0.6, 0.7], [1, 1, 2], [2, 2, 2]).goodness(repetitions=200)
+    assert found.kolmogorov.p_value > 0.3
