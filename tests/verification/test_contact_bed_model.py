@@ -59,7 +59,7 @@ def test_stated_error(points: int) -> None:
 
 @pytest.mark.parametrize("points", POINTS)
 def test_stated_errors_say_something(points: int) -> None:
-    """None is above .2, of a coefficient between 0 and 1, and for every flatness the last band of damping is the best."""
+    """None is above .2, of coefficients from 0 to 1; for every flatness the last band of damping is the best."""
     flatness = [0.1, 0.25, 0.32, 0.4]
     stated = np.array([stated_error(points, damping, flatness) for damping in BANDS])
     assert stated.max() <= 0.2

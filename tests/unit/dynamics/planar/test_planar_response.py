@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rocking.bodies import Block
+from rocking.dynamics import simulate
 from rocking.dynamics.impact_law import SpeedRestitution
 from rocking.dynamics.outcome import Outcome, Status
-from rocking.dynamics import simulate
 from rocking.dynamics.planar import (
     Regime,
     Start,
