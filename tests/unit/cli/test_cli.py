@@ -133,7 +133,11 @@ def test_models(capsys):
 def test_model_of_the_user_is_told_like_the_others(capsys, tmp_path):
     """A class in a file is named, with its title, as `rocking models ked` is."""
     own = tmp_path / "mine.py"
-    own.write_text("import rocking as rk\nclass Mine(rk.RestitutionModel):\n    name = 'mine'\n    title = 'of mine'\n")
+    own.write_text(
+        "import rocking as rk\nclass Mine(rk.RestitutionModel):\n    name = 'mine'\n    title = 'of mine'\n"
+        "    def raw_coefficient(self, body, onto):\n        return 0.5\n",
+        encoding="utf-8",
+    )
     code, out, _ = run(capsys, "models", f"{own}:Mine", "--json")
     assert (code, json.loads(out)[f"{own}:Mine"]["title"]) == (0, "of mine")
     code, _, err = run(capsys, "models", f"{own}:Yours")

@@ -197,7 +197,7 @@ def test_no_text_over_text(case, tmp_path):
         if one.shrunk(0.98, 0.98).overlaps(two.shrunk(0.98, 0.98))
     ]
     assert not clashes
-    first, again = (write(figure, tmp_path / f"{k}.png").read_bytes() for k in range(2))
+    first, again = (write(response_picture(_cases()[case]()), tmp_path / f"{k}.png").read_bytes() for k in range(2))
     assert first == again
     # 1200 pixels at the least
     assert figure.get_size_inches()[0] * 300 > 1200
