@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from rocking.errors import MissingExtraError, RecordError
+from rocking.motions.formats import foreign
 from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.sac import read_traces
 from rocking.motions.formats.source import Source
@@ -26,6 +27,9 @@ def answer(request, content):
     if kind == "crash":
         os.kill(os.getpid(), signal.SIGSEGV)
     if kind == "sleep":
+        time.sleep(60)
+    if kind == "deaf":
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM})
         time.sleep(60)
     if kind == "spin":
         while True:
@@ -83,6 +87,19 @@ def test_what_goes_wrong_is_a_refusal_and_the_next_file_is_read(reader: ForeignR
     # a limit, not a measurement: sleep and spin would last for ever
     assert time.monotonic() - start < 40.0
     assert reader.answer(FILE, {"kind": "read"}, b"")[0]["worker"] == before
+
+
+@LINUX
+def test_a_process_of_a_file_that_outlives_its_reader_keeps_nobody(
+    reader: ForeignReader, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Deaf to its alarm it sleeps on with the reader's pipes in its hands, and nobody waits for it."""
+    monkeypatch.setattr(foreign, "TO_START", 4.0)
+    start = time.monotonic()
+    with pytest.raises(RecordError, match="takes more than 2 s"):
+        reader.answer(FILE, {"kind": "deaf"}, b"")
+    assert time.monotonic() - start < 40.0  # a limit, not a measurement: it would be 60
+    assert reader.answer(FILE, {"kind": "read"}, b"")[0]["length"] == 0
 
 
 @LINUX

@@ -84,14 +84,18 @@ def _answered(answer: Answer, parts: list[bytes]) -> list[bytes]:
         return [json.dumps({"error": type(error).__name__, "message": str(error)[:300]}).encode()]
 
 
-def _apart(answer: Answer, parts: list[bytes], seconds: float, memory: int) -> list[bytes]:
+def _apart(
+    answer: Answer, parts: list[bytes], seconds: float, memory: int, channels: tuple[BinaryIO, BinaryIO]
+) -> list[bytes]:
     """Return the answer of a process of its own, or which signal ended it."""
     back, forth = os.pipe()
     child = os.fork()
     if child == 0:
         code = 1
         try:
-            os.close(back)
+            # a child that outlives this process must not keep its pipes open
+            for number in (back, *(each.fileno() for each in channels)):
+                os.close(number)
             _limit(seconds, memory)
             with os.fdopen(forth, "wb") as channel:
                 send(channel, _answered(answer, parts))
@@ -109,6 +113,7 @@ def _limit(seconds: float, memory: int) -> None:
     import resource
 
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM})  # a parent may have held it back
     signal.setitimer(signal.ITIMER_REAL, seconds)
     loaded = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (loaded + memory, loaded + memory))
@@ -149,7 +154,7 @@ def main(script: str, seconds: float, memory: int) -> None:
         if answer is None:
             reply = [json.dumps({"missing": missing}).encode()]
         else:
-            reply = _apart(answer, parts, seconds, memory) if FORKS else _answered(answer, parts)
+            reply = _apart(answer, parts, seconds, memory, channels) if FORKS else _answered(answer, parts)
         send(channels[1], reply)
         if not FORKS and json.loads(reply[0]).keys() & {"error", "memory"}:
             return
