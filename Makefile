@@ -76,12 +76,15 @@ lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/lint-imports
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
 
+# A test that hangs for ten minutes fails, and says where.
+PYTEST := $(BIN)/python -m pytest -o faulthandler_timeout=600 -o faulthandler_exit_on_timeout=true
+
 # What measures time runs alone, and what drives a browser in a process of its own; the rest on two processes.
 test: lint
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not timed and not browser"
-	$(BIN)/python -m pytest $$(grep -rl --include='test_*.py' --exclude-dir=browser timed tests) -m timed
-	$(BIN)/python -m pytest tests/browser -m timed
-	$(BIN)/python -m pytest tests/browser -n 2 --dist loadfile -m "not timed"
+	$(PYTEST) -n 2 --dist loadfile -m "not timed and not browser"
+	$(PYTEST) $$(grep -rl --include='test_*.py' --exclude-dir=browser timed tests) -m timed
+	$(PYTEST) tests/browser -m timed
+	$(PYTEST) tests/browser -n 2 --dist loadfile -m "not timed"
 
 # The unit tests and the examples of docstrings run 95 % of the lines by themselves; looking on takes half as long again.
 coverage: $(VENV)/dev $(ENGINE)
