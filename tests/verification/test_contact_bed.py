@@ -262,14 +262,14 @@ def test_another_solver_agrees(name: str) -> None:
     for unit, names in NAMES.items():
         for one in names.split():
             assert quick.result(one) == pytest.approx(slow.result(one), abs=1e-6 * units[unit]), one
-    # the other solver sees the end of the impact at its next step
-    assert quick.result("parting") == pytest.approx(slow.result("parting"), abs=1e-5)
+    # the other solver sees the end of the impact, and of contacts, at its next step: up to 6e-5 s there
+    assert quick.result("parting") == pytest.approx(slow.result("parting"), abs=1e-4)
     for one, part in {"impulse": 2e-3, "impulse_moment": 2e-3, "shear_impulse": 2e-3, "peak_force": 5e-3}.items():
         assert quick.result(one) == pytest.approx(slow.result(one), rel=part), one
     for one, part in {"deepest": 1e-5, "slid": 1e-3}.items():
         assert quick.result(one) == pytest.approx(slow.result(one), rel=part, abs=1e-12), one
     # when which point presses, in the order in which contacts end
-    assert quick.intervals == pytest.approx(slow.intervals, abs=2e-5)
+    assert quick.intervals == pytest.approx(slow.intervals, abs=1e-4)
     assert (np.diff(slow.intervals[np.isfinite(slow.intervals[:, 2]), 2]) >= 0.0).all()
     assert abs(quick.audit) < 1e-8
     # negative control: the audit sees the losses of the bed
