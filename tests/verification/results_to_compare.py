@@ -16,8 +16,8 @@ import rocking as rk
 from rocking.dynamics import engine as plane_engine
 from rocking.dynamics.bed import ContactBed, KelvinVoigt
 from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial, simulate_spatial
+from rocking.dynamics.spatial_batch import SpatialStart, simulate_spatial_batch
 from rocking.dynamics.spatial_batch import engine as space_engine
-from rocking.dynamics.spatial_batch import simulate_spatial_batch
 
 STEP = 0.015625
 PEDESTAL = rk.Section([rk.Region([(-0.45, 0.0), (0.55, 0.0), (0.4, 2.5), (-0.15, 2.2)], density=2400.0)])
@@ -82,7 +82,11 @@ def spatial_batch() -> list[Any]:
     laws: list[Any] = ["housner-3d", "horizontal-momentum-3d", 0.9, 0.97]
     found = simulate_spatial_batch(bodies, motions, laws, scales=[0.3, 0.6, 1.2])
     statue = simulate_spatial_batch(bodies[:1], motions[:2], ["ked-3d"], scales=[0.6])
-    return [*found.values.values(), *statue.values.values()]
+    spun = [
+        SpatialStart(tilt=0.05, azimuth=0.7 * k, yaw=0.3 * k, angular_velocity=(0.2, -0.1, 0.1 * k)) for k in range(8)
+    ]
+    thrown = simulate_spatial_batch(bodies[:1], motions[:1], [0.9], start=spun)
+    return [value for one in (found, statue, thrown) for value in one.values.values()]
 
 
 def plane(engine: str) -> list[Any]:

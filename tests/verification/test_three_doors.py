@@ -214,6 +214,7 @@ def numbers_of(response):
         "error_estimate_rad": finite(response.error_estimate),
         "friction": (finite(contact.friction_of_motion), finite(contact.friction_of_impacts)),
         "least_vertical_force_N": contact.least_vertical,
+        "lost_contact": response.lost_contact,
         "initial_rotation_rad": float(response.rotation[0]),
         "still_rocking": (response.time[-1], response.rotation[-1], response.angular_velocity[-1], response.unfinished)
         if response.still_rocking else None,
@@ -225,7 +226,7 @@ def numbers_in(facts):
     plain = ("peak_rotation_rad", "overturning_time_s", "uplifts_s", "energy_closure", "error_estimate_rad")
     sides = facts["body"]["sides"]
     return {
-        **{name: facts[name] for name in (*plain, "least_vertical_force_N", "initial_rotation_rad")},
+        **{name: facts[name] for name in (*plain, "least_vertical_force_N", "lost_contact", "initial_rotation_rad")},
         "impacts": [tuple(row.values()) for row in facts["impacts"]],
         "coefficients": (sides["left"]["coefficient"], sides["right"]["coefficient"]),
         "friction": (facts["friction"]["of_motion"], facts["friction"]["of_impacts"]),

@@ -207,7 +207,15 @@ def _intervals(answer: FragilityAnswer) -> list[str]:
         for why, name in whys.items()
         if why
     ]
-    return [*told, "Intervals: whole motions drawn anew, since a motion serves at every level."] if "" in whys else told
+    if "" not in whys:
+        return told
+    how = (
+        "the values of the parameter under which so few, or so many, failures as these are no rarity, each motion with "
+        "one capacity"
+        if any(fit.counts.draws_capacities for _, fit in fits)
+        else "whole motions drawn anew"
+    )
+    return [*told, f"Intervals: {how}, since a motion serves at every level."]
 
 
 def _verdicts(answer: FragilityAnswer, result: Any) -> list[str]:

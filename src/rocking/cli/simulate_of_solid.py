@@ -75,7 +75,7 @@ def _law(word: str) -> str | float:
     try:
         return float(word)
     except ValueError:
-        return word if word.endswith("-3d") else f"{word}-3d"
+        return word if word.lower().endswith("-3d") else f"{word}-3d"
 
 
 def _drawn(response: SpatialResponse) -> Any:

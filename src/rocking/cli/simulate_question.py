@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from rocking import checks
+from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.cli.model_options import models_from
 from rocking.cli.motion_options import motion_from
@@ -74,6 +74,13 @@ def _share(body: Body, free: float) -> float:
         raise InvalidValueError(
             f"--free is a share of the slenderness angle, here {math.degrees(alpha):.3g} degrees, and 1 is where the "
             f"body balances; got {free:g}. An angle of {free:g} degrees is --free {math.radians(free) / alpha:.3g}"
+        )
+    if abs(free) > 1.0:
+        plausibility.warn(
+            [
+                f"let go at {free:g} slenderness angles, beyond where the body balances: it can only fall. An angle of "
+                f"{free:g} degrees is --free {math.radians(free) / alpha:.3g}"
+            ]
         )
     return free
 

@@ -41,8 +41,9 @@ class ResponseEnergy:
     @property
     def closure(self) -> float:
         """Largest gap over the largest energy that was ever stored or lost [-]."""
-        scale = max(float(np.max(self.kinetic + self.potential)), float(np.max(np.abs(self.lost))), 1e-300)
-        return float(np.max(np.abs(self.gap))) / scale
+        scale = max(float(np.max(self.kinetic + self.potential)), float(np.max(np.abs(self.lost))))
+        fallen = float(np.max(np.abs(self.potential)))  # a body let go far beyond balance has no other energy
+        return float(np.max(np.abs(self.gap))) / max(scale if scale > 1e-9 * fallen else fallen, 1e-300)
 
 
 def energy_of(intervals: Intervals, time: FloatArray, mass: float, settings: Settings) -> ResponseEnergy:

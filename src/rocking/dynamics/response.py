@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.conventions import FloatArray, given_or_assumed
+from rocking.conventions import Assumed, FloatArray, given_or_assumed
 from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.rocker import Rocker
@@ -205,7 +205,9 @@ class Response(Exportable):
         list of str
             Sentences; empty if it is credible.
         """
-        told = [self._flown(friction)] if self.lost_contact else []
+        # what nobody gave decides no flight: the feet are then kept from sliding
+        given = None if isinstance(friction, Assumed) else friction
+        told = [self._flown(given)] if self.lost_contact else []
         return told if friction is None else [*told, *self.contact.slips(friction)]
 
     def _flown(self, friction: float | None) -> str:

@@ -38,11 +38,11 @@ _APART = 2.2
 def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
     """Draw a fragility analysis.
 
-    Above: the share of the motions that reached each state, with exact binomial intervals, and the lognormal curve
-    of each state that has one; levels at which no motion can lift the body are shaded. The band of a curve is found by
-    drawing whole motions anew where each motion was used at several levels, whose outcomes are not independent;
-    otherwise by the profile of the likelihood. Below: the shares of the states, which add up to one. Where the
-    outcomes fix no curve, words below the panels say so.
+    Above: the share of the motions that reached each state, with exact binomial intervals, and the lognormal curve of
+    each state that has one; levels at which no motion can lift the body are shaded. Where each motion was used at
+    several levels, whose outcomes are not independent, the band of a curve is found from repeated studies: with
+    capacities drawn anew (5 to 29 motions) or whole motions; otherwise by the profile of the likelihood. Below: the
+    shares of the states, which add up to one. Where the outcomes fix no curve, words below the panels say so.
 
     Parameters
     ----------

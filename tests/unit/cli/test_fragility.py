@@ -224,6 +224,13 @@ def test_few_motions_have_no_interval(capsys):
     assert "No interval of overturned: motions serve at every level, and there are too few of them (2 " in out
 
 
+def test_the_method_of_the_intervals_is_said(capsys):
+    """16 motions have one capacity each; of 30 whole ones are drawn anew."""
+    few, many = (run(capsys, *SIZE, *FAMILY[:3], count, *LEVELS)[1] for count in ("16", "30"))
+    assert "each motion with one capacity, since a motion serves at every level" in few
+    assert "Intervals: whole motions drawn anew, since" in many
+
+
 def test_levels_that_serve(capsys):
     """Without levels of PGA 16 are taken, from 0.9 to 9 times what lifts the body, in equal ratios."""
     levels = told(capsys, *SIZE, *FAMILY)["levels"]

@@ -202,3 +202,11 @@ def test_vertical_twice_is_refused(capsys, body, record):
     code, out, err = run(capsys, body, record, *words)
     assert (code, out) == (2, "")
     assert "the vertical motion is given twice" in err
+
+
+def test_capitals_of_a_model_do_not_matter(capsys, body):
+    """`KED-3D` is `ked-3d`; what is no model is named as it was written."""
+    words = (body, "--motion", "sine:amplitude=2.9,period=0.6", "--restitution")
+    upper, lower = (answered(capsys, *words, name) for name in ("KED-3D", "ked-3d"))
+    assert upper["peak_tilt_rad"] == lower["peak_tilt_rad"]
+    assert run(capsys, *words, "KED-3E")[0] == 2

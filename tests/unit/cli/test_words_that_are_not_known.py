@@ -91,6 +91,7 @@ def test_sentences_of_the_command_line(words, said, capsys):
     assert said in err
 
 
+@pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWarning")
 def test_share_of_the_slenderness_angle(capsys):
     """`--free 10` says what the number is, and how an angle of 10 degrees is written; that one is taken."""
     code, _, err = run(capsys, "simulate", *SIZE, "--free", "10")
@@ -99,6 +100,9 @@ def test_share_of_the_slenderness_angle(capsys):
     assert code == 2
     assert f"An angle of 10 degrees is --free {share:.3g}" in err
     assert run(capsys, "simulate", *SIZE, "--free", f"{share:.3g}")[0] == 0
+    # 5 alpha is no right angle, and doubted all the same: it can only fall
+    code, _, err = run(capsys, "simulate", *SIZE, "--free", "5")
+    assert (code, f"An angle of 5 degrees is --free {0.5 * share:.3g}" in err) == (0, True)
 
 
 def test_models_in_space_are_listed_and_shown(capsys):

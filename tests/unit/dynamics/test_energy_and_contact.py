@@ -211,3 +211,9 @@ def test_energy_bound_of_an_asymmetric_body(onto: Any) -> None:
     assert rk.free_rocking(SECTION, 0.05, r).impacts.size
     with pytest.raises(InvalidValueError, match=f"onto the {onto} foot must be in .0, {most:.6g}.*create energy"):
         rk.free_rocking(SECTION, 0.05, {**r, onto: 1.0001 * most})
+
+
+@pytest.mark.parametrize("share", [2.0, -2.0, 4.0])
+def test_energy_of_a_body_that_only_falls_closes(share):
+    """Let go at twice alpha it has no energy over standing, so that what does not add up is compared with its fall."""
+    assert rk.free_rocking(BLOCK, share * BLOCK.slenderness_angle, 0.9).energy.closure < 1e-10

@@ -83,6 +83,9 @@ def test_one_history_tells_both_verdicts():
     (words, *_) = response_facts(rk.simulate(LEANING, HEAVY[0], 0.8), 0.5)["warnings"]
     assert "rocking alone: " in words
     assert "if it may fly, with a coefficient of friction of 0.5, as given: " in words
-    (words, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts(DEFAULT_FRICTION)
-    assert "with a coefficient of friction of 0.5, as assumed: " in words
+    # what nobody gave decides no flight, from whichever door it comes
+    (assumed, *_) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts(DEFAULT_FRICTION)
+    (none,) = rk.simulate(LEANING, HEAVY[0], 0.8).doubts()
+    assert assumed == none != words
+    assert "with a coefficient of friction of 10, since none was given: " in none
     assert not any("pull" in each for each in response_facts(rk.simulate(LEANING, LIGHT[0], 0.8), 0.5)["warnings"])

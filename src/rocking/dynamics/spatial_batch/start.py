@@ -8,6 +8,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial import attitude
+from rocking.portable import applied
 
 
 @dataclass(frozen=True)
@@ -57,4 +58,4 @@ class SpatialStart:
     @property
     def body_velocity(self) -> FloatArray:
         """Angular velocity in body axes, shape (3,) [rad/s]."""
-        return np.asarray(attitude.matrix(self.quaternion).T @ np.asarray(self.angular_velocity, dtype=np.float64))
+        return applied(attitude.matrix(self.quaternion).T, np.asarray(self.angular_velocity, dtype=np.float64))

@@ -174,6 +174,7 @@ def outcome_facts(response: Response) -> dict[str, Any]:
         "peak_rotation_rad": response.peak_rotation,
         "peak_rotation_over_alpha": response.peak_rotation / response.rocker.side(run.peak_rotation).slenderness_angle,
         "still_rocking": still_rocking_facts(response),
+        "lost_contact": response.lost_contact,
     }
 
 

@@ -42,9 +42,11 @@ class Verdict:
         for name, one in found.items():
             groups.setdefault(_WORDS[one.outcome], []).append(name)
         rocking = ", ".join(name for name, one in found.items() if one.still_rocking)
-        unfinished = f" Still rocking when the computation ends: with {rocking}." if rocking else ""
+        pulled = ", ".join(name for name, one in found.items() if one.lost_contact)
+        doubts = f" Still rocking when the computation ends: with {rocking}." if rocking else ""
+        doubts += f" The ground would have to pull, and the verdict assumes contact: with {pulled}." if pulled else ""
         if len(groups) > 1:
             parts = ", ".join(f"{word} with {', '.join(names)}" for word, names in groups.items())
-            return cls(True, f"The model decides: the body {parts}.{unfinished}")
+            return cls(True, f"The model decides: the body {parts}.{doubts}")
         (word,) = groups
-        return cls(False, f"With every one of these models the body {word}.{unfinished}")
+        return cls(False, f"With every one of these models the body {word}.{doubts}")

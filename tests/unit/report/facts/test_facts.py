@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.errors import PureRockingWarning
 from rocking.report.facts.body import body_facts, outline_facts
 from rocking.report.facts.evidence import curves_facts, measured_facts
 from rocking.report.facts.impact import ImpactAnswer, impact_facts
@@ -107,3 +108,14 @@ def test_curves_follow_the_formula_of_housner():
     curve = next(one for one in curves_facts() if one["model"] == "housner")
     alpha = np.arctan(1.0 / np.array(curve["slenderness_ratio"]))
     assert np.allclose(curve["coefficient"], np.maximum(1.0 - 1.5 * np.sin(alpha) ** 2, 0.0), rtol=1e-12)
+
+
+def test_the_verdict_names_with_whom_the_ground_would_have_to_pull():
+    """The sentence is that of all models, of which the chosen one may be above doubt."""
+    held = rk.simulate(BLOCK, MOTION)
+    with pytest.warns(PureRockingWarning, match="would have to pull"):
+        torn = rk.simulate(rk.Block(width=3.0, height=1.0), rk.pulses.sine(40.0, 1.0), 0.5)
+    assert torn.lost_contact
+    assert "pull" not in Verdict.of({"a": held}).sentence
+    both = Verdict.of({"a": held, "b": torn}).sentence
+    assert both.endswith("The ground would have to pull, and the verdict assumes contact: with b.")

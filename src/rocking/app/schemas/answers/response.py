@@ -117,6 +117,7 @@ class ResponseFacts(Answer):
     peak_rotation_rad: float = Field(description="a quarter turn if it overturned [rad]")
     peak_rotation_over_alpha: float = Field(description="over the slenderness angle of that side [-]")
     still_rocking: StillRocking | None = Field(description="null where it rests or has overturned at the end")
+    lost_contact: bool = Field(description="whether the ground would have to pull, so that the verdict assumes contact")
     uplifts_s: list[float] = Field(description="times at which it leaves the ground [s]")
     impacts: list[ImpactFacts]
     energy_closure: float = Field(description="energy that does not add up, over the largest energy [-]")
