@@ -71,7 +71,8 @@ def seals() -> dict[str, str]:
 class Covering:
     """The tests that run a line: those of the file's own name first, then quickest first."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, elsewhere: dict[str, list[str]]) -> None:
+        self._elsewhere = elsewhere
         self.durations: dict[str, float] = json.loads((folder / "durations.json").read_text(encoding="utf-8"))
         self._seals: dict[str, str] = json.loads((folder / "recorded.json").read_text(encoding="utf-8"))
         self._database = sqlite3.connect(f"file:{folder / 'coverage'}?mode=ro", uri=True, check_same_thread=False)
@@ -83,6 +84,7 @@ class Covering:
             self._files[path] = self._of_file(path)
         by_line = self._files[path]
         found = set().union(*(by_line.get(line, set()) for line in lines)) or set().union(*by_line.values())
+        found |= {test for test in self.durations if test.partition("::")[0] in self._elsewhere.get(path, ())}
         own = Path(path).stem
         return sorted(found & self.durations.keys(), key=lambda test: (own not in test, self.durations[test], test))
 

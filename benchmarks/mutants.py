@@ -270,7 +270,7 @@ def verdict(mutant: Mutant, worker: Worker, covering: Covering, noticed: Counter
 
 def run(chosen: list[Mutant], folder: Path, workers: int, hours: float) -> dict[str, dict[str, object]]:
     """Judge what is not in the ledger yet, and survivors of tests that have changed since, until the time is up."""
-    ledger, covering = folder / "verdicts.jsonl", Covering(folder)
+    ledger, covering = folder / "verdicts.jsonl", Covering(folder, by_hand()["elsewhere"])
     lines = ledger.read_text(encoding="utf-8").splitlines() if ledger.exists() else []
     known: dict[str, dict[str, object]] = {}
     for entry in map(json.loads, lines):

@@ -411,6 +411,22 @@ def test_light_damping_scatters() -> None:
     assert damped == pytest.approx([0.7] * 4, abs=5e-3)
 
 
+def test_a_peak_on_the_old_side_is_not_counted() -> None:
+    """A loose bed throws the body back before it has passed the middle; peaks lie on alternate sides, none below 0."""
+    block = Block(width=1.0, height=1.5, density=1000.0)
+    bed = ContactBed.uniform(block, 2, KelvinVoigt(1e3 * block.mass, damping_ratio=0.01))
+    found = bed_free_rocking(block, bed, rotation=0.5 * block.slenderness_angle, peaks=4)
+    assert np.all(found.rotations > 0.0)
+    assert np.all(np.diff(found.times) > 0.0)
+
+
+def test_small_rocking_dies_out_like_large() -> None:
+    """From 0.02 rad, too, as many peaks are followed as were asked for."""
+    block = Block(width=1.0, height=2.0, density=1000.0)
+    bed = ContactBed.uniform(block, 2, KelvinVoigt(1e5 * block.mass, damping_ratio=1.0))
+    assert bed_free_rocking(block, bed, rotation=0.02, peaks=3).rotations.size == 4
+
+
 def test_threads_and_neighbours_change_no_bit() -> None:
     """A row has the same bits with one thread or two, alone or among others."""
     block = slender(2.0)

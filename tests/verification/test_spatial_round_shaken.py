@@ -109,6 +109,15 @@ def test_a_history_lifted_from_rest_has_a_result():
     assert _reference(96).status is Status.GOOD
 
 
+def test_the_lift_from_rest_is_no_passage():
+    """A body that has been lifted, and has not come back, never rolled through lying nearly flat."""
+    shaking = rk.GroundMotion(np.full(20, 6.0), 0.01)
+    column = rk.Solid([rk.Part(rk.solid.cylinder(0.25, 2.0), 2400.0)])
+    lifted = rk.simulate_spatial(column, shaking, restitution=0.5, duration=0.2)
+    assert lifted.peak_tilt > 0.01
+    assert lifted.near_flat_passages == 0
+
+
 def test_a_rim_nearly_flat_is_held_down(monkeypatch):
     """Passages that would pull: a result, an account of them in words, energy to 1e-9; otherwise contact is lost."""
     held = _reference(117)

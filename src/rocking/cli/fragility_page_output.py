@@ -225,7 +225,7 @@ def _verdicts(answer: FragilityAnswer, result: Any) -> list[str]:
         if fit.separation is not Separation.OVERLAP or not fit.exists:
             words = fit.verdict.split(" Outcomes of one cluster")[0].split(" Intervals are")[0]
             states.setdefault(words, []).append(name)
-    where = f" (levels in {answer.question.measure.unit})" if answer.question.written else ""
+    where = "" if (unit := answer.question.measure.unit) == "-" else f" (levels in {unit})"
     return [f"{', '.join(names)}: {words}{where}" for words, names in states.items()]
 
 

@@ -24,6 +24,7 @@ from rocking.cli.shared_options import beside_g, in_unit
 from rocking.cli.simulate_question import restitution_from
 from rocking.conventions import ACCELERATION_UNITS, g, percent
 from rocking.dynamics.response import Motion
+from rocking.errors import InvalidValueError
 from rocking.studies.crossings import Crossings
 
 _SPOKEN = 4
@@ -112,11 +113,20 @@ def search_from(lowest: str | None, highest: str | None) -> dict[str, float | No
     -------
     dict
         lowest and highest, None where not given [m/s2].
+
+    Raises
+    ------
+    InvalidValueError
+        If the lowest is not below the highest.
     """
     words = {"lowest": lowest, "highest": highest}
-    return {
+    found = {
         name: None if word is None else shared.quantity(f"--{name}", word, "m/s2")[0] for name, word in words.items()
     }
+    least, most = found.values()
+    if least is not None and most is not None and not least < most:
+        raise InvalidValueError(f"--lowest must be below --highest, got {lowest} and {highest}")
+    return found
 
 
 def sentence(found: Crossings) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.evidence.measurements import GROUPS, DataSet
+from rocking.evidence.measurements import DataSet
 from rocking.restitution.bed_table import DAMPING, HARDNESS, bed_table
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.shifted_impulse import shifted
@@ -48,10 +48,10 @@ class Physics:
 def bed_coefficients(
     slenderness: FloatArray,
     points: int,
-    damping: float,
-    hardness: float,
+    damping: FloatArray | float,
+    hardness: FloatArray | float,
     *,
-    share: float = 1.0,
+    share: FloatArray | float = 1.0,
     shift: FloatArray | float = 0.0,
 ) -> FloatArray:
     """Return the bed's coefficients of rectangles that stand on the middle part of their base.
@@ -62,9 +62,9 @@ def bed_coefficients(
         h/b [-].
     points : int
         Contact points.
-    damping, hardness : float
+    damping, hardness : float or ndarray
         Of the bed, inside the table [-].
-    share : float
+    share : float or ndarray
         Part of the base that the bed reaches over [-].
     shift : ndarray or float
         Added to the position of the impulse, which stays between the middle and the foot [-].
@@ -164,7 +164,7 @@ def _plain(p: FloatArray, data: DataSet, points: int) -> FloatArray:
 
 
 def _common_factor(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    return np.asarray(np.where(_is(data, "table1"), 1.0, p[2]) * _plain(p, data, points))
+    return np.asarray(_by_row(data, 1.0, p[2], p[2], p[2]) * _plain(p, data, points))
 
 
 def _tape(p: FloatArray, data: DataSet, points: int) -> FloatArray:
@@ -173,23 +173,19 @@ def _tape(p: FloatArray, data: DataSet, points: int) -> FloatArray:
 
 
 def _factors(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    r = _plain(p, data, points)
-    for group, eta in zip(BLOCKS, p[2:].tolist(), strict=True):
-        r = np.where(_is(data, group), eta * r, r)
-    return r
+    return np.asarray(_by_row(data, 1.0, *p[2:]) * _plain(p, data, points))
 
 
 def _dampings(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    return _each(data, p[1:], lambda s, value: bed_coefficients(s, points, value, float(p[0])))
+    return bed_coefficients(data.slenderness, points, _by_row(data, *p[1:]), float(p[0]))
 
 
 def _hardnesses(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    return _each(data, p[1:], lambda s, value: bed_coefficients(s, points, float(p[0]), value))
+    return bed_coefficients(data.slenderness, points, float(p[0]), _by_row(data, *p[1:]))
 
 
 def _shares(p: FloatArray, data: DataSet, points: int) -> FloatArray:
-    shares = np.array([1.0, *p[2:]])
-    return _each(data, shares, lambda s, x: bed_coefficients(s, points, float(p[0]), float(p[1]), share=x))
+    return bed_coefficients(data.slenderness, points, float(p[0]), float(p[1]), share=_by_row(data, 1.0, *p[2:]))
 
 
 def _uneven(p: FloatArray, data: DataSet, points: int) -> FloatArray:
@@ -197,14 +193,6 @@ def _uneven(p: FloatArray, data: DataSet, points: int) -> FloatArray:
     return bed_coefficients(data.slenderness, points, float(p[0]), float(p[1]), shift=shift)
 
 
-def _is(data: DataSet, group: str) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    return np.array([each == group for each in data.group])
-
-
-def _each(data: DataSet, values: FloatArray, r_of: Callable[[FloatArray, float], FloatArray]) -> FloatArray:
-    r = np.empty(len(data))
-    for group, value in zip(GROUPS, values.tolist(), strict=True):
-        rows = _is(data, group)
-        if rows.any():
-            r[rows] = r_of(data.slenderness[rows], value)
-    return r
+def _by_row(data: DataSet, *values: float) -> FloatArray:
+    """Return the value of each row's group."""
+    return np.array(values)[data.group_number]

@@ -4,12 +4,12 @@ import csv
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib.resources import files
 
 import numpy as np
 
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 
 GROUPS = ("table1", "S", "M", "L")
 """The independent data sets; Table 2 holds means of Table 1."""
@@ -57,6 +57,11 @@ class DataSet:
     def __len__(self) -> int:
         """Return the number of rows."""
         return len(self.slenderness)
+
+    @cached_property
+    def group_number(self) -> IntArray:
+        """Place of each row's group in `GROUPS`."""
+        return np.array([GROUPS.index(group) for group in self.group])
 
     def rows(self, chosen: Sequence[int] | FloatArray) -> "DataSet":
         """Return some rows, in the order given.

@@ -116,26 +116,27 @@ class BedTable:
     hardness: FloatArray
     positions: FloatArray
 
-    def plane(self, points: int, damping: float, hardness: float) -> FloatArray:
-        """Return the positions of one bed.
+    def plane(self, points: int, damping: FloatArray | float, hardness: FloatArray | float) -> FloatArray:
+        """Return the positions of one bed, or of one a body.
 
         Parameters
         ----------
         points : int
             One of `POINTS`.
-        damping, hardness : float
+        damping, hardness : float or ndarray
             Inside their ranges [-].
 
         Returns
         -------
         ndarray
-            By flatness and offset [-].
+            By flatness and offset, and by body where there are several [-].
         """
-        i, along = _between(self._logarithms[0], math.log(damping))
-        j, across = _between(self._logarithms[1], math.log(hardness))
-        corners = self.positions[POINTS.index(points), ..., i : i + 2, j : j + 2]
-        found = (1.0 - across) * corners[..., 0] + across * corners[..., 1]
-        return np.asarray((1.0 - along) * found[..., 0] + along * found[..., 1])
+        i, along = _between(self._logarithms[0], each(math.log, damping))
+        j, across = _between(self._logarithms[1], each(math.log, hardness))
+        beds = self.positions[POINTS.index(points)]
+        first = (1.0 - across) * beds[..., i, j] + across * beds[..., i, j + 1]
+        second = (1.0 - across) * beds[..., i + 1, j] + across * beds[..., i + 1, j + 1]
+        return np.asarray((1.0 - along) * first + along * second)
 
     @cached_property
     def _logarithms(self) -> tuple[FloatArray, FloatArray]:
@@ -158,8 +159,9 @@ class BedTable:
         """
         i, across = _between(self.flatness, flatness)
         j, along = _between(self.offset, offset)
-        first = (1.0 - along) * plane[i, j] + along * plane[i, j + 1]
-        second = (1.0 - along) * plane[i + 1, j] + along * plane[i + 1, j + 1]
+        own = (np.arange(plane.shape[2]),) if plane.ndim == 3 else ()
+        first = (1.0 - along) * plane[i, j, *own] + along * plane[i, j + 1, *own]
+        second = (1.0 - along) * plane[i + 1, j, *own] + along * plane[i + 1, j + 1, *own]
         return np.asarray((1.0 - across) * first + across * second)
 
     def coarser(self) -> "BedTable":

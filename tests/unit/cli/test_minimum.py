@@ -131,7 +131,7 @@ REFUSALS = [
     ((*SIZE, PULSE, "--lowest", "1x"), "--lowest must be a number"),
     ((*SIZE, PULSE, "--lowest", "nan"), "--lowest must be a number"),
     ((*SIZE, PULSE, "--lowest", "0"), "lowest must be"),
-    ((*SIZE, PULSE, "--lowest", "2g", "--highest", "1g"), "lowest must be below highest"),
+    ((*SIZE, PULSE, "--lowest", "2g", "--highest", "1g"), "--lowest must be below --highest, got 2g and 1g"),
     ((*SIZE, PULSE, "--highest", "1e999"), "finite"),
     ((*SIZE, PULSE, "--points", "1"), "points must be"),
     ((*SIZE, PULSE, "--points", "many"), "--points"),

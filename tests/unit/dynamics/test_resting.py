@@ -46,6 +46,7 @@ def test_uplift_by_lines() -> None:
     assert uplift(ground([[0.0, 0.1], [0.1, -0.5]])) == (1, pytest.approx(0.7), 1)
     assert uplift(ground([[0.0, 0.5]], left=0.3)) == (0, pytest.approx(0.6), -1)
     assert uplift(ground([[0.0, 0.2499], [0.2499, -0.49]])) is None
+    assert uplift(ground([[0.0, 0.25], [0.25, -0.25]])) is None  # what holds it vanishes for an instant
 
 
 def test_uplift_from_within_a_stretch() -> None:

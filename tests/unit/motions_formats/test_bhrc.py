@@ -62,6 +62,10 @@ def test_three_components_are_read() -> None:
     assert [part.name for part in read(three).components] == ["L", "V", "T"]
     with pytest.raises(RecordError, match="twice"):
         read(TYPED + TYPED)
+    for blank in ("\n", "\n\n"):
+        read(TYPED + blank)
+        with pytest.raises(RecordError):
+            read(TYPED + "rubbish" + blank)
 
 
 @pytest.mark.parametrize(

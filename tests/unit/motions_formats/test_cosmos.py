@@ -55,6 +55,7 @@ def test_hand_made_file() -> None:
     assert (part.name, part.unit, part.time_step, part.stated_peak) == ("340", "cm/s2", 0.01, 12.345)
     assert record.metadata["event"] == "Somewhere near"
     assert record.metadata["station"] == "Cellar"
+    assert (record.metadata["station number"], record.metadata["station code"]) == ("01-23075", "CE-J2236")
     assert record.header.splitlines() == _channel()[:-3]
 
 

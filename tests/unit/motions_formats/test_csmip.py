@@ -231,6 +231,16 @@ def test_round_trips(kind: RecordFormat, factor: float, digit: float, made_up) -
         kind.write(made_up("90", scale=1e6))
 
 
+def test_v2_velocities_and_displacements_are_written() -> None:
+    """Of 1 m/s2 they are v = a t and, by the trapezoids of the samples, d = a t^2 / 2."""
+    lines = V2.write(Record("x", (Component("90", np.ones(9), "m/s2", 0.02),))).decode().splitlines()
+    time = 0.02 * np.arange(9.0)
+    for kind, expected in (("VELOC", 100.0 * time), ("DISPL", 50.0 * time**2)):
+        at = next(k for k, line in enumerate(lines) if f"POINTS OF {kind} DATA" in line)
+        written = " ".join(lines[at + 1 : at + 3]).split()
+        np.testing.assert_allclose(np.array(written, dtype=float), expected, rtol=0.0, atol=5.1e-4)
+
+
 def test_v2_damaged_line_of_the_peak(made_up) -> None:
     """A line that states a peak but cannot be read is refused, not passed over."""
     text = V2.write(made_up("90")).decode()

@@ -1,9 +1,12 @@
 """ESM ASCII: keys, checks against the header, and what is refused."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
 from rocking.errors import RecordError
+from rocking.motions.formats.agreement import check_peak_time
 from rocking.motions.formats.esm import Esm
 from rocking.motions.formats.source import Source
 
@@ -37,6 +40,7 @@ def test_hand_made_file() -> None:
     """Values, unit, step, peak and names are what was typed."""
     source = _source(HAND)
     assert ESM.recognises(source)
+    assert not ESM.recognises(_source("a line of its own\n" + HAND))
     record = ESM.read(source)
     part = record.components[0]
     assert part.acceleration.tolist() == [0.5, -1.0, -3.25, 2.0, 0.0]
@@ -55,6 +59,7 @@ def test_hand_made_file() -> None:
         ("-1.000000", "-1.0000OO", "line 14: number expected"),
         ("-1.000000", "-1.0 2.0", "line 14: 1 numbers expected, found 2"),
         ("DURATION_S: 0.025", "DURATION_S: 0.035", "states a duration of 0.035 s"),
+        ("DURATION_S: 0.025", "DURATION_S: 0", "states a duration of 0 s"),
         ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2: -3.260000", "PGA_CM/S.2 of 3.26, the data have 3.25"),
         ("-3.250000\n2.0", "-3.260000\n2.0", "the data have 3.26"),
         ("PGA_CM/S^2: -3.250000", "PGA_CM/S^2: 0", "states a PGA_CM/S.2 of 0"),
@@ -91,6 +96,22 @@ def test_other_units_need_their_own_peak(unit: str, label: str) -> None:
 def test_duration_may_end_at_the_last_sample() -> None:
     """A duration from the first to the last sample, one step shorter, is accepted too."""
     assert ESM.read(_source(HAND.replace("DURATION_S: 0.025", "DURATION_S: 0.020"))).components[0].time_step == 0.005
+
+
+def test_a_peak_is_as_sharp_as_its_digits() -> None:
+    """One more in the last digit is rounding, two are not."""
+    for word, good in (("-3.2501", True), ("-3.2502", False), ("-3.251", True), ("-3.252", False)):
+        text = HAND.replace("PGA_CM/S^2: -3.250000", f"PGA_CM/S^2: {word}")
+        with nullcontext() if good else pytest.raises(RecordError, match=r"the data have 3\.25"):
+            ESM.read(_source(text))
+
+
+def test_no_peak_comes_before_the_first_sample() -> None:
+    """Half a step before it is refused, at it is not."""
+    values = np.array([3.0, 1.0, 0.0])
+    check_peak_time(_source(HAND), 0.0, values, 0.01, 1e-6)
+    with pytest.raises(RecordError, match=r"states the peak at -0\.005 s, the data have it at 0 s"):
+        check_peak_time(_source(HAND), -0.005, values, 0.01, 1e-6)
 
 
 def test_round_trip(made_up) -> None:

@@ -116,6 +116,23 @@ def test_what_is_written_is_read_back() -> None:
     given = Record("", tuple(Component(name, row, "m/s2", 0.01) for name, row in rows.items()))
     for part in GeonetV2A().read(Source("w", GeonetV2A().write(given))).components:
         np.testing.assert_allclose(part.acceleration, 1000.0 * rows[part.name], rtol=0.0, atol=0.0501)
+    # peaks have as many decimals as in the files of the network
+    assert _decimals(GeonetV2A().write(given).decode()) == _decimals(typed())
+
+
+def test_velocities_and_displacements_are_written() -> None:
+    """Of 1 m/s2 they are v = a t and, by the trapezoids of the samples, d = a t^2 / 2."""
+    time = 0.02 * np.arange(10.0)
+    given = Record("", tuple(Component(name, np.ones(10), "m/s2", 0.02) for name in ("N00E", "N90E", "Up")))
+    rows = [line.split() for line in GeonetV2A().write(given).decode().rstrip().split("\n")[-3:]]
+    for row, expected, digit in zip(
+        rows, (1e3 + 0 * time, 1e3 * time, 500.0 * time**2), (0.05, 0.005, 5e-4), strict=True
+    ):
+        np.testing.assert_allclose(np.array(row, dtype=float), expected, rtol=0.0, atol=1.01 * digit)
+
+
+def _decimals(text: str) -> list[int]:
+    return [len(line.split()[2].partition(".")[2]) for line in text.split("\n") if ": " in line and "peak" in line]
 
 
 def test_what_it_cannot_hold_is_refused() -> None:

@@ -135,6 +135,13 @@ def test_real_numbers_need_a_unit_and_come_back() -> None:
         MiniSeed().write(Record("", given.components[:1] * 2))
 
 
+@pytest.mark.parametrize("row", [[1.5], [1.0, np.nan, 2.0]])
+def test_few_samples_and_infinite_ones_are_refused(row: list[float]) -> None:
+    """One alone has no step; NaN is no acceleration."""
+    with pytest.raises(RecordError, match="at least 2 finite samples are needed"):
+        MiniSeed().read(recorded(row), units="g", time_step=0.01)
+
+
 def test_records_that_state_more_samples_than_they_hold_are_refused() -> None:
     """A damaged count would make ObsPy read on behind the record: 32537 samples of 300, or a crash."""
     content = bytearray(recorded(np.sin(np.arange(300.0))).content)

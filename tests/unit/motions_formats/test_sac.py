@@ -84,6 +84,7 @@ def test_the_unit_is_never_guessed() -> None:
         ({"iftype": 4}, "time series"),
         ({"leven": 0}, "evenly spaced"),
         ({"idep": 7}, "velocity"),
+        ({"idep": 6}, "displacement"),
         ({"depmax": float("nan")}, "not finite"),
         ({"stla": 35.0, "stlo": 1e30, "evla": 36.0, "evlo": 139.0}, "stlo must be within 360"),  # ObsPy would not end
         ({"evlo": -1e9}, "evlo"),

@@ -68,6 +68,9 @@ def test_numbers_that_touch_are_read_by_columns() -> None:
         "azimuth": "360",
     }
     assert record.header.splitlines()[0].startswith("2 CORRECTED")
+    bare = [line for line in typed() if not line.startswith("|")]
+    bare[12] = bare[12][:70] + f"{0:10d}"  # the sixteenth whole number counts the lines of comment
+    np.testing.assert_array_equal(SmcUsgs().read(source(bare)).components[0].acceleration, VALUES)
     # the negative control: blanks are no separators here
     assert len("".join(SAMPLES[:8]).split()) != 8
 
@@ -144,6 +147,12 @@ def test_what_is_written_is_read_back(made_up: Callable[..., Record]) -> None:
     (part,) = SmcUsgs().read(Source("written", content)).components
     np.testing.assert_allclose(part.acceleration, 100.0 * record.components[0].acceleration, rtol=5.1e-5, atol=1e-9)
     assert (part.name, part.time_step) == ("45", 0.02)
+
+
+def test_the_azimuth_stands_where_the_format_has_it(made_up: Callable[..., Record]) -> None:
+    """The fourteenth whole number is the azimuth of the component; the thirteenth, of the vertical, stays open."""
+    lines = SmcUsgs().write(made_up("90")).decode().split("\n")
+    assert [int(lines[12][10 * k : 10 * k + 10]) for k in (4, 5)] == [NONE, 90]
 
 
 def test_what_it_cannot_hold_is_refused(made_up: Callable[..., Record]) -> None:

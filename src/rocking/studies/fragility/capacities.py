@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import FloatArray
+from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.counts import Counts
 from rocking.studies.fragility.estimate import Curves, Scale, find_curves
@@ -146,11 +146,23 @@ class CapacitySample:
         """Return a and b of the repeated studies, if capacities had this logarithmic median and this dispersion."""
         failures = np.count_nonzero(dispersion * self.variates[:, :, None] < np.log(self.levels) - median, axis=1)
         rows, which = np.unique(failures, axis=0, return_inverse=True)
+        keys = [row.tobytes() for row in rows]
+        new = [place for place, key in enumerate(keys) if key not in self._curves]
+        if new:
+            self._curves.update(zip([keys[place] for place in new], self._fitted(rows[new]), strict=True))
+        return np.array([self._curves[key] for key in keys])[which.ravel()]
+
+    @cached_property
+    def _curves(self) -> dict[bytes, FloatArray]:
+        """Curves by the failures at each level: of few records the same ones come again and again."""
+        return {}
+
+    def _fitted(self, rows: IntArray) -> FloatArray:
         failed, tried = rows.astype(np.float64), np.full(rows.shape, float(self.variates.shape[1]))
         curves = find_curves(self.levels, self.scale, failed, tried, penalised=bool(self.original.penalised[0]))
         # as many failures at every level: a curve that does not rise
         flat = np.stack([_variate(np.mean(failed / tried, axis=1)), np.zeros(len(rows))], axis=1)
-        return np.asarray(np.where(curves.found[:, None], curves.theta, flat)[which.ravel()])
+        return np.asarray(np.where(curves.found[:, None], curves.theta, flat))
 
 
 def draw_capacities(counts: Counts, original: Curves, scale: Scale, repetitions: int, seed: int) -> CapacitySample:

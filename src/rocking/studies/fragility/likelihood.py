@@ -158,7 +158,9 @@ class Probit:
         if self.position.shape[1] > WIDEST:
             parts = [part.derivatives(theta) for part in self._columns()]
             return Derivatives(*(np.asarray(np.sum(each, axis=0)) for each in zip(*parts, strict=True)))
-        at = tails(self.eta(theta))
+        return self._of(tails(self.eta(theta)))
+
+    def _of(self, at: Tails) -> Derivatives:
         value = np.sum(_times(self.failures, at.log_failure) + _times(self.survivals, at.log_survival), axis=1)
         slope = self.failures * at.failure_rate - self.survivals * at.survival_rate
         bend = self.failures * at.failure_bend + self.survivals * at.survival_bend

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.studies.fragility.likelihood import Derivatives, Probit, tails
+from rocking.studies.fragility.likelihood import Derivatives, Probit, Tails, tails
 
 SLOPES = np.array([0.3, 1.0, 3.0, 10.0, 30.0])
 """Slopes b that the search for the maximum starts from [-]."""
@@ -84,13 +84,13 @@ class PenalisedProbit(Probit):
         Derivatives
             One row a data set; minus infinity where the information vanishes.
         """
-        plain, penalty = super().derivatives(theta), self._penalty(theta)
-        return Derivatives(*(first + second for first, second in zip(plain, penalty, strict=True)))
-
-    def _penalty(self, theta: FloatArray) -> Derivatives:
-        """Return half the logarithm of the determinant M0 M2 - M1^2, and its derivatives."""
         eta = self.eta(theta)
         at = tails(eta)
+        plain, penalty = self._of(at), self._penalty(eta, at)
+        return Derivatives(*(first + second for first, second in zip(plain, penalty, strict=True)))
+
+    def _penalty(self, eta: FloatArray, at: Tails) -> Derivatives:
+        """Return half the logarithm of the determinant M0 M2 - M1^2, and its derivatives."""
         weight = (self.failures + self.survivals) * at.failure_rate * at.survival_rate
         # logarithmic derivatives of phi^2 / (Phi (1 - Phi)): first q, then q'
         q = at.survival_rate - at.failure_rate - 2.0 * eta

@@ -45,6 +45,7 @@ def test_bases():
     disc = Solid(cylinder(1.0, 2.0)).base
     assert isinstance(disc, RoundBase)
     assert disc.radius == 0.5
+    assert isinstance(Solid(Part(cylinder(1.0, 2.0)).moved(0.0, 0.0, 3.0), ground=3.0).base, RoundBase)
     legs = [Part(box(0.1, 0.1, 1.0)).moved(x, y, 0.0) for x in (-1.0, 1.0) for y in (-0.5, 0.5)]
     table = Solid([*legs, Part(box(2.2, 1.2, 0.1)).moved(0.0, 0.0, 1.0)])
     assert sorted(map(tuple, table.base.vertices.round(12).tolist())) == [
@@ -81,6 +82,15 @@ def test_edges_run_round_the_base():
     tangent = RoundBase(np.array([1.0, 2.0]), 0.5).edge(math.pi / 2)
     assert tangent.point == pytest.approx([1.0, 2.5, 0.0])
     assert tangent.direction == pytest.approx([-1.0, 0.0, 0.0])
+
+
+def test_a_round_base_turned_and_enlarged():
+    """Turned by 30 degrees it keeps its radius, twice as large it doubles; the centre and the height go with it."""
+    base, (c, s) = RoundBase(np.array([1.0, 2.0]), 0.5, 0.2), (math.cos(math.pi / 6), math.sin(math.pi / 6))
+    turned = base.changed(2.0 * np.array([[c, -s], [s, c]]), np.array([0.1, 0.2, 0.3]))
+    assert turned.radius == pytest.approx(1.0, rel=1e-15)
+    assert turned.centre == pytest.approx([2.0 * (c - 2.0 * s) + 0.1, 2.0 * (s + 2.0 * c) + 0.2], rel=1e-15)
+    assert turned.height == pytest.approx(0.7, rel=1e-15)
 
 
 def test_place_does_not_matter():
@@ -181,6 +191,14 @@ def test_touching_parts_are_welcome():
     tube = extrusion([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)], 2.0, (hole,))
     filled = Solid([Part(tube, 2400.0), Part(box(0.5, 0.5, 2.0), 7800.0)])
     assert filled.mass == pytest.approx(0.75 * 2 * 2400.0 + 0.25 * 2 * 7800.0, rel=1e-13)
+
+
+def test_voxels_are_filled_by_twenty_sevenths():
+    """27 points decide how full each is: the fullest are whole, none is filled by a part between."""
+    mass = voxels(Solid(frustum(1.0, 0.6, 1.7)), 8).mass
+    filled = 27.0 * mass / mass.max()
+    np.testing.assert_allclose(filled, filled.round(), atol=1e-9)
+    assert len(set(filled.round())) > 9  # of 8 points there were no more
 
 
 def test_concave_meshes_become_voxels():

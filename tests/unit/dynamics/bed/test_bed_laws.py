@@ -10,6 +10,7 @@ from rocking.bodies import Block
 from rocking.dynamics.bed import ContactBed, KelvinVoigt
 from rocking.dynamics.bed.impact import setup_of
 from rocking.dynamics.bed.law import LawKind, LawNumbers, force, stored
+from rocking.errors import InvalidValueError
 
 K, C, CHI, N = 3.0e5, 700.0, 1.7, 1.5
 LAWS = {
@@ -75,3 +76,12 @@ def test_a_body_that_starts_on_a_raised_foot_turns_about_it(kinematics: Any, alo
     assert zeta != 0.0
     assert w - s * omega == pytest.approx(0.0, abs=1e-12)
     assert u + zeta * omega * along == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "numbers", [{"damping": -0.5}, {"damping_ratio": -0.5}, {"damping": 1.0, "damping_ratio": 1.0}]
+)
+def test_dashpots_that_push_are_refused(numbers):
+    """Damping is positive, and stated once."""
+    with pytest.raises(InvalidValueError, match="damping"):
+        KelvinVoigt(1e6, **numbers).numbers(1000.0)

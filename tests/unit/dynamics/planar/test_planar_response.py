@@ -22,6 +22,8 @@ from rocking.dynamics.planar import (
 from rocking.dynamics.planar.engine import Planar
 from rocking.dynamics.planar.export import COLUMNS
 from rocking.dynamics.planar.footing import Footing
+from rocking.dynamics.planar.log import Log
+from rocking.dynamics.planar.mode import Mode
 from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
@@ -36,6 +38,14 @@ BODY = Block(width=1.0, height=2.0)
 def rocked():
     """Sliding, rocking and impacts under a sine pulse."""
     return simulate_with_contact(Block(width=1.2, height=2.0), sine(amplitude=9.0, period=0.9), 0.62)
+
+
+def test_of_two_changes_at_one_time_the_last_counts():
+    """A mode of no duration leaves nothing behind, and one that returns at once has not ended."""
+    log, stands, rocks, slides = Log(1, G), Mode((-1, 1)), Mode((1,)), Mode((1,), 1)
+    for time, mode in ((0.0, stands), (0.5, rocks), (0.5, slides), (0.7, rocks), (0.7, slides)):
+        log.change(time, mode)
+    assert log.changes == [(0.0, stands), (0.5, slides)]
 
 
 def test_outcomes_of_five_bodies(rocked):

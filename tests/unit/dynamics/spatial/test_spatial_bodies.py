@@ -71,6 +71,10 @@ def test_any_object_with_the_four_attributes_serves():
     np.testing.assert_allclose(made.centre, [0.1, 0.0, 1.0], atol=1e-15)
     assert made.round
     assert made.reach == pytest.approx(0.4)
+    plain = type(
+        "Plain", (), {"mass": 5.0, "inertia": np.eye(3), "base": SQUARE - 0.5, "centre": np.array([0.1, 0.2, 1.0])}
+    )
+    np.testing.assert_array_equal(SpatialBody.of(plain()).centre, plain.centre)  # a base that says no height is at 0
     with pytest.raises(InvalidValueError, match="without"):
         SpatialBody.of(rk.Block(width=1.0, height=2.0))
 

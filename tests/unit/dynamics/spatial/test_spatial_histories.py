@@ -25,6 +25,14 @@ def test_a_coefficient_is_that_of_the_plane():
     np.testing.assert_allclose(left, 0.81, rtol=1e-12)
 
 
+def test_under_little_gravity_it_rocks_slower():
+    """Let go until it rests under a ten thousandth of g: as many impacts, a hundred times as late."""
+    here, there = (free_rocking_spatial(BOX, 0.1, restitution=0.6, gravity=9.8 * k) for k in (1.0, 1e-4))
+    assert here.impacts.size == there.impacts.size > 3
+    np.testing.assert_allclose(there.impacts["time"], 100.0 * here.impacts["time"], rtol=1e-9)
+    assert there.trajectory.pieces[-1].stance.contact is Contact.REST
+
+
 def test_a_law_of_ones_own_serves():
     """An object with velocity_after and label: half of the projection leaves a quarter of its energy."""
 
@@ -49,6 +57,7 @@ def test_a_body_that_is_pushed_over_says_where_and_over_what():
     assert run.overturned_over == "edge 0-1"
     assert run.overturning_time == pytest.approx(plane.overturning_time, abs=1e-8)
     assert "towards -90 degrees over edge 0-1" in run.summary
+    assert run.peak_tilt == plane.peak_rotation == 0.5 * math.pi  # it lies
 
 
 def test_a_body_that_rests_stays_where_it_is():

@@ -71,6 +71,11 @@ def test_a_bad_row_touches_no_other():
     assert np.isnan(mixed.peak_tilt[bad]).all()
     assert "above the inside of the base" in mixed.refused[0]
     assert (good.status == Status.GOOD.code).all() or (good.overturned == 1.0).any()
+    refused = [
+        simulate_spatial_batch(bodies, RECORD, scales=[math.nan], engine=engine) for engine in ("fast", "reference")
+    ]
+    for name, values in refused[0].values.items():
+        np.testing.assert_array_equal(refused[1].values[name], values, strict=True)
 
 
 @pytest.mark.parametrize(

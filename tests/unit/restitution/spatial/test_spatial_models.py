@@ -17,6 +17,7 @@ from rocking.restitution.spatial import (
     unit_energies,
 )
 
+UP = np.array([0.0, 0.0, 1.0])
 PRISM = Solid(box(1.0, 1.0, 4.0))
 DIAGONAL = {"velocity": [-1.0, 1.0, 0.0], "pivot": (-0.5, -0.5), "onto": (0.5, 0.5)}
 
@@ -42,6 +43,23 @@ def test_corners_and_points_mean_the_same():
     assert result.velocity == pytest.approx(there, rel=1e-12)
 
 
+def test_a_step_from_an_edge_begins_at_its_nearest_point():
+    """From every edge of an uneven base onto every corner: as if it had stood on the nearest point of the edge."""
+    corners = np.array([[-0.4, -0.3], [0.3, -0.35], [0.45, 0.15], [0.1, 0.4], [-0.35, 0.25]])
+    solid, inner = Solid(extrusion(corners, 2.0)), 0
+    for first, last in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        along = (last - first) / np.linalg.norm(last - first)
+        start = min(solid.base.edges, key=lambda e: abs(e.direction[:2] @ along - 1.0))
+        for onto in corners:
+            share = np.clip((onto - first) @ along, 0.0, np.linalg.norm(last - first))
+            inner += 0.0 < share < np.linalg.norm(last - first)
+            turned = {"velocity": -start.direction, "onto": tuple(onto), "model": "ked-3d"}
+            of_edge = impact_in_space(solid, pivot=start, **turned)
+            of_point = impact_in_space(solid, pivot=tuple(first + share * along), **turned)
+            np.testing.assert_allclose(of_edge.velocity, of_point.velocity, atol=1e-12)
+    assert inner > 3
+
+
 def test_energies():
     """Energies are the kinetic ones, and the ratio is theirs."""
     result = impact_in_space(PRISM, **DIAGONAL, model="housner")
@@ -61,6 +79,8 @@ def test_flags():
     assert np.abs(stopped.raw_velocity).max() > 0.0
     through = impact_in_space(slab, **DIAGONAL, model="housner")
     assert through.flags == (SpatialFlag.PENETRATES,)
+    slow = DIAGONAL | {"velocity": 1e-8 * np.array(DIAGONAL["velocity"])}
+    assert impact_in_space(slab, **slow, model="housner").flags == (SpatialFlag.PENETRATES,)
     assert impact_in_space(PRISM, **DIAGONAL).flags == ()
 
 
@@ -75,6 +95,7 @@ def test_a_round_base_turned_about_its_axis_is_the_same_base(azimuth):
     rim = 0.5 * np.stack([np.cos(around), np.sin(around), 0.0 * around], axis=1)
     least = np.cross(result.raw_velocity, rim - arm)[:, 2].min()
     assert result.impact.rise(result.raw_velocity) == pytest.approx(least, rel=1e-4)
+    assert result.impact.rise(result.raw_velocity + 3.0 * UP) == result.impact.rise(result.raw_velocity)
     assert result.flags == (SpatialFlag.PENETRATES,)
 
 

@@ -175,6 +175,12 @@ def test_too_few_clusters_and_too_many_levels():
     assert repeated_of(many, many.counts.levels, 3000).words.startswith("none: 3000 repetitions at 25000 levels")
 
 
+def test_ends_that_are_open_are_nothing():
+    """Repetitions without a curve leave the interval open at both sides: no number, neither 0 nor infinity."""
+    found = repeated_of(fit_lognormal([1, 2, 3, 4], [0, 1, 1, 1], [2, 2, 2, 1]), np.array([1.0, 2.0]), 200)
+    assert found.median_95 == found.dispersion_95 == (None, None)
+
+
 def test_an_order_statistic_is_rounded_outwards():
     """Of 19 values, which cut a line in 20 equal parts, the lowest has 1/20 below it; with less nothing is known."""
     values = np.random.default_rng(2).permutation(19.0 * np.arange(19.0)).reshape(19, 1)

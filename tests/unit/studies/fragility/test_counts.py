@@ -59,3 +59,19 @@ def test_overturned_trials_have_rocked():
     """More overturned than rocked trials are refused."""
     with pytest.raises(InvalidValueError, match="overturned must not exceed rocked, got 2 of 1 at index 1"):
         count_states([1.0, 2.0], [0, 1], [0, 2], [4, 4])
+
+
+@pytest.mark.parametrize(
+    ("levels", "clusters", "expected"),
+    [
+        ([1.0, 2.0, 1.0, 2.0], "aabb", True),
+        ([1.0, 2.0, 3.0], "aaa", False),
+        ([1.0, 1.0, 1.0], "abc", False),
+        ([1.0, 2.0, 1.0], "aab", False),
+        ([1.0, 2.0, 1.0, 2.0], "aaaa", False),
+    ],
+)
+def test_records_that_are_raised_level_by_level(levels, clusters, expected):
+    """Two records or more, two levels or more, each of each once."""
+    counts = count_outcomes(levels, [False] * len(levels), clusters=list(clusters))
+    assert counts.tries_all_levels is expected

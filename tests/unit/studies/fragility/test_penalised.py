@@ -8,6 +8,7 @@ from scipy.special import log_ndtr, ndtr
 from rocking.studies.fragility.counts import count_outcomes
 from rocking.studies.fragility.estimate import Scale, find_curves
 from rocking.studies.fragility.lognormal import fit_lognormal
+from rocking.studies.fragility.penalised import PenalisedProbit
 
 SETS = [
     ([1.0, 2.0, 3.0, 4.0], [0, 0, 3, 3], [3, 3, 3, 3]),
@@ -65,3 +66,15 @@ def test_penalised_intervals_hold_the_curve():
     # the data themselves place the median between 2 and 3: the interval reaches into both neighbours
     low, high = fit.interval("median")
     assert 1.0 < low < 2.5 < high < 4.0
+
+
+def test_the_penalty_counts_once_however_many_levels():
+    """70,000 levels, more than the likelihood takes at a time: its definition, and the slopes of it."""
+    random, theta, step = np.random.default_rng(6), np.array([0.1, 0.7]), 1e-5
+    x, z, n = np.sort(random.normal(size=70_000)), (random.random(70_000) < 0.5).astype(float), np.ones(70_000)
+    found = PenalisedProbit(x[None], z[None], (n - z)[None]).derivatives(theta[None])
+    assert found.value[0] == pytest.approx(-_minus(theta, x, z, n), rel=1e-12)
+    slopes = [
+        (_minus(theta - turn, x, z, n) - _minus(theta + turn, x, z, n)) / (2.0 * step) for turn in step * np.eye(2)
+    ]
+    assert found.gradient[0] == pytest.approx(slopes, rel=1e-6)

@@ -23,6 +23,10 @@ def test_rotation_is_over_the_alpha_of_its_side():
     found = Responses.of(ARRAYS, ROCKER, (5,))
     np.testing.assert_allclose(found.rotation, [0.0, 0.6, 0.3, math.inf, math.nan], rtol=1e-15)
     assert found.sides.tolist() == [0, 0, 0, -1, 0]
+    other = Responses.of(
+        {name: -values if name == "peak_rotation" else values for name, values in ARRAYS.items()}, ROCKER, (5,)
+    )
+    assert other.sides.tolist() == [0, 0, 0, 1, 0]
 
 
 def test_states_are_nested():
