@@ -27,7 +27,7 @@ COPIES = int(os.environ.get("ROCKING_FUZZ", "2000"))
 BINARY = {"miniseed", "sac"}
 TEXT_FORMATS = [name for name in formats() if name not in BINARY]
 UNCLEAR = "read, though the second reading does not understand the header"
-SLOWEST = 2.0  # seconds for one file of some kilobytes: a hang, not a slow machine
+SLOWEST = 10.0  # seconds for one file of some kilobytes: a hang, not a slow machine
 
 
 def _neighbour(name: str) -> ModuleType:

@@ -309,8 +309,8 @@ def test_endless_lines_do_not_hang(filler: bytes, made_up) -> None:
                 formats()[name].read(source)
             for other in formats().values():
                 other.recognises(source)
-            # a quadratic search would take minutes; a busy machine may take a second
-            assert perf_counter() - start < 5.0
+            # a quadratic search would take minutes; a busy machine may take a few seconds
+            assert perf_counter() - start < 20.0
 
 
 @st.composite

