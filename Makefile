@@ -8,13 +8,14 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: help demo test coverage portable portable-quick lint engine campaign fuzz fuzz-web durability bench mutants gallery lock clean
+.PHONY: help demo test coverage portable portable-quick lint golden engine campaign fuzz fuzz-web durability bench mutants gallery lock clean
 
 help:
 	@echo "make demo     set up, recompute the whole paper into $(OUT)/, and ask for one body"
 	@echo "make test     set up, run linters, type checker, docstring and import checks, tests"
 	@echo "make coverage the unit tests, and which lines they run"
 	@echo "make portable the tests, save those of time and of browsers, once under each of seven settings that stand for other processors"
+	@echo "make golden   compare every answer with those kept by 'make golden WHAT=keep', in all digits, on one machine"
 	@echo "make lint     the checks alone          make bench    speed, as ratios"
 	@echo "make gallery  run every example         make lock     pin the dependencies anew"
 	@echo "make engine   build the fast engine     make fuzz     damage every kind of record file 100000 times"
@@ -89,6 +90,10 @@ test: lint
 # The unit tests and the examples of docstrings run 95 % of the lines by themselves; looking on takes half as long again.
 coverage: $(VENV)/dev $(ENGINE)
 	$(BIN)/python -m pytest tests/unit src -n 2 --dist loadfile -m "not timed" --cov
+
+WHAT ?= compare
+golden: $(VENV)/dev $(ENGINE)
+	$(BIN)/python tests/regression/golden.py $(WHAT)
 
 portable: $(VENV)/dev $(ENGINE)
 	$(BIN)/python tests/portable.py -n 2 --dist loadfile -q -m "not timed and not browser"

@@ -369,7 +369,7 @@ def pulse(words: str) -> Pulse:
     try:
         return known[name](**given)
     except TypeError as error:
-        names = ", ".join(known[name].__annotations__.keys() - {"return"})
+        names = ", ".join(key for key in known[name].__annotations__ if key != "return")
         raise UnknownModelError(f"pulse {name!r} takes {names}; got {', '.join(given) or 'none'}") from error
 
 

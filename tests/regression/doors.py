@@ -1,0 +1,66 @@
+"""The doors that the cases go through: when one moves or is renamed, this file alone follows; the answers must not."""
+
+import contextlib
+import io
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import rocking as rk
+from rocking.cli import main
+
+simulate = rk.simulate
+simulate_many = rk.simulate_many
+free_rocking = rk.free_rocking
+with_contact = rk.simulate_with_contact
+in_space = rk.simulate_spatial
+free_in_space = rk.free_rocking_spatial
+many_in_space = rk.simulate_spatial_batch
+overturning_map = rk.overturning_map
+rocking_spectrum = rk.rocking_spectrum
+minimum = rk.minimum_overturning_acceleration
+
+
+def response_tree(response: Any) -> dict[str, Any]:
+    """Return what a response of any mechanics says."""
+    names = (
+        "outcome", "status", "still_rocking", "overturning_time", "peak_rotation", "peak_tilt", "error_estimate",
+        "impacts", "uplifts", "least_force", "lost_contact", "unfinished", "doubts", "sliding_distance", "cut_impacts",
+        "near_flat_passages", "overturned_over", "overturning_direction", "summary",
+    )  # fmt: skip
+    said = {name: getattr(response, name) for name in names if hasattr(response, name)}
+    return said | {"data": response.to_xarray()}
+
+
+def command(words: list[str], folder: Path) -> dict[str, Any]:
+    """Return exit code, output and errors of `rocking WORDS`, in a folder."""
+    out, err, before = io.StringIO(), io.StringIO(), Path.cwd()
+    code: Any = None
+    os.chdir(folder)
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            main(words)
+    except SystemExit as stop:
+        code = stop.code or 0
+    finally:
+        os.chdir(before)
+    return {"code": code, "out": out.getvalue(), "err": err.getvalue()}
+
+
+@contextlib.contextmanager
+def application(folder: Path) -> Iterator[Any]:
+    """Give a client of the web application that may do everything."""
+    import warnings
+
+    from rocking.app.application import create_app
+    from rocking.app.settings import Settings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        from fastapi.testclient import TestClient
+    settings = Settings(folder=folder, workers=1)
+    app = create_app(settings)
+    head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
+    with TestClient(app, base_url=settings.origin, headers=head) as client:
+        yield client
