@@ -27,8 +27,10 @@ _PASSING = (
     (r"\(\d+ bytes", "(BYTES"),
     (r"\bprocess \d+", "PROCESS"),
     (r"^[0-9a-f]{32}$", "CHECK"),
-    (r"\b(avx512|avx2|plain)\b", "KERNELS"),
+    (r"(?<=fast \()(avx512|avx2|plain)|(?<=order 8, )(avx512|avx2|plain)|^(avx512|avx2|plain)$", "KERNELS"),
 )
+_NUMBER = re.compile(r"[-+]?\d+\.\d+(?:e[-+]?\d+)?")
+_SMALL = 1e-3  # what is smaller is compared as if it were this: sums that leave nothing but rounding
 _KEYS = {
     "id", "created", "date", "seconds", "worker_seconds", "begun", "ended", "elapsed", "written", "made", "machine",
     "processor", "python",
@@ -46,7 +48,7 @@ def tree(value: Any) -> Any:  # noqa: PLR0911 - one a kind
     if isinstance(value, (xr.Dataset, xr.DataArray)):
         return _of_dataset(value if isinstance(value, xr.Dataset) else value.to_dataset(name="value"))
     if isinstance(value, Mapping):
-        return {str(key): tree(one) for key, one in value.items() if str(key) not in _KEYS}
+        return {str(key): tree(one) for key, one in value.items() if not _passing(str(key))}
     if isinstance(value, (list, tuple, set, frozenset)):
         return [tree(one) for one in (sorted(value, key=str) if isinstance(value, (set, frozenset)) else value)]
     if isinstance(value, BaseException):
@@ -54,6 +56,11 @@ def tree(value: Any) -> Any:  # noqa: PLR0911 - one a kind
     if dataclasses.is_dataclass(value):
         return {field.name: tree(getattr(value, field.name)) for field in dataclasses.fields(value)}
     return masked(str(value))
+
+
+def _passing(key: str) -> bool:
+    """Whether a key is of what differs from run to run, or from processor to processor."""
+    return key in _KEYS or key.startswith("work_")
 
 
 def _of_dataset(data: xr.Dataset) -> dict[str, Any]:
@@ -164,7 +171,12 @@ def same(one: Any, other: Any, tolerance: float = 0.0) -> bool:
     if isinstance(one, float) and isinstance(other, float):
         if math.isnan(one) or math.isnan(other):
             return math.isnan(one) and math.isnan(other)
-        return one == other or abs(one - other) <= tolerance * max(abs(one), abs(other))
+        return one == other or abs(one - other) <= tolerance * max(abs(one), abs(other), _SMALL)
+    if isinstance(one, str) and isinstance(other, str) and tolerance > 0.0:
+        texts, numbers = zip(*((_NUMBER.split(text), _NUMBER.findall(text)) for text in (one, other)), strict=True)
+        return texts[0] == texts[1] and all(
+            a == b or same(float(a), float(b), tolerance) for a, b in zip(*numbers, strict=True)
+        )
     return type(one) is type(other) and bool(one == other)
 
 
