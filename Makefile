@@ -73,7 +73,6 @@ lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/python -m numpydoc lint $$(find src/rocking -name '*.py')
 	$(BIN)/lint-imports
 	@! grep -nE 'https?://|file:' requirements/*.lock || (echo "a lock file holds an address" && false)
 

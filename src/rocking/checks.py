@@ -16,27 +16,7 @@ SMALLEST, LARGEST = 1e-9, 1e9
 
 
 def number(name: str, value: Any, unit: str = "-") -> float:
-    """Return `value` as a finite float.
-
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : Any
-        What the user gave.
-    unit : str
-        Unit that the error shows.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is not one finite real number.
-    """
+    """Return `value` as a finite float."""
     if isinstance(value, (bool, np.bool_, str, bytes, complex)) or value is None:
         raise InvalidValueError(f"{name} must be a number [{unit}], got {value!r}")
     try:
@@ -49,29 +29,7 @@ def number(name: str, value: Any, unit: str = "-") -> float:
 
 
 def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
-    """Return `value` as a finite float above zero.
-
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : Any
-        What the user gave.
-    unit : str
-        Unit that the error shows.
-    hint : str
-        Likely cause, appended to the error.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is not one finite number above zero.
-    """
+    """Return `value` as a finite float above zero."""
     result = number(name, value, unit)
     if result <= 0.0:
         raise InvalidValueError(f"{name} must be > 0{_in(unit)}, got {result:g}{_because(hint)}")
@@ -81,22 +39,7 @@ def positive(name: str, value: Any, unit: str = "-", hint: str = "") -> float:
 def length(name: str, value: Any) -> float:
     """Return `value` as a length that a body can have.
 
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : Any
-        What the user gave [m].
-
-    Returns
-    -------
-    float
-        The length [m].
-
-    Raises
-    ------
-    InvalidValueError
-        If it is not one finite number between 1e-9 and 1e9 m.
+    value: what the user gave [m]. Returns the length [m].
     """
     result = positive(name, value, "m")
     if not SMALLEST <= result <= LARGEST:
@@ -107,22 +50,7 @@ def length(name: str, value: Any) -> float:
 def density(name: str, value: Any) -> float:
     """Return `value` as a density that a body can have.
 
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : Any
-        What the user gave [kg/m3].
-
-    Returns
-    -------
-    float
-        The density [kg/m3].
-
-    Raises
-    ------
-    InvalidValueError
-        If it is not one finite number above zero and below 1e9 kg/m3.
+    value: what the user gave [kg/m3]. Returns the density [kg/m3].
     """
     result = positive(name, value, "kg/m3")
     within(name, result, 0.0, LARGEST, unit="kg/m3", open_low=True, hint="wrong unit?")
@@ -140,33 +68,7 @@ def within(
     open_high: bool = False,
     hint: str = "",
 ) -> float:
-    """Return `value` as a float between `low` and `high`.
-
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : Any
-        What the user gave.
-    low, high : float
-        Ends of the allowed range.
-    unit : str
-        Unit that the error shows.
-    open_low, open_high : bool
-        Whether the end itself is refused.
-    hint : str
-        Likely cause, appended to the error.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is outside the range.
-    """
+    """Return `value` as a float between `low` and `high`."""
     result = number(name, value, unit)
     too_low = result < low or (open_low and result == low)
     too_high = result > high or (open_high and result == high)
@@ -181,24 +83,7 @@ def within(
 def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
     """Return `values` as an array of finite numbers above zero.
 
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    values : Any
-        A number or an array of any shape.
-    unit : str
-        Unit that the error shows.
-
-    Returns
-    -------
-    ndarray
-        float64, of the same shape; not a copy if it already was one.
-
-    Raises
-    ------
-    InvalidValueError
-        If any of them is not finite or not above zero; the first one is named with its index.
+    Returns float64, of the same shape; not a copy if it already was one.
     """
     result = real_array(name, values, unit)
     all_positive(name, result, unit)
@@ -208,24 +93,7 @@ def positive_array(name: str, values: Any, unit: str = "-") -> FloatArray:
 def real_array(name: str, values: Any, unit: str = "-") -> FloatArray:
     """Return `values` as an array of float64, finite or not.
 
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    values : Any
-        A number or an array of any shape.
-    unit : str
-        Unit that the error shows.
-
-    Returns
-    -------
-    ndarray
-        float64, of the same shape; not a copy if it already was one.
-
-    Raises
-    ------
-    InvalidValueError
-        If these are not real numbers.
+    Returns float64, of the same shape; not a copy if it already was one.
     """
     try:
         given = np.asarray(values)
@@ -237,24 +105,7 @@ def real_array(name: str, values: Any, unit: str = "-") -> FloatArray:
 
 
 def all_positive(name: str, values: FloatArray, unit: str = "-", whole: FloatArray | None = None) -> None:
-    """Refuse an array that holds anything but finite numbers above zero.
-
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    values : ndarray
-        The array, or a piece of one.
-    unit : str
-        Unit that the error shows.
-    whole : ndarray, optional
-        The array that the piece is from, so that the index in the error is the user's.
-
-    Raises
-    ------
-    InvalidValueError
-        Naming the first bad value and its index.
-    """
+    """Refuse an array that holds anything but finite numbers above zero."""
     # min() and max() carry NaN along, so two reductions settle it
     if not values.size or (values.min() > 0.0 and values.max() < math.inf):
         return
@@ -267,26 +118,7 @@ def all_positive(name: str, values: FloatArray, unit: str = "-", whole: FloatArr
 def all_within(name: str, values: FloatArray, low: float, high: float, whole: FloatArray) -> float:
     """Refuse an array that holds anything but numbers between two positive ends.
 
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    values : ndarray
-        The array, or a piece of one.
-    low, high : float
-        Ends of the allowed range, themselves allowed.
-    whole : ndarray
-        The array that the piece is from, so that the index in the error is the user's.
-
-    Returns
-    -------
-    float
-        The least of them, which has been found on the way.
-
-    Raises
-    ------
-    InvalidValueError
-        Naming the first bad value and its index.
+    Returns the least of them, which has been found on the way.
     """
     if not values.size:
         return high
@@ -299,25 +131,7 @@ def all_within(name: str, values: FloatArray, low: float, high: float, whole: Fl
 
 
 def foot(name: str, value: Any) -> Foot:
-    """Return `value` as a foot.
-
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : Any
-        What the user gave.
-
-    Returns
-    -------
-    {"left", "right"}
-        The foot.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is neither.
-    """
+    """Return `value` as a foot."""
     if not isinstance(value, str) or value not in FEET:
         raise InvalidValueError(f'{name} must be "left" or "right", got {value!r}')
     return value
@@ -326,23 +140,8 @@ def foot(name: str, value: Any) -> Foot:
 def length_unit(value: Any) -> float:
     """Return the length of a unit in metres.
 
-    Parameters
-    ----------
-    value : str
-        Name of the unit: m, cm, mm, ft or in.
+    Returns its length [m].
 
-    Returns
-    -------
-    float
-        Its length [m].
-
-    Raises
-    ------
-    InvalidValueError
-        If the unit is unknown.
-
-    Examples
-    --------
     >>> length_unit("cm")
     0.01
     """
@@ -352,27 +151,8 @@ def length_unit(value: Any) -> float:
 def one_of(name: str, value: Any, known: Iterable[str]) -> str:
     """Return the one of some words that was meant, upper or lower case alike.
 
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : Any
-        What the user gave.
-    known : iterable of str
-        The words that there are.
+    Returns one of `known`, as it is spelt there.
 
-    Returns
-    -------
-    str
-        One of `known`, as it is spelt there.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is none of them; the error names the nearest.
-
-    Examples
-    --------
     >>> one_of("engine", "Fast", ["auto", "fast"])
     'fast'
     """
@@ -386,17 +166,7 @@ def one_of(name: str, value: Any, known: Iterable[str]) -> str:
 def spelling(word: Any, known: Iterable[str]) -> Any:
     """Return a word as it is spelt among some others, if it differs from one of them in capitals alone.
 
-    Parameters
-    ----------
-    word : Any
-        What the user gave.
-    known : iterable of str
-        The words that there are.
-
-    Returns
-    -------
-    Any
-        One of `known`, or what was given.
+    Returns one of `known`, or what was given.
     """
     if not isinstance(word, str):
         return word
@@ -407,20 +177,8 @@ def spelling(word: Any, known: Iterable[str]) -> Any:
 def nearest(word: Any, known: Iterable[str]) -> str:
     """Return the end of an error about an unknown word: what was probably meant, if that can be told.
 
-    Parameters
-    ----------
-    word : Any
-        What the user gave.
-    known : iterable of str
-        The words that there are.
+    Returns begins with a semicolon, or is empty.
 
-    Returns
-    -------
-    str
-        Begins with a semicolon, or is empty.
-
-    Examples
-    --------
     >>> nearest("housener", ["housner", "ked"]), nearest("0,9", ["housner", "ked"])
     ("; did you mean 'housner'?", '; numbers have a decimal point: 0.9')
     """
@@ -435,18 +193,8 @@ def nearest(word: Any, known: Iterable[str]) -> str:
 def decimal_comma(words: str) -> str:
     """Return the end of an error about words in which a number has a decimal comma.
 
-    Parameters
-    ----------
-    words : str
-        What the user gave.
+    Returns begins with a semicolon; empty if there is no such number.
 
-    Returns
-    -------
-    str
-        Begins with a semicolon; empty if there is no such number.
-
-    Examples
-    --------
     >>> decimal_comma("sine:amplitude=0,5,period=1")
     '; numbers have a decimal point: 0.5'
     """

@@ -48,19 +48,8 @@ MOST_CUT = 0.05, 0.999
 def of_body(centre_height: float, slenderness: float, densities: Iterable[float]) -> tuple[str, ...]:
     """Return the doubts about a body.
 
-    Parameters
-    ----------
-    centre_height : float
-        Height of the centre of mass above the ground [m].
-    slenderness : float
-        Height of the centre over half the width of the base [-].
-    densities : iterable of float
-        Densities of its parts [kg/m3].
-
-    Returns
-    -------
-    tuple of str
-        Sentences; none if all is well.
+    centre_height: height of the centre of mass above the ground [m]; slenderness: height of the centre over half the
+    width of the base [-]; densities: densities of its parts [kg/m3].
     """
     low, high = CENTRE_HEIGHTS
     found = []
@@ -90,15 +79,7 @@ def of_body(centre_height: float, slenderness: float, densities: Iterable[float]
 def of_acceleration(peak: float) -> tuple[str, ...]:
     """Return the doubt about a peak ground acceleration.
 
-    Parameters
-    ----------
-    peak : float
-        Its modulus [m/s2].
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none.
+    peak: its modulus [m/s2].
     """
     if peak <= LARGEST_PGA:
         return ()
@@ -111,17 +92,7 @@ def of_acceleration(peak: float) -> tuple[str, ...]:
 def of_scaled(motions: Iterable[Any], scales: Any) -> tuple[str, ...]:
     """Return the doubt about motions that are scaled; as they are they were doubted when they were made.
 
-    Parameters
-    ----------
-    motions : iterable of GroundMotion, Pulse or None
-        The motions; None for a component that is still.
-    scales : array_like, shape (), (scales,) or (motions, scales)
-        Factors on all of them, or for each its own [-].
-
-    Returns
-    -------
-    tuple of str
-        One sentence on the largest acceleration, or none.
+    scales: factors on all of them, or for each its own [-]. Returns one sentence on the largest acceleration, or none.
     """
     factors = np.atleast_1d(np.asarray(scales, dtype=np.float64))
     most = np.where(factors == 1.0, 0.0, np.abs(factors)).max(axis=-1)
@@ -134,15 +105,7 @@ def of_scaled(motions: Iterable[Any], scales: Any) -> tuple[str, ...]:
 def of_gravity(gravity: float) -> tuple[str, ...]:
     """Return the doubt about an acceleration of gravity.
 
-    Parameters
-    ----------
-    gravity : float
-        The acceleration [m/s2].
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none.
+    gravity: the acceleration [m/s2].
     """
     low, high = GRAVITIES
     if low <= gravity <= high:
@@ -155,15 +118,7 @@ def of_gravity(gravity: float) -> tuple[str, ...]:
 def of_friction(coefficient: float) -> tuple[str, ...]:
     """Return the doubt about a coefficient of friction.
 
-    Parameters
-    ----------
-    coefficient : float
-        The coefficient [-].
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none.
+    coefficient: the coefficient [-].
     """
     low, high = FRICTIONS
     if not low < coefficient < high:
@@ -177,15 +132,7 @@ def of_friction(coefficient: float) -> tuple[str, ...]:
 def of_period(period: float) -> tuple[str, ...]:
     """Return the doubt about the period of a pulse.
 
-    Parameters
-    ----------
-    period : float
-        The period [s].
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none.
+    period: the period [s].
     """
     low, high = PERIODS
     if low <= period <= high:
@@ -196,15 +143,7 @@ def of_period(period: float) -> tuple[str, ...]:
 def of_time_step(step: float) -> tuple[str, ...]:
     """Return the doubt about the step between samples.
 
-    Parameters
-    ----------
-    step : float
-        The step [s].
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none.
+    step: the step [s].
     """
     if step <= LONGEST_STEP:
         return ()
@@ -214,15 +153,7 @@ def of_time_step(step: float) -> tuple[str, ...]:
 def of_coefficient(value: float) -> tuple[str, ...]:
     """Return the doubt about a coefficient of restitution given by hand.
 
-    Parameters
-    ----------
-    value : float
-        Ratio of velocities; zero means that the body stops, and is no doubt [-].
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none.
+    value: ratio of velocities; zero means that the body stops, and is no doubt [-].
     """
     if value == 0.0 or value >= LEAST_COEFFICIENT:
         return ()
@@ -235,24 +166,7 @@ def of_coefficient(value: float) -> tuple[str, ...]:
 def of_truncation(cut: float, onto: str, most: float) -> tuple[str, ...]:
     """Return the doubt about a distribution of the coefficient of which much would create energy.
 
-    Parameters
-    ----------
-    cut : float
-        Probability that is cut off [-].
-    onto : str
-        The foot on which the body lands.
-    most : float
-        The largest coefficient that creates no energy there [-].
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none.
-
-    Raises
-    ------
-    InvalidValueError
-        If next to nothing is left of it.
+    cut: probability that is cut off [-]; most: the largest coefficient that creates no energy there [-].
     """
     if not cut <= MOST_CUT[1]:
         raise InvalidValueError(
@@ -269,13 +183,7 @@ def of_truncation(cut: float, onto: str, most: float) -> tuple[str, ...]:
 
 
 def warn(sentences: Iterable[str]) -> None:
-    """Say doubts as warnings, at the line outside this package that gave the value.
-
-    Parameters
-    ----------
-    sentences : iterable of str
-        The doubts.
-    """
+    """Say doubts as warnings, at the line outside this package that gave the value."""
     for sentence in sentences:
         warnings.warn(f"check the input: {sentence}", PlausibilityWarning, stacklevel=_outside())
 

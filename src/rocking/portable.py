@@ -26,54 +26,18 @@ def _sum(terms: Iterable[float]) -> float:
 
 
 def dot(left: FloatArray, right: FloatArray) -> float:
-    """Return the scalar product of two vectors.
-
-    Parameters
-    ----------
-    left, right : ndarray, shape (n,)
-        Vectors.
-
-    Returns
-    -------
-    float
-        Their product, first terms first.
-    """
+    """Return the scalar product of two vectors."""
     return float(_sum(map(mul, left.tolist(), right.tolist())))
 
 
 def norm(vector: FloatArray) -> float:
-    """Return the length of a vector.
-
-    Parameters
-    ----------
-    vector : ndarray, shape (n,)
-        The vector.
-
-    Returns
-    -------
-    float
-        Its length.
-    """
+    """Return the length of a vector."""
     return math.sqrt(dot(vector, vector))
 
 
 def applied(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Return matrices times vectors; of points, their products with one vector.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (..., m, n)
-        Matrices.
-    vector : ndarray, shape (..., n)
-        Vectors.
-
-    Returns
-    -------
-    ndarray, shape (..., m)
-        The products.
-
-    Examples
-    --------
     >>> applied(np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([1.0, -1.0])).tolist()
     [-1.0, -1.0]
     """
@@ -84,20 +48,7 @@ def applied(matrix: FloatArray, vector: FloatArray) -> FloatArray:
 
 
 def times(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the product of two small matrices.
-
-    Parameters
-    ----------
-    left : ndarray, shape (..., l, m)
-        Matrices.
-    right : ndarray, shape (..., m, n)
-        Matrices.
-
-    Returns
-    -------
-    ndarray, shape (..., l, n)
-        The products.
-    """
+    """Return the product of two small matrices."""
     count = right.shape[-2]
     if count > _SHORT:
         return np.asarray((left[..., :, :, None] * right[..., None, :, :]).sum(axis=-2))
@@ -105,20 +56,7 @@ def times(left: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def gram(rows: FloatArray, weights: FloatArray) -> FloatArray:
-    """Return the sum of the weighted outer products of vectors with themselves.
-
-    Parameters
-    ----------
-    rows : ndarray, shape (n, m)
-        Vectors.
-    weights : ndarray, shape (n,)
-        Their weights.
-
-    Returns
-    -------
-    ndarray, shape (m, m)
-        The sum, symmetric.
-    """
+    """Return the sum of the weighted outer products of vectors with themselves."""
     weighted, made = (rows * weights[:, None]).T.copy(), np.empty((rows.shape[1], rows.shape[1]))
     for i, row in enumerate(rows.T):
         made[i, i:] = made[i:, i] = (weighted[i:] * row).sum(axis=1)
@@ -128,18 +66,6 @@ def gram(rows: FloatArray, weights: FloatArray) -> FloatArray:
 def convolved(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return the coefficients of the product of two polynomials.
 
-    Parameters
-    ----------
-    left, right : ndarray, shape (m,) and (n,)
-        Coefficients by power.
-
-    Returns
-    -------
-    ndarray, shape (m + n - 1,)
-        Coefficients by power.
-
-    Examples
-    --------
     >>> convolved(np.array([1.0, 2.0]), np.array([1.0, 0.0, 3.0])).tolist()
     [1.0, 2.0, 3.0, 6.0]
     """
@@ -150,20 +76,6 @@ def convolved(left: FloatArray, right: FloatArray) -> FloatArray:
 def solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Return x of ``A x = b`` by elimination, for a symmetric positive definite A of three rows.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (3, 3)
-        A; symmetric, such as a tensor of inertia, so that elimination needs no other order of the rows.
-    vector : ndarray, shape (3,)
-        b.
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        x.
-
-    Examples
-    --------
     >>> solution(np.array([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 4.0]]), np.array([3.0, 3.0, 2.0])).tolist()
     [1.0, 1.0, 0.5]
     """
@@ -179,36 +91,12 @@ def solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
 
 
 def inverse(matrix: FloatArray) -> FloatArray:
-    """Return the inverse of a symmetric positive definite matrix of three rows.
-
-    Parameters
-    ----------
-    matrix : ndarray, shape (3, 3)
-        The matrix.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Its inverse.
-    """
+    """Return the inverse of a symmetric positive definite matrix of three rows."""
     return np.array([solution(matrix, column) for column in np.eye(3)])
 
 
 def powers(x: Any, count: int) -> FloatArray:
-    """Return 1, x, x^2 and so on, each the one before times x.
-
-    Parameters
-    ----------
-    x : array_like
-        Numbers.
-    count : int
-        How many powers.
-
-    Returns
-    -------
-    ndarray, shape (..., count)
-        The powers.
-    """
+    """Return 1, x, x^2 and so on, each the one before times x."""
     base = np.repeat(np.asarray(x, dtype=np.float64)[..., None], count, axis=-1)
     base[..., :1] = 1.0
     return np.asarray(np.multiply.accumulate(base, axis=-1))
@@ -217,20 +105,6 @@ def powers(x: Any, count: int) -> FloatArray:
 def each(function: Callable[..., float], *values: Any) -> FloatArray:
     """Return a function of `math` of every number.
 
-    Parameters
-    ----------
-    function : callable
-        Takes and returns plain numbers.
-    *values : array_like
-        Its arguments; they broadcast.
-
-    Returns
-    -------
-    ndarray
-        What it returns.
-
-    Examples
-    --------
     >>> each(math.atan2, [0.0, 0.0], 1.0).tolist()
     [0.0, 0.0]
     """
@@ -245,17 +119,7 @@ def gauss_rule(diagonal: FloatArray, side: FloatArray) -> tuple[FloatArray, Floa
     Golub and Welsch's eigenvalues tell where the nodes are to eight digits; from there Newton's method goes on alike
     everywhere, whatever LAPACK left in the last digits.
 
-    Parameters
-    ----------
-    diagonal : ndarray, shape (n,)
-        Diagonal of Jacobi's matrix.
-    side : ndarray, shape (n - 1,)
-        The diagonals beside it.
-
-    Returns
-    -------
-    nodes, weights : ndarray, shape (n,)
-        Exact for polynomials of degree ``2 n - 1``.
+    Returns exact for polynomials of degree ``2 n - 1`` (shape (n,)).
     """
     x = np.round(np.linalg.eigvalsh(np.diag(diagonal) + np.diag(side, 1) + np.diag(side, -1)), 8)
     ahead = [*side.tolist(), 1.0]  # the last polynomial may have any scale
@@ -277,18 +141,8 @@ def gauss_rule(diagonal: FloatArray, side: FloatArray) -> tuple[FloatArray, Floa
 def gauss_legendre(count: int) -> tuple[FloatArray, FloatArray]:
     """Return Gauss's rule on [-1, 1].
 
-    Parameters
-    ----------
-    count : int
-        Points.
+    Returns exact for polynomials of degree ``2 count - 1`` (shape (count,)).
 
-    Returns
-    -------
-    nodes, weights : ndarray, shape (count,)
-        Exact for polynomials of degree ``2 count - 1``.
-
-    Examples
-    --------
     >>> nodes, weights = gauss_legendre(3)
     >>> (nodes**2).round(12).tolist(), (9.0 * weights).round(12).tolist()
     ([0.6, 0.0, 0.6], [5.0, 8.0, 5.0])

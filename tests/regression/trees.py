@@ -158,7 +158,7 @@ def leaves(value: Any, where: str = "") -> Iterator[tuple[str, Any]]:
         yield where, value
 
 
-def same(one: Any, other: Any, tolerance: float = 0.0) -> bool:
+def same(one: Any, other: Any, tolerance: float = 0.0) -> bool:  # noqa: PLR0911
     """Whether two leaves agree: numbers to a relative tolerance, words and whole numbers exactly."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         one, other = np.asarray(one), np.asarray(other)

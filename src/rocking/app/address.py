@@ -13,20 +13,7 @@ _EVERYWHERE = {"0.0.0.0", "::", ""}
 
 
 def check_host(host: str, *, allow_remote: bool) -> None:
-    """Refuse an address that others reach, unless that is wanted.
-
-    Parameters
-    ----------
-    host : str
-        Address to listen on.
-    allow_remote : bool
-        Whether others may reach it.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is not loopback and that was not allowed, or if it is every address at once.
-    """
+    """Refuse an address that others reach, unless that is wanted."""
     if host in _EVERYWHERE:
         raise InvalidValueError(
             f"--host {host or repr(host)} is every address at once: name the one under which others open the page"
@@ -39,27 +26,7 @@ def check_host(host: str, *, allow_remote: bool) -> None:
 
 
 def listen(host: str, port: int, *, search: bool) -> socket.socket:
-    """Return a socket that listens.
-
-    Parameters
-    ----------
-    host : str
-        Address.
-    port : int
-        Port; 0 for any free one.
-    search : bool
-        Whether the next free port serves as well.
-
-    Returns
-    -------
-    socket
-        Bound and listening.
-
-    Raises
-    ------
-    InvalidValueError
-        If the port is out of range or taken, or the address is not one of this machine.
-    """
+    """Return a socket that listens."""
     if not 0 <= port <= 65535:
         raise InvalidValueError(f"--port must be in 0 ... 65535, got {port}")
     for candidate in range(port, min(port + _TRIED, 65536)) if search and port else (port,):

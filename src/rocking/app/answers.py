@@ -19,18 +19,7 @@ class JsonAnswer(JSONResponse):
     """
 
     def render(self, content: Any) -> bytes:
-        """Return the bytes of an answer.
-
-        Parameters
-        ----------
-        content : Any
-            Dicts, lists, text, numbers, arrays.
-
-        Returns
-        -------
-        bytes
-            JSON.
-        """
+        """Return the bytes of an answer."""
         data = to_json(content, inf_nan_mode="constants", fallback=_plain)
         if b"NaN" in data or b"Infinity" in data:  # in a name perhaps; if it is a number, this refuses it
             json.dumps(content, allow_nan=False, default=_plain)
@@ -44,24 +33,7 @@ def _plain(value: Any) -> Any:
 
 
 def error_answer(status: int, kind: str, message: str, needs: Sequence[str] = ()) -> JsonAnswer:
-    """Return an error as the client is told it.
-
-    Parameters
-    ----------
-    status : int
-        Of the answer.
-    kind : str
-        One word.
-    message : str
-        One sentence.
-    needs : sequence of str, optional
-        What must still be told.
-
-    Returns
-    -------
-    JsonAnswer
-        The answer.
-    """
+    """Return an error as the client is told it."""
     error: dict[str, Any] = {"kind": kind, "message": message}
     if needs:
         error["needs"] = list(needs)
@@ -71,17 +43,7 @@ def error_answer(status: int, kind: str, message: str, needs: Sequence[str] = ()
 def refusal(error: RockingError, *, close: bool = False) -> JsonAnswer:
     """Return an error of this package as the client is told it.
 
-    Parameters
-    ----------
-    error : RockingError
-        What was raised.
-    close : bool, optional
-        Whether the connection ends, since its request was not read to the end.
-
-    Returns
-    -------
-    JsonAnswer
-        The answer; with Retry-After where another try makes sense.
+    Returns the answer; with Retry-After where another try makes sense.
     """
     status, kind = status_and_kind(error)
     answer = error_answer(status, kind, str(error), getattr(error, "needs", ()))

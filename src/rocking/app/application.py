@@ -42,15 +42,7 @@ own address. Errors are `{{"error": {{"kind", "message"}}}}`."""
 def create_app(settings: Settings) -> FastAPI:
     """Return the application.
 
-    Parameters
-    ----------
-    settings : Settings
-        Address, data folder and limits.
-
-    Returns
-    -------
-    FastAPI
-        Every page and every endpoint, behind the gate.
+    Returns every page and every endpoint, behind the gate.
     """
     app = FastAPI(
         title="rocking",

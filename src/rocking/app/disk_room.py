@@ -8,18 +8,7 @@ from rocking.app.problems import NoRoom
 
 @contextmanager
 def room_on_disk() -> Iterator[None]:
-    """Turn what a disk says that takes nothing more into a sentence for whoever sent the file.
-
-    Yields
-    ------
-    None
-        While something is written.
-
-    Raises
-    ------
-    NoRoom
-        If it could not be written.
-    """
+    """Turn what a disk says that takes nothing more into a sentence for whoever sent the file."""
     try:
         yield
     except OSError as error:  # its own words name files of the server

@@ -13,20 +13,8 @@ _LONGEST = 80
 def safe_name(name: str, fallback: str = "rocking") -> str:
     """Return a file name that is harmless on every system: ASCII letters, digits, dot, dash and underscore.
 
-    Parameters
-    ----------
-    name : str
-        Any text.
-    fallback : str
-        What stands for a text of which nothing is left.
+    Returns at most 80 characters; never a hidden, reserved or empty name.
 
-    Returns
-    -------
-    str
-        At most 80 characters; never a hidden, reserved or empty name.
-
-    Examples
-    --------
     >>> safe_name("../../Vase Nº 3 <b>.csv")
     'Vase-No-3-b.csv'
     >>> safe_name("statue v1.2 report.pdf")
@@ -42,22 +30,7 @@ def safe_name(name: str, fallback: str = "rocking") -> str:
 
 
 def attachment(data: bytes, name: str, media_type: str) -> Response:
-    """Return an answer that a browser saves as a file and never shows as a page.
-
-    Parameters
-    ----------
-    data : bytes
-        Content of the file.
-    name : str
-        Its name, as anyone gave it.
-    media_type : str
-        Its type.
-
-    Returns
-    -------
-    Response
-        With a harmless file name.
-    """
+    """Return an answer that a browser saves as a file and never shows as a page."""
     headers = {
         "Content-Disposition": f'attachment; filename="{safe_name(name)}"',
         "X-Content-Type-Options": "nosniff",

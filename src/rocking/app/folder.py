@@ -20,13 +20,7 @@ class FolderInUseError(InvalidValueError):
 
 
 class DataFolder:
-    """The data folder of a server, held while it runs.
-
-    Parameters
-    ----------
-    path : Path
-        Where it is; made if it is not there.
-    """
+    """The data folder of a server, held while it runs."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -62,17 +56,7 @@ class DataFolder:
     def publish(self, url: str, key: str) -> Path:
         """Leave the key for scripts, and the address for a second start.
 
-        Parameters
-        ----------
-        url : str
-            Address of the server.
-        key : str
-            Key for scripts.
-
-        Returns
-        -------
-        Path
-            File of the key; only its owner can read it.
+        Returns file of the key; only its owner can read it.
         """
         write_private(self.path / _NOTE, json.dumps({"url": url, "process": os.getpid(), "machine": _machine()}))
         return write_private(self.path / KEY_FILE, key)
@@ -80,10 +64,7 @@ class DataFolder:
     def running(self) -> tuple[str, str] | None:
         """Return where the server that has the folder can be asked.
 
-        Returns
-        -------
-        tuple or None
-            Address and key; None if it runs on another machine, or has left none.
+        Returns address and key; None if it runs on another machine, or has left none.
         """
         try:
             note: dict[str, Any] = json.loads((self.path / _NOTE).read_text(encoding="utf-8"))
@@ -94,20 +75,7 @@ class DataFolder:
 
 
 def write_private(path: Path, text: str) -> Path:
-    """Write a file that only its owner can read, in place of whatever has that name.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    text : str
-        Its content.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
+    """Write a file that only its owner can read, in place of whatever has that name."""
     path.unlink(missing_ok=True)  # never through a link that somebody left there
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(handle, "w", encoding="utf-8") as file:

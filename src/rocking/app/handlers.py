@@ -18,13 +18,7 @@ _WORDS = {404: "there is no such thing here", 405: "this takes another method"}
 
 
 def install_handlers(app: FastAPI) -> None:
-    """Let errors of the endpoints be answered in one form.
-
-    Parameters
-    ----------
-    app : FastAPI
-        The application.
-    """
+    """Let errors of the endpoints be answered in one form."""
     app.add_exception_handler(RockingError, _handler(refusal))
     app.add_exception_handler(RequestValidationError, _handler(_invalid))
     app.add_exception_handler(ValidationError, _handler(_invalid))
@@ -34,15 +28,7 @@ def install_handlers(app: FastAPI) -> None:
 def validation_sentence(error: ValidationError | RequestValidationError) -> str:
     """Return what is wrong with an input in one sentence.
 
-    Parameters
-    ----------
-    error : ValidationError or RequestValidationError
-        What pydantic found.
-
-    Returns
-    -------
-    str
-        Key, allowed range and value of the first problem.
+    Returns Key, allowed range and value of the first problem.
     """
     problems = [_without_place(dict(problem)) for problem in error.errors()]
     if problems and problems[0]["loc"] == ():

@@ -36,14 +36,7 @@ _BY_STATUS = {
 class Problem(RockingError):  # noqa: N818 - the names of the subclasses are what is said of them
     """Base of what the server itself refuses.
 
-    Parameters
-    ----------
-    message : str
-        One sentence.
-    needs : sequence of str, optional
-        What must still be told.
-    seconds : float, optional
-        Time after which another try makes sense [s].
+    seconds: time after which another try makes sense [s].
     """
 
     status: ClassVar[int] = 422
@@ -126,36 +119,12 @@ class BadRequest(Problem):
 
 
 def status_and_kind(error: RockingError) -> tuple[int, str]:
-    """Return how an error is told.
-
-    Parameters
-    ----------
-    error : RockingError
-        What was raised.
-
-    Returns
-    -------
-    status : int
-        Of the answer.
-    kind : str
-        One word.
-    """
+    """Return how an error is told."""
     if isinstance(error, Problem):
         return error.status, error.kind
     return 422, next(kind for family, kind in _KINDS if isinstance(error, family))
 
 
 def kind_of_status(status: int) -> str:
-    """Return the kind of a problem of which only the status is known.
-
-    Parameters
-    ----------
-    status : int
-        Of the answer.
-
-    Returns
-    -------
-    str
-        One word.
-    """
+    """Return the kind of a problem of which only the status is known."""
     return _BY_STATUS.get(status, "internal" if status >= 500 else "invalid-value")

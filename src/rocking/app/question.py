@@ -27,69 +27,20 @@ Question = ResponseQuestion
 
 
 def question_of(inputs: "Inputs", records: "RecordStore") -> Question:
-    """Return what a user asked, with everything read that it needs.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        What the user chose.
-    records : RecordStore
-        Uploaded records.
-
-    Returns
-    -------
-    Question
-        Ready to be answered.
-
-    Raises
-    ------
-    RockingError
-        If something that was chosen does not exist or is not allowed.
-    """
+    """Return what a user asked, with everything read that it needs."""
     motion = None if inputs.motion is None else motion_from(inputs.motion, records)
     return question_from(inputs, body_from(inputs.body), motion)
 
 
 def body_from(given: "BodyInput") -> Body:
-    """Return a body; one that was asked for lately is not made again.
-
-    Parameters
-    ----------
-    given : BodyInput
-        What the user chose.
-
-    Returns
-    -------
-    Body
-        The body.
-
-    Raises
-    ------
-    InvalidValueError
-        If the shapes do not describe a body.
-    """
+    """Return a body; one that was asked for lately is not made again."""
     return _body(_Hashed(given))
 
 
 def motion_from(given: "MotionInput", records: "RecordStore") -> Motion:
     """Return a motion, not scaled.
 
-    Parameters
-    ----------
-    given : MotionInput
-        What the user chose.
-    records : RecordStore
-        Uploaded records.
-
-    Returns
-    -------
-    GroundMotion or Pulse
-        The motion; one that was asked for lately is not read or made again.
-
-    Raises
-    ------
-    RockingError
-        If it cannot be made or read.
+    Returns the motion; one that was asked for lately is not read or made again.
     """
     if given.record is None:
         with blamed("motion"):

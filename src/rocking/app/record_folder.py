@@ -13,43 +13,16 @@ _DIGITS = frozenset("0123456789abcdef")
 
 @dataclass(frozen=True, slots=True)
 class StoredRecord:
-    """An uploaded file.
+    """An uploaded file."""
 
-    Parameters
-    ----------
-    record : str
-        SHA-256 of its bytes, 64 hexadecimal digits.
-    file_name : str
-        The name it was given, made harmless.
-    bytes : int
-        Its length [bytes].
-    uploaded : str
-        When, in UTC.
-    """
-
-    record: str
-    file_name: str
-    bytes: int
-    uploaded: str
+    record: str  # SHA-256 of its bytes, 64 hexadecimal digits
+    file_name: str  # the name it was given, made harmless
+    bytes: int  # its length [bytes]
+    uploaded: str  # when, in UTC
 
 
 def keep(folder: Path, made: StoredRecord, content: bytes) -> None:
-    """Write a file and its note; what could not be written leaves nothing behind.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of all records.
-    made : StoredRecord
-        What the note says.
-    content : bytes
-        The file.
-
-    Raises
-    ------
-    OSError
-        If the disk does not take it.
-    """
+    """Write a file and its note; what could not be written leaves nothing behind."""
     place = folder / made.record
     fresh = not place.exists()
     try:
@@ -66,13 +39,7 @@ def keep(folder: Path, made: StoredRecord, content: bytes) -> None:
 
 
 def sweep(folder: Path) -> None:
-    """Remove what was being written when an earlier server ended.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of all records.
-    """
+    """Remove what was being written when an earlier server ended."""
     for place in (folder, *(each for each in folder.iterdir() if is_hash(each.name))):
         if not place.is_symlink():
             remove_unfinished(place)
@@ -81,47 +48,20 @@ def sweep(folder: Path) -> None:
 def is_own(path: Path) -> bool:
     """Return whether a file is one that was written here, not a link to another place.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    bool
-        False for links, and files in a folder that is one.
+    Returns false for links, and files in a folder that is one.
     """
     return not path.is_symlink() and not path.parent.is_symlink() and path.is_file()
 
 
 def is_hash(word: object) -> bool:
-    """Return whether a word is the SHA-256 of a file.
-
-    Parameters
-    ----------
-    word : object
-        Anything.
-
-    Returns
-    -------
-    bool
-        Whether it has 64 hexadecimal digits.
-    """
+    """Return whether a word is the SHA-256 of a file."""
     return isinstance(word, str) and len(word) == 64 and _DIGITS.issuperset(word)
 
 
 def read_note(note: Path) -> StoredRecord | None:
     """Return what a note says.
 
-    Parameters
-    ----------
-    note : Path
-        The note.
-
-    Returns
-    -------
-    StoredRecord or None
-        None if it is no note that was written here.
+    Returns none if it is no note that was written here.
     """
     try:
         told = json.loads(note.read_bytes())

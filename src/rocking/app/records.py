@@ -25,15 +25,7 @@ MOST_RECORDS = 5_000
 
 
 class RecordStore:
-    """Files in a folder by hash, each with a note of its name beside it; safe to use from several threads.
-
-    Parameters
-    ----------
-    folder : Path
-        Data folder of the server; records lie in its folder ``records``.
-    limits : Limits
-        Largest file, and room for all of them.
-    """
+    """Files in a folder by hash, each with a note of its name beside it; safe to use from several threads."""
 
     def __init__(self, folder: Path, limits: Limits) -> None:
         self.folder = Path(folder) / "records"
@@ -49,29 +41,7 @@ class RecordStore:
         return self._limits.upload_bytes
 
     def add(self, content: bytes, name: str) -> StoredRecord:
-        """Keep a file; the same bytes under another name take that name.
-
-        Parameters
-        ----------
-        content : bytes
-            The file.
-        name : str
-            Name as given; only its harmless part is kept.
-
-        Returns
-        -------
-        StoredRecord
-            What is kept.
-
-        Raises
-        ------
-        RecordError
-            If the file is empty.
-        TooLarge
-            If it is too large, or there is no room for another one.
-        NoRoom
-            If the disk does not take it.
-        """
+        """Keep a file; the same bytes under another name take that name."""
         self.check_upload(content)
         sha = hashlib.sha256(content).hexdigest()
         made = StoredRecord(sha, safe_name(name, "record"), len(content), datetime.now(UTC).isoformat(" ", "seconds"))
@@ -83,56 +53,21 @@ class RecordStore:
         return made
 
     def check_upload(self, content: bytes) -> None:
-        """Refuse a file that will not be kept whatever it holds.
-
-        Parameters
-        ----------
-        content : bytes
-            The file.
-
-        Raises
-        ------
-        RecordError
-            If it is empty.
-        TooLarge
-            If it is too large.
-        """
+        """Refuse a file that will not be kept whatever it holds."""
         if not content.strip():
             raise RecordError("the file is empty")
         if len(content) > self._limits.upload_bytes:
             raise TooLarge(f"the file has {len(content)} bytes, more than {self._limits.upload_bytes}")
 
     def stored(self) -> list[StoredRecord]:
-        """Return all files, the latest first.
-
-        Returns
-        -------
-        list of StoredRecord
-            What is kept.
-        """
+        """Return all files, the latest first."""
         with self._lock:
             notes = [note for note in self.folder.glob("*.json") if is_hash(note.stem)]
             found = [made for note in notes if (made := read_note(note)) is not None]
         return sorted(found, key=lambda made: (made.uploaded, made.record), reverse=True)
 
     def get(self, sha: str) -> StoredRecord:
-        """Return one file.
-
-        Parameters
-        ----------
-        sha : str
-            SHA-256 of its bytes.
-
-        Returns
-        -------
-        StoredRecord
-            What is kept.
-
-        Raises
-        ------
-        NotFound
-            If there is none.
-        """
+        """Return one file."""
         made = read_note(self.folder / f"{sha}.json") if is_hash(sha) else None
         if made is None or not is_own(self._place(made)):
             raise NotFound(f"no record {str(sha)[:12]}... is kept here: upload the file once more")
@@ -141,43 +76,12 @@ class RecordStore:
     def path(self, sha: str) -> Path:
         """Return where a file is.
 
-        Parameters
-        ----------
-        sha : str
-            SHA-256 of its bytes.
-
-        Returns
-        -------
-        Path
-            The file, under the name it was given.
-
-        Raises
-        ------
-        NotFound
-            If there is none.
+        Returns the file, under the name it was given.
         """
         return self._place(self.get(sha))
 
     def content(self, sha: str) -> bytes:
-        """Return the bytes of a file, as they were uploaded.
-
-        Parameters
-        ----------
-        sha : str
-            SHA-256 of its bytes.
-
-        Returns
-        -------
-        bytes
-            The file.
-
-        Raises
-        ------
-        NotFound
-            If there is none.
-        RecordError
-            If it is not what was uploaded.
-        """
+        """Return the bytes of a file, as they were uploaded."""
         path = self.path(sha)
         try:
             found = path.read_bytes()
@@ -188,18 +92,7 @@ class RecordStore:
         return found
 
     def delete(self, sha: str) -> None:
-        """Remove a file.
-
-        Parameters
-        ----------
-        sha : str
-            SHA-256 of its bytes.
-
-        Raises
-        ------
-        NotFound
-            If there is none.
-        """
+        """Remove a file."""
         with self._lock:
             self.get(sha)
             (self.folder / f"{sha}.json").unlink(missing_ok=True)
@@ -217,30 +110,7 @@ class RecordStore:
     ) -> GroundMotion:
         """Return a motion of a file, as `read_motion` reads it; one that was read lately is not read again.
 
-        Parameters
-        ----------
-        sha : str
-            SHA-256 of its bytes.
-        format : str, optional
-            Name of its format.
-        units : str, optional
-            Unit of acceleration, where the file does not state it.
-        time_step : float, optional
-            Step between samples, where the file does not state it [s].
-        component, vertical : str, optional
-            Names of the horizontal and the vertical component.
-
-        Returns
-        -------
-        GroundMotion
-            The motion.
-
-        Raises
-        ------
-        NotFound
-            If there is no such file.
-        RecordError
-            If it cannot be read, or is not what was uploaded.
+        time_step: step between samples, where the file does not state it [s].
         """
         key = (sha, format, units, time_step, component, vertical)
         with self._lock:

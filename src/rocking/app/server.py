@@ -31,49 +31,21 @@ _TURN = 0.0005
 
 @dataclass(frozen=True)
 class Started:
-    """What a user needs to know of a server that has just started.
+    """What a user needs to know of a server that has just started."""
 
-    Parameters
-    ----------
-    url : str
-        Address of the page.
-    token : str
-        Signs one browser in, once.
-    port : int
-        Where it listens.
-    key_file : Path
-        File with the key for scripts.
-    """
-
-    url: str
-    token: str
-    port: int
-    key_file: Path
+    url: str  # address of the page
+    token: str  # signs one browser in, once
+    port: int  # where it listens
+    key_file: Path  # file with the key for scripts
 
     @property
     def link(self) -> str:
-        """Return the link that signs a browser in.
-
-        Returns
-        -------
-        str
-            Address and token.
-        """
+        """Return the link that signs a browser in."""
         return f"{self.url}/#token={self.token}"
 
 
 def serve(settings: Settings, started: Callable[[Started], None], *, port: int | None = None) -> None:
-    """Serve until the process is told to stop.
-
-    Parameters
-    ----------
-    settings : Settings
-        Address, data folder and limits.
-    started : callable
-        Called once the first page can be opened.
-    port : int, optional
-        The port that must be free; without it the next free one from 8765 on serves.
-    """
+    """Serve until the process is told to stop."""
     check_host(settings.host, allow_remote=settings.allow_remote)
     with DataFolder(settings.folder) as folder:
         wanted = DEFAULT_PORT if port is None else port

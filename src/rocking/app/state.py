@@ -16,40 +16,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AppState:
-    """What the endpoints share.
+    """What the endpoints share."""
 
-    Parameters
-    ----------
-    settings : Settings
-        What the server was told.
-    records : RecordStore
-        Uploaded records.
-    studies : StudyManager
-        Campaigns that run, wait or are done.
-    sessions : Sessions
-        Who is signed in.
-    heavy : WaitingLine
-        Threads for long computations.
-    """
-
-    settings: Settings
-    records: "RecordStore"
-    studies: "StudyManager"
-    sessions: "Sessions"
-    heavy: WaitingLine
+    settings: Settings  # what the server was told
+    records: "RecordStore"  # uploaded records
+    studies: "StudyManager"  # campaigns that run, wait or are done
+    sessions: "Sessions"  # who is signed in
+    heavy: WaitingLine  # threads for long computations
 
 
 def state_of(request: HTTPConnection) -> AppState:
     """Return what the endpoints share.
 
-    Parameters
-    ----------
-    request : HTTPConnection
-        A request or a websocket.
-
-    Returns
-    -------
-    AppState
-        The same object for every request of an application.
+    Returns the same object for every request of an application.
     """
     return cast("AppState", request.app.state.rocking)

@@ -16,13 +16,7 @@ _BLOCK = {"units": "m", "width": 1.0, "height": 4.0}
 
 
 def warm_up_later(*more: Step) -> None:
-    """Start to warm up in a thread, once the first page has had its time.
-
-    Parameters
-    ----------
-    *more : callable
-        What else to do, after the rest.
-    """
+    """Start to warm up in a thread, once the first page has had its time."""
     timer = threading.Timer(_FIRST_PAGE_SECONDS, warm_up, more)
     timer.daemon = True
     timer.start()
@@ -32,11 +26,6 @@ def warm_up(*more: Step) -> None:
     """Fit the calibration, answer one question of each kind and draw one picture.
 
     What cannot be had, such as pictures without their extra, is left for the request that asks for it.
-
-    Parameters
-    ----------
-    *more : callable
-        What else to do, after the rest.
     """
     for step in (_impact, _response, _picture, *more):
         with contextlib.suppress(ImportError, RockingError):

@@ -15,15 +15,7 @@ T = TypeVar("T")
 
 
 class WaitingLine:
-    """Threads for long computations, and a line of bounded length before them.
-
-    Parameters
-    ----------
-    at_once : int
-        Threads.
-    waiting : int
-        Computations that may wait.
-    """
+    """Threads for long computations, and a line of bounded length before them."""
 
     def __init__(self, at_once: int, waiting: int) -> None:
         self._threads = ThreadPoolExecutor(at_once, thread_name_prefix="heavy")
@@ -32,25 +24,7 @@ class WaitingLine:
         self._lock = threading.Lock()
 
     def submit(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> "Future[T]":
-        """Put a computation in line.
-
-        Parameters
-        ----------
-        function : callable
-            What to compute.
-        *args, **kwargs
-            Its arguments.
-
-        Returns
-        -------
-        Future
-            Its result.
-
-        Raises
-        ------
-        Busy
-            If the line is full.
-        """
+        """Put a computation in line."""
         with self._lock:
             if self._inside >= self._room:
                 raise Busy(f"{self._inside} computations run or wait already; try again in a moment", seconds=2)
@@ -79,27 +53,7 @@ class WaitingLine:
 
 
 async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    """Compute in a thread, with few others at once, so that light requests stay quick.
-
-    Parameters
-    ----------
-    request : HTTPConnection
-        The request it is for.
-    function : callable
-        What to compute.
-    *args, **kwargs
-        Its arguments.
-
-    Returns
-    -------
-    T
-        What the function returns.
-
-    Raises
-    ------
-    Ending
-        If the server ends before.
-    """
+    """Compute in a thread, with few others at once, so that light requests stay quick."""
     line: WaitingLine = request.app.state.rocking.heavy
     try:
         return await asyncio.wrap_future(line.submit(function, *args, **kwargs))

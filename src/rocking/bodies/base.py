@@ -17,17 +17,8 @@ GROUND_TOLERANCE = 1e-9
 def extent_on_ground(regions: Sequence[Region], size: float) -> Interval:
     """Return the ends of the base: the outermost vertices on y = 0.
 
-    Parameters
-    ----------
-    regions : sequence of Region
-        In the local frame, with the ground at y = 0 [m].
-    size : float
-        Size of the body, which scales the tolerance [m].
-
-    Returns
-    -------
-    (float, float)
-        Left and right end [m].
+    regions: in the local frame, with the ground at y = 0 [m]; size: size of the body, which scales the tolerance [m].
+    Returns left and right end [m].
     """
     tolerance = GROUND_TOLERANCE * size
     touching = np.concatenate([r.outline[np.abs(r.outline[:, 1]) <= tolerance, 0] for r in regions])
@@ -37,19 +28,8 @@ def extent_on_ground(regions: Sequence[Region], size: float) -> Interval:
 def flat_stretches(regions: Sequence[Region], size: float, feet: Interval) -> tuple[Interval, ...]:
     """Return the stretches of the ground that edges lie on, cut at the feet and merged.
 
-    Parameters
-    ----------
-    regions : sequence of Region
-        In the local frame, with the ground at y = 0 [m].
-    size : float
-        Size of the body, which scales the tolerance [m].
-    feet : (float, float)
-        Positions of the feet [m].
-
-    Returns
-    -------
-    tuple of (float, float)
-        Left to right [m]; none if the body stands on points.
+    regions: in the local frame, with the ground at y = 0 [m]; size: size of the body, which scales the tolerance [m];
+    feet: positions of the feet [m]. Returns left to right [m]; none if the body stands on points.
     """
     left, right = feet
     merged: list[Interval] = []
@@ -77,26 +57,9 @@ def _edges(regions: Sequence[Region], tolerance: float) -> list[Interval]:
 def placed_feet(base: Interval, size: float, origin: float, feet: tuple[float, float] | None) -> Interval:
     """Return the feet in the local frame, by default the ends of the base.
 
-    Parameters
-    ----------
-    base : (float, float)
-        Ends of the base in the local frame [m].
-    size : float
-        Size of the body, which scales the tolerance [m].
-    origin : float
-        Position of the local frame in the user's coordinates [m].
-    feet : (float, float), optional
-        Feet in the user's coordinates [m].
-
-    Returns
-    -------
-    (float, float)
-        Left and right foot [m].
-
-    Raises
-    ------
-    GeometryError
-        If the base is a point, or the feet are swapped or not on it.
+    base: ends of the base in the local frame [m]; size: size of the body, which scales the tolerance [m]; origin:
+    position of the local frame in the user's coordinates [m]; feet: feet in the user's coordinates [m]. Returns left
+    and right foot [m].
     """
     if feet is None:
         if base[1] - base[0] <= GROUND_TOLERANCE * size:

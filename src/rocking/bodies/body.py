@@ -210,15 +210,7 @@ class Body(ABC):
 def assumed_density(densities: Sequence[float]) -> tuple[str, ...]:
     """Return what was assumed about densities.
 
-    Parameters
-    ----------
-    densities : sequence of float
-        Of all parts of a body [kg/m3].
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none where every density was given.
+    densities: of all parts of a body [kg/m3]. Returns one sentence, or none where every density was given.
     """
     assumed = [value for value in densities if isinstance(value, Assumed)]
     if not assumed:

@@ -15,25 +15,8 @@ from rocking.errors import InvalidValueError
 def density_at(body: Body, x: FloatArray, y: FloatArray) -> FloatArray:
     """Return the density of a body at points.
 
-    Parameters
-    ----------
-    body : Body
-        Block or Section.
-    x, y : ndarray
-        Points in the user's coordinates, of one shape [m].
+    x, y: points in the user's coordinates, of one shape [m]. Returns Density, zero outside the body [kg/m3].
 
-    Returns
-    -------
-    ndarray
-        Density, zero outside the body [kg/m3].
-
-    Raises
-    ------
-    InvalidValueError
-        If this kind of body has no density field (mass points).
-
-    Examples
-    --------
     >>> density_at(Block(width=1.0, height=2.0, density=1000.0), np.array([0.5, 1.5]), np.array([1.0, 1.0])).tolist()
     [1000.0, 0.0]
     """

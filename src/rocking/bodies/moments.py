@@ -10,22 +10,12 @@ from rocking.conventions import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class PlaneMoments:
-    """Zeroth, first and central second moments of a plane mass distribution.
+    """Zeroth, first and central second moments of a plane mass distribution."""
 
-    Parameters
-    ----------
-    mass : float
-        Integral of dm [kg], or of dA [m2] for a bare ring; negative for a hole.
-    x, y : float
-        Centre [m].
-    xx, yy : float
-        Integrals of (x - centre)**2 dm and of (y - centre)**2 dm [kg m2].
-    """
-
-    mass: float
-    x: float
+    mass: float  # integral of dm [kg], or of dA [m2] for a bare ring; negative for a hole
+    x: float  # x, y: centre [m]
     y: float
-    xx: float
+    xx: float  # xx, yy: integrals of (x - centre)**2 dm and of (y - centre)**2 dm [kg m2]
     yy: float
 
     @property
@@ -36,15 +26,7 @@ class PlaneMoments:
     def times(self, weight: float) -> "PlaneMoments":
         """Return the same shape with `weight` times the mass.
 
-        Parameters
-        ----------
-        weight : float
-            Factor, for instance density times depth.
-
-        Returns
-        -------
-        PlaneMoments
-            Scaled mass and second moments, same centre.
+        Returns scaled mass and second moments, same centre.
         """
         return PlaneMoments(self.mass * weight, self.x, self.y, self.xx * weight, self.yy * weight)
 
@@ -54,15 +36,7 @@ def ring_moments(ring: FloatArray) -> PlaneMoments:
 
     The ring is moved to the middle of its own box first, so that nothing cancels far from the origin.
 
-    Parameters
-    ----------
-    ring : ndarray, shape (n, 2)
-        Vertices [m], the first one not repeated; counter-clockwise gives a positive area.
-
-    Returns
-    -------
-    PlaneMoments
-        Of the area, unit weight.
+    ring: vertices [m], the first one not repeated; counter-clockwise gives a positive area.
     """
     middle = 0.5 * (ring.min(axis=0) + ring.max(axis=0))
     x, y = (ring - middle).T
@@ -77,18 +51,7 @@ def ring_moments(ring: FloatArray) -> PlaneMoments:
 
 
 def combined(parts: Iterable[PlaneMoments]) -> PlaneMoments:
-    """Moments of several parts together (parallel-axis theorem); holes have negative mass.
-
-    Parameters
-    ----------
-    parts : iterable of PlaneMoments
-        The parts.
-
-    Returns
-    -------
-    PlaneMoments
-        Of the whole.
-    """
+    """Moments of several parts together (parallel-axis theorem); holes have negative mass."""
     m, x, y, xx, yy = np.array([(p.mass, p.x, p.y, p.xx, p.yy) for p in parts]).T
     mass = float(m.sum())
     cx, cy = float((m * x).sum()) / mass, float((m * y).sum()) / mass

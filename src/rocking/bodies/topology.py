@@ -18,22 +18,7 @@ OVERLAP_TOLERANCE = 1e-9
 def ring(name: str, points: Any) -> FloatArray:
     """Return vertices as an open ring of distinct neighbours.
 
-    Parameters
-    ----------
-    name : str
-        Name that an error shows.
-    points : array_like, shape (n, 2)
-        Vertices [m]; a repeated closing point and repeated neighbours are dropped.
-
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        The ring, first point not repeated.
-
-    Raises
-    ------
-    GeometryError
-        If these are not at least three different finite points.
+    points: vertices [m]; a repeated closing point and repeated neighbours are dropped.
     """
     try:
         vertices = checks.real_array(name, points)
@@ -56,19 +41,7 @@ def ring(name: str, points: Any) -> FloatArray:
 def check_polygon(name: str, outline: FloatArray, holes: Sequence[FloatArray]) -> None:
     """Refuse rings that cross themselves or each other, and holes outside their outline.
 
-    Parameters
-    ----------
-    name : str
-        Name that an error shows.
-    outline : ndarray, shape (n, 2)
-        Outer ring [m].
-    holes : sequence of ndarray
-        Inner rings [m].
-
-    Raises
-    ------
-    GeometryError
-        In one sentence that names ring and place.
+    outline: outer ring [m]; holes: inner rings [m].
     """
     import shapely
 
@@ -94,15 +67,7 @@ def check_polygon(name: str, outline: FloatArray, holes: Sequence[FloatArray]) -
 def check_disjoint(polygons: Sequence[tuple[FloatArray, Sequence[FloatArray]]]) -> None:
     """Refuse regions that overlap; shared edges are welcome.
 
-    Parameters
-    ----------
-    polygons : sequence of (outline, holes)
-        One pair per region, in one frame near the origin [m].
-
-    Raises
-    ------
-    GeometryError
-        Naming the two regions and the area they share.
+    polygons: one pair per region, in one frame near the origin [m].
     """
     if len(polygons) < 2:
         return

@@ -6,18 +6,7 @@ from collections.abc import Sequence
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and leave with its exit code: 0 done, 2 refused, 130 interrupted.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Words after ``rocking``; by default those of the process.
-
-    Raises
-    ------
-    SystemExit
-        Always.
-    """
+    """Run the command line and leave with its exit code: 0 done, 2 refused, 130 interrupted."""
     from typer.exceptions import TyperException
 
     from rocking.cli.application import application

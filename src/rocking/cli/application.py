@@ -18,13 +18,7 @@ from rocking.cli.spectrum import spectrum
 
 
 def application() -> typer.Typer:
-    """Return the command line application.
-
-    Returns
-    -------
-    typer.Typer
-        With every command registered.
-    """
+    """Return the command line application."""
     app = typer.Typer(
         name="rocking",
         help="Predict what an impact costs a rocking body, with the evidence beside every number.",

@@ -24,32 +24,7 @@ def body_from(
 ) -> Body:
     """Return the body that a command was given.
 
-    Parameters
-    ----------
-    file : Path, optional
-        Body file.
-    width, height, depth : float, optional
-        Dimensions of a block, in `unit`.
-    density : float, optional
-        Density [kg/m3].
-    angle : float, optional
-        Slenderness angle [rad].
-    semi_diagonal : float, optional
-        Semi-diagonal, in `unit`.
-    unit : str, optional
-        Unit of length; m if not given, and for files the unit they are drawn in.
-
-    Returns
-    -------
-    Body
-        The body.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is given twice, in part, or not at all.
-    BodyFileError
-        If the file is none of a body.
+    density: density [kg/m3]; angle: slenderness angle [rad].
     """
     sizes = {"--width": width, "--height": height, "--angle": angle, "--semi-diagonal": semi_diagonal}
     given = [name for name, value in sizes.items() if value is not None]
@@ -81,19 +56,8 @@ def body_from(
 def body_words(body: Body, gravity: float, length: str = "m") -> str:
     """Return a plane body in a line.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    length : str
-        Unit of length of the line.
-
-    Returns
-    -------
-    str
-        Kind, mass, and what decides how it rocks, of both feet where they differ.
+    gravity: acceleration of gravity [m/s2]. Returns Kind, mass, and what decides how it rocks, of both feet where they
+    differ.
     """
     feet: tuple[Foot, ...] = ("right",) if body.is_symmetric else FEET
     sides = {foot: body.side(foot, gravity) for foot in feet}

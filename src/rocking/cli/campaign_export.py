@@ -24,30 +24,7 @@ def write(
     folder: Path, to: Path, what: str | None, *, restitution: str | None, crossing: str | None, inputs: Path | None,
     as_json: bool,
 ) -> None:  # fmt: skip
-    """Write the results of a campaign into a file, and say so.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    to : Path
-        The file; of an inventory also a folder.
-    what : str, optional
-        What of it; what suits its kind if not given.
-    restitution : str, optional
-        Which restitution's.
-    crossing : str, optional
-        What to do with fragility curves that cross.
-    inputs : Path, optional
-        Where the files of the job are now.
-    as_json : bool
-        Whether to print JSON.
-
-    Raises
-    ------
-    InvalidValueError
-        If the kind of the campaign has nothing of the sort.
-    """
+    """Write the results of a campaign into a file, and say so."""
     opened = JobFolder.open(folder, inputs)
     is_inventory = opened.job.study.assess is not None
     what = (REPORT if is_inventory else exports_of(opened)[0]) if what is None else what

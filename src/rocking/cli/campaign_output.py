@@ -38,23 +38,7 @@ _CODES: dict[type[BaseException], int] = {
 
 @contextmanager
 def codes(folder: Path | None = None) -> Iterator[None]:
-    """Turn what stops a campaign into a sentence and its exit code; the rest passes.
-
-    Parameters
-    ----------
-    folder : Path, optional
-        The campaign, if it is of one.
-
-    Yields
-    ------
-    None
-        While it watches.
-
-    Raises
-    ------
-    typer.Exit
-        With the code.
-    """
+    """Turn what stops a campaign into a sentence and its exit code; the rest passes."""
     try:
         yield
     except tuple(_CODES) as error:
@@ -68,29 +52,7 @@ def codes(folder: Path | None = None) -> Iterator[None]:
 
 
 def executor_of(name: str, workers: int | None, address: str | None) -> tuple[str | Executor, int | None]:
-    """Return who computes.
-
-    Parameters
-    ----------
-    name : {"serial", "processes", "dask"}
-        Who.
-    workers : int, optional
-        Threads or processes.
-    address : str, optional
-        Address of a Dask scheduler.
-
-    Returns
-    -------
-    executor : str or Executor
-        As `Campaign.run` takes it.
-    workers : int or None
-        The same.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such executor, or the options do not go with it.
-    """
+    """Return who computes."""
     if name not in {"serial", "processes", "dask"}:
         raise InvalidValueError(f"--executor must be serial, processes or dask, got {name!r:.60}")
     if (address is not None) != (name == "dask"):
@@ -103,17 +65,7 @@ def executor_of(name: str, workers: int | None, address: str | None) -> tuple[st
 
 
 def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: bool) -> None:
-    """Compute what is missing of a campaign, with a bar, and say what was done.
-
-    Parameters
-    ----------
-    folder : JobFolder
-        The campaign.
-    who : tuple
-        As of `executor_of`.
-    as_json : bool
-        Whether to print JSON.
-    """
+    """Compute what is missing of a campaign, with a bar, and say what was done."""
     name = folder.job.document.campaign.name
     with bar(name, folder.campaign.plan.count, quiet=as_json) as tell:
         done = folder.run(who[0], workers=who[1], progress=tell)
@@ -138,20 +90,7 @@ def compute(folder: JobFolder, who: tuple[str | Executor, int | None], as_json: 
 
 
 def show_status(folder: Path, as_json: bool) -> None:
-    """Print how far a campaign is.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    as_json : bool
-        Whether to print JSON.
-
-    Raises
-    ------
-    typer.Exit
-        With `DAMAGED`, if something that was finished is damaged now.
-    """
+    """Print how far a campaign is."""
     found = status_of(folder)
     status = found.status
     if as_json:
@@ -165,20 +104,7 @@ def show_status(folder: Path, as_json: bool) -> None:
 
 
 def show_verification(folder: Path, as_json: bool) -> None:
-    """Print what was found when everything that a campaign has was read.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    as_json : bool
-        Whether to print JSON.
-
-    Raises
-    ------
-    typer.Exit
-        With `DAMAGED`, if not everything is there and whole.
-    """
+    """Print what was found when everything that a campaign has was read."""
     found = verified(folder)
     if as_json:
         print(json.dumps({"folder": str(folder), "whole": found.whole, **vars(found)}, indent=1))
@@ -196,24 +122,7 @@ def show_verification(folder: Path, as_json: bool) -> None:
 
 
 def show_forecast(path: Path, workers: int, out: Path | None, as_json: bool) -> None:
-    """Print what a job will take.
-
-    Parameters
-    ----------
-    path : Path
-        The job file.
-    workers : int
-        Cores that would compute.
-    out : Path, optional
-        Where it would be kept.
-    as_json : bool
-        Whether to print JSON.
-
-    Raises
-    ------
-    CampaignStorageError
-        If the disk is too small.
-    """
+    """Print what a job will take."""
     job = Job.read(path)
     found = forecast(job, workers, out)
     told = {
@@ -282,22 +191,7 @@ def _words(found: JobStatus) -> str:
 
 @contextmanager
 def bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], None]]:
-    """Show on a terminal how far it is, how fast, and how long it will take.
-
-    Parameters
-    ----------
-    what : str
-        What is done.
-    total : int
-        Histories, until a `Progress` says another number.
-    quiet : bool
-        Whether to show nothing.
-
-    Yields
-    ------
-    callable
-        To be told of every `Progress`.
-    """
+    """Show on a terminal how far it is, how fast, and how long it will take."""
     from rich.console import Console
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
@@ -319,18 +213,7 @@ def bar(what: str, total: int, *, quiet: bool) -> Iterator[Callable[[Progress], 
 
 
 def time_left(left: Estimate) -> str:
-    """Return the time that is left, in words.
-
-    Parameters
-    ----------
-    left : Estimate
-        The time.
-
-    Returns
-    -------
-    str
-        With its bounds, where they differ.
-    """
+    """Return the time that is left, in words."""
     low, high = _span(left.low), _span(left.high)
     return f"about {_span(left.seconds)} left" + ("" if low == high else f" ({low} to {high})")
 

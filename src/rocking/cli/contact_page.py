@@ -28,24 +28,7 @@ COMPLEMENTARITY = "complementarity"
 def contact_response(question: Question, restitution: str, bounce: float) -> PlanarResponse:
     """Return what a body does that may slide and hop.
 
-    Parameters
-    ----------
-    question : ResponseQuestion
-        Body, motion, friction, and how to compute.
-    restitution : str
-        Model or coefficient of rocking impacts, or ``"complementarity"``.
-    bounce : float
-        Newton's coefficient of normal velocities [-].
-
-    Returns
-    -------
-    PlanarResponse
-        With a result.
-
-    Raises
-    ------
-    RockingError
-        If it could not be computed.
+    bounce: Newton's coefficient of normal velocities [-].
     """
     response = simulate_with_contact(
         question.body,
@@ -65,15 +48,7 @@ def contact_response(question: Question, restitution: str, bounce: float) -> Pla
 def contact_facts(response: PlanarResponse) -> dict[str, Any]:
     """Return everything that is said of a response with contact, as plain values.
 
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-
-    Returns
-    -------
-    dict
-        SI units, named in the keys; None where something does not exist.
+    Returns SI units, named in the keys; None where something does not exist.
     """
     law, energy = response.law, response.energy
     imposed = None if law.restitution is None else dict(zip(("left", "right"), law.restitution, strict=True))
@@ -108,31 +83,12 @@ def contact_facts(response: PlanarResponse) -> dict[str, Any]:
 
 
 def as_json(response: PlanarResponse) -> str:
-    """Return everything as JSON.
-
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-
-    Returns
-    -------
-    str
-        One object.
-    """
+    """Return everything as JSON."""
     return json.dumps(contact_facts(response), indent=2, allow_nan=False)
 
 
 def show(response: PlanarResponse, length: str = "m") -> None:
-    """Print contact, outcome, modes, impacts and measures.
-
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-    length : str
-        Unit of lengths.
-    """
+    """Print contact, outcome, modes, impacts and measures."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)

@@ -26,24 +26,7 @@ class BodyOfDocument(JobTable):
 def body_and_gravity(path: Path, size: dict[str, object]) -> tuple[Body, float | None]:
     """Return the body of a file with a table [response], and the gravity that it states.
 
-    Parameters
-    ----------
-    path : Path
-        The file; those that only its motion needs are not read.
-    size : dict
-        Options that say a body, which are refused.
-
-    Returns
-    -------
-    body : Body
-        The body.
-    gravity : float or None
-        Acceleration of gravity, None if the file states none [m/s2].
-
-    Raises
-    ------
-    InvalidValueError
-        If the file is no such document, its body cannot be made, or an option says a body as well.
+    Returns gravity: acceleration of gravity, None if the file states none [m/s2].
     """
     given = [name for name, value in spelt(size).items() if value is not None]
     if given:
@@ -56,16 +39,5 @@ def body_and_gravity(path: Path, size: dict[str, object]) -> tuple[Body, float |
 
 
 def sentence(path: Path) -> str:
-    """Return what is not used of such a file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    str
-        One sentence.
-    """
+    """Return what is not used of such a file."""
     return f"{path.name}: body and gravity are taken from it; everything else it says is for `rocking simulate`."

@@ -27,24 +27,7 @@ def answer(
 ) -> None:
     """Print, write and draw the coefficients of a plane body.
 
-    Parameters
-    ----------
-    body : Path, optional
-        Body file, or a file that says a whole response.
-    size : dict
-        Options that say the body in place of a file.
-    mesh : dict
-        Options for meshes, which are refused.
-    asked : dict
-        ``onto``, ``eta`` and ``identities``.
-    files : dict
-        ``csv``, ``picture`` and ``stages``.
-    models : list of str, optional
-        Models.
-    gravity : float, optional
-        Acceleration of gravity; that of the file or the standard one if not given [m/s2].
-    as_json : bool
-        Whether to print JSON.
+    gravity: acceleration of gravity; that of the file or the standard one if not given [m/s2].
     """
     refuse("a plane body is no mesh", spelt(mesh))
     made, stated = _body(body, size, as_json=as_json)

@@ -21,15 +21,7 @@ ROUND_BASE = (
 def notes(found: SolidAnswer) -> list[str]:
     """Return what limits the use of the coefficients.
 
-    Parameters
-    ----------
-    found : SolidAnswer
-        Body and coefficients.
-
-    Returns
-    -------
-    list of str
-        One sentence each; none for a base with corners.
+    Returns one sentence each; none for a base with corners.
     """
     return [ROUND_BASE] if isinstance(found.file.solid.base, RoundBase) else []
 
@@ -47,24 +39,7 @@ def answer(
 ) -> None:
     """Print, write and draw the coefficients of a body in space.
 
-    Parameters
-    ----------
-    body : Path
-        TOML file with [solid], or a mesh.
-    size : dict
-        Options that say a plane body, which are refused.
-    told : dict
-        ``unit``, ``density``, ``up``, ``fill_holes`` and ``base_tolerance`` of a mesh.
-    asked : dict
-        ``onto``, ``eta`` and ``identities`` of a plane body, which are refused.
-    files : dict
-        ``csv``, ``picture``, and ``stages``, which is refused.
-    models : list of str, optional
-        Models in space.
-    gravity : float, optional
-        Acceleration of gravity; the standard one if not given [m/s2].
-    as_json : bool
-        Whether to print JSON.
+    body: TOML file with [solid], or a mesh; gravity: acceleration of gravity; the standard one if not given [m/s2].
     """
     refuse("a body in space has its size from its file", spelt(size))
     plane = {

@@ -14,15 +14,7 @@ from rocking.restitution import energy_ledger
 
 
 def show(answer: ImpactAnswer, length: str = "m") -> None:
-    """Print body, tables and warnings.
-
-    Parameters
-    ----------
-    answer : ImpactAnswer
-        What `ImpactAnswer.of` computed.
-    length : str
-        Unit of lengths.
-    """
+    """Print body, tables and warnings."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
@@ -55,29 +47,13 @@ def show(answer: ImpactAnswer, length: str = "m") -> None:
 def as_json(answer: ImpactAnswer) -> str:
     """Return everything as JSON.
 
-    Parameters
-    ----------
-    answer : ImpactAnswer
-        What `ImpactAnswer.of` computed.
-
-    Returns
-    -------
-    str
-        One object; SI units, named in the keys where a quantity has one.
+    Returns one object; SI units, named in the keys where a quantity has one.
     """
     return json.dumps(impact_facts(answer), indent=2, allow_nan=False)
 
 
 def write_csv(answer: ImpactAnswer, path: Path) -> None:
-    """Write the tables as one CSV file.
-
-    Parameters
-    ----------
-    answer : ImpactAnswer
-        What `ImpactAnswer.of` computed.
-    path : Path
-        File to write.
-    """
+    """Write the tables as one CSV file."""
     records = [
         {"onto": foot, **row.as_dict(), "warnings": "; ".join(row.warnings)}
         for foot, rows in answer.tables.items()
@@ -90,30 +66,14 @@ def write_csv(answer: ImpactAnswer, path: Path) -> None:
 
 
 def draw(answer: ImpactAnswer, path: Path) -> None:
-    """Draw the body and its coefficients against the published measurements.
-
-    Parameters
-    ----------
-    answer : ImpactAnswer
-        What `ImpactAnswer.of` computed.
-    path : Path
-        File to write; its suffix says the format.
-    """
+    """Draw the body and its coefficients against the published measurements."""
     from rocking.plots import coefficient_picture, write
 
     write(coefficient_picture(answer.body, answer.tables), path)
 
 
 def draw_stages(answer: ImpactAnswer, path: Path) -> None:
-    """Draw the three stages of KED over the body.
-
-    Parameters
-    ----------
-    answer : ImpactAnswer
-        What `ImpactAnswer.of` computed.
-    path : Path
-        File to write; its suffix says the format.
-    """
+    """Draw the three stages of KED over the body."""
     from rocking.plots import figure_2, write
 
     write(figure_2(answer.body, onto=next(reversed(answer.tables))), path)

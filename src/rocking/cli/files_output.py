@@ -7,20 +7,7 @@ from rocking.errors import InvalidValueError
 
 
 def check_files(picture: Path | None, *others: Path | None) -> None:
-    """Refuse, before anything is computed, files that could not be written.
-
-    Parameters
-    ----------
-    picture : Path, optional
-        A picture.
-    *others : Path, optional
-        Files of any name.
-
-    Raises
-    ------
-    InvalidValueError
-        If the suffix of the picture is unknown, or a folder is not there.
-    """
+    """Refuse, before anything is computed, files that could not be written."""
     if picture is not None and picture.suffix not in {".png", ".svg", ".pdf"}:
         raise InvalidValueError(f"a picture is .png, .svg or .pdf, got {picture.name!r}")
     for path in (picture, *others):
@@ -29,17 +16,7 @@ def check_files(picture: Path | None, *others: Path | None) -> None:
 
 
 def write_csv(path: Path, head: list[str], columns: list[Any]) -> None:
-    """Write columns as comma-separated values, all digits kept.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    head : list of str
-        Names, with units in brackets.
-    columns : list of ndarray
-        The values.
-    """
+    """Write columns as comma-separated values, all digits kept."""
     import csv
 
     with path.open("w", newline="", encoding="utf-8") as file:
@@ -50,15 +27,7 @@ def write_csv(path: Path, head: list[str], columns: list[Any]) -> None:
 
 
 def write_netcdf(path: Path, dataset: Any) -> None:
-    """Write a dataset as netCDF.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    dataset : xarray.Dataset
-        The dataset.
-    """
+    """Write a dataset as netCDF."""
     from rocking.dynamics.export import extra
 
     extra("h5netcdf", "a netCDF file")
@@ -68,18 +37,6 @@ def write_netcdf(path: Path, dataset: Any) -> None:
 def plain(values: Any) -> Any:
     """Return an array as nested lists for JSON, with null where there is no number.
 
-    Parameters
-    ----------
-    values : array_like
-        Numbers.
-
-    Returns
-    -------
-    list or float or int or None
-        The numbers.
-
-    Examples
-    --------
     >>> plain([[1.0, float("nan")]])
     [[1.0, None]]
     """

@@ -20,29 +20,7 @@ _SOURCES = ("record", "synthetic", "count", "seed")
 
 
 def body_and_records(body: str | None, motions: list[str], *, sized: bool) -> tuple[Path | None, list[str]]:
-    """Return which word names the body and which ones the motions.
-
-    Parameters
-    ----------
-    body : str, optional
-        First word of the command.
-    motions : list of str
-        The other words.
-    sized : bool
-        Whether the body is given by its size, so that all words are motions.
-
-    Returns
-    -------
-    body : Path, optional
-        Body file.
-    records : list of str
-        Record files and pulses.
-
-    Raises
-    ------
-    InvalidValueError
-        If a motion stands before the body.
-    """
+    """Return which word names the body and which ones the motions."""
     if sized and body is not None and not is_body(body):
         return None, [body, *motions]
     for motion in motions:
@@ -55,26 +33,7 @@ def motions_from(
 ) -> tuple[MotionList, dict[str, Any]]:
     """Return the motions that a command was given.
 
-    Parameters
-    ----------
-    sources : dict
-        record, synthetic, count, seed, as they were given.
-    told : dict
-        What the record files leave open, as `rocking.cli.motion_options.motion_from` takes it.
-    quiet : bool
-        Whether to show no bar.
-
-    Returns
-    -------
-    motions : MotionList
-        The motions.
-    facts : dict
-        kind, count, and family and seed, or names.
-
-    Raises
-    ------
-    InvalidValueError
-        If options contradict one another, or there is no motion.
+    Returns facts: kind, count, and family and seed, or names.
     """
     from rocking.motions.pulse import Pulse
     from rocking.studies.record_set import SyntheticSet

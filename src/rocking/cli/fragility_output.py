@@ -22,40 +22,20 @@ MOST_CHOICES = 6
 
 @dataclass(frozen=True)
 class Files:
-    """Files that were asked for.
+    """Files that were asked for."""
 
-    Parameters
-    ----------
-    picture, csv, p58, nrml, excel, mat, netcdf : Path, optional
-        Where each goes.
-    common_dispersion : bool
-        Whether the curves in files are fitted again with one dispersion for all states, so that none cross.
-    """
-
-    picture: Path | None = None
+    picture: Path | None = None  # picture, csv, p58, nrml, excel, mat, netcdf: where each goes
     csv: Path | None = None
     p58: Path | None = None
     nrml: Path | None = None
     excel: Path | None = None
     mat: Path | None = None
     netcdf: Path | None = None
+    # whether the curves in files are fitted again with one dispersion for all states, so that none cross
     common_dispersion: bool = False
 
     def check(self, question: FragilityQuestion) -> None:
-        """Refuse, before anything is computed, what could not be written.
-
-        Parameters
-        ----------
-        question : FragilityQuestion
-            What was asked.
-
-        Raises
-        ------
-        InvalidValueError
-            If a folder is not there, a suffix is unknown, or a file holds one restitution and there are several.
-        MissingExtraError
-            If a library is missing.
-        """
+        """Refuse, before anything is computed, what could not be written."""
         from rocking.dynamics.export import extra
         from rocking.studies.fragility.nrml import intensity_type
 
@@ -75,20 +55,7 @@ class Files:
                 extra(module, f"{path.name}")
 
     def write(self, answer: FragilityAnswer, name: str | None) -> list[Path]:
-        """Write them.
-
-        Parameters
-        ----------
-        answer : FragilityAnswer
-            What was found.
-        name : str, optional
-            Name of the body.
-
-        Returns
-        -------
-        list of Path
-            The files.
-        """
+        """Write them."""
         if self.picture is not None:
             _draw(answer, self.picture)
         if self.csv is not None:
@@ -131,15 +98,7 @@ class Files:
 def counted(answer: FragilityAnswer) -> "CellTable":
     """Return what was counted at each level, and the fitted probability beside it.
 
-    Parameters
-    ----------
-    answer : FragilityAnswer
-        What was found.
-
-    Returns
-    -------
-    CellTable
-        A row for every restitution and level; the cell of a probability is empty where there is no curve.
+    Returns A row for every restitution and level; the cell of a probability is empty where there is no curve.
     """
     from rocking.studies.fragility.tables import CellTable
 

@@ -30,18 +30,7 @@ WIDE = 0.01
 
 
 def as_json(answer: FragilityAnswer) -> str:
-    """Return everything as JSON.
-
-    Parameters
-    ----------
-    answer : FragilityAnswer
-        What was found.
-
-    Returns
-    -------
-    str
-        One object, with the keys above.
-    """
+    """Return everything as JSON."""
     asked, found = answer.question, answer.found
     compared = answer.compared
     facts = {
@@ -97,15 +86,7 @@ def _plain(value: Any) -> Any:
 
 
 def show(answer: FragilityAnswer, length: str = "m") -> None:
-    """Print the curves, and what is to be known of them.
-
-    Parameters
-    ----------
-    answer : FragilityAnswer
-        What was found.
-    length : str
-        Unit of lengths.
-    """
+    """Print the curves, and what is to be known of them."""
     from rich.console import Console
 
     console, found = Console(highlight=False, soft_wrap=True), answer.found

@@ -32,39 +32,18 @@ _REACH = (0.9, 9.0, 16)
 
 @dataclass(frozen=True)
 class FragilityQuestion:
-    """An analysis that has been asked for.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    analysis : {"stripes", "cloud", "incremental"}
-        Which one.
-    measure : IntensityMeasure
-        The measure.
-    levels : ndarray, optional
-        Levels of the measure; None for a cloud, or for those that serve where none are given [its unit].
-    written : str
-        Unit that the levels were written in, empty if none; medians are printed in it.
-    states : tuple of float
-        Rotations over alpha [-].
-    factor : float
-        Factor on all motions of a cloud [-].
-    choices : dict of str to restitution
-        By the word that was given, the first one first.
-    settings : dict
-        As of `rocking.cli.study_output.settings_from`.
-    """
+    """An analysis that has been asked for."""
 
     body: Body
-    analysis: str
+    analysis: str  # which one
     measure: IntensityMeasure
+    # levels of the measure; None for a cloud, or for those that serve where none are given [its unit]
     levels: FloatArray | None
-    written: str
-    states: tuple[float, ...]
-    factor: float
-    choices: dict[str, Any]
-    settings: dict[str, Any]
+    written: str  # unit that the levels were written in, empty if none; medians are printed in it
+    states: tuple[float, ...]  # rotations over alpha [-]
+    factor: float  # factor on all motions of a cloud [-]
+    choices: dict[str, Any]  # by the word that was given, the first one first
+    settings: dict[str, Any]  # as of `rocking.cli.study_output.settings_from`
 
     @property
     def unit(self) -> tuple[str, float]:
@@ -76,29 +55,7 @@ class FragilityQuestion:
     def of(
         cls, body: Body, asked: dict[str, Any], restitution: Sequence[str] | None, settings: dict[str, Any]
     ) -> "FragilityQuestion":
-        """Put the question together; everything but the motions is checked here.
-
-        Parameters
-        ----------
-        body : Body
-            The body.
-        asked : dict
-            analysis, measure, levels, states, factor, as they were written.
-        restitution : sequence of str, optional
-            Models or coefficients.
-        settings : dict
-            As of `rocking.cli.study_output.settings_from`.
-
-        Returns
-        -------
-        FragilityQuestion
-            The question.
-
-        Raises
-        ------
-        InvalidValueError
-            If a word cannot be read, or options contradict one another.
-        """
+        """Put the question together; everything but the motions is checked here."""
         kind, wanted = checks.one_of("--analysis", asked["analysis"], ANALYSES), measure(asked["measure"])
         words = list(restitution or ["ked"])
         twice = next((word for word in words if words.count(word) > 1), None)
@@ -116,27 +73,7 @@ class FragilityQuestion:
         return cls(body, kind, wanted, levels, written, rotations, factor, choices, settings)
 
     def answered(self, sources: dict[str, Any], told: dict[str, Any], quiet: bool) -> "FragilityAnswer":
-        """Make the motions and compute.
-
-        Parameters
-        ----------
-        sources : dict
-            record, synthetic, count, seed, as they were given.
-        told : dict
-            What the record files leave open, as `rocking.cli.motion_options.motion_from` takes it.
-        quiet : bool
-            Whether to show no bar.
-
-        Returns
-        -------
-        FragilityAnswer
-            What is printed.
-
-        Raises
-        ------
-        InvalidValueError
-            If there are no motions, or too many histories.
-        """
+        """Make the motions and compute."""
         motions, facts = motions_from(sources, told, quiet=quiet)
         levels = self._levels(motions)
         total = len(motions) * (1 if levels is None else levels.size) * len(self.choices)
@@ -177,24 +114,12 @@ class FragilityQuestion:
 
 @dataclass(frozen=True, eq=False)
 class FragilityAnswer:
-    """What was found.
+    """What was found."""
 
-    Parameters
-    ----------
-    question : FragilityQuestion
-        What was asked.
-    motions : dict
-        Where the motions come from, as plain values.
-    found : StripeAnalysis, CloudAnalysis or IncrementalAnalysis
-        The analysis with the first restitution.
-    compared : Sensitivity, optional
-        Those with all restitutions, where there are several.
-    """
-
-    question: FragilityQuestion
-    motions: dict[str, Any]
-    found: Any
-    compared: "Sensitivity | None"
+    question: FragilityQuestion  # what was asked
+    motions: dict[str, Any]  # where the motions come from, as plain values
+    found: Any  # the analysis with the first restitution
+    compared: "Sensitivity | None"  # those with all restitutions, where there are several
 
     @property
     def results(self) -> dict[str, Any]:

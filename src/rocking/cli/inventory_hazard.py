@@ -20,30 +20,7 @@ def hazard_from(
 ) -> Hazard:
     """Return the hazard that a command was given.
 
-    Parameters
-    ----------
-    records : sequence of str, optional
-        Record files.
-    synthetic : str, optional
-        Name of a family.
-    pga, pgv : str, optional
-        Levels with their units.
-    count, seed : int, optional
-        Of the synthetic motions [-].
-    told : dict
-        What the record files leave open, as `rocking.cli.motion_options.motion_from` takes it.
-    progress : callable, optional
-        Told how many synthetic motions have been made since it was last called.
-
-    Returns
-    -------
-    Hazard
-        The motions.
-
-    Raises
-    ------
-    InvalidValueError
-        If options contradict one another or the level is missing.
+    count, seed: of the synthetic motions [-].
     """
     if pga is not None and pgv is not None:
         raise InvalidValueError("give --pga or --pgv, not both: motions are scaled to one of them")

@@ -18,24 +18,7 @@ Progress = Callable[[int], None]
 
 
 def answer(objects: Path, encoding: str, hazard: Callable[[Progress], Hazard], restitution: str) -> Assessment:
-    """Read a list, make the motions and assess every object.
-
-    Parameters
-    ----------
-    objects : Path
-        CSV file.
-    encoding : str
-        Its encoding.
-    hazard : callable
-        Takes a function that it tells of each motion, returns the hazard.
-    restitution : str
-        Model, file with a model, or coefficient.
-
-    Returns
-    -------
-    Assessment
-        The verdicts.
-    """
+    """Read a list, make the motions and assess every object."""
     # a slip in the list shows before the motions are made
     inventory, law = read_inventory(objects, encoding), restitution_from(restitution)
     with _progress("motions") as made:
@@ -46,17 +29,7 @@ def answer(objects: Path, encoding: str, hazard: Callable[[Progress], Hazard], r
 def write(assessment: Assessment, folder: Path | None) -> tuple[list[Path], list[str]]:
     """Write the report, if a folder was named.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        The verdicts.
-    folder : Path, optional
-        Where to.
-
-    Returns
-    -------
-    tuple of list
-        The files, and what was left out for want of a library.
+    Returns the files, and what was left out for want of a library.
     """
     if folder is None:
         return [], []
@@ -68,15 +41,7 @@ def write(assessment: Assessment, folder: Path | None) -> tuple[list[Path], list
 def as_json(assessment: Assessment) -> str:
     """Return everything as JSON.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        The verdicts.
-
-    Returns
-    -------
-    str
-        One object; SI units, named in the keys.
+    Returns one object; SI units, named in the keys.
     """
     from rocking.report.inventory_folder import inventory_json
 
@@ -84,13 +49,7 @@ def as_json(assessment: Assessment) -> str:
 
 
 def show(assessment: Assessment) -> None:
-    """Print the ranking.
-
-    Parameters
-    ----------
-    assessment : Assessment
-        The verdicts.
-    """
+    """Print the ranking."""
     from rich.console import Console
     from rich.text import Text
 

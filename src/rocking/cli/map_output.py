@@ -29,33 +29,16 @@ _LINE = 1e-4
 
 @dataclass(frozen=True)
 class MapQuestion:
-    """A map that has been asked for.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    motion : GroundMotion or Pulse
-        The motion.
-    x, y : Axis
-        The axes.
-    choices : dict of str to restitution
-        By the word that was given; the first is the map that is printed.
-    refine : int, optional
-        Levels of refinement.
-    settings : dict
-        As of `rocking.cli.study_output.settings_from`.
-    written : dict of str to str
-        Units that axes were written in, by axis, in which they are printed and drawn.
-    """
+    """A map that has been asked for."""
 
     body: Body
     motion: Motion
-    x: Axis
+    x: Axis  # x, y: the axes
     y: Axis
-    choices: dict[str, Any]
-    refine: int | None
-    settings: dict[str, Any]
+    choices: dict[str, Any]  # by the word that was given; the first is the map that is printed
+    refine: int | None  # levels of refinement
+    settings: dict[str, Any]  # as of `rocking.cli.study_output.settings_from`
+    # units that axes were written in, by axis, in which they are printed and drawn
     written: dict[str, str] = field(default_factory=dict)
 
     @classmethod
@@ -72,32 +55,7 @@ class MapQuestion:
     ) -> "MapQuestion":
         """Put the question together.
 
-        Parameters
-        ----------
-        body : Body
-            The body.
-        motion : GroundMotion or Pulse
-            The motion.
-        axes : tuple of (str, str)
-            The axes as they were written, x first.
-        restitution : sequence of str, optional
-            Models or coefficients.
-        refine : int, optional
-            Levels of refinement.
-        settings : dict
-            As of `rocking.cli.study_output.settings_from`.
-        drawn : bool
-            Whether there will be a picture.
-
-        Returns
-        -------
-        MapQuestion
-            Checked as far as the study does not check it.
-
-        Raises
-        ------
-        InvalidValueError
-            If the axes cannot be read, the map is too large, or options contradict one another.
+        Returns checked as far as the study does not check it.
         """
         (x, in_x), (y, in_y) = (axis_from(name, word) for name, word in zip(("--x", "--y"), axes, strict=True))
         written = {axis.name: unit for axis, unit in ((x, in_x), (y, in_y)) if unit}
@@ -120,18 +78,7 @@ class MapQuestion:
         return (word, shared.UNITS[axis.unit][word]) if word else (axis.unit, 1.0)
 
     def answered(self, *, quiet: bool = False) -> "MapAnswer":
-        """Compute the map, with every restitution.
-
-        Parameters
-        ----------
-        quiet : bool
-            Whether to show no bar.
-
-        Returns
-        -------
-        MapAnswer
-            What is printed.
-        """
+        """Compute the map, with every restitution."""
         from rocking.studies.islands import safe_islands
         from rocking.studies.overturning_map import overturning_map
         from rocking.studies.sensitivity import map_sensitivity
@@ -152,24 +99,12 @@ class MapQuestion:
 
 @dataclass(frozen=True, eq=False)
 class MapAnswer:
-    """A map, its islands, and how the restitution changes it.
+    """A map, its islands, and how the restitution changes it."""
 
-    Parameters
-    ----------
-    question : MapQuestion
-        What was asked.
-    found : xarray.Dataset
-        The map with the first restitution, as of `overturning_map`.
-    islands : Islands
-        Its safe islands.
-    compared : Sensitivity, optional
-        Maps with all restitutions, where there are several.
-    """
-
-    question: MapQuestion
-    found: "xr.Dataset"
-    islands: "Islands"
-    compared: "Sensitivity | None"
+    question: MapQuestion  # what was asked
+    found: "xr.Dataset"  # the map with the first restitution, as of `overturning_map`
+    islands: "Islands"  # its safe islands
+    compared: "Sensitivity | None"  # maps with all restitutions, where there are several
 
     @property
     def whole(self) -> "xr.Dataset":
@@ -188,27 +123,8 @@ class MapAnswer:
 def axis_from(option: str, word: str) -> tuple[Axis, str]:
     """Return an axis from one word.
 
-    Parameters
-    ----------
-    option : str
-        Where it was given, for messages.
-    word : str
-        Such as ``pga=0.1g:1g:50``.
+    Returns written: unit that its values were written in, empty if none.
 
-    Returns
-    -------
-    axis : Axis
-        The axis.
-    written : str
-        Unit that its values were written in, empty if none.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such axis, or its values cannot be read or are not allowed.
-
-    Examples
-    --------
     >>> axis, unit = axis_from("--x", "semi_diagonal=40cm,80cm")
     >>> axis.values.tolist(), unit
     ([0.4, 0.8], 'cm')
@@ -239,20 +155,7 @@ def _check_size(x: Axis, y: Axis, *, drawn: bool) -> None:
 
 
 def write(answer: MapAnswer, picture: Path | None, csv: Path | None, netcdf: Path | None) -> list[Path]:
-    """Write what was asked for.
-
-    Parameters
-    ----------
-    answer : MapAnswer
-        The map.
-    picture, csv, netcdf : Path, optional
-        Where each goes.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
+    """Write what was asked for."""
     if picture is not None:
         _draw(answer, picture)
     if csv is not None:

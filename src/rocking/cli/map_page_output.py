@@ -31,18 +31,7 @@ _MEANINGS = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 
 
 
 def as_json(answer: MapAnswer) -> str:
-    """Return everything as JSON.
-
-    Parameters
-    ----------
-    answer : MapAnswer
-        The map.
-
-    Returns
-    -------
-    str
-        One object, with the keys above.
-    """
+    """Return everything as JSON."""
     asked, found = answer.question, answer.found
     facts = {
         "body": repr(asked.body),
@@ -68,15 +57,7 @@ def as_json(answer: MapAnswer) -> str:
 
 
 def show(answer: MapAnswer, length: str = "m") -> None:
-    """Print the map in words.
-
-    Parameters
-    ----------
-    answer : MapAnswer
-        The map.
-    length : str
-        Unit of lengths.
-    """
+    """Print the map in words."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
@@ -106,15 +87,7 @@ def show(answer: MapAnswer, length: str = "m") -> None:
 def shares(answer: MapAnswer) -> list[dict[str, Any]]:
     """Return how many cells end in which way.
 
-    Parameters
-    ----------
-    answer : MapAnswer
-        The map.
-
-    Returns
-    -------
-    list of dict
-        mode, meaning, count, share [-], by mode.
+    Returns mode, meaning, count, share [-], by mode.
     """
     modes, counts = np.unique(answer.found["mode"].values, return_counts=True)
     return [
@@ -126,18 +99,6 @@ def shares(answer: MapAnswer) -> list[dict[str, Any]]:
 def meaning(mode: int) -> str:
     """Return a mode in words.
 
-    Parameters
-    ----------
-    mode : int
-        -3 failed, -2 not lifted, -1 survived, n >= 0 overturned after n impacts.
-
-    Returns
-    -------
-    str
-        Words.
-
-    Examples
-    --------
     >>> meaning(-1), meaning(2)
     ('rocks, stays standing', 'overturns after 2 impacts')
     """
@@ -147,15 +108,7 @@ def meaning(mode: int) -> str:
 def extent(answer: MapAnswer) -> dict[str, Any] | None:
     """Return where overturning lies, of all points that were computed.
 
-    Parameters
-    ----------
-    answer : MapAnswer
-        The map.
-
-    Returns
-    -------
-    dict, optional
-        ``x`` and ``y``, least and greatest, and ``first``, the lowest point along y; None if nothing overturns.
+    Returns ``x`` and ``y``, least and greatest, and ``first``, the lowest point along y; None if nothing overturns.
     """
     x, y, modes = _points(answer)
     x, y = x[modes >= 0], y[modes >= 0]

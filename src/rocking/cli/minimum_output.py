@@ -33,27 +33,13 @@ _SPOKEN = 4
 
 @dataclass(frozen=True)
 class MinimumAnswer:
-    """All crossings of a body under a motion.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    motion : GroundMotion or Pulse
-        The motion.
-    restitution : RestitutionModel or float
-        The restitution.
-    settings : dict
-        As of `rocking.cli.study_output.settings_from`.
-    found : Crossings
-        What was found.
-    """
+    """All crossings of a body under a motion."""
 
     body: Body
     motion: Motion
     restitution: Any
-    settings: dict[str, Any]
-    found: Crossings
+    settings: dict[str, Any]  # as of `rocking.cli.study_output.settings_from`
+    found: Crossings  # what was found
 
     @classmethod
     def of(
@@ -68,25 +54,7 @@ class MinimumAnswer:
     ) -> "MinimumAnswer":
         """Search.
 
-        Parameters
-        ----------
-        body : Body
-            The body.
-        motion : GroundMotion or Pulse
-            The motion.
-        restitution : str
-            Model or coefficient.
-        search : dict
-            lowest, highest [m/s2], points, levels, as `minimum_overturning_acceleration` takes them.
-        settings : dict
-            As of `rocking.cli.study_output.settings_from`.
-        quiet : bool
-            Whether to show no bar.
-
-        Returns
-        -------
-        MinimumAnswer
-            What is printed.
+        search: lowest, highest [m/s2], points, levels, as `minimum_overturning_acceleration` takes them.
         """
         from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
 
@@ -104,20 +72,7 @@ class MinimumAnswer:
 def search_from(lowest: str | None, highest: str | None) -> dict[str, float | None]:
     """Return the range of accelerations that a command was given.
 
-    Parameters
-    ----------
-    lowest, highest : str, optional
-        With their units, or in m/s2.
-
-    Returns
-    -------
-    dict
-        lowest and highest, None where not given [m/s2].
-
-    Raises
-    ------
-    InvalidValueError
-        If the lowest is not below the highest.
+    Returns lowest and highest, None where not given [m/s2].
     """
     words = {"lowest": lowest, "highest": highest}
     found = {
@@ -132,15 +87,7 @@ def search_from(lowest: str | None, highest: str | None) -> dict[str, float | No
 def sentence(found: Crossings) -> str:
     """Return all crossings in words.
 
-    Parameters
-    ----------
-    found : Crossings
-        As of `minimum_overturning_acceleration`.
-
-    Returns
-    -------
-    str
-        One sentence; with many crossings the first and the last.
+    Returns one sentence; with many crossings the first and the last.
     """
     falls = found.overturning_intervals
     scanned = f"scanned from {_g(found.lowest)} to {_g(found.highest)}, resolution {percent(found.resolution)}"
@@ -172,18 +119,7 @@ def _g(acceleration: float) -> str:
 
 
 def as_json(answer: MinimumAnswer) -> str:
-    """Return everything as JSON.
-
-    Parameters
-    ----------
-    answer : MinimumAnswer
-        What was found.
-
-    Returns
-    -------
-    str
-        One object, with the keys above.
-    """
+    """Return everything as JSON."""
     found = answer.found
     facts = {
         "body": repr(answer.body),
@@ -214,15 +150,7 @@ def as_json(answer: MinimumAnswer) -> str:
 def crossings(found: Crossings) -> list[dict[str, float | int]]:
     """Return every crossing as plain values.
 
-    Parameters
-    ----------
-    found : Crossings
-        As of `minimum_overturning_acceleration`.
-
-    Returns
-    -------
-    list of dict
-        As the key ``crossings`` of the JSON.
+    Returns as the key ``crossings`` of the JSON.
     """
     return [
         {
@@ -239,20 +167,7 @@ def crossings(found: Crossings) -> list[dict[str, float | int]]:
 
 
 def write(answer: MinimumAnswer, picture: Path | None, csv: Path | None) -> list[Path]:
-    """Write what was asked for.
-
-    Parameters
-    ----------
-    answer : MinimumAnswer
-        What was found.
-    picture, csv : Path, optional
-        Where each goes.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
+    """Write what was asked for."""
     found = answer.found
     if picture is not None:
         from rocking.plots.crossings import crossings_picture
@@ -269,17 +184,7 @@ def write(answer: MinimumAnswer, picture: Path | None, csv: Path | None) -> list
 
 
 def show(answer: MinimumAnswer, length: str = "m", acceleration: str = "m/s2") -> None:
-    """Print all crossings.
-
-    Parameters
-    ----------
-    answer : MinimumAnswer
-        What was found.
-    length : str
-        Unit of lengths.
-    acceleration : str
-        Unit of accelerations beside g.
-    """
+    """Print all crossings."""
     from rich.console import Console
 
     console, found = Console(highlight=False, soft_wrap=True), answer.found

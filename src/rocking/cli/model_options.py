@@ -7,16 +7,5 @@ from rocking.restitution.from_file import file_of, model_in_file
 
 
 def models_from(words: Sequence[str] | None) -> list[RestitutionModel] | None:
-    """Return the models that a command was given, none if it was given none.
-
-    Parameters
-    ----------
-    words : sequence of str, optional
-        As `rocking.restitution.model` takes them, or ``path/to/file.py:ClassName``.
-
-    Returns
-    -------
-    list of RestitutionModel, optional
-        The models.
-    """
+    """Return the models that a command was given, none if it was given none."""
     return [model_in_file(word) if file_of(word) else model(word) for word in words] if words else None

@@ -26,41 +26,9 @@ def motion_from(
 ) -> GroundMotion | Pulse:
     """Return the motion that a command was given; a name that exists as a file is a file, whatever else it might be.
 
-    Parameters
-    ----------
-    word : str
-        Path of a record file, or a pulse as `rocking.motions.pulses.pulse` takes it.
-    format : str, optional
-        Name of the file's format; found by content if not given.
-    units : str, optional
-        Unit of acceleration, where the file does not state it.
-    time_step : float, optional
-        Step between samples, where the file does not state it [s].
-    component : str, optional
-        Name of the horizontal component; needed where the file has several.
-    vertical : str, optional
-        Name of the vertical component.
-    vertical_file : str, optional
-        Path of the record file that has the vertical component, if it is another one.
-    scale : float, optional
-        Factor on the accelerations of both components, not zero [-].
+    time_step: step between samples, where the file does not state it [s]; scale: factor on the accelerations of both
+    components, not zero [-].
 
-    Returns
-    -------
-    GroundMotion or Pulse
-        The motion.
-
-    Raises
-    ------
-    InvalidValueError
-        If an option has no such value, a component must be named, or a pulse is given an option for files.
-    RecordError
-        If there is neither a file nor a pulse of that name, or the file cannot be read.
-    UnknownModelError
-        If the pulse is unknown or its parameters are.
-
-    Examples
-    --------
     >>> motion_from("sine:amplitude=3,period=0.8", scale=2.0).peak
     6.0
     """

@@ -25,23 +25,8 @@ _MOST_PERIODS = 1000
 def periods_from(words: str) -> list[float]:
     """Return the periods of a spectrum from one word.
 
-    Parameters
-    ----------
-    words : str
-        Numbers above zero with commas between [s].
+    words: numbers above zero with commas between [s]. Returns the periods [s].
 
-    Returns
-    -------
-    list of float
-        The periods [s].
-
-    Raises
-    ------
-    InvalidValueError
-        If there is none, there are more than 1000, or one is not a number above zero.
-
-    Examples
-    --------
     >>> periods_from("0.1, 0.5,1")
     [0.1, 0.5, 1.0]
     """
@@ -57,15 +42,7 @@ def periods_from(words: str) -> list[float]:
 
 
 def show(answer: MotionAnswer, acceleration: str = "m/s2") -> None:
-    """Print what it is, its intensity measures and its spectrum.
-
-    Parameters
-    ----------
-    answer : MotionAnswer
-        What `MotionAnswer.of` computed.
-    acceleration : str
-        Unit of accelerations beside g.
-    """
+    """Print what it is, its intensity measures and its spectrum."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
@@ -91,15 +68,7 @@ def show(answer: MotionAnswer, acceleration: str = "m/s2") -> None:
 def as_json(answer: MotionAnswer) -> str:
     """Return everything as JSON.
 
-    Parameters
-    ----------
-    answer : MotionAnswer
-        What `MotionAnswer.of` computed.
-
-    Returns
-    -------
-    str
-        One object; SI units, named in the keys where a quantity has one.
+    Returns one object; SI units, named in the keys where a quantity has one.
     """
     facts = motion_facts(answer.motion, answer.samples, answer.measures)
     facts["spectrum"] = spectrum_facts(answer.spectrum)
@@ -107,15 +76,7 @@ def as_json(answer: MotionAnswer) -> str:
 
 
 def write_csv(answer: MotionAnswer, path: Path) -> None:
-    """Write time, acceleration, velocity and displacement at the samples, those of a pulse as its formulas give them.
-
-    Parameters
-    ----------
-    answer : MotionAnswer
-        What `MotionAnswer.of` computed.
-    path : Path
-        File to write; SI units, named in the first line.
-    """
+    """Write time, acceleration, velocity and displacement at the samples; of a pulse as its formulas give them."""
     motion, samples = answer.motion, answer.samples
     columns: dict[str, FloatArray] = {"time_s": np.asarray(samples.time), "acceleration_m_s2": samples.acceleration}
     if isinstance(motion, GroundMotion):
@@ -132,15 +93,7 @@ def write_csv(answer: MotionAnswer, path: Path) -> None:
 
 
 def draw(answer: MotionAnswer, path: Path) -> None:
-    """Draw the motion and its spectrum.
-
-    Parameters
-    ----------
-    answer : MotionAnswer
-        What `MotionAnswer.of` computed.
-    path : Path
-        File to write; its suffix says the format.
-    """
+    """Draw the motion and its spectrum."""
     from rocking.plots import ground_motion_picture, write
 
     write(ground_motion_picture(answer.motion), path)

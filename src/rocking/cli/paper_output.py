@@ -14,33 +14,12 @@ _STYLE = {HOLDS: "green", IN_PART: "yellow", FAILS: "red", UNRESOLVED: "cyan"}
 
 
 def as_json(result: Reproduction) -> str:
-    """Return every number as JSON.
-
-    Parameters
-    ----------
-    result : Reproduction
-        The paper, recomputed.
-
-    Returns
-    -------
-    str
-        One object.
-    """
+    """Return every number as JSON."""
     return json.dumps(as_plain(result), indent=2)
 
 
 def what_to_look_at(result: Reproduction, written: list[Path], folder: Path) -> None:
-    """Print what was written and what to look at first.
-
-    Parameters
-    ----------
-    result : Reproduction
-        The paper, recomputed.
-    written : list of Path
-        Main files.
-    folder : Path
-        The folder.
-    """
+    """Print what was written and what to look at first."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
@@ -54,13 +33,7 @@ def what_to_look_at(result: Reproduction, written: list[Path], folder: Path) -> 
 
 
 def show(result: Reproduction) -> None:
-    """Print the summary: tables, claims, league, verdict.
-
-    Parameters
-    ----------
-    result : Reproduction
-        The paper, recomputed.
-    """
+    """Print the summary: tables, claims, league, verdict."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
@@ -85,15 +58,7 @@ def show(result: Reproduction) -> None:
 def progress(*, quiet: bool) -> Iterator[Callable[[str], None]]:
     """Show a progress bar, and give the function that moves it.
 
-    Parameters
-    ----------
-    quiet : bool
-        Show nothing.
-
-    Yields
-    ------
-    callable
-        Takes the name of the step that begins.
+    Returns takes the name of the step that begins.
     """
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn

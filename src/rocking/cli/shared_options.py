@@ -70,25 +70,8 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.", rich_help_pa
 def units_of(word: str | None, *kinds: Mapping[str, float]) -> tuple[str | None, ...]:
     """Return the unit of every kind in a word such as ``mm,g``; no unit is of two kinds.
 
-    Parameters
-    ----------
-    word : str, optional
-        What was given.
-    *kinds : mapping
-        The units of each kind.
+    Returns one of each kind, None where none was given.
 
-    Returns
-    -------
-    tuple of str
-        One of each kind, None where none was given.
-
-    Raises
-    ------
-    InvalidValueError
-        If a unit is of none of these kinds, or there are two of one kind.
-
-    Examples
-    --------
     >>> from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
     >>> units_of("g, mm", LENGTH_UNITS, ACCELERATION_UNITS), units_of(None, LENGTH_UNITS)
     (('mm', 'g'), (None,))
@@ -109,22 +92,8 @@ def units_of(word: str | None, *kinds: Mapping[str, float]) -> tuple[str | None,
 def in_unit(value: float, unit: str, digits: str = ".4g") -> str:
     """Return a length or an acceleration in the unit in which the question was asked.
 
-    Parameters
-    ----------
-    value : float
-        Length or acceleration [m or m/s2].
-    unit : str
-        Unit to write it in.
-    digits : str
-        Format of the number.
+    value: length or acceleration [m or m/s2].
 
-    Returns
-    -------
-    str
-        Number and unit.
-
-    Examples
-    --------
     >>> in_unit(0.5, "mm"), in_unit(1.0, "gal")
     ('500 mm', '100 gal')
     """
@@ -136,14 +105,6 @@ def in_unit(value: float, unit: str, digits: str = ".4g") -> str:
 def beside_g(unit: str) -> str:
     """Return the unit in which an acceleration is written where it stands in g too.
 
-    Parameters
-    ----------
-    unit : str
-        Unit in which the question was asked.
-
-    Returns
-    -------
-    str
-        The same, and m/s2 in place of g.
+    Returns the same, and m/s2 in place of g.
     """
     return "m/s2" if unit == "g" else unit

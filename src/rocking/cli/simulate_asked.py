@@ -21,36 +21,15 @@ _SPACE = ("motion_y", "motion_z", "component_y", "component_z")
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """The options of one call.
+    """The options of one call."""
 
-    Parameters
-    ----------
-    values : dict
-        Parameter of the command to its value.
-    typed : frozenset of str
-        Parameters that were typed, so that their values are no defaults.
-    document : Path, optional
-        The file that says everything, if the first word is one.
-    """
-
-    values: dict[str, Any]
-    typed: frozenset[str]
-    document: Path | None
+    values: dict[str, Any]  # parameter of the command to its value
+    typed: frozenset[str]  # parameters that were typed, so that their values are no defaults
+    document: Path | None  # the file that says everything, if the first word is one
 
     @classmethod
     def of(cls, context: typer.Context) -> "Asked":
-        """Return what was typed.
-
-        Parameters
-        ----------
-        context : typer.Context
-            The command as it was typed.
-
-        Returns
-        -------
-        Asked
-            Its options.
-        """
+        """Return what was typed."""
         document = simulate_document.path_of(context)
         typed = frozenset(name for name in context.params if simulate_document.typed(context, name))
         unit, units = units_of(context.params["units"], LENGTH_UNITS, ACCELERATION_UNITS)
@@ -68,42 +47,17 @@ class Asked:
         return self.values["unit"] or "m", self.values["units"] or "m/s2"
 
     def some(self, names: tuple[str, ...]) -> dict[str, Any]:
-        """Return some options.
-
-        Parameters
-        ----------
-        names : tuple of str
-            Their names.
-
-        Returns
-        -------
-        dict
-            Name to value.
-        """
+        """Return some options."""
         return {name: self.values[name] for name in names}
 
     def only_typed(self, names: tuple[str, ...]) -> dict[str, Any]:
-        """Return those of some options that were typed, as they are spelt, to refuse them.
-
-        Parameters
-        ----------
-        names : tuple of str
-            Their names.
-
-        Returns
-        -------
-        dict
-            Option to value.
-        """
+        """Return those of some options that were typed, as they are spelt, to refuse them."""
         return spelt(self.some(tuple(name for name in names if name in self.typed)))
 
     def question(self) -> Question:
         """Return the question about a plane body.
 
-        Returns
-        -------
-        ResponseQuestion
-            Body, motion or first rotation, friction, and how to compute.
+        Returns Body, motion or first rotation, friction, and how to compute.
         """
         refuse("a plane body is no mesh and has one horizontal motion", self.only_typed((*_MESH, *_SPACE)))
         values, size, free = self.values, self.some(_SIZE), self.values["free"]

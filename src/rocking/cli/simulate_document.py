@@ -13,20 +13,7 @@ _OUTPUTS = {"body", "picture", "animation", "csv", "mat", "netcdf", "as_json"}
 def path_of(context: typer.Context) -> Path | None:
     """Return the file that says everything, if the command was given one: a TOML file with a table [response].
 
-    Parameters
-    ----------
-    context : typer.Context
-        The command as it was typed.
-
-    Returns
-    -------
-    Path, optional
-        None if the first word is something else.
-
-    Raises
-    ------
-    InvalidValueError
-        If other options say what the file says.
+    Returns none if the first word is something else.
     """
     from rocking.studies.job.response import is_response
 
@@ -43,15 +30,7 @@ def path_of(context: typer.Context) -> Path | None:
 def answer_of(path: Path) -> Answer:
     """Return the answer to what a file asks.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Answer
-        The response with the first restitution, and with the others that the file lists.
+    Returns the response with the first restitution, and with the others that the file lists.
     """
     from rocking.studies.job.response import ResponseJob
 
@@ -61,17 +40,7 @@ def answer_of(path: Path) -> Answer:
 def typed(context: typer.Context, name: str) -> bool:
     """Return whether an option was typed.
 
-    Parameters
-    ----------
-    context : typer.Context
-        The command as it was typed.
-    name : str
-        Parameter of the command.
-
-    Returns
-    -------
-    bool
-        False where its value is the default.
+    Returns false where its value is the default.
     """
     source = context.get_parameter_source(name)
     return source is not None and source.name == "COMMANDLINE"

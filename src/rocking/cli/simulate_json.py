@@ -12,15 +12,7 @@ from rocking.report.facts.response import other_facts, response_facts
 def as_json(answer: Answer) -> str:
     """Return everything as JSON.
 
-    Parameters
-    ----------
-    answer : Answer
-        What `Answer.of` computed.
-
-    Returns
-    -------
-    str
-        One object; SI units, null where something does not exist.
+    Returns one object; SI units, null where something does not exist.
     """
     facts = response_facts(answer.response, answer.friction)
     facts["other_models"] = {name: other_facts(found) for name, found in answer.others.items()}

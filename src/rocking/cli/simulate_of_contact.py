@@ -12,22 +12,7 @@ from rocking.errors import InvalidValueError
 
 
 def answer(asked: Asked, files: Files, *, as_json: bool) -> None:
-    """Print, write and draw what a plane body does that may slide and hop.
-
-    Parameters
-    ----------
-    asked : Asked
-        What was typed.
-    files : Files
-        What to write.
-    as_json : bool
-        Whether to print JSON.
-
-    Raises
-    ------
-    InvalidValueError
-        If the file says everything itself, which --contact does not read.
-    """
+    """Print, write and draw what a plane body does that may slide and hop."""
     if asked.document is not None:
         raise InvalidValueError(f"{asked.document} has a table [response] and says everything itself: no --contact")
     refuse("--contact has one engine, with the full equations", asked.only_typed(("linear", "engine", "animation")))

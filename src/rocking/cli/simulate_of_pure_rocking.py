@@ -7,17 +7,7 @@ from rocking.cli.solid_options import refuse
 
 
 def answer(asked: Asked, files: Files, *, as_json: bool) -> None:
-    """Print, write and draw how a plane body rocks without sliding.
-
-    Parameters
-    ----------
-    asked : Asked
-        What was typed.
-    files : Files
-        What to write.
-    as_json : bool
-        Whether to print JSON.
-    """
+    """Print, write and draw how a plane body rocks without sliding."""
     if asked.document is not None:
         found = simulate_document.answer_of(asked.document)
     else:

@@ -25,17 +25,7 @@ _MESH = ("unit", "density", "up", "fill_holes", "base_tolerance")
 
 
 def answer(asked: Asked, files: Files, *, as_json: bool) -> None:
-    """Print, write and draw how a body in space rocks.
-
-    Parameters
-    ----------
-    asked : Asked
-        What was typed.
-    files : Files
-        What to write.
-    as_json : bool
-        Whether to print JSON.
-    """
+    """Print, write and draw how a body in space rocks."""
     refuse("a body in space has an engine of its own", asked.only_typed((*_PLANE, "engine", "animation")))
     check_files(files.picture, files.csv, files.mat, files.netcdf)
     values = asked.values

@@ -16,66 +16,22 @@ from rocking.evidence.coefficient_table import default_models
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """A response, and what the other models of impact make of the same question.
+    """A response, and what the other models of impact make of the same question."""
 
-    Parameters
-    ----------
-    response : Response
-        With the restitution asked for.
-    friction : float
-        Coefficient of friction between body and ground [-].
-    others : dict of str to Response or str
-        By model: the response, or why the model has none for this body.
-    """
-
-    response: Response
-    friction: float
-    others: dict[str, Response | str]
+    response: Response  # with the restitution asked for
+    friction: float  # coefficient of friction between body and ground [-]
+    others: dict[str, Response | str]  # by model: the response, or why the model has none for this body
 
     @classmethod
     def of(cls, question: Question, restitution: str) -> "Answer":
-        """Compute the response, and what every model that needs no value makes of the same question.
-
-        Parameters
-        ----------
-        question : Question
-            Body, motion, and how to compute.
-        restitution : str
-            Model or coefficient.
-
-        Returns
-        -------
-        Answer
-            Everything that is printed.
-
-        Raises
-        ------
-        RockingError
-            If the response could not be computed.
-        """
+        """Compute the response, and what every model that needs no value makes of the same question."""
         response = _computed(question, restitution_from(restitution))
         rivals = {model.label: model for model in default_models() if model.label != response.rocker.label}
         return cls(response, question.friction, {name: _tried(question, model) for name, model in rivals.items()})
 
     @classmethod
     def of_choices(cls, question: Question) -> "Answer":
-        """Compute the response with the first restitution of a question, and with all others that it lists.
-
-        Parameters
-        ----------
-        question : Question
-            Body, motion, restitutions, and how to compute.
-
-        Returns
-        -------
-        Answer
-            Everything that is printed.
-
-        Raises
-        ------
-        RockingError
-            If the first response could not be computed.
-        """
+        """Compute the response with the first restitution of a question, and with all others that it lists."""
         (_, first), *rest = question.choices.items()
         response = _computed(question, first)
         return cls(response, question.friction, {name: _tried(question, choice) for name, choice in rest})
@@ -97,20 +53,9 @@ def _tried(question: Question, restitution: Any) -> Response | str:
 
 @dataclass(frozen=True, slots=True)
 class Files:
-    """Files to write.
+    """Files to write."""
 
-    Parameters
-    ----------
-    picture, animation, csv, mat, netcdf : Path, optional
-        Where each goes, if it was asked for.
-
-    Raises
-    ------
-    RockingError
-        If no animation can have that suffix.
-    """
-
-    picture: Path | None
+    picture: Path | None  # picture, animation, csv, mat, netcdf: where each goes, if it was asked for
     animation: Path | None
     csv: Path | None
     mat: Path | None
@@ -122,18 +67,7 @@ class Files:
             raise RockingError(f"an animation is .html or .gif, got {self.animation.name!r}")
 
     def write(self, answer: Answer) -> list[Path]:
-        """Write what was asked for.
-
-        Parameters
-        ----------
-        answer : Answer
-            What `Answer.of` computed.
-
-        Returns
-        -------
-        list of Path
-            The files.
-        """
+        """Write what was asked for."""
         written = self.written(answer.response, lambda: _drawn(answer))
         if self.animation is not None:
             _animate(answer.response, self.animation)
@@ -142,17 +76,7 @@ class Files:
     def written(self, response: Exportable, drawn: Callable[[], Any]) -> list[Path]:
         """Write the picture and the samples of any kind of response.
 
-        Parameters
-        ----------
-        response : Exportable
-            The response.
-        drawn : callable
-            Returns its picture.
-
-        Returns
-        -------
-        list of Path
-            The files, the animation among them, which only the pure rocking response has.
+        Returns the files, the animation among them, which only the pure rocking response has.
         """
         if self.picture is not None:
             from rocking.plots.style import write

@@ -19,17 +19,7 @@ _IN_PYTHON = "simulate_with_contact(body, motion, friction=...)"
 
 
 def show(answer: Answer, length: str = "m", acceleration: str = "m/s2") -> None:
-    """Print body, motion, outcome, impacts, doubts, and what other models say.
-
-    Parameters
-    ----------
-    answer : Answer
-        What `Answer.of` computed.
-    length : str
-        Unit of lengths.
-    acceleration : str
-        Unit of accelerations.
-    """
+    """Print body, motion, outcome, impacts, doubts, and what other models say."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)

@@ -32,34 +32,10 @@ def question_of(
 ) -> Question:
     """Put the question together.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    motion : GroundMotion or Pulse, optional
-        The motion.
-    free : float, optional
-        First rotation over the slenderness angle of the side it leans to, for free rocking [-].
-    scale : float
-        Factor on the motion [-].
-    gravity : float, optional
-        Acceleration of gravity; the standard one if not given [m/s2].
-    engine : str
-        Which engine.
-    linear : bool
-        Whether to solve the slender-linear equations.
-    friction : float, optional
-        Coefficient of friction between body and ground, above zero; assumed if not given [-].
-
-    Returns
-    -------
-    Question
-        Checked as far as the engines do not check it.
-
-    Raises
-    ------
-    InvalidValueError
-        If `free`, `gravity` or `friction` is not allowed.
+    free: first rotation over the slenderness angle of the side it leans to, for free rocking [-]; scale: factor on the
+    motion [-]; gravity: acceleration of gravity; the standard one if not given [m/s2]; friction: coefficient of
+    friction between body and ground, above zero; assumed if not given [-]. Returns checked as far as the engines do not
+    check it.
     """
     pull = g if gravity is None else checks.positive("--gravity", gravity, "m/s2")
     share = None if free is None else _share(body, checks.number("--free", free))
@@ -90,28 +66,7 @@ def body_and_motion(
 ) -> tuple[Path | None, str | None]:
     """Return which word names the body and which one the motion.
 
-    Parameters
-    ----------
-    body, record : str, optional
-        First and second word of the command.
-    motion : str, optional
-        Value of --motion.
-    sized : bool
-        Whether the body is given by its size, so that one word alone is the motion.
-    free : bool
-        Whether free rocking is asked for, which takes no motion.
-
-    Returns
-    -------
-    body : Path, optional
-        Body file.
-    motion : str, optional
-        Record file or pulse; None for free rocking.
-
-    Raises
-    ------
-    InvalidValueError
-        If the motion is missing or given twice, or the body is given twice.
+    Returns motion: record file or pulse; None for free rocking.
     """
     if sized and record is None:
         body, record = None, body
@@ -130,18 +85,7 @@ def body_and_motion(
 
 
 def refuse_reversed(body: str | None, record: str | None) -> None:
-    """Refuse a motion before its body.
-
-    Parameters
-    ----------
-    body, record : str, optional
-        First and second word of the command.
-
-    Raises
-    ------
-    InvalidValueError
-        If the second one names a body, and the first one does not.
-    """
+    """Refuse a motion before its body."""
     if body is not None and record is not None and is_body(record) and not is_body(body):
         raise InvalidValueError(f"the body comes first, then the motion: {record[:100]} {body[:100]}, not the reverse")
 
@@ -149,24 +93,7 @@ def refuse_reversed(body: str | None, record: str | None) -> None:
 def motion_asked(word: str | None, told: dict[str, Any], scale: float) -> Motion | None:
     """Return the motion, none for free rocking.
 
-    Parameters
-    ----------
-    word : str, optional
-        Record file or pulse.
-    told : dict
-        Options for files, as `motion_from` takes them.
-    scale : float
-        Factor on the motion, refused for free rocking [-].
-
-    Returns
-    -------
-    GroundMotion or Pulse, optional
-        The motion, not scaled.
-
-    Raises
-    ------
-    InvalidValueError
-        If free rocking is given an option for motions.
+    scale: factor on the motion, refused for free rocking [-].
     """
     if word is not None:
         return motion_from(word, **told)
@@ -178,18 +105,7 @@ def motion_asked(word: str | None, told: dict[str, Any], scale: float) -> Motion
 
 
 def restitution_from(word: str) -> Any:
-    """Return a model or a coefficient from one word.
-
-    Parameters
-    ----------
-    word : str
-        Name of a model, with parameters; path of a file with a class; or a number.
-
-    Returns
-    -------
-    RestitutionModel or float
-        As `simulate` takes it.
-    """
+    """Return a model or a coefficient from one word."""
     try:
         return float(word)
     except ValueError:

@@ -17,15 +17,7 @@ _MOST = 12
 
 
 def show(answer: SolidAnswer, length: str = "m") -> None:
-    """Print body, repairs, base, and edges with the coefficients of every model.
-
-    Parameters
-    ----------
-    answer : SolidAnswer
-        What `SolidAnswer.of` computed.
-    length : str
-        Unit of lengths.
-    """
+    """Print body, repairs, base, and edges with the coefficients of every model."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
@@ -43,15 +35,7 @@ def show(answer: SolidAnswer, length: str = "m") -> None:
 
 
 def show_body(file: SolidFile, length: str = "m") -> None:
-    """Print mass, centre, base and repairs of a body in space.
-
-    Parameters
-    ----------
-    file : SolidFile
-        The body.
-    length : str
-        Unit of lengths.
-    """
+    """Print mass, centre, base and repairs of a body in space."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
@@ -76,29 +60,13 @@ def show_body(file: SolidFile, length: str = "m") -> None:
 def as_json(answer: SolidAnswer) -> str:
     """Return everything as JSON.
 
-    Parameters
-    ----------
-    answer : SolidAnswer
-        What `SolidAnswer.of` computed.
-
-    Returns
-    -------
-    str
-        One object; SI units, named in the keys where a quantity has one.
+    Returns one object; SI units, named in the keys where a quantity has one.
     """
     return json.dumps(solid_facts(answer), indent=2, allow_nan=False)
 
 
 def write_csv(answer: SolidAnswer, path: Path) -> None:
-    """Write edges and coefficients as one CSV file.
-
-    Parameters
-    ----------
-    answer : SolidAnswer
-        What `SolidAnswer.of` computed.
-    path : Path
-        File to write.
-    """
+    """Write edges and coefficients as one CSV file."""
     records = [_record(edge, name) for edge in answer.edges for name in edge.results]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, fieldnames=list(records[0]))
@@ -107,15 +75,7 @@ def write_csv(answer: SolidAnswer, path: Path) -> None:
 
 
 def draw(file: SolidFile, path: Path) -> None:
-    """Draw the body on its base.
-
-    Parameters
-    ----------
-    file : SolidFile
-        The body.
-    path : Path
-        File to write; its suffix says the format.
-    """
+    """Draw the body on its base."""
     from rocking.plots.solid import solid_picture
     from rocking.plots.style import write
 

@@ -24,51 +24,28 @@ DIRECTIONS = 4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EdgeImpact:
-    """One edge of a base, the body that turns about it, and what follows when it falls back.
+    """One edge of a base, the body that turns about it, and what follows when it falls back."""
 
-    Parameters
-    ----------
-    name : str
-        Number of the edge, or direction of the point of a round base.
-    edge : Edge
-        Where it turns.
-    ends : tuple
-        Corners (x, y) of the edge; the point of a round base twice [m].
-    onto : str
-        What it lands on when it falls back.
-    slenderness_angle, semi_diagonal, frequency_parameter : float
-        alpha [rad], R [m] and p = sqrt(m g R / I) [rad/s] of the turn about the edge.
-    results : dict of str to SpatialRestitution
-        By model.
-    """
-
-    name: str
-    edge: Edge
+    name: str  # number of the edge, or direction of the point of a round base
+    edge: Edge  # where it turns
+    # corners (x, y) of the edge; the point of a round base twice [m]
     ends: tuple[tuple[float, float], tuple[float, float]]
-    onto: str
+    onto: str  # what it lands on when it falls back
+    # slenderness_angle, semi_diagonal, frequency_parameter: alpha [rad], R [m] and p = sqrt(m g R / I) [rad/s] of the
+    # turn about the edge
     slenderness_angle: float
     semi_diagonal: float
     frequency_parameter: float
-    results: dict[str, SpatialRestitution]
+    results: dict[str, SpatialRestitution]  # by model
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SolidAnswer:
-    """A body in space and its edges.
+    """A body in space and its edges."""
 
-    Parameters
-    ----------
-    file : SolidFile
-        The body, and what was done to read it.
-    edges : tuple of EdgeImpact
-        Edges of the base, at most `MOST_EDGES`; of a round one, directions.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    """
-
-    file: SolidFile
-    edges: tuple[EdgeImpact, ...]
-    gravity: float
+    file: SolidFile  # the body, and what was done to read it
+    edges: tuple[EdgeImpact, ...]  # edges of the base, at most `MOST_EDGES`; of a round one, directions
+    gravity: float  # acceleration of gravity [m/s2]
 
     @property
     def left_out(self) -> int:
@@ -80,19 +57,7 @@ class SolidAnswer:
     def of(cls, file: SolidFile, models: list[str] | None, gravity: float) -> "SolidAnswer":
         """Compute what is printed.
 
-        Parameters
-        ----------
-        file : SolidFile
-            The body.
-        models : list of str, optional
-            Names of models; all if not given.
-        gravity : float
-            Acceleration of gravity [m/s2].
-
-        Returns
-        -------
-        SolidAnswer
-            Edge by edge.
+        gravity: acceleration of gravity [m/s2].
         """
         pull = checks.positive("gravity", gravity, "m/s2")
         asked = [spatial_model(name) for name in models or spatial_models()]
@@ -161,15 +126,8 @@ def _ends(base: Base, name: str, edge: Edge) -> tuple[tuple[float, float], tuple
 def solid_facts(answer: SolidAnswer) -> dict[str, Any]:
     """Return everything that is said of a body in space, as plain values.
 
-    Parameters
-    ----------
-    answer : SolidAnswer
-        What `SolidAnswer.of` computed.
-
-    Returns
-    -------
-    dict
-        ``body``, ``base``, ``edges`` with ``coefficients`` by model, ``edges_left_out``, ``repairs``, ``gravity_m_s2``.
+    Returns ``body``, ``base``, ``edges`` with ``coefficients`` by model, ``edges_left_out``, ``repairs``,
+    ``gravity_m_s2``.
     """
     return {
         "body": body_facts(answer.file),
@@ -182,18 +140,7 @@ def solid_facts(answer: SolidAnswer) -> dict[str, Any]:
 
 
 def body_facts(file: SolidFile) -> dict[str, Any]:
-    """Return mass and geometry of a body in space.
-
-    Parameters
-    ----------
-    file : SolidFile
-        The body.
-
-    Returns
-    -------
-    dict
-        SI units, named in the keys.
-    """
+    """Return mass and geometry of a body in space."""
     solid = file.solid
     low, high = solid.box
     return {
@@ -214,20 +161,7 @@ def body_facts(file: SolidFile) -> dict[str, Any]:
 def base_facts(base: Base) -> dict[str, Any]:
     """Return on what a body stands.
 
-    Parameters
-    ----------
-    base : Base
-        Its base.
-
-    Returns
-    -------
-    dict
-        ``polygon`` with ``vertices_m``, or ``circle`` with ``centre_m`` and ``radius_m``.
-
-    Raises
-    ------
-    GeometryError
-        If it is neither.
+    Returns ``polygon`` with ``vertices_m``, or ``circle`` with ``centre_m`` and ``radius_m``.
     """
     if isinstance(base, SupportPolygon):
         return {"kind": "polygon", "vertices_m": base.vertices.tolist()}
@@ -239,15 +173,7 @@ def base_facts(base: Base) -> dict[str, Any]:
 def edge_facts(edge: EdgeImpact) -> dict[str, Any]:
     """Return one edge as plain values.
 
-    Parameters
-    ----------
-    edge : EdgeImpact
-        The edge.
-
-    Returns
-    -------
-    dict
-        Geometry, what it lands on, and by model ``coefficient``, ``energy_ratio`` and ``flags``.
+    Returns Geometry, what it lands on, and by model ``coefficient``, ``energy_ratio`` and ``flags``.
     """
     return {
         "edge": edge.name,

@@ -19,15 +19,7 @@ _WORDS = (
 def is_solid(word: str | Path | None) -> bool:
     """Return whether the first word of a command names a body in space.
 
-    Parameters
-    ----------
-    word : str or Path, optional
-        The word.
-
-    Returns
-    -------
-    bool
-        Whether it is a mesh, or a TOML file with [solid].
+    Returns whether it is a mesh, or a TOML file with [solid].
     """
     return word is not None and describes_solid(word)
 
@@ -35,15 +27,7 @@ def is_solid(word: str | Path | None) -> bool:
 def is_body(word: str | Path) -> bool:
     """Return whether a word names a body, plane or in space, by how it ends.
 
-    Parameters
-    ----------
-    word : str or Path
-        The word.
-
-    Returns
-    -------
-    bool
-        Whether a body file is named so.
+    Returns whether a body file is named so.
     """
     from rocking.bodies.formats.reader import FORMATS
 
@@ -61,30 +45,7 @@ def solid_from(
 ) -> SolidFile:
     """Return the body in space that a command was given.
 
-    Parameters
-    ----------
-    path : Path
-        TOML file or mesh.
-    unit : str, optional
-        Unit of the mesh, and of `base_tolerance`.
-    density : float, optional
-        Density of the mesh [kg/m3].
-    up : str, optional
-        Axis of the mesh that points up.
-    fill_holes : bool
-        Whether small holes of the mesh may be closed.
-    base_tolerance : float, optional
-        Vertices this close to the lowest one stand on the ground, in `unit`.
-
-    Returns
-    -------
-    SolidFile
-        The body, and what was done to get it.
-
-    Raises
-    ------
-    RockingError
-        What the reader refuses, with its parameters called as the command line calls them.
+    density: density of the mesh [kg/m3]. Returns the body, and what was done to get it.
     """
     try:
         scale = length_unit(unit or "m")
@@ -95,20 +56,7 @@ def solid_from(
 
 
 def refuse(reason: str, options: dict[str, Any]) -> None:
-    """Refuse options that have no meaning for a kind of body.
-
-    Parameters
-    ----------
-    reason : str
-        Why, as the start of a sentence.
-    options : dict
-        Option to its value; None, False and nothing mean that it was not given.
-
-    Raises
-    ------
-    RockingError
-        If one was given.
-    """
+    """Refuse options that have no meaning for a kind of body."""
     given = [name for name, value in options.items() if value is not None and value is not False]
     if given:
         raise RockingError(f"{reason}, so it takes no {', '.join(given)}")
@@ -117,18 +65,6 @@ def refuse(reason: str, options: dict[str, Any]) -> None:
 def spelt(options: dict[str, Any]) -> dict[str, Any]:
     """Return options under the names that a user types.
 
-    Parameters
-    ----------
-    options : dict
-        Name of the parameter to its value.
-
-    Returns
-    -------
-    dict
-        Option to value.
-
-    Examples
-    --------
     >>> spelt({"semi_diagonal": None})
     {'--semi-diagonal': None}
     """

@@ -16,28 +16,7 @@ _OF_FILES = ("format", "units", "time_step")
 def components(
     words: tuple[str | None, str | None, str | None], told: dict[str, Any], names: tuple[str | None, str | None]
 ) -> tuple[Component, Component, Component]:
-    """Return the motion along x, y and z.
-
-    Parameters
-    ----------
-    words : tuple of str, optional
-        Record file or pulse along x, y and z.
-    told : dict
-        Options for files, as `motion_from` takes them; ``component``, ``vertical`` and ``vertical_file`` are those of
-        x, whose vertical part moves the ground along z.
-    names : tuple of str, optional
-        Components of the files along y and z.
-
-    Returns
-    -------
-    tuple of GroundMotion or Pulse, optional
-        None for a direction without motion.
-
-    Raises
-    ------
-    InvalidValueError
-        If nothing moves the ground, or the vertical motion is given twice.
-    """
+    """Return the motion along x, y and z."""
     if all(word is None for word in words):
         raise InvalidValueError(
             "what moves the ground? Give a record file or a pulse such as sine:amplitude=3,period=0.8, along y and z "

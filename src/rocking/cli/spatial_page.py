@@ -18,17 +18,7 @@ _FIRST = 12
 def spatial_facts(response: SpatialResponse, file: SolidFile) -> dict[str, Any]:
     """Return everything that is said of a response in space, as plain values.
 
-    Parameters
-    ----------
-    response : SpatialResponse
-        The response.
-    file : SolidFile
-        The body, and what was done to read it.
-
-    Returns
-    -------
-    dict
-        SI units, named in the keys; None where something does not exist.
+    Returns SI units, named in the keys; None where something does not exist.
     """
     impacts = response.impacts
     keys = ("time_s", "energy_before_J", "energy_after_J", "impulse_N_s", "pull_N_s", "contact", "vertices")
@@ -69,35 +59,12 @@ def _last_state(response: SpatialResponse) -> dict[str, Any] | None:
 
 
 def as_json(response: SpatialResponse, file: SolidFile) -> str:
-    """Return everything as JSON.
-
-    Parameters
-    ----------
-    response : SpatialResponse
-        The response.
-    file : SolidFile
-        The body.
-
-    Returns
-    -------
-    str
-        One object.
-    """
+    """Return everything as JSON."""
     return json.dumps(spatial_facts(response, file), indent=2, allow_nan=False)
 
 
 def show(response: SpatialResponse, file: SolidFile, length: str = "m") -> None:
-    """Print body, motion, outcome, contacts, impacts and measures.
-
-    Parameters
-    ----------
-    response : SpatialResponse
-        The response.
-    file : SolidFile
-        The body.
-    length : str
-        Unit of lengths.
-    """
+    """Print body, motion, outcome, contacts, impacts and measures."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)

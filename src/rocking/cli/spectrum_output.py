@@ -31,25 +31,7 @@ _MOST = 10_000_000
 
 
 def motions_from(words: Sequence[str], told: dict[str, Any]) -> list[Motion]:
-    """Return the motions that a command was given.
-
-    Parameters
-    ----------
-    words : sequence of str
-        Record files or pulses.
-    told : dict
-        What record files leave open, as `rocking.cli.motion_options.motion_from` takes it.
-
-    Returns
-    -------
-    list of GroundMotion or Pulse
-        At least one.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are none.
-    """
+    """Return the motions that a command was given."""
     if not words:
         raise InvalidValueError(
             "what moves the ground? Give record files, or a pulse such as sine:amplitude=3,period=0.8"
@@ -60,23 +42,8 @@ def motions_from(words: Sequence[str], told: dict[str, Any]) -> list[Motion]:
 def angles_from(word: str) -> FloatArray:
     """Return slenderness angles.
 
-    Parameters
-    ----------
-    word : str
-        h/b, as ``4,6,8`` or ``4:8:5``; or angles, as ``10deg,15deg``.
+    Returns alpha, between 0 and pi/2 [rad].
 
-    Returns
-    -------
-    ndarray
-        alpha, between 0 and pi/2 [rad].
-
-    Raises
-    ------
-    InvalidValueError
-        If they cannot be read or are not allowed.
-
-    Examples
-    --------
     >>> angles_from("1,2").round(6).tolist(), angles_from("45deg").round(6).tolist()
     ([0.785398, 0.463648], [0.785398])
     """
@@ -93,20 +60,7 @@ def angles_from(word: str) -> FloatArray:
 def periods_from(word: str) -> FloatArray:
     """Return periods of blocks.
 
-    Parameters
-    ----------
-    word : str
-        A row of them, by equal ratios unless it says otherwise.
-
-    Returns
-    -------
-    ndarray
-        2 pi / p, increasing [s].
-
-    Raises
-    ------
-    InvalidValueError
-        If they cannot be read, are not above 0 or do not increase.
+    Returns 2 pi / p, increasing [s].
     """
     import numpy as np
 
@@ -127,30 +81,7 @@ def answer(
 ) -> "xr.Dataset":
     """Compute the spectra.
 
-    Parameters
-    ----------
-    motions : list of GroundMotion or Pulse
-        The motions.
-    angles : ndarray
-        Slenderness angles [rad].
-    periods : ndarray
-        2 pi / p [s].
-    restitution : str
-        Model or coefficient.
-    settings : dict
-        scale, and as of `rocking.cli.study_output.settings_from`.
-    quiet : bool
-        Whether to show no bar.
-
-    Returns
-    -------
-    xarray.Dataset
-        As of `rocking_spectrum`.
-
-    Raises
-    ------
-    InvalidValueError
-        If there would be too many histories.
+    angles: slenderness angles [rad]; periods: 2 pi / p [s].
     """
     from rocking.studies.rocking_spectrum import rocking_spectrum
 
@@ -162,20 +93,7 @@ def answer(
 
 
 def write(found: "xr.Dataset", picture: Path | None, csv: Path | None, netcdf: Path | None) -> list[Path]:
-    """Write what was asked for.
-
-    Parameters
-    ----------
-    found : xarray.Dataset
-        The spectra.
-    picture, csv, netcdf : Path, optional
-        Where each goes.
-
-    Returns
-    -------
-    list of Path
-        The files.
-    """
+    """Write what was asked for."""
     if picture is not None:
         from rocking.plots.rocking_spectrum import rocking_spectrum_picture
         from rocking.plots.style import write as write_picture
@@ -192,18 +110,7 @@ def write(found: "xr.Dataset", picture: Path | None, csv: Path | None, netcdf: P
 
 
 def as_json(found: "xr.Dataset") -> str:
-    """Return everything as JSON.
-
-    Parameters
-    ----------
-    found : xarray.Dataset
-        The spectra.
-
-    Returns
-    -------
-    str
-        One object, with the keys above.
-    """
+    """Return everything as JSON."""
     facts = {
         "motions": [str(name) for name in found["motion"].values.tolist()],
         "restitution": found.attrs["restitution"],
@@ -224,15 +131,7 @@ def as_json(found: "xr.Dataset") -> str:
 def curves(found: "xr.Dataset") -> list[dict[str, Any]]:
     """Return what every curve shows.
 
-    Parameters
-    ----------
-    found : xarray.Dataset
-        The spectra.
-
-    Returns
-    -------
-    list of dict
-        As the key ``curves`` of the JSON.
+    Returns as the key ``curves`` of the JSON.
     """
     made = []
     for i, name in enumerate(found["motion"].values.tolist()):
@@ -256,13 +155,7 @@ def _curve(one: "xr.Dataset") -> dict[str, Any]:
 
 
 def show(found: "xr.Dataset") -> None:
-    """Print a line for every curve.
-
-    Parameters
-    ----------
-    found : xarray.Dataset
-        The spectra.
-    """
+    """Print a line for every curve."""
     from rich.console import Console
 
     from rocking.cli.study_output import table

@@ -36,29 +36,8 @@ Progress = Callable[[int], None]
 def quantity(name: str, word: str, unit: str) -> tuple[float, str]:
     """Return one number, written with a unit or without.
 
-    Parameters
-    ----------
-    name : str
-        What it is, for the message.
-    word : str
-        Such as ``0.3g``, ``40cm`` or ``2``.
-    unit : str
-        Key of `UNITS`: the unit of the result, and of a number without one.
+    Returns value: the number [unit]; written: the unit that was written, empty if none.
 
-    Returns
-    -------
-    value : float
-        The number [unit].
-    written : str
-        The unit that was written, empty if none.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no finite number or has a unit of another kind.
-
-    Examples
-    --------
     >>> quantity("semi_diagonal", "40cm", "m"), quantity("scale", "2", "1")
     ((0.4, 'cm'), (2.0, ''))
     """
@@ -75,31 +54,8 @@ def quantity(name: str, word: str, unit: str) -> tuple[float, str]:
 def row(name: str, word: str, unit: str, spacing: str = "linear") -> tuple[FloatArray, str]:
     """Return a row of values: some numbers with commas between, or FIRST:LAST:COUNT, or that with :log or :linear.
 
-    Parameters
-    ----------
-    name : str
-        What they are, for messages.
-    word : str
-        The row.
-    unit : str
-        Key of `UNITS`.
-    spacing : {"linear", "log"}
-        Steps of a range that does not say: equal steps or equal ratios.
+    Returns values: the values [unit]; written: the unit that all were written in, empty if none.
 
-    Returns
-    -------
-    values : ndarray
-        The values [unit].
-    written : str
-        The unit that all were written in, empty if none.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is written in another way, or only some of the numbers have a unit.
-
-    Examples
-    --------
     >>> values, _ = row("pga", "0.1g:0.3g:3", "m/s2")
     >>> (values / 9.80665).round(12).tolist()
     [0.1, 0.2, 0.3]
@@ -144,29 +100,7 @@ def _count(name: str, word: str) -> int:
 def body_and_motion_of(
     words: tuple[str | None, str | None, str | None], size: dict[str, Any], told: dict[str, Any]
 ) -> tuple[Body, Motion]:
-    """Return the body and the motion that a command was given.
-
-    Parameters
-    ----------
-    words : tuple
-        First and second word of the command, and ``--motion``.
-    size : dict
-        Dimensions, as `rocking.cli.body_options.body_from` takes them.
-    told : dict
-        What a record file leaves open, as `rocking.cli.motion_options.motion_from` takes it.
-
-    Returns
-    -------
-    body : Body
-        The body.
-    motion : GroundMotion or Pulse
-        The motion.
-
-    Raises
-    ------
-    InvalidValueError
-        If one is missing or given twice.
-    """
+    """Return the body and the motion that a command was given."""
     from rocking.cli.body_options import body_from
     from rocking.cli.motion_options import motion_from
     from rocking.cli.simulate_question import body_and_motion
@@ -184,37 +118,14 @@ def body_and_motion_of(
 def body_lines(body: Body, gravity: float, length: str = "m") -> list[tuple[str, str]]:
     """Return what is printed of the body of a study.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    length : str
-        Unit of length.
-
-    Returns
-    -------
-    list of (str, str)
-        Its numbers, and what nobody gave.
+    gravity: acceleration of gravity [m/s2].
     """
     words = body_words(body, gravity, length)
     return [("body", words), *(("density", each.removeprefix("density ")) for each in body.assumed)]
 
 
 def motion_facts(motion: Motion) -> dict[str, Any]:
-    """Return a motion as plain values for JSON.
-
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
-
-    Returns
-    -------
-    dict
-        kind, name, duration_s, peak_acceleration_m_s2, warnings.
-    """
+    """Return a motion as plain values for JSON."""
     from rocking.motions.pulse import Pulse
 
     kind = "pulse" if isinstance(motion, Pulse) else "record"
@@ -226,19 +137,7 @@ def motion_facts(motion: Motion) -> dict[str, Any]:
 def bar(what: str, total: int | None = None, *, quiet: bool = False) -> Iterator[Progress]:
     """Show on a terminal how far it is.
 
-    Parameters
-    ----------
-    what : str
-        What is computed.
-    total : int, optional
-        How many there will be, if that is known.
-    quiet : bool
-        Whether to show nothing.
-
-    Yields
-    ------
-    callable
-        Takes the number of histories done since it was last called.
+    Returns takes the number of histories done since it was last called.
     """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
@@ -254,26 +153,7 @@ def bar(what: str, total: int | None = None, *, quiet: bool = False) -> Iterator
 def settings_from(gravity: float | None, engine: str, linear: bool, threads: int | None) -> dict[str, Any]:
     """Return how to compute, as studies take it.
 
-    Parameters
-    ----------
-    gravity : float, optional
-        Acceleration of gravity; the standard one if not given [m/s2].
-    engine : str
-        Which engine.
-    linear : bool
-        Whether to solve the slender-linear equations.
-    threads : int, optional
-        Threads of the fast engine.
-
-    Returns
-    -------
-    dict
-        gravity, engine, linear, threads.
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is not allowed.
+    gravity: acceleration of gravity; the standard one if not given [m/s2].
     """
     pull = g if gravity is None else checks.positive("--gravity", gravity, "m/s2")
     engine = checks.one_of("--engine", engine, ("auto", "fast", "reference"))
@@ -283,22 +163,7 @@ def settings_from(gravity: float | None, engine: str, linear: bool, threads: int
 
 
 def table(head: tuple[str, ...], rows: list[tuple[str, ...]], left: int = 1) -> Any:
-    """Return a table without lines.
-
-    Parameters
-    ----------
-    head : tuple of str
-        Its first line.
-    rows : list of tuple
-        The others.
-    left : int
-        How many columns of words there are, the first ones.
-
-    Returns
-    -------
-    rich.table.Table
-        To be printed.
-    """
+    """Return a table without lines."""
     from rich.table import Table
     from rich.text import Text
 

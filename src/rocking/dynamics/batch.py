@@ -39,49 +39,17 @@ SIDES_UNTOLD = {"q_right": np.nan, "q_left": np.nan, "share_right": 1.0, "share_
 
 @dataclass(frozen=True)
 class Rows:
-    """Histories to compute, one entry each; a piece of a larger whole.
+    """Histories to compute, one entry each; a piece of a larger whole."""
 
-    Parameters
-    ----------
-    values : dict of str to ndarray
-        The keys of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s]; q is m R^2 / I_o of a side, share the part of
-        a distribution that its coefficient is drawn from.
-    motion : ndarray of int
-        Number of the motion.
-    key : ndarray of int
-        Number of the history, for random coefficients.
-    """
-
+    # the keys of `ROWS` [rad, rad/s, -, -, -, -, rad, rad/s]; q is m R^2 / I_o of a side, share the part of a
+    # distribution that its coefficient is drawn from
     values: dict[str, FloatArray]
-    motion: np.ndarray
-    key: np.ndarray
+    motion: np.ndarray  # number of the motion
+    key: np.ndarray  # number of the history, for random coefficients
 
     @classmethod
     def of(cls, count: int, motion: Any = 0, key: Any = None, **values: Any) -> "Rows":
-        """Return rows from numbers and arrays, which are repeated to the count.
-
-        Parameters
-        ----------
-        count : int
-            How many histories.
-        motion : array_like of int
-            Number of the motion.
-        key : array_like of int, optional
-            Number of the history; 0, 1, ... if not given.
-        **values
-            The keys of `ROWS`; scale and share are 1, rotation and velocity 0, q unknown if not given:
-            forces of the ground are then not known either.
-
-        Returns
-        -------
-        Rows
-            The rows.
-
-        Raises
-        ------
-        InvalidValueError
-            If a key is missing or unknown, or an array does not fit the count.
-        """
+        """Return rows from numbers and arrays, which are repeated to the count."""
         given = {"scale": 1.0, "rotation": 0.0, "velocity": 0.0} | SIDES_UNTOLD | values
         if set(given) != set(ROWS):
             odd = sorted(set(given) ^ set(ROWS))
@@ -100,27 +68,13 @@ class Rows:
 
 @dataclass(frozen=True)
 class Batch:
-    """What to compute many times: the motions, the law of impact, the settings.
+    """What to compute many times: the motions, the law of impact, the settings."""
 
-    Parameters
-    ----------
-    motions : list of Segments
-        All records or all pulses [m/s2].
-    law : ImpactLaw
-        How the coefficient changes from impact to impact.
-    settings : Settings
-        How to integrate.
-    threads : int, optional
-        Threads of the fast engine; as many as the processor has, if not given.
-    engine : {"auto", "fast", "reference"}
-        Which engine.
-    """
-
-    motions: Sequence[Segments]
-    law: ImpactLaw = field(default_factory=ConstantRestitution)
-    settings: Settings = field(default_factory=Settings)
-    threads: int | None = None
-    engine: str = "auto"
+    motions: Sequence[Segments]  # all records or all pulses [m/s2]
+    law: ImpactLaw = field(default_factory=ConstantRestitution)  # how the coefficient changes from impact to impact
+    settings: Settings = field(default_factory=Settings)  # how to integrate
+    threads: int | None = None  # threads of the fast engine; as many as the processor has, if not given
+    engine: str = "auto"  # which engine
 
     def __post_init__(self) -> None:
         """Check the threads."""
@@ -135,28 +89,8 @@ class Batch:
     ) -> tuple[fast_engine.Arrays, dict[str, int]]:
         """Return the results of many histories.
 
-        Parameters
-        ----------
-        count : int
-            How many.
-        rows : callable
-            Returns the rows from a first up to but not including a last one; called for one piece after another.
-        progress : callable, optional
-            Called with the number of histories done since the last call.
-        threads : int, optional
-            Threads of the fast engine in this run; those of the batch, if not given.
-
-        Returns
-        -------
-        results : dict of str to ndarray
-            One array for each key of `rocking.dynamics.engine.RESULTS`.
-        work : dict of str to int
-            Steps that were taken; empty for the reference engine.
-
-        Raises
-        ------
-        InvalidValueError
-            If the fast engine does not have the order for these equations and motions, or progress is no function.
+        Returns results: one array for each key of `rocking.dynamics.engine.RESULTS`; work: steps that were taken; empty
+        for the reference engine.
         """
         given: object = progress
         if given is not None and not callable(given):
@@ -239,15 +173,7 @@ class Batch:
 def valid_row(row: dict[str, float]) -> bool:
     """Return whether the numbers of a history are within the ranges that the engines take.
 
-    Parameters
-    ----------
-    row : dict of str to float
-        The keys of `ROWS`.
-
-    Returns
-    -------
-    bool
-        False for what is not finite or outside.
+    Returns false for what is not finite or outside.
     """
     half_pi = 0.5 * np.pi
     angles = all(0.0 < row[f"alpha_{s}"] < half_pi for s in ("right", "left"))
@@ -262,17 +188,7 @@ def valid_row(row: dict[str, float]) -> bool:
 def drawn_rows(rows: Rows, law: ImpactLaw) -> Rows:
     """Return rows whose coefficients are multiplied by the draws of a law that draws once for every history.
 
-    Parameters
-    ----------
-    rows : Rows
-        With what the draws multiply.
-    law : ImpactLaw
-        The law.
-
-    Returns
-    -------
-    Rows
-        The same with the coefficients of the histories.
+    Returns the same with the coefficients of the histories.
     """
     draws: Any = law.draws
     drawn = {}

@@ -21,29 +21,17 @@ _FOLLOWS = "simulate_with_contact(body, motion, friction=...) follows it"
 
 @dataclass(frozen=True)
 class Contact:
-    """Forces of the ground at the samples, and the friction that rocking without slip takes.
+    """Forces of the ground at the samples, and the friction that rocking without slip takes."""
 
-    Parameters
-    ----------
-    time : ndarray
-        Times of the samples, and of the fall if it comes after the last of them [s].
-    horizontal, vertical : ndarray
-        Force of the ground on the body, to the right and upwards [N].
-    least_vertical : float
-        Smallest vertical force until the centre passes over the foot for good; below zero the body would leave the
-        ground [N].
-    friction_of_motion : float
-        Largest |horizontal / vertical| until then; infinite where the vertical force vanishes [-].
-    friction_of_impacts : float
-        Largest ratio of the impulses at an impact [-].
-    """
-
-    time: FloatArray
-    horizontal: FloatArray
+    time: FloatArray  # times of the samples, and of the fall if it comes after the last of them [s]
+    horizontal: FloatArray  # horizontal, vertical: force of the ground on the body, to the right and upwards [N]
     vertical: FloatArray
+    # smallest vertical force until the centre passes over the foot for good; below zero the body would leave the ground
+    # [N]
     least_vertical: float
+    # largest |horizontal / vertical| until then; infinite where the vertical force vanishes [-]
     friction_of_motion: float
-    friction_of_impacts: float
+    friction_of_impacts: float  # largest ratio of the impulses at an impact [-]
 
     @property
     def friction_demand(self) -> float:
@@ -58,15 +46,7 @@ class Contact:
     def warnings(self, friction: float = 0.5) -> list[str]:
         """Return why pure rocking is not credible, in plain words; empty if it is.
 
-        Parameters
-        ----------
-        friction : float
-            Coefficient of friction between body and ground [-].
-
-        Returns
-        -------
-        list of str
-            Loss of contact, and what `slips` says.
+        friction: coefficient of friction between body and ground [-]. Returns loss of contact, and what `slips` says.
         """
         slips = self.slips(friction)
         return [f"the ground would have to pull: {LEAVES}; {_FOLLOWS}", *slips] if self.loses_contact else slips
@@ -74,20 +54,7 @@ class Contact:
     def slips(self, friction: float = 0.5) -> list[str]:
         """Return why feet that do not slip are not credible, in plain words; empty if they are.
 
-        Parameters
-        ----------
-        friction : float
-            Coefficient of friction between body and ground [-].
-
-        Returns
-        -------
-        list of str
-            Sentences.
-
-        Raises
-        ------
-        InvalidValueError
-            If the coefficient is not above zero and finite.
+        friction: coefficient of friction between body and ground [-].
         """
         friction = checks.positive("friction", friction)
         found = []
@@ -109,23 +76,7 @@ def contact_of(
 ) -> Contact:
     """Return the forces of the ground on a body during a response.
 
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The history, for its impacts.
-    intervals : Intervals
-        The response between its samples and events.
-    time : ndarray
-        Times of the samples, and of a fall after the last of them [s].
-    body : Body
-        The body.
-    settings : Settings
-        How it was integrated.
-
-    Returns
-    -------
-    Contact
-        Forces and friction demand.
+    time: times of the samples, and of a fall after the last of them [s].
     """
     f_x, f_z, demand = forces(intervals, settings.gravity)
     # a body that falls is past all questions of friction; the start counts even for one that is let go beyond the top
@@ -147,19 +98,8 @@ def contact_of(
 def forces(intervals: Intervals, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the forces of the ground at both ends of the intervals of a response.
 
-    Parameters
-    ----------
-    intervals : Intervals
-        The response between its samples and events.
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Returns
-    -------
-    horizontal, vertical : ndarray, shape (n, 2)
-        Over the mass [N/kg].
-    demand : ndarray, shape (n, 2)
-        Friction that rocking without slip takes; infinite where the ground would have to pull [-].
+    gravity: acceleration of gravity [m/s2]. Returns horizontal, vertical: over the mass [N/kg] (shape (n, 2)); demand:
+    friction that rocking without slip takes; infinite where the ground would have to pull [-] (shape (n, 2)).
     """
     side = intervals.side[:, None]
     f_x, f_z = equations.reactions(

@@ -13,15 +13,7 @@ from rocking.errors import InvalidValueError
 def hash_of(values: np.ndarray) -> str:
     """Return the SHA-256 of an array of numbers.
 
-    Parameters
-    ----------
-    values : ndarray
-        The array.
-
-    Returns
-    -------
-    str
-        64 hexadecimal digits, the same on every machine.
+    Returns 64 hexadecimal digits, the same on every machine.
     """
     little = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<"))
     made = hashlib.sha256(str((little.dtype.str, little.shape)).encode())
@@ -30,39 +22,15 @@ def hash_of(values: np.ndarray) -> str:
 
 
 def full_name(kind: type) -> str:
-    """Return the name of a class with its module: two classes of the same name are not the same.
-
-    Parameters
-    ----------
-    kind : type
-        The class.
-
-    Returns
-    -------
-    str
-        As in ``package.module.Class``.
-    """
+    """Return the name of a class with its module: two classes of the same name are not the same."""
     return f"{kind.__module__}.{kind.__qualname__}"
 
 
 def fields_of(thing: object) -> dict[str, Any]:
     """Return the fields of a dataclass as plain values.
 
-    Parameters
-    ----------
-    thing : object
-        Of a class that is itself a dataclass, whose functions hold nothing from around them.
-
-    Returns
-    -------
-    dict
-        Numbers and words as they are, arrays as their SHA-256; without a field `times` that is a model, because what
-        a law multiplies is in the coefficients already.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no dataclass, or a field is anything else.
+    Returns numbers and words as they are, arrays as their SHA-256; without a field `times` that is a model, because
+    what a law multiplies is in the coefficients already.
     """
     kind = type(thing)
     if "__dataclass_fields__" not in vars(kind) or _closes_over_something(kind):

@@ -49,36 +49,13 @@ def _module() -> ModuleType | None:
 def available() -> bool:
     """Return whether the fast engine was built with this installation.
 
-    Returns
-    -------
-    bool
-        True if it is there; otherwise the reference engine serves.
+    Returns true if it is there; otherwise the reference engine serves.
     """
     return _module() is not None
 
 
 def chosen(asked: str, law: ImpactLaw | None = None) -> str:
-    """Return which engine will run, and say so once if it is not the one that users expect.
-
-    Parameters
-    ----------
-    asked : {"auto", "fast", "reference"}
-        What was asked for.
-    law : ImpactLaw, optional
-        The law of impact; one that only its own `factor` knows takes the reference engine.
-
-    Returns
-    -------
-    str
-        "fast" or "reference".
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such engine, or the fast one does not know the law.
-    MissingExtraError
-        If the fast one was asked for and not built.
-    """
+    """Return which engine will run, and say so once if it is not the one that users expect."""
     asked = checks.one_of("engine", asked, ENGINES)
     if asked != "reference" and law is not None and not law.tabulated:
         if asked == "fast":
@@ -93,29 +70,12 @@ def chosen(asked: str, law: ImpactLaw | None = None) -> str:
 
 
 def instruction_sets() -> list[str]:
-    """Return what the fast engine can use on this processor, the fastest first.
-
-    Returns
-    -------
-    list of str
-        Of ``avx512``, ``avx2`` and ``plain``.
-    """
+    """Return what the fast engine can use on this processor, the fastest first."""
     return list(module().instruction_sets())
 
 
 def instruction_set() -> str:
-    """Return what the fast engine will use: the environment variable ROCKING_ISA, or the fastest there is.
-
-    Returns
-    -------
-    str
-        One of `instruction_sets`.
-
-    Raises
-    ------
-    InvalidValueError
-        If the environment asks for one that this processor lacks.
-    """
+    """Return what the fast engine will use: the environment variable ROCKING_ISA, or the fastest there is."""
     wanted, known = os.environ.get("ROCKING_ISA", ""), instruction_sets()
     if wanted and wanted not in known:
         raise InvalidValueError(f"ROCKING_ISA must be one of {', '.join(known)}, got {wanted!r}")
@@ -123,18 +83,7 @@ def instruction_set() -> str:
 
 
 def module() -> ModuleType:
-    """Return the compiled module.
-
-    Returns
-    -------
-    module
-        The fast engine.
-
-    Raises
-    ------
-    MissingExtraError
-        If it was not built.
-    """
+    """Return the compiled module."""
     found = _module()
     if found is None:
         raise MissingExtraError(f'{_NOT_BUILT}; engine="reference" gives the same results, slowly')
@@ -142,18 +91,7 @@ def module() -> ModuleType:
 
 
 class Library:
-    """Motions laid out for the fast engine, all of the same degree, all with or all without a vertical part.
-
-    Parameters
-    ----------
-    segments : list of Segments
-        The motions, of degree 1 (records) or 7 (pulses).
-
-    Raises
-    ------
-    InvalidValueError
-        If there is none, they are of different kinds, or one is not finite or has jumps other than one to rest.
-    """
+    """Motions laid out for the fast engine, all of the same degree, all with or all without a vertical part."""
 
     def __init__(self, segments: list[Segments]) -> None:
         if not segments:
@@ -232,34 +170,13 @@ def _jump(parts: list[FloatArray], samples: FloatArray, step: float) -> int:
 def empty_results(count: int) -> Arrays:
     """Return arrays for the results of some histories.
 
-    Parameters
-    ----------
-    count : int
-        How many.
-
-    Returns
-    -------
-    dict of str to ndarray
-        One array for each key of `RESULTS`.
+    Returns one array for each key of `RESULTS`.
     """
     return {name: np.empty(count, dtype) for name, dtype in RESULTS.items()}
 
 
 def common(settings: Settings, law: ImpactLaw) -> Arrays:
-    """Return the arguments that all calls of the fast engine share.
-
-    Parameters
-    ----------
-    settings : Settings
-        How to integrate.
-    law : ImpactLaw
-        How the coefficient changes from impact to impact.
-
-    Returns
-    -------
-    dict
-        Keyword arguments.
-    """
+    """Return the arguments that all calls of the fast engine share."""
     return {
         "kind": law.kind, "at": law.at, "value": law.factors.ravel(), "seed": law.seed,
         "gravity": settings.gravity, "longest_step": settings.longest_step, "rest": settings.rest_speed,

@@ -23,30 +23,9 @@ def angular_acceleration(
 ) -> FloatArray:
     """Return the angular acceleration of the body.
 
-    Parameters
-    ----------
-    rotation : array_like
-        theta [rad].
-    side : array_like
-        +1 on the right foot, -1 on the left one.
-    alpha : array_like
-        Slenderness angle of that side [rad].
-    p : array_like
-        Frequency parameter of that side [rad/s].
-    push : array_like
-        a_x / g [-].
-    weight : array_like
-        1 + a_z / g [-].
-    linear : bool
-        Slender-linear equations.
+    rotation: theta [rad]; alpha: slenderness angle of that side [rad]; p: frequency parameter of that side [rad/s];
+    push: a_x / g [-]; weight: 1 + a_z / g [-]. Returns theta'' [rad/s2].
 
-    Returns
-    -------
-    ndarray
-        theta'' [rad/s2].
-
-    Examples
-    --------
     >>> angular_acceleration(0.0, 1, 0.2, 2.0, -0.3, linear=True).round(12).item()
     0.4
     """
@@ -58,26 +37,9 @@ def angular_acceleration(
 def holding_moment(side: Any, alpha: Any, push: Any, weight: Any = 1.0, *, linear: bool = False) -> FloatArray:
     """Return the moment that keeps a body at rest from turning about a foot, over m g R; it lifts where this is < 0.
 
-    Parameters
-    ----------
-    side : array_like
-        +1 for the right foot, -1 for the left one.
-    alpha : array_like
-        Slenderness angle of that side [rad].
-    push : array_like
-        a_x / g [-].
-    weight : array_like
-        1 + a_z / g [-].
-    linear : bool
-        Slender-linear equations.
+    alpha: slenderness angle of that side [rad]; push: a_x / g [-]; weight: 1 + a_z / g [-]. Returns ``(1 + a_z / g)
+    sin(alpha) + s (a_x / g) cos(alpha)`` [-].
 
-    Returns
-    -------
-    ndarray
-        ``(1 + a_z / g) sin(alpha) + s (a_x / g) cos(alpha)`` [-].
-
-    Examples
-    --------
     >>> import numpy as np
     >>> round(holding_moment(-1, np.arctan(0.25), 0.25).item(), 12)
     0.0
@@ -89,23 +51,8 @@ def holding_moment(side: Any, alpha: Any, push: Any, weight: Any = 1.0, *, linea
 def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: bool = False) -> FloatArray:
     """Return kinetic and potential energy above rest, over m g R.
 
-    Parameters
-    ----------
-    rotation : array_like
-        theta or its size [rad].
-    angular_velocity : array_like
-        theta' [rad/s].
-    alpha : array_like
-        Slenderness angle of the side [rad].
-    p : array_like
-        Frequency parameter of the side [rad/s].
-    linear : bool
-        Slender-linear equations.
-
-    Returns
-    -------
-    ndarray
-        ``theta'^2 / (2 p^2) + cos(alpha - |theta|) - cos(alpha)`` [-].
+    rotation: theta or its size [rad]; angular_velocity: theta' [rad/s]; alpha: slenderness angle of the side [rad]; p:
+    frequency parameter of the side [rad/s]. Returns ``theta'^2 / (2 p^2) + cos(alpha - |theta|) - cos(alpha)`` [-].
     """
     size, angle = np.abs(rotation), np.asarray(alpha)
     kinetic = 0.5 * np.square(np.asarray(angular_velocity) / p)
@@ -118,17 +65,7 @@ def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: 
 def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
     """Return the energy that a body needs to pass over its foot, over m g R.
 
-    Parameters
-    ----------
-    alpha : array_like
-        Slenderness angle of the side [rad].
-    linear : bool
-        Slender-linear equations.
-
-    Returns
-    -------
-    ndarray
-        ``1 - cos(alpha)`` [-].
+    alpha: slenderness angle of the side [rad]. Returns ``1 - cos(alpha)`` [-].
     """
     angle = np.asarray(alpha)
     return np.asarray(0.5 * np.square(angle) if linear else 2.0 * np.square(np.sin(0.5 * angle)))
@@ -137,22 +74,9 @@ def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
 def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) -> FloatArray:
     """Return the rotation at which a freely rocking body turns round.
 
-    Parameters
-    ----------
-    energy_over_mgr : array_like
-        Energy above rest, over m g R, not above that at the top [-].
-    alpha : array_like
-        Slenderness angle of the side [rad].
-    linear : bool
-        Slender-linear equations.
+    energy_over_mgr: energy above rest, over m g R, not above that at the top [-]; alpha: slenderness angle of the side
+    [rad]. Returns |theta| [rad].
 
-    Returns
-    -------
-    ndarray
-        |theta| [rad].
-
-    Examples
-    --------
     >>> round(turning_rotation(energy(0.05, 0.0, 0.2, 3.0), 0.2).item(), 12)
     0.05
     """
@@ -173,25 +97,9 @@ def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of 
 ) -> tuple[FloatArray, FloatArray]:
     """Return the force of the ground on a rocking body, per unit mass.
 
-    Parameters
-    ----------
-    rotation, angular_velocity, acceleration : array_like
-        theta [rad], theta' [rad/s], theta'' [rad/s2].
-    side : array_like
-        +1 on the right foot, -1 on the left one.
-    alpha : array_like
-        Slenderness angle of that side [rad].
-    semi_diagonal : array_like
-        R of that side [m].
-    horizontal : array_like
-        a_x [m/s2].
-    vertical : array_like
-        g + a_z [m/s2].
-
-    Returns
-    -------
-    f_x, f_z : ndarray
-        Horizontal force, and vertical force which must stay above zero [N/kg].
+    rotation, angular_velocity, acceleration: theta [rad], theta' [rad/s], theta'' [rad/s2]; alpha: slenderness angle of
+    that side [rad]; semi_diagonal: R of that side [m]; horizontal: a_x [m/s2]; vertical: g + a_z [m/s2]. Returns
+    horizontal force, and vertical force which must stay above zero [N/kg].
     """
     psi = np.asarray(alpha) - np.asarray(side) * rotation
     outward = np.asarray(side) * acceleration  # |theta|''
@@ -204,22 +112,10 @@ def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of 
 def friction_of_impact(height: float, old_lever: float, new_lever: float, coefficient: Any) -> FloatArray:
     """Return the friction coefficient that an impact without slip needs: horizontal over vertical impulse.
 
-    Parameters
-    ----------
-    height : float
-        Height h of the centre of mass [m].
-    old_lever, new_lever : float
-        Horizontal distances b of the old and the new foot from the centre of mass [m].
-    coefficient : array_like
-        Coefficient of restitution r [-].
+    height: height h of the centre of mass [m]; old_lever, new_lever: horizontal distances b of the old and the new foot
+    from the centre of mass [m]; coefficient: coefficient of restitution r [-]. Returns ``h (1 - r) / (b_old + b_new
+    r)``; for a symmetric body (h / b) (1 - r) / (1 + r) [-].
 
-    Returns
-    -------
-    ndarray
-        ``h (1 - r) / (b_old + b_new r)``; for a symmetric body (h / b) (1 - r) / (1 + r) [-].
-
-    Examples
-    --------
     >>> round(friction_of_impact(2.0, 1.0, 1.0, 0.7).item(), 12)  # 3 lambda / (1 + 4 lambda^2)
     0.352941176471
     """

@@ -32,25 +32,7 @@ __all__ = [
 
 
 def extra(module: str, what: str) -> ModuleType:
-    """Return an optional dependency.
-
-    Parameters
-    ----------
-    module : str
-        What to import.
-    what : str
-        What it is needed for.
-
-    Returns
-    -------
-    module
-        The module.
-
-    Raises
-    ------
-    MissingExtraError
-        If it is not installed.
-    """
+    """Return an optional dependency."""
     try:
         return import_module(module)
     except ImportError as error:
@@ -58,13 +40,7 @@ def extra(module: str, what: str) -> ModuleType:
 
 
 def software() -> str:
-    """Return name and version of this package.
-
-    Returns
-    -------
-    str
-        As files state it.
-    """
+    """Return name and version of this package."""
     from rocking import __version__
 
     return f"rocking {__version__}"
@@ -73,15 +49,7 @@ def software() -> str:
 def to_xarray(content: Exported) -> "xr.Dataset":
     """Return a response as a labelled dataset.
 
-    Parameters
-    ----------
-    content : Exported
-        What the response holds.
-
-    Returns
-    -------
-    xarray.Dataset
-        Samples over `time`, the rows of tables over `impact` and the like, with units and long names.
+    Returns samples over `time`, the rows of tables over `impact` and the like, with units and long names.
     """
     xarray = extra("xarray", "a labelled dataset")
     data: dict[str, Any] = {
@@ -98,15 +66,7 @@ def to_xarray(content: Exported) -> "xr.Dataset":
 def to_dataframe(content: Exported) -> "pd.DataFrame":
     """Return the samples of a response as a table.
 
-    Parameters
-    ----------
-    content : Exported
-        What the response holds.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns such as ``rotation [rad]``.
+    Returns columns such as ``rotation [rad]``.
     """
     pandas = extra("pandas", "a table")
     frame: pd.DataFrame = pandas.DataFrame(content.headed)
@@ -114,20 +74,7 @@ def to_dataframe(content: Exported) -> "pd.DataFrame":
 
 
 def to_csv(content: Exported, path: "str | Path") -> "Path":
-    """Write the samples of a response as comma-separated values, all digits kept.
-
-    Parameters
-    ----------
-    content : Exported
-        What the response holds.
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
+    """Write the samples of a response as comma-separated values, all digits kept."""
     import csv
 
     target, values = target_of(path), content.headed
@@ -139,20 +86,7 @@ def to_csv(content: Exported, path: "str | Path") -> "Path":
 
 
 def to_mat(content: Exported, path: "str | Path") -> "Path":
-    """Write a response as a MATLAB file (version 5): one structure ``rocking`` with samples, tables, units.
-
-    Parameters
-    ----------
-    content : Exported
-        What the response holds.
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
+    """Write a response as a MATLAB file (version 5): one structure ``rocking`` with samples, tables, units."""
     import json
 
     from scipy.io import savemat
@@ -173,38 +107,12 @@ def to_mat(content: Exported, path: "str | Path") -> "Path":
 
 
 def to_netcdf(content: Exported, path: "str | Path") -> "Path":
-    """Write a response as netCDF 4, which xarray and MATLAB open.
-
-    Parameters
-    ----------
-    content : Exported
-        What the response holds.
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
+    """Write a response as netCDF 4, which xarray and MATLAB open."""
     return dataset_to_netcdf(to_xarray(content), path)
 
 
 def dataset_to_netcdf(dataset: "xr.Dataset", path: "str | Path") -> "Path":
-    """Write a labelled dataset as netCDF 4, which xarray and MATLAB open.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        With units and provenance in its attributes.
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
+    """Write a labelled dataset as netCDF 4, which xarray and MATLAB open."""
     extra("h5py", "netCDF")
     extra("h5netcdf", "netCDF")
     target = target_of(path)
@@ -213,23 +121,7 @@ def dataset_to_netcdf(dataset: "xr.Dataset", path: "str | Path") -> "Path":
 
 
 def target_of(path: "str | Path") -> "Path":
-    """Return the path of a file that can be written.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The same.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no path, a folder, or in a folder that is not there.
-    """
+    """Return the path of a file that can be written."""
     from pathlib import Path
 
     given: object = path

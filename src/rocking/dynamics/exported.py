@@ -10,24 +10,13 @@ import numpy as np
 class Quantity:
     """Values of one kind with their unit and meaning.
 
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        Numbers, or words.
-    unit : str
-        Unit, "1" for numbers without one; empty for words.
-    words : str
-        What it is; empty where the name says it.
-
-    Examples
-    --------
     >>> Quantity(np.zeros(2), "rad", "rotation").attributes
     {'units': 'rad', 'long_name': 'rotation'}
     """
 
-    values: np.ndarray
-    unit: str = ""
-    words: str = ""
+    values: np.ndarray  # numbers, or words; shape (n,)
+    unit: str = ""  # unit, "1" for numbers without one; empty for words
+    words: str = ""  # what it is; empty where the name says it
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -37,20 +26,12 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Exported:
-    """Everything that the files of one response hold.
+    """Everything that the files of one response hold."""
 
-    Parameters
-    ----------
-    samples : dict of str to Quantity
-        By name, all of one length, ``time`` among them.
-    tables : dict of str to dict
-        By what one row is (``impact``, ``interval``): name to `Quantity`.
-    provenance : dict
-        What was computed from what: numbers, words, and lists of numbers.
-    """
-
-    samples: dict[str, Quantity]
+    samples: dict[str, Quantity]  # by name, all of one length, ``time`` among them
+    # by what one row is (``impact``, ``interval``): name to `Quantity`
     tables: dict[str, dict[str, Quantity]] = field(default_factory=dict)
+    # what was computed from what: numbers, words, and lists of numbers
     provenance: dict[str, Any] = field(default_factory=dict)
 
     @property
@@ -63,18 +44,6 @@ class Exported:
 def told(motion: Any) -> str:
     """Return where a motion comes from.
 
-    Parameters
-    ----------
-    motion : GroundMotion, Pulse or None
-        The motion.
-
-    Returns
-    -------
-    str
-        Its provenance, or what it is.
-
-    Examples
-    --------
     >>> told(None)
     'ground at rest'
     """

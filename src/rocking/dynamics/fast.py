@@ -24,25 +24,8 @@ def run_fast(
 ) -> Trajectory:
     """Return one history by the fast engine; the numbers are those that it gives within a batch, bit for bit.
 
-    Parameters
-    ----------
-    rocker : Rocker
-        The body.
-    segments : Segments
-        The motion, of degree 1 or 7 [m/s2].
-    settings : Settings
-        How to integrate; the order is 8, or 6 where that is as exact.
-    scale : float
-        Factor on the motion [-].
-    key : int
-        Number of the history, for random coefficients.
-    rotation, velocity : float
-        theta [rad] and theta' [rad/s] at time zero.
-
-    Returns
-    -------
-    Trajectory
-        The history.
+    segments: the motion, of degree 1 or 7 [m/s2]; scale: factor on the motion [-]; rotation, velocity: theta [rad] and
+    theta' [rad/s] at time zero.
     """
     library = engine.Library([segments])
     values = {

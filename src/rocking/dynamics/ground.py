@@ -12,54 +12,24 @@ from rocking.dynamics.taylor import first_fall, shifted, value
 
 @dataclass(frozen=True)
 class Push:
-    """Ground accelerations over gravity, as polynomials of the stretches.
+    """Ground accelerations over gravity, as polynomials of the stretches."""
 
-    Parameters
-    ----------
-    step : float
-        Duration of a stretch [s].
-    horizontal : ndarray, shape (n, degree + 1)
-        a_x / g [-].
-    vertical : ndarray, shape (n, degree + 1)
-        a_z / g [-].
-    """
-
-    step: float
-    horizontal: FloatArray
-    vertical: FloatArray
+    step: float  # duration of a stretch [s]
+    horizontal: FloatArray  # a_x / g [-]; shape (n, degree + 1)
+    vertical: FloatArray  # a_z / g [-]; shape (n, degree + 1)
 
 
 @dataclass(frozen=True)
 class Window:
-    """What holds a body down over some time.
+    """What holds a body down over some time."""
 
-    Parameters
-    ----------
-    low : dict of int to float
-        Least holding moment on each side [-].
-    variation : float
-        Bound on the total variation of the logarithm of the holding moments [-].
-    steepness : float
-        Bound on the change of the moments with the rotation [1/rad].
-    """
-
-    low: dict[int, float]
-    variation: float
-    steepness: float
+    low: dict[int, float]  # least holding moment on each side [-]
+    variation: float  # bound on the total variation of the logarithm of the holding moments [-]
+    steepness: float  # bound on the change of the moments with the rotation [1/rad]
 
 
 class Ground:
-    """What holds a body down, stretch by stretch.
-
-    Parameters
-    ----------
-    rocker : Rocker
-        The body.
-    push : Push
-        The motion.
-    linear : bool
-        Slender-linear equations.
-    """
+    """What holds a body down, stretch by stretch."""
 
     def __init__(self, rocker: Rocker, push: Push, *, linear: bool) -> None:
         self.push = push
@@ -83,40 +53,14 @@ class Ground:
     def held(self, sign: int, stretch: int, tau: float) -> float:
         """Return the holding moment on a side, over m g R.
 
-        Parameters
-        ----------
-        sign : int
-            The side.
-        stretch : int
-            Number of the stretch.
-        tau : float
-            Time within it, from 0 to 1.
-
-        Returns
-        -------
-        float
-            Above zero where the body is held [-].
+        Returns above zero where the body is held [-].
         """
         return value(self.moments[sign][stretch].tolist(), tau)
 
     def next_uplift(self, stretch: int, tau: float) -> tuple[int, float, int] | None:
         """Return when the body is next lifted.
 
-        Parameters
-        ----------
-        stretch : int
-            Number of the stretch in which it rests.
-        tau : float
-            Time within it, from 0 to 1.
-
-        Returns
-        -------
-        stretch : int
-            Number of the stretch.
-        tau : float
-            Time within it.
-        side : int
-            Side on which it then stands; None instead of all three if the ground never lifts it.
+        Returns side: side on which it then stands; None instead of all three if the ground never lifts it.
         """
         for k in self._candidates[np.searchsorted(self._candidates, stretch) :].tolist():
             start = tau if k == stretch else 0.0
@@ -132,36 +76,13 @@ class Ground:
         return None
 
     def until_jump(self, stretch: int) -> int:
-        """Return how many stretches there are up to the end, or to where a record jumps to rest.
-
-        Parameters
-        ----------
-        stretch : int
-            Number of the first stretch.
-
-        Returns
-        -------
-        int
-            Number of stretches, at least 1.
-        """
+        """Return how many stretches there are up to the end, or to where a record jumps to rest."""
         return int(self._stops[np.searchsorted(self._stops, stretch, side="right")]) - stretch
 
     def window(self, stretch: int, tau: float, stretches: int) -> Window | None:
         """Return what holds the body down from an instant to the end of some stretches.
 
-        Parameters
-        ----------
-        stretch : int
-            Number of the first stretch.
-        tau : float
-            Time within it, from 0 to 1.
-        stretches : int
-            How many.
-
-        Returns
-        -------
-        Window, optional
-            None if a side is not held down throughout.
+        Returns none if a side is not held down throughout.
         """
         rows = slice(stretch, stretch + stretches)
         x, z = (_extent(part[rows], tau) for part in (self.push.horizontal, self.push.vertical))

@@ -179,22 +179,7 @@ def free_rocking(  # noqa: PLR0913 - as for `simulate`
 def settings_of(gravity: float, options: dict[str, Any]) -> Settings:
     """Return the settings of a call.
 
-    Parameters
-    ----------
-    gravity : float
-        Acceleration of gravity [m/s2].
-    options : dict
-        Further fields of `Settings`.
-
-    Returns
-    -------
-    Settings
-        The settings.
-
-    Raises
-    ------
-    InvalidValueError
-        If an option is unknown.
+    gravity: acceleration of gravity [m/s2].
     """
     known = {f.name for f in fields(Settings)}
     unknown = sorted(set(options) - known)
@@ -206,17 +191,7 @@ def settings_of(gravity: float, options: dict[str, Any]) -> Settings:
 def initial_state(rocker: Rocker, rotation: float, angular_velocity: float) -> tuple[float, float]:
     """Return checked initial conditions.
 
-    Parameters
-    ----------
-    rocker : Rocker
-        The body.
-    rotation, angular_velocity : float
-        theta [rad] and theta' [rad/s].
-
-    Returns
-    -------
-    rotation, angular_velocity : float
-        The same, finite and within a quarter turn.
+    rotation, angular_velocity: theta [rad] and theta' [rad/s]. Returns the same, finite and within a quarter turn.
     """
     half_pi = 0.5 * math.pi
     rotation = checks.within(

@@ -110,7 +110,15 @@ class ImpactLaw:
 
 @dataclass(frozen=True, eq=False)
 class ConstantRestitution(ImpactLaw):
-    """The coefficient of the side, always."""
+    """The coefficient of the side, always.
+
+    Parameters
+    ----------
+    at, factors : ndarray, optional
+        Zero and one: nothing changes with the speed.
+    seed : int, optional
+        Not used: nothing is drawn.
+    """
 
     kind: ClassVar[int] = 0
     at: FloatArray = field(default_factory=lambda: np.zeros(1))
@@ -147,6 +155,8 @@ class SpeedRestitution(ImpactLaw):
         Coefficients there; factors, if `times` is given [-].
     times : optional
         What they multiply: a coefficient, a model or its name; 1 if not given.
+    seed : int, optional
+        Not used: nothing is drawn.
 
     Raises
     ------
@@ -441,20 +451,7 @@ class RandomRestitution(DrawnRestitution):
 
 
 def interpolated(at: FloatArray, values: FloatArray, x: float) -> float:
-    """Return the value of straight lines through points, constant outside them.
-
-    Parameters
-    ----------
-    at, values : ndarray
-        The points.
-    x : float
-        Where.
-
-    Returns
-    -------
-    float
-        The value.
-    """
+    """Return the value of straight lines through points, constant outside them."""
     if not x > at[0]:
         return float(values[0])
     if x >= at[-1]:
@@ -464,22 +461,7 @@ def interpolated(at: FloatArray, values: FloatArray, x: float) -> float:
 
 
 def uniform(seed: int, key: int, impact: int) -> float:
-    """Return a number in [0, 1) that depends on seed, history and impact, on nothing else (splitmix64).
-
-    Parameters
-    ----------
-    seed : int
-        Seed.
-    key : int
-        Number of the history.
-    impact : int
-        Number of the impact.
-
-    Returns
-    -------
-    float
-        The number.
-    """
+    """Return a number in [0, 1) that depends on seed, history and impact, on nothing else (splitmix64)."""
     return (_mixed(_mixed(_mixed(seed) + key & _MASK) + impact & _MASK) >> 11) * 2.0**-53
 
 

@@ -25,67 +25,32 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Known:
-    """A state that is known, and where to go from there.
+    """A state that is known, and where to go from there."""
 
-    Parameters
-    ----------
-    time : float
-        When [s].
-    side : int
-        +1 or -1: the side on which the body stands from then on.
-    rotation, velocity : float
-        theta [rad] and theta' [rad/s].
-    until : float
-        Where to end, at most at the end of the same stretch [s].
-    """
-
-    time: float
-    side: int
-    rotation: float
+    time: float  # when [s]
+    side: int  # +1 or -1: the side on which the body stands from then on
+    rotation: float  # rotation, velocity: theta [rad] and theta' [rad/s]
     velocity: float
-    until: float
+    until: float  # where to end, at most at the end of the same stretch [s]
 
 
 @dataclass(frozen=True)
 class Inside:
-    """What moves, and on what.
+    """What moves, and on what."""
 
-    Parameters
-    ----------
-    segments : Segments
-        The motion [m/s2].
-    rocker : Rocker
-        The body.
-    settings : Settings
-        Gravity and equations.
-    scale : float
-        Factor on the motion [-].
-    """
-
-    segments: Segments
-    rocker: Rocker
-    settings: Settings
-    scale: float
+    segments: Segments  # the motion [m/s2]
+    rocker: Rocker  # the body
+    settings: Settings  # gravity and equations
+    scale: float  # factor on the motion [-]
 
     def added(
         self, trajectory: Trajectory, time: FloatArray, before: FloatArray, after: FloatArray
     ) -> list[tuple[float, float, float]]:
         """Return the states to be added to those at samples and events.
 
-        Parameters
-        ----------
-        trajectory : Trajectory
-            The history.
-        time : ndarray, shape (n,)
-            Times of samples and events, in order [s].
-        before, after : ndarray, shape (n, 2)
-            theta [rad] and theta' [rad/s] just before and just after each.
-
-        Returns
-        -------
-        list of tuple of float
-            Time [s], theta [rad], theta' [rad/s]: within long intervals; when the body passes over its foot for good;
-            and after the last sample, until it lies.
+        time: times of samples and events, in order [s]; before, after: theta [rad] and theta' [rad/s] just before and
+        just after each. Returns time [s], theta [rad], theta' [rad/s]: within long intervals; when the body passes over
+        its foot for good; and after the last sample, until it lies.
         """
         fall, step = trajectory.overturning_time, self.segments.step
         length, turned = np.diff(time), after[:-1, 0] + before[1:, 0]

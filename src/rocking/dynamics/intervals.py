@@ -24,31 +24,19 @@ _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
 
 @dataclass(frozen=True)
 class Intervals:
-    """Intervals between consecutive samples, events and states added inside long steps and falls, in order of time.
+    """Intervals between consecutive samples, events and states added inside long steps and falls, in order of time."""
 
-    Parameters
-    ----------
-    start, end : ndarray, shape (n,)
-        Times [s].
-    side : ndarray, shape (n,)
-        +1, -1 or 0 where the body rests.
-    rotation, velocity, acceleration : ndarray, shape (n, 2)
-        theta [rad], theta' [rad/s] and theta'' [rad/s2] at the start and at the end of each interval, as limits from
-        within it.
-    push, lift : ndarray, shape (n, 2)
-        a_x and a_z at the same instants [m/s2].
-    alpha, p, semi_diagonal : ndarray, shape (n,)
-        Of the side on which the body stands; at rest of the right one.
-    """
-
-    start: FloatArray
+    start: FloatArray  # start, end: times [s]; shape (n,)
     end: FloatArray
-    side: FloatArray
+    side: FloatArray  # +1, -1 or 0 where the body rests; shape (n,)
+    # rotation, velocity, acceleration: theta [rad], theta' [rad/s] and theta'' [rad/s2] at the start and at the end of
+    # each interval, as limits from within it; shape (n, 2)
     rotation: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
-    push: FloatArray
+    push: FloatArray  # push, lift: a_x and a_z at the same instants [m/s2]; shape (n, 2)
     lift: FloatArray
+    # alpha, p, semi_diagonal: of the side on which the body stands; at rest of the right one; shape (n,)
     alpha: FloatArray
     p: FloatArray
     semi_diagonal: FloatArray
@@ -61,28 +49,7 @@ class Intervals:
     ) -> "Intervals":
         """Return the intervals of a trajectory.
 
-        Parameters
-        ----------
-        trajectory : Trajectory
-            The history.
-        segments : Segments
-            Its motion [m/s2].
-        rocker : Rocker
-            Its body.
-        settings : Settings
-            How it was integrated.
-        scale : float
-            Factor on the motion [-].
-
-        Returns
-        -------
-        Intervals
-            All of positive length.
-
-        Raises
-        ------
-        InvalidValueError
-            If the history was stopped before anything happened.
+        segments: its motion [m/s2]; scale: factor on the motion [-].
         """
         time, before, after = _nodes(trajectory, segments.step)
         added = Inside(segments, rocker, settings, scale).added(trajectory, time, before, after)
@@ -124,30 +91,14 @@ class Intervals:
     def places(self, time: FloatArray) -> IntArray:
         """Return the last interval that is over at each of some times.
 
-        Parameters
-        ----------
-        time : ndarray, shape (m,)
-            Times [s].
-
-        Returns
-        -------
-        ndarray, shape (m,)
-            Numbers of intervals; the first one where none is over.
+        time: times [s]. Returns numbers of intervals; the first one where none is over.
         """
         return np.maximum(np.searchsorted(self.end, time * (1.0 + 1e-14), side="right") - 1, 0)
 
     def inside(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return rotation and velocity within every interval: the quintic through both ends.
 
-        Parameters
-        ----------
-        x : ndarray, shape (m,)
-            Places within each interval, from 0 to 1.
-
-        Returns
-        -------
-        rotation, velocity : ndarray, shape (n, m)
-            theta [rad] and theta' [rad/s].
+        Returns theta [rad] and theta' [rad/s] (shape (n, m)).
         """
         c = self.quintics()
         by_power = powers(x, 6).T
@@ -157,10 +108,7 @@ class Intervals:
     def quintics(self) -> FloatArray:
         """Return the quintics that have the value, rate and acceleration of the motion at both ends.
 
-        Returns
-        -------
-        ndarray, shape (n, 6)
-            Coefficients of the powers of the place x from 0 to 1 [rad].
+        Returns coefficients of the powers of the place x from 0 to 1 [rad].
         """
         h = self.length
         a, b = self.rotation[:, 0], self.rotation[:, 1]
@@ -185,15 +133,7 @@ class Intervals:
         In the frame of the ground the inertia forces ``-m a_x`` and ``-m a_z`` act on the centre of mass; the
         slender-linear equations have the corresponding terms.
 
-        Parameters
-        ----------
-        settings : Settings
-            Gravity and equations.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            Work [J/kg].
+        Returns work [J/kg].
         """
         rotation, velocity = self.inside(_POINTS)
         middle = 0.5 * (self.start + self.end) / self._segments.step

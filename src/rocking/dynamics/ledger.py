@@ -12,25 +12,13 @@ from rocking.dynamics.settings import Settings
 
 @dataclass(frozen=True)
 class ResponseEnergy:
-    """Energy of a response at its samples.
+    """Energy of a response at its samples."""
 
-    Parameters
-    ----------
-    time : ndarray
-        Times of the samples, and of the fall if it comes after the last of them [s].
-    kinetic, potential : ndarray
-        Of the body, above rest [J].
-    work : ndarray
-        Done by the ground since the start [J].
-    lost : ndarray
-        At impacts since the start [J].
-    """
-
-    time: FloatArray
-    kinetic: FloatArray
+    time: FloatArray  # times of the samples, and of the fall if it comes after the last of them [s]
+    kinetic: FloatArray  # kinetic, potential: of the body, above rest [J]
     potential: FloatArray
-    work: FloatArray
-    lost: FloatArray
+    work: FloatArray  # done by the ground since the start [J]
+    lost: FloatArray  # at impacts since the start [J]
 
     @property
     def gap(self) -> FloatArray:
@@ -49,21 +37,8 @@ class ResponseEnergy:
 def energy_of(intervals: Intervals, time: FloatArray, mass: float, settings: Settings) -> ResponseEnergy:
     """Return the energy of a response.
 
-    Parameters
-    ----------
-    intervals : Intervals
-        The response between its samples and events.
-    time : ndarray
-        Times of the samples, the first one zero, and of a fall after the last of them [s].
-    mass : float
-        Mass of the body [kg].
-    settings : Settings
-        How it was integrated.
-
-    Returns
-    -------
-    ResponseEnergy
-        At these times.
+    time: times of the samples, the first one zero, and of a fall after the last of them [s]; mass: mass of the body
+    [kg].
     """
     kinetic, potential, work, lost = energies(intervals, mass, settings)
     place = intervals.places(time[1:])
@@ -85,19 +60,7 @@ def energies(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return the energy of a response at both ends of its intervals.
 
-    Parameters
-    ----------
-    intervals : Intervals
-        The response between its samples and events.
-    mass : float
-        Mass of the body [kg].
-    settings : Settings
-        How it was integrated.
-
-    Returns
-    -------
-    kinetic, potential, work, lost : ndarray, shape (n, 2)
-        As `ResponseEnergy` has them [J].
+    mass: mass of the body [kg]. Returns as `ResponseEnergy` has them [J] (shape (n, 2)).
     """
     unit = (mass * settings.gravity * intervals.semi_diagonal)[:, None]
     alpha, p = intervals.alpha[:, None], intervals.p[:, None]

@@ -18,18 +18,8 @@ FORCES: dict[str, tuple[str, str]] = {
 def lost_contact(results: Any) -> FloatArray:
     """Return in which histories the ground would have to pull.
 
-    Parameters
-    ----------
-    results : mapping of str to array_like
-        With outcome and least_force.
+    Returns 1 where it would, 0 where not, NaN where there is no result [-].
 
-    Returns
-    -------
-    ndarray
-        1 where it would, 0 where not, NaN where there is no result [-].
-
-    Examples
-    --------
     >>> lost_contact({"outcome": [1, 1, 0, 3], "least_force": [-0.1, 0.2, np.nan, np.nan]}).tolist()
     [1.0, 0.0, 0.0, nan]
     """
@@ -41,15 +31,7 @@ def lost_contact(results: Any) -> FloatArray:
 def flags(results: Any) -> dict[str, FloatArray]:
     """Return what is true or false of histories, as numbers.
 
-    Parameters
-    ----------
-    results : mapping of str to array_like
-        With outcome, still_rocking and least_force.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Overturned, still_rocking, lost_contact: 1, 0, NaN where there is no result [-].
+    Returns Overturned, still_rocking, lost_contact: 1, 0, NaN where there is no result [-].
     """
     outcome = results["outcome"]
     still = of_results(outcome, np.asarray(results["still_rocking"]) == 1)
@@ -59,18 +41,6 @@ def flags(results: Any) -> dict[str, FloatArray]:
 def contact_words(flags: Any) -> str:
     """Return in how many histories the ground would have to pull, as a sentence that stands beside their verdicts.
 
-    Parameters
-    ----------
-    flags : array_like
-        As of `lost_contact`.
-
-    Returns
-    -------
-    str
-        Empty if there is none.
-
-    Examples
-    --------
     >>> contact_words([1.0, 0.0, 0.0, np.nan])
     'in 1 of 3 histories (33.3 %) the ground would have to pull; their verdicts assume contact'
     """

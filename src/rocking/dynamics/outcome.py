@@ -61,18 +61,8 @@ STILL_ROCKING = (
 def overturned(outcome: Any) -> FloatArray:
     """Return which histories overturned; no result is neither a fall nor a stand.
 
-    Parameters
-    ----------
-    outcome : array_like of int
-        Codes of `Outcome`.
+    Returns 1 for those that did, 0 for those that did not, NaN for those without a result [-].
 
-    Returns
-    -------
-    ndarray
-        1 for those that did, 0 for those that did not, NaN for those without a result [-].
-
-    Examples
-    --------
     >>> overturned([0, 1, 2, 3]).tolist()
     [0.0, 0.0, 1.0, nan]
     """
@@ -82,16 +72,6 @@ def overturned(outcome: Any) -> FloatArray:
 def of_results(outcome: Any, flags: Any) -> FloatArray:
     """Return flags of histories as numbers; no result is neither true nor false.
 
-    Parameters
-    ----------
-    outcome : array_like of int
-        Codes of `Outcome`.
-    flags : array_like of bool
-        What is true of the histories that have a result.
-
-    Returns
-    -------
-    ndarray
-        1 and 0, NaN for those without a result [-].
+    Returns 1 and 0, NaN for those without a result [-].
     """
     return np.where(np.asarray(outcome) == Outcome.FAILED.code, np.nan, flags)

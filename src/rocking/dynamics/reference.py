@@ -33,25 +33,7 @@ class _Ended(NamedTuple):
 class Reference:
     """One history.
 
-    Parameters
-    ----------
-    rocker : Rocker
-        The body.
-    segments : Segments
-        The motion [m/s2].
-    settings : Settings
-        Gravity, equations, limits, tolerance.
-    scale : float
-        Factor on the motion [-].
-    key : int
-        Number of the history, for random coefficients.
-    to_the_ground : bool
-        Follow a body that falls until it lies; otherwise stop once nothing can bring it back.
-
-    Raises
-    ------
-    InvalidValueError
-        If an acceleration is not finite.
+    segments: the motion [m/s2]; scale: factor on the motion [-].
     """
 
     def __init__(
@@ -90,15 +72,7 @@ class Reference:
     def run(self, rotation: float = 0.0, velocity: float = 0.0) -> Trajectory:
         """Return the history from given initial conditions.
 
-        Parameters
-        ----------
-        rotation, velocity : float
-            theta [rad] and theta' [rad/s] at time zero.
-
-        Returns
-        -------
-        Trajectory
-            The history.
+        rotation, velocity: theta [rad] and theta' [rad/s] at time zero.
         """
         self.rotations[0], self.velocities[0] = rotation, velocity
         ended = self._start(rotation, velocity)

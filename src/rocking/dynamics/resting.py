@@ -17,27 +17,8 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     Flights take disjoint times, so that the speed gained by moments that change is bounded by their total variation;
     the sum of the flights is a geometric series. The proof is in the theory, "Rest".
 
-    Parameters
-    ----------
-    rocker : Rocker
-        The body.
-    ground : Ground
-        What holds it.
-    sign : int
-        Side on which it has just landed.
-    after : float
-        Speed after the impact [rad/s].
-    stretch : int
-        Number of the stretch.
-    tau : float
-        Time within it.
-    rest_speed : float
-        Speed over p alpha above which the question is not asked; below `NOTHING` it always is [-].
-
-    Returns
-    -------
-    bool
-        True if it comes to rest.
+    after: speed after the impact [rad/s]; rest_speed: speed over p alpha above which the question is not asked; below
+    `NOTHING` it always is [-].
     """
     side = rocker.side(sign)
     unit = side.frequency_parameter * side.slenderness_angle

@@ -183,22 +183,7 @@ class Rocker:
 def cut_of(law: ImpactLaw, body: Body) -> dict[Foot, float]:
     """Return what of a law's distribution is cut off for a body, where impacts would create energy.
 
-    Parameters
-    ----------
-    law : ImpactLaw
-        The law.
-    body : Body
-        The body.
-
-    Returns
-    -------
-    dict of str to float
-        Probability by foot; zero for a law that draws nothing [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If a law that cannot be cut would create energy, or next to nothing is left of one that can.
+    Returns probability by foot; zero for a law that draws nothing [-].
     """
     coefficients, _ = coefficients_of(getattr(law, "times", 1.0), body)
     return _cut(law, {foot: _share(law, foot, coefficients[foot], energy_bound(body, foot)) for foot in FEET})
@@ -207,15 +192,7 @@ def cut_of(law: ImpactLaw, body: Body) -> dict[Foot, float]:
 def cut_words(cut: Mapping[Foot, float]) -> str:
     """Return what is cut off of a distribution, in words.
 
-    Parameters
-    ----------
-    cut : dict of str to float
-        Probability by foot [-].
-
-    Returns
-    -------
-    str
-        For the end of a label; nothing where less than a ten-thousandth is cut off.
+    cut: probability by foot [-]. Returns for the end of a label; nothing where less than a ten-thousandth is cut off.
     """
     said = [f"{percent(cut[foot])} onto {foot}" for foot in FEET if cut[foot] > _SAID]
     if said and cut["left"] == cut["right"]:
@@ -262,24 +239,7 @@ def _label(law: ImpactLaw, shares: Mapping[Foot, float], base: str) -> str:
 def coefficients_of(restitution: Any, body: Body) -> tuple[dict[str, float], str]:
     """Return the coefficients for landing left and right, and what to call them.
 
-    Parameters
-    ----------
-    restitution : str, RestitutionModel, float or mapping
-        A model or its name, one coefficient, or one for each foot.
-    body : Body
-        The body.
-
-    Returns
-    -------
-    coefficients : dict of str to float
-        By foot [-].
-    label : str
-        For titles and tables.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is none of these.
+    Returns coefficients: by foot [-].
     """
     if isinstance(restitution, (str, RestitutionModel)):
         found = model(restitution)

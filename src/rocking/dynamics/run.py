@@ -29,32 +29,8 @@ def run(
 ) -> Trajectory:
     """Return one history.
 
-    Parameters
-    ----------
-    rocker : Rocker
-        The body.
-    segments : Segments
-        The motion [m/s2].
-    settings : Settings
-        How to integrate.
-    engine : {"auto", "fast", "reference"}
-        Which engine; "auto" takes the fast one if it was built.
-    scale : float
-        Factor on the motion [-].
-    key : int
-        Number of the history, for random coefficients.
-    rotation, velocity : float
-        theta [rad] and theta' [rad/s] at time zero.
-
-    Returns
-    -------
-    Trajectory
-        The history.
-
-    Raises
-    ------
-    InvalidValueError
-        If the order is not 8, unless the reference engine was asked for: there are no others for one history.
+    segments: the motion [m/s2]; scale: factor on the motion [-]; rotation, velocity: theta [rad] and theta' [rad/s] at
+    time zero.
     """
     taken = fast_engine.chosen(engine, rocker.law)
     if engine != "reference" and settings.order != _ORDER:
@@ -77,15 +53,7 @@ def rerun_finer(response: Response) -> float:
 
     Where the steps of the fast engine are as short as they may be, the reference engine stands in for shorter ones.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    float
-        Largest change of theta at the samples that both have; infinite if the outcome changes [rad].
+    Returns largest change of theta at the samples that both have; infinite if the outcome changes [rad].
     """
     name, settings = "reference", response.settings
     half = 0.5 * settings.longest_step

@@ -29,15 +29,7 @@ _IMPACT_UNITS = {"time": "s", "velocity_before": "rad/s", "velocity_after": "rad
 def columns(response: "Response") -> dict[str, FloatArray]:
     """Return the samples of a response by name.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    dict of str to ndarray
-        All of one length; `vertical_ground_acceleration` only if the motion has a vertical part.
+    Returns all of one length; `vertical_ground_acceleration` only if the motion has a vertical part.
     """
     energy, contact = response.energy, response.contact
     values = (
@@ -51,18 +43,7 @@ def columns(response: "Response") -> dict[str, FloatArray]:
 
 
 def provenance(response: "Response") -> dict[str, Any]:
-    """Return what was computed from what, as plain values.
-
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    dict
-        Numbers, words and lists of words.
-    """
+    """Return what was computed from what, as plain values."""
     from rocking.dynamics.export import software  # which imports this module
 
     motion, rocker = response.motion, response.rocker
@@ -94,18 +75,7 @@ def provenance(response: "Response") -> dict[str, Any]:
 
 
 def exported(response: "Response") -> Exported:
-    """Return what the files of a response hold.
-
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    Exported
-        Samples, impacts and provenance.
-    """
+    """Return what the files of a response hold."""
     about = {name: (unit, words) for name, unit, words in _COLUMNS}
     samples = {name: Quantity(values, *about[name]) for name, values in columns(response).items()}
     impacts = {name: Quantity(response.impacts[name], unit) for name, unit in _IMPACT_UNITS.items()}

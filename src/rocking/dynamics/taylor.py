@@ -15,25 +15,8 @@ def series(
 ) -> list[float]:
     """Return the series of ``u'' = kappa { weight * S + push * C }`` with S = sin u, C = cos u, over a unit of time.
 
-    Parameters
-    ----------
-    u : float
-        Angle from the top, alpha - |theta| [rad].
-    rate : float
-        u' per unit of time [rad].
-    kappa : float
-        p^2 times the unit of time squared [-].
-    push, weight : sequence of float
-        Series of s a_x / g and of 1 + a_z / g.
-    order : int
-        Highest power.
-    linear : bool
-        S = u and C = 1 instead.
-
-    Returns
-    -------
-    list of float
-        Coefficients of u, from the power 0; shorter than `order` where what is left is below rounding.
+    u: angle from the top, alpha - |theta| [rad]; rate: u' per unit of time [rad]; kappa: p^2 times the unit of time
+    squared [-]. Returns coefficients of u, from the power 0; shorter than `order` where what is left is below rounding.
     """
     coefficients, rates = [u, rate], [rate]
     if linear:
@@ -60,20 +43,7 @@ def series(
 
 
 def shifted(polynomial: Sequence[float], to: float, width: float) -> list[float]:
-    """Return a polynomial of x as one of y, with x = to + width * y.
-
-    Parameters
-    ----------
-    polynomial : sequence of float
-        Coefficients from the power 0.
-    to, width : float
-        Where the new variable starts, and its unit.
-
-    Returns
-    -------
-    list of float
-        Coefficients from the power 0.
-    """
+    """Return a polynomial of x as one of y, with x = to + width * y."""
     c = list(polynomial)
     n = len(c)
     for k in range(n - 1):
@@ -83,20 +53,7 @@ def shifted(polynomial: Sequence[float], to: float, width: float) -> list[float]
 
 
 def value(polynomial: Sequence[float], x: float) -> float:
-    """Return the value of a polynomial.
-
-    Parameters
-    ----------
-    polynomial : sequence of float
-        Coefficients from the power 0.
-    x : float
-        Where.
-
-    Returns
-    -------
-    float
-        The value.
-    """
+    """Return the value of a polynomial."""
     total = 0.0
     for c in reversed(polynomial):
         total = total * x + c
@@ -104,20 +61,7 @@ def value(polynomial: Sequence[float], x: float) -> float:
 
 
 def slope(polynomial: Sequence[float], x: float) -> float:
-    """Return the derivative of a polynomial.
-
-    Parameters
-    ----------
-    polynomial : sequence of float
-        Coefficients from the power 0.
-    x : float
-        Where.
-
-    Returns
-    -------
-    float
-        The derivative.
-    """
+    """Return the derivative of a polynomial."""
     total = 0.0
     for k in range(len(polynomial) - 1, 0, -1):
         total = total * x + k * polynomial[k]
@@ -127,15 +71,7 @@ def slope(polynomial: Sequence[float], x: float) -> float:
 def first_fall(polynomial: Sequence[float]) -> float | None:
     """Return where on (0, 1] a polynomial that starts above zero first goes below it.
 
-    Parameters
-    ----------
-    polynomial : sequence of float
-        Coefficients from the power 0.
-
-    Returns
-    -------
-    float, optional
-        The zero, to rounding; None if there is none. Touching zero is not falling.
+    Returns the zero, to rounding; None if there is none. Touching zero is not falling.
     """
     if polynomial[0] + sum(min(c, 0.0) for c in polynomial[1:]) > 0.0:
         return None
@@ -145,15 +81,7 @@ def first_fall(polynomial: Sequence[float]) -> float | None:
 def last_fall(polynomial: Sequence[float]) -> float | None:
     """Return where on [0, 1) a polynomial that ends below zero last goes below it.
 
-    Parameters
-    ----------
-    polynomial : sequence of float
-        Coefficients from the power 0.
-
-    Returns
-    -------
-    float, optional
-        The zero, to rounding; None if the polynomial is below zero throughout.
+    Returns the zero, to rounding; None if the polynomial is below zero throughout.
     """
     if polynomial[0] + sum(max(c, 0.0) for c in polynomial[1:]) < 0.0:
         return None
@@ -165,20 +93,8 @@ def last_fall(polynomial: Sequence[float]) -> float | None:
 def turning_points(polynomial: Sequence[float], until: float) -> list[float]:
     """Return where on (0, until] the slope of a polynomial is zero.
 
-    Parameters
-    ----------
-    polynomial : sequence of float
-        Coefficients from the power 0.
-    until : float
-        End of the range, at most 1.
+    Returns the zeros of the slope, in order; where it only just touches zero there may be one or none.
 
-    Returns
-    -------
-    list of float
-        The zeros of the slope, in order; where it only just touches zero there may be one or none.
-
-    Examples
-    --------
     >>> [round(x, 12) for x in turning_points([0.0, 0.5, -1.5, 1.0], 1.0)]
     [0.211324865405, 0.788675134595]
     """

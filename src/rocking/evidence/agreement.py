@@ -8,15 +8,7 @@ from rocking.conventions import FloatArray
 def rmse(model: FloatArray, measured: FloatArray) -> float:
     """Root mean square error of r.
 
-    Parameters
-    ----------
-    model, measured : ndarray, shape (n,)
-        Coefficients [-].
-
-    Returns
-    -------
-    float
-        sqrt(mean((model - measured)^2)) [-].
+    model, measured: coefficients [-]. Returns sqrt(mean((model - measured)^2)) [-].
     """
     return float(np.sqrt(np.mean((model - measured) ** 2)))
 
@@ -24,15 +16,7 @@ def rmse(model: FloatArray, measured: FloatArray) -> float:
 def bias(model: FloatArray, measured: FloatArray) -> float:
     """Mean of model minus experiment.
 
-    Parameters
-    ----------
-    model, measured : ndarray, shape (n,)
-        Coefficients [-].
-
-    Returns
-    -------
-    float
-        Positive where the model is too elastic [-].
+    model, measured: coefficients [-]. Returns positive where the model is too elastic [-].
     """
     return float(np.mean(model - measured))
 
@@ -40,15 +24,7 @@ def bias(model: FloatArray, measured: FloatArray) -> float:
 def correlation(model: FloatArray, measured: FloatArray) -> float:
     """Pearson's correlation coefficient: blind to bias and scale.
 
-    Parameters
-    ----------
-    model, measured : ndarray, shape (n,)
-        Coefficients [-].
-
-    Returns
-    -------
-    float
-        Between -1 and 1; NaN if the model is constant.
+    model, measured: coefficients [-]. Returns between -1 and 1; NaN if the model is constant.
     """
     dm, de = model - model.mean(), measured - measured.mean()
     scale = float(np.sqrt((dm @ dm) * (de @ de)))
@@ -58,15 +34,7 @@ def correlation(model: FloatArray, measured: FloatArray) -> float:
 def concordance(model: FloatArray, measured: FloatArray) -> float:
     """Lin's concordance (Biometrics 45, 1989): correlation that also pays for bias and scale.
 
-    Parameters
-    ----------
-    model, measured : ndarray, shape (n,)
-        Coefficients [-].
-
-    Returns
-    -------
-    float
-        2 cov / (var + var + (difference of means)^2), between -1 and 1.
+    model, measured: coefficients [-]. Returns 2 cov / (var + var + (difference of means)^2), between -1 and 1.
     """
     covariance = float(np.mean((model - model.mean()) * (measured - measured.mean())))
     return 2.0 * covariance / float(model.var() + measured.var() + (model.mean() - measured.mean()) ** 2)
@@ -75,15 +43,7 @@ def concordance(model: FloatArray, measured: FloatArray) -> float:
 def loss_rmse(model: FloatArray, measured: FloatArray) -> float:
     """Root mean square error of the energy loss 1 - r^2.
 
-    Parameters
-    ----------
-    model, measured : ndarray, shape (n,)
-        Coefficients [-].
-
-    Returns
-    -------
-    float
-        Of the share of kinetic energy [-].
+    model, measured: coefficients [-]. Returns of the share of kinetic energy [-].
     """
     return rmse(model**2, measured**2)
 
@@ -91,15 +51,7 @@ def loss_rmse(model: FloatArray, measured: FloatArray) -> float:
 def log_loss_rmse(model: FloatArray, measured: FloatArray) -> float:
     """Root mean square of ln((1 - r_model^2) / (1 - r_measured^2)): relative error of the energy loss.
 
-    Parameters
-    ----------
-    model, measured : ndarray, shape (n,)
-        Coefficients below 1 [-].
-
-    Returns
-    -------
-    float
-        0.1 is about 10 %; infinite for a model without loss [-].
+    model, measured: coefficients below 1 [-]. Returns 0.1 is about 10 %; infinite for a model without loss [-].
     """
     with np.errstate(divide="ignore"):
         return rmse(np.log1p(-(model**2)), np.log1p(-(measured**2)))
@@ -108,15 +60,7 @@ def log_loss_rmse(model: FloatArray, measured: FloatArray) -> float:
 def relative_error(model: FloatArray, measured: FloatArray) -> FloatArray:
     """Relative error as the paper defines it, |measured - model| / measured.
 
-    Parameters
-    ----------
-    model, measured : ndarray
-        Coefficients [-].
-
-    Returns
-    -------
-    ndarray
-        Of the same shape [-].
+    model, measured: coefficients [-]. Returns of the same shape [-].
     """
     return np.asarray(np.abs(measured - model) / measured)
 
@@ -124,18 +68,8 @@ def relative_error(model: FloatArray, measured: FloatArray) -> FloatArray:
 def zone(error: FloatArray) -> list[str]:
     """Sort relative errors into the paper's zones.
 
-    Parameters
-    ----------
-    error : ndarray, shape (n,)
-        Relative errors [-].
+    error: relative errors [-]. Returns ``"I"`` below 1 %, ``"II"`` to 5 %, ``"III"`` above.
 
-    Returns
-    -------
-    list of str
-        ``"I"`` below 1 %, ``"II"`` to 5 %, ``"III"`` above.
-
-    Examples
-    --------
     >>> zone(np.array([0.005, 0.03, 0.2]))
     ['I', 'II', 'III']
     """

@@ -20,37 +20,17 @@ _FIRST, _POLISHED, _AGAIN = 300, 1500, 100
 
 @dataclass(frozen=True, eq=False)
 class BedFit:
-    """One explanation at its most likely parameters.
+    """One explanation at its most likely parameters."""
 
-    Parameters
-    ----------
-    physics : Physics
-        The explanation.
-    points : int
-        Most likely number of contact points of those tabulated [-].
-    values : dict of str to float
-        Most likely parameters.
-    floor, slope : float
-        Scatter around the prediction, as `likelihood.scatter` [-].
-    log_likelihood : float
-        Of the printed digits.
-    bic : float
-        -2 ln L + p ln n, p counting the parameters, the number of points and the two of the scatter.
-    rmse : float
-        Of r [-].
-    predicted : ndarray
-        Coefficients [-].
-    """
-
-    physics: Physics
-    points: int
-    values: dict[str, float]
-    floor: float
+    physics: Physics  # the explanation
+    points: int  # most likely number of contact points of those tabulated [-]
+    values: dict[str, float]  # most likely parameters
+    floor: float  # floor, slope: scatter around the prediction, as `likelihood.scatter` [-]
     slope: float
-    log_likelihood: float
-    bic: float
-    rmse: float
-    predicted: FloatArray
+    log_likelihood: float  # of the printed digits
+    bic: float  # -2 ln L + p ln n, p counting the parameters, the number of points and the two of the scatter
+    rmse: float  # of r [-]
+    predicted: FloatArray  # coefficients [-]
 
     @property
     def count(self) -> int:
@@ -69,22 +49,8 @@ class BedFit:
 def fit_bed(physics: Physics, data: DataSet | None = None, *, points: Sequence[int] = POINTS) -> BedFit:
     """Fit one explanation.
 
-    Parameters
-    ----------
-    physics : Physics
-        The explanation.
-    data : DataSet, optional
-        Measurements; all 39 by default.
-    points : sequence of int
-        Numbers of contact points that are tried [-].
+    points: numbers of contact points that are tried [-].
 
-    Returns
-    -------
-    BedFit
-        The most likely bed.
-
-    Examples
-    --------
     >>> from rocking.evidence.bed_physics import explanations
     >>> fit = fit_bed(explanations()[0], points=(11,))
     >>> fit.points, fit.rmse < 0.03
@@ -107,35 +73,14 @@ def fit_bed(physics: Physics, data: DataSet | None = None, *, points: Sequence[i
 
 
 def bed_fits(data: DataSet | None = None) -> tuple[BedFit, ...]:
-    """Fit every explanation.
-
-    Parameters
-    ----------
-    data : DataSet, optional
-        Measurements; all 39 by default.
-
-    Returns
-    -------
-    tuple of BedFit
-        Least BIC first.
-    """
+    """Fit every explanation."""
     return tuple(sorted((fit_bed(each, data) for each in explanations()), key=lambda fit: fit.bic))
 
 
 def left_out(fit: BedFit, data: DataSet | None = None) -> FloatArray:
     """Return the logarithmic score of each measurement by a fit that has not seen it; the points are kept.
 
-    Parameters
-    ----------
-    fit : BedFit
-        The explanation, fitted to all.
-    data : DataSet, optional
-        The same measurements.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Logarithms of the probability of the printed digits; their sum is comparable between explanations.
+    Returns logarithms of the probability of the printed digits; their sum is comparable between explanations.
     """
     rows = data or all_measurements()
     start = np.array([*fit.values.values(), math.log(fit.floor), fit.slope])

@@ -19,30 +19,14 @@ DAMPED = (1.0, DAMPING[1])
 
 @dataclass(frozen=True)
 class Physics:
-    """One explanation, as a family of predictions.
+    """One explanation, as a family of predictions."""
 
-    Parameters
-    ----------
-    name : str
-        Short name.
-    sentence : str
-        What it says.
-    parameters : tuple of str
-        Names of the fitted numbers, the number of points not among them.
-    start : tuple of float
-        Where the fit starts.
-    bounds : tuple of (float, float)
-        Range of each.
-    predict : callable
-        Takes parameters, a `DataSet` and the number of points; returns coefficients.
-    """
-
-    name: str
-    sentence: str
-    parameters: tuple[str, ...]
-    start: tuple[float, ...]
-    bounds: tuple[tuple[float, float], ...]
-    predict: Predict
+    name: str  # short name
+    sentence: str  # what it says
+    parameters: tuple[str, ...]  # names of the fitted numbers, the number of points not among them
+    start: tuple[float, ...]  # where the fit starts
+    bounds: tuple[tuple[float, float], ...]  # range of each
+    predict: Predict  # takes parameters, a `DataSet` and the number of points; returns coefficients
 
 
 def bed_coefficients(
@@ -56,23 +40,9 @@ def bed_coefficients(
 ) -> FloatArray:
     """Return the bed's coefficients of rectangles that stand on the middle part of their base.
 
-    Parameters
-    ----------
-    slenderness : ndarray
-        h/b [-].
-    points : int
-        Contact points.
-    damping, hardness : float or ndarray
-        Of the bed, inside the table [-].
-    share : float or ndarray
-        Part of the base that the bed reaches over [-].
-    shift : ndarray or float
-        Added to the position of the impulse, which stays between the middle and the foot [-].
-
-    Returns
-    -------
-    ndarray
-        theta_dot_after / theta_dot_before [-].
+    slenderness: h/b [-]; damping, hardness: of the bed, inside the table [-]; share: part of the base that the bed
+    reaches over [-]; shift: added to the position of the impulse, which stays between the middle and the foot [-].
+    Returns theta_dot_after / theta_dot_before [-].
     """
     block = ImpactGeometry.of_slenderness(slenderness)
     lever = share * block.old_lever
@@ -89,28 +59,14 @@ def relative_width(data: DataSet) -> FloatArray:
     The paper gives no widths. Blocks of one material with depth in proportion to width have this scale; nothing but
     ratios of it enters. Table 1 gives no masses: there the width is infinite, which leaves unevenness out.
 
-    Parameters
-    ----------
-    data : DataSet
-        Measurements.
-
-    Returns
-    -------
-    ndarray
-        Relative widths [-].
+    Returns relative widths [-].
     """
     width = np.cbrt(data.mass / data.slenderness)
     return np.where(np.isnan(width), np.inf, width)
 
 
 def explanations() -> tuple[Physics, ...]:
-    """Return the explanations that are compared.
-
-    Returns
-    -------
-    tuple of Physics
-        The plain bed first.
-    """
+    """Return the explanations that are compared."""
     zeta, hard, eta, base = ("damping", DAMPED), ("hardness", HARDNESS), (0.9, 1.0), (0.5, 1.0)
     bed = ((zeta[0], hard[0]), (1.5, 100.0), (zeta[1], hard[1]))
     return (

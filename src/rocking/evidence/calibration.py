@@ -190,56 +190,25 @@ def calibrate() -> Calibration:
 
 
 def calibrate_on(data: DataSet) -> Calibration:
-    """Return the calibration on given measurements.
-
-    Parameters
-    ----------
-    data : DataSet
-        Measurements of homogeneous rectangles.
-
-    Returns
-    -------
-    Calibration
-        Posterior on a fixed grid.
-    """
+    """Return the calibration on given measurements."""
     grid = posterior_grid(data)
     return _summarised(normalised(grid.log_prior + grid.terms.sum(axis=-1)))
 
 
 @dataclass(frozen=True, eq=False)
 class PosteriorGrid:
-    """Everything the posterior is made of, on the grid of (eta, k, s, gamma).
+    """Everything the posterior is made of, on the grid of (eta, k, s, gamma)."""
 
-    Parameters
-    ----------
-    log_prior : ndarray, shape (a, b, 1, 1)
-        Logarithm of the prior.
-    terms : ndarray, shape (a, b, c, d, n)
-        Logarithm of the likelihood of each row.
-    mean : ndarray, shape (a, b, 1, 1, n)
-        Predicted coefficients [-].
-    sd : ndarray, shape (a, b, c, d, n)
-        Their scatter [-].
-    """
-
-    log_prior: FloatArray
-    terms: FloatArray
-    mean: FloatArray
-    sd: FloatArray
+    log_prior: FloatArray  # logarithm of the prior; shape (a, b, 1, 1)
+    terms: FloatArray  # logarithm of the likelihood of each row; shape (a, b, c, d, n)
+    mean: FloatArray  # predicted coefficients [-]; shape (a, b, 1, 1, n)
+    sd: FloatArray  # their scatter [-]; shape (a, b, c, d, n)
 
 
 def posterior_grid(data: DataSet) -> PosteriorGrid:
     """Evaluate likelihood and prior on the grid.
 
-    Parameters
-    ----------
-    data : DataSet
-        Measurements of homogeneous rectangles.
-
-    Returns
-    -------
-    PosteriorGrid
-        Row by row, so that rows can be left out without evaluating again.
+    Returns row by row, so that rows can be left out without evaluating again.
     """
     base = shifted(ImpactGeometry.of_slenderness(data.slenderness), _K[:, None])
     mean = (_ETA[:, None, None] * base)[:, :, None, None, :]
@@ -253,19 +222,8 @@ def posterior_grid(data: DataSet) -> PosteriorGrid:
 def marginal_quantiles(grid: FloatArray, weight: FloatArray, levels: tuple[float, ...]) -> list[float]:
     """Return quantiles of a marginal posterior between the nodes of its grid.
 
-    Parameters
-    ----------
-    grid : ndarray, shape (n,)
-        Values, equally spaced or their logarithms equally spaced.
-    weight : ndarray, shape (n,)
-        Posterior weight of each.
-    levels : tuple of float
-        Probabilities [-].
-
-    Returns
-    -------
-    list of float
-        Quantiles of the density whose logarithm is a cubic spline through the nodes: fourth order in their distance.
+    levels: probabilities [-]. Returns quantiles of the density whose logarithm is a cubic spline through the nodes:
+    fourth order in their distance.
     """
     from scipy.interpolate import CubicSpline
 
@@ -282,15 +240,7 @@ def marginal_quantiles(grid: FloatArray, weight: FloatArray, levels: tuple[float
 def normalised(log_weight: FloatArray) -> FloatArray:
     """Return weights that add up to 1.
 
-    Parameters
-    ----------
-    log_weight : ndarray
-        Logarithms, up to a constant.
-
-    Returns
-    -------
-    ndarray
-        Of the same shape.
+    Returns of the same shape.
     """
     weight = np.exp(log_weight - log_weight.max())
     return np.asarray(weight / weight.sum())

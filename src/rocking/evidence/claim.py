@@ -39,50 +39,21 @@ class Claim:
 def truth(name: str) -> tuple[DataSet, FloatArray, FloatArray]:
     """Return a data set with the true coefficients of both models.
 
-    Parameters
-    ----------
-    name : str
-        Name of the data set.
-
-    Returns
-    -------
-    data : DataSet
-        The measurements.
-    housner, ked : ndarray
-        Coefficients of the models [-].
+    Returns housner, ked: coefficients of the models [-].
     """
     data = datasets()[name]
     return data, Housner().of_slenderness(data.slenderness), Ked().of_slenderness(data.slenderness)
 
 
 def verdict_of(holds: bool) -> str:
-    """Return the verdict on a claim that holds or does not.
-
-    Parameters
-    ----------
-    holds : bool
-        Whether it holds.
-
-    Returns
-    -------
-    str
-        ``"holds"`` or ``"does not hold"``.
-    """
+    """Return the verdict on a claim that holds or does not."""
     return HOLDS if holds else FAILS
 
 
 def all_or_open(*differences: Difference) -> str:
     """Return the verdict on a claim that several differences are all positive.
 
-    Parameters
-    ----------
-    *differences : Difference
-        The differences.
-
-    Returns
-    -------
-    str
-        ``"does not hold"`` if one is negative, ``"holds"`` if all are positive, else ``"not resolved"``.
+    Returns ``"does not hold"`` if one is negative, ``"holds"`` if all are positive, else ``"not resolved"``.
     """
     return resolved(min(each.sign for each in differences))
 
@@ -90,14 +61,6 @@ def all_or_open(*differences: Difference) -> str:
 def resolved(sign: int) -> str:
     """Return the verdict on a claim that one thing is larger than another.
 
-    Parameters
-    ----------
-    sign : int
-        1 where the interval of their difference is above zero, -1 where it is below, 0 where it includes zero.
-
-    Returns
-    -------
-    str
-        ``"holds"``, ``"does not hold"`` or ``"not resolved"``.
+    Returns ``"holds"``, ``"does not hold"`` or ``"not resolved"``.
     """
     return {1: HOLDS, -1: FAILS, 0: UNRESOLVED}[sign]

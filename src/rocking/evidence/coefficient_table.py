@@ -70,10 +70,7 @@ class CoefficientRow:
 def default_models() -> list[RestitutionModel]:
     """Return every registered model that needs no value by hand.
 
-    Returns
-    -------
-    list of RestitutionModel
-        With default parameters, in the order of the registry.
+    Returns with default parameters, in the order of the registry.
     """
     return [model(name) for name in models() if name != "fixed"]
 
@@ -121,17 +118,7 @@ def coefficient_table(
 def outside_evidence(body: Body, onto: Foot = "right") -> str:
     """Say whether a body lies outside the slendernesses that were measured.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    onto : {"left", "right"}
-        The foot on which it lands.
-
-    Returns
-    -------
-    str
-        A sentence, or nothing if the body lies inside.
+    Returns A sentence, or nothing if the body lies inside.
     """
     low, high = CALIBRATED_RANGE
     ratio = body.side(onto).slenderness_ratio

@@ -28,32 +28,15 @@ MEASURES: dict[str, Callable[[FloatArray], FloatArray]] = {
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A difference, and its 95 % bootstrap interval.
+    """A difference, and its 95 % bootstrap interval."""
 
-    Parameters
-    ----------
-    value, low, high : float
-        The difference and the ends of its interval.
-    """
-
-    value: float
+    value: float  # value, low, high: the difference and the ends of its interval
     low: float
     high: float
 
     @classmethod
     def of(cls, values: FloatArray) -> "Difference":
-        """Return it from its value and those of the resamples.
-
-        Parameters
-        ----------
-        values : ndarray, shape (1 + resamples,)
-            The value first.
-
-        Returns
-        -------
-        Difference
-            With the quantiles of the resamples.
-        """
+        """Return it from its value and those of the resamples."""
         return cls(float(values[0]), *np.quantile(values[1:], [0.025, 0.975]).tolist())
 
     @property
@@ -68,23 +51,14 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Error of one model minus that of another.
+    """Error of one model minus that of another."""
 
-    Parameters
-    ----------
-    first, second : float
-        Root mean square errors [-].
-    low, high : float
-        95 % paired bootstrap interval of their difference; infinite from fewer than five specimens [-].
-    by_group : dict of str to Comparison
-        The same within each data set.
-    """
-
-    first: float
+    first: float  # first, second: root mean square errors [-]
     second: float
+    # low, high: 95 % paired bootstrap interval of their difference; infinite from fewer than five specimens [-]
     low: float
     high: float
-    by_group: "dict[str, Comparison]"
+    by_group: "dict[str, Comparison]"  # the same within each data set
 
     @property
     def sign(self) -> int:
@@ -92,18 +66,7 @@ class Comparison:
         return int(self.low > 0.0) - int(self.high < 0.0)
 
     def sentence(self, one: str, other: str) -> str:
-        """Return the outcome in words.
-
-        Parameters
-        ----------
-        one, other : str
-            Names of the models.
-
-        Returns
-        -------
-        str
-            Without a full stop.
-        """
+        """Return the outcome in words."""
         told = (
             f"{self.first:.4f} for {one} against {self.second:.4f} for {other}, difference "
             f"{self.first - self.second:+.4f}, 95 % interval {self.low:+.4f} to {self.high:+.4f}"
@@ -118,19 +81,7 @@ class Comparison:
 def compare(data: DataSet, one: FloatArray, other: FloatArray, measure: str = "r") -> Comparison:
     """Compare the predictions of two models.
 
-    Parameters
-    ----------
-    data : DataSet
-        The measurements.
-    one, other : ndarray, shape (n,)
-        Predicted coefficients [-].
-    measure : str
-        One of `MEASURES`.
-
-    Returns
-    -------
-    Comparison
-        Exchanging the models changes its signs and nothing else.
+    one, other: predicted coefficients [-]. Returns exchanging the models changes its signs and nothing else.
     """
     of = MEASURES[measure]
     with np.errstate(divide="ignore"):
@@ -158,19 +109,7 @@ def errors_of_groups(
 ) -> Difference:
     """Return how much larger a model's error is in one group of blocks than in another, drawn independently.
 
-    Parameters
-    ----------
-    model : RestitutionModel
-        The model.
-    one, other : str
-        Names of the groups.
-    against : RestitutionModel, optional
-        A model whose error in the same group is taken off before.
-
-    Returns
-    -------
-    Difference
-        Of root mean square errors of r [-].
+    Returns of root mean square errors of r [-].
     """
     data = blocks()
     weight, group = np.vstack([np.ones(len(data)), drawn(data)]), np.array(data.group)
@@ -183,37 +122,13 @@ def errors_of_groups(
 
 
 def resampled(squares: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return root mean squares of the resamples.
-
-    Parameters
-    ----------
-    squares : ndarray, shape (n,)
-        Squared errors.
-    weight : ndarray, shape (resamples, n)
-        From `drawn`.
-
-    Returns
-    -------
-    ndarray, shape (resamples,)
-        Root mean square errors.
-    """
+    """Return root mean squares of the resamples."""
     # a sum and no product of matrices: the same on every processor
     return np.asarray(np.sqrt((weight * squares).sum(axis=1) / weight.sum(axis=1)))
 
 
 def drawn(data: DataSet) -> FloatArray:
-    """Return how often each row is in each resample: specimens drawn within their data sets, by a fixed seed.
-
-    Parameters
-    ----------
-    data : DataSet
-        The measurements.
-
-    Returns
-    -------
-    ndarray, shape (resamples, n)
-        Counts.
-    """
+    """Return how often each row is in each resample: specimens drawn within their data sets, by a fixed seed."""
     return _drawn(data.group, data.labels)
 
 

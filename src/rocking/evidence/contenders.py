@@ -24,52 +24,24 @@ from rocking.restitution.contact_bed import ContactBedModel
 
 @dataclass(frozen=True, slots=True)
 class Contender:
-    """A model, or a family of models with the rule that fits it.
+    """A model, or a family of models with the rule that fits it."""
 
-    Parameters
-    ----------
-    name : str
-        Name in the league.
-    parameters : tuple of str
-        Names of the fitted parameters; none for a model as it is.
-    fit : callable
-        Takes a `DataSet` and returns the model that fits it best in least squares of r.
-    """
-
-    name: str
-    parameters: tuple[str, ...]
+    name: str  # name in the league
+    parameters: tuple[str, ...]  # names of the fitted parameters; none for a model as it is
+    # takes a `DataSet` and returns the model that fits it best in least squares of r
     fit: Callable[[DataSet], RestitutionModel]
 
 
 def as_it_is(model: RestitutionModel) -> Contender:
     """Return a contender without anything fitted.
 
-    Parameters
-    ----------
-    model : RestitutionModel
-        The model.
-
-    Returns
-    -------
-    Contender
-        That returns the same model for all data.
+    Returns that returns the same model for all data.
     """
     return Contender(model.label, (), lambda data: model)
 
 
 def with_interface(model: RestitutionModel) -> Contender:
-    """Return a contender with a fitted interface factor.
-
-    Parameters
-    ----------
-    model : RestitutionModel
-        The geometric model.
-
-    Returns
-    -------
-    Contender
-        eta times the model.
-    """
+    """Return a contender with a fitted interface factor."""
 
     def fit(data: DataSet) -> RestitutionModel:
         """Fit the factor by least squares."""
@@ -81,26 +53,7 @@ def with_interface(model: RestitutionModel) -> Contender:
 def family(
     name: str, parameter: str, make: Callable[[float], RestitutionModel], ends: tuple[float, float], *, eta: bool
 ) -> Contender:
-    """Return a contender with one fitted parameter, and an interface factor on request.
-
-    Parameters
-    ----------
-    name : str
-        Name of the model.
-    parameter : str
-        Name of the parameter.
-    make : callable
-        Makes the model from the parameter's value.
-    ends : (float, float)
-        Range of the parameter.
-    eta : bool
-        Whether to fit an interface factor as well.
-
-    Returns
-    -------
-    Contender
-        The family.
-    """
+    """Return a contender with one fitted parameter, and an interface factor on request."""
 
     def fitted(value: float, data: DataSet) -> tuple[RestitutionModel, float]:
         """Return the model at a value of its parameter, and its misfit."""
@@ -126,19 +79,7 @@ def family(
 def best_of(name: str, parameters: tuple[str, ...], members: Sequence[Contender]) -> Contender:
     """Return a contender that is fitted as several families; the one with the least squares takes part.
 
-    Parameters
-    ----------
-    name : str
-        Name in the league.
-    parameters : tuple of str
-        Names of the fitted parameters, the choice between the families among them.
-    members : sequence of Contender
-        The families.
-
-    Returns
-    -------
-    Contender
-        The best of them, for the data at hand.
+    Returns the best of them, for the data at hand.
     """
 
     def fit(data: DataSet) -> RestitutionModel:
@@ -154,15 +95,7 @@ def best_of(name: str, parameters: tuple[str, ...], members: Sequence[Contender]
 def contact_bed(*, eta: bool) -> Contender:
     """Return the contact bed with its points and its hardness fitted, and an interface factor on request.
 
-    Parameters
-    ----------
-    eta : bool
-        Whether to fit an interface factor as well.
-
-    Returns
-    -------
-    Contender
-        The family; the damping ratio is the model's default.
+    Returns the family; the damping ratio is the model's default.
     """
     members = [
         family(ContactBedModel.name, "hardness", partial(_bed_of, points), HARDNESS, eta=eta) for points in POINTS
@@ -174,10 +107,7 @@ def contact_bed(*, eta: bool) -> Contender:
 def contenders() -> list[Contender]:
     """Return everyone who takes part by default.
 
-    Returns
-    -------
-    list of Contender
-        Models as they are, then families with one and with two fitted parameters.
+    Returns models as they are, then families with one and with two fitted parameters.
     """
     whole = [
         Housner(),

@@ -9,20 +9,11 @@ from rocking.evidence.measurements import DataSet, all_measurements
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """How many left-out measurements fall into their intervals.
+    """How many left-out measurements fall into their intervals."""
 
-    Parameters
-    ----------
-    rows : int
-        Number of measurements.
-    one_by_one : int
-        Those inside the interval of a calibration without them.
-    by_group : dict of str to (int, int)
-        Data set to the number inside, and of all, for a calibration without the whole set.
-    """
-
-    rows: int
-    one_by_one: int
+    rows: int  # number of measurements
+    one_by_one: int  # those inside the interval of a calibration without them
+    # data set to the number inside, and of all, for a calibration without the whole set
     by_group: dict[str, tuple[int, int]]
 
     @property
@@ -43,16 +34,6 @@ def coverage(data: DataSet | None = None) -> Coverage:
     """Return the coverage of measurements that a calibration has not seen.
 
     The posterior without some rows is the posterior over their likelihood, so that one grid serves them all.
-
-    Parameters
-    ----------
-    data : DataSet, optional
-        Measurements; all 39 by default.
-
-    Returns
-    -------
-    Coverage
-        Counts.
     """
     data = all_measurements() if data is None else data
     grid = posterior_grid(data)

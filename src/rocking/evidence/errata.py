@@ -206,18 +206,7 @@ def _closer_in_half(tables: dict[str, DataSet]) -> Erratum:
 
 
 def closer_rows(data: DataSet) -> list[bool]:
-    """Return in which rows KED is closer to the measurement than Housner.
-
-    Parameters
-    ----------
-    data : DataSet
-        Measurements.
-
-    Returns
-    -------
-    list of bool
-        One a row.
-    """
+    """Return in which rows KED is closer to the measurement than Housner."""
     ked = np.abs(Ked().of_slenderness(data.slenderness) - data.coefficient)
     housner = np.abs(Housner().of_slenderness(data.slenderness) - data.coefficient)
     return [bool(closer) for closer in ked < housner]

@@ -16,23 +16,13 @@ UNRESOLVED = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Ranked:
-    """An explanation and how it fares.
+    """An explanation and how it fares."""
 
-    Parameters
-    ----------
-    fit : BedFit
-        At its most likely parameters.
-    scores : ndarray
-        Logarithmic scores of the measurements, each left out [-].
-    behind : float
-        BIC above the least [-].
-    gain, gain_error : float
-        Sum of the scores above that of one bed for all, and its standard error over the measurements [-].
-    """
-
-    fit: BedFit
-    scores: FloatArray
-    behind: float
+    fit: BedFit  # at its most likely parameters
+    scores: FloatArray  # logarithmic scores of the measurements, each left out [-]
+    behind: float  # BIC above the least [-]
+    # gain, gain_error: sum of the scores above that of one bed for all, and its standard error over the measurements
+    # [-]
     gain: float
     gain_error: float
 
@@ -49,15 +39,9 @@ class Ranked:
 
 @dataclass(frozen=True, eq=False)
 class Explanation:
-    """All explanations, least BIC first.
+    """All explanations, least BIC first."""
 
-    Parameters
-    ----------
-    ranked : tuple of Ranked
-        The explanations.
-    """
-
-    ranked: tuple[Ranked, ...]
+    ranked: tuple[Ranked, ...]  # the explanations
 
     @property
     def plain(self) -> Ranked:
@@ -134,10 +118,7 @@ _WIDTHS = (
 def explanation() -> Explanation:
     """Compare the explanations on all 39 measurements.
 
-    Returns
-    -------
-    Explanation
-        Ranked by BIC, each with its left-out scores.
+    Returns ranked by BIC, each with its left-out scores.
     """
     fits = bed_fits()
     scores = {fit.physics.name: left_out(fit) for fit in fits}

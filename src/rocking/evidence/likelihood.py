@@ -14,17 +14,8 @@ def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray,
 
     ``ln(Phi((high - mean)/sd) - Phi((low - mean)/sd))``, stable far out in the tails; arrays broadcast.
 
-    Parameters
-    ----------
-    low, high : ndarray
-        Ends of the interval [-].
-    mean, sd : ndarray
-        Of the normal distribution [-].
-
-    Returns
-    -------
-    ndarray
-        Logarithms, of the common shape.
+    low, high: ends of the interval [-]; mean, sd: of the normal distribution [-]. Returns Logarithms, of the common
+    shape.
     """
     from scipy.special import log_ndtr, ndtr
 
@@ -45,19 +36,8 @@ def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray,
 def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
     """Return the standard deviation of a measured coefficient around its prediction.
 
-    Parameters
-    ----------
-    mean : ndarray
-        Predicted coefficients [-].
-    floor : float
-        Scale s of the scatter [-].
-    slope : float
-        Power with which it grows with the loss, s (1 - r)^slope; 0 is a constant scatter [-].
-
-    Returns
-    -------
-    ndarray
-        Standard deviations [-].
+    mean: predicted coefficients [-]; floor: scale s of the scatter [-]; slope: power with which it grows with the loss,
+    s (1 - r)^slope; 0 is a constant scatter [-]. Returns standard deviations [-].
     """
     return np.asarray(floor * np.maximum(1.0 - mean, 1e-6) ** slope)
 
@@ -65,17 +45,8 @@ def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
 def gaussian_bic(residuals: FloatArray, parameters: int) -> float:
     """Bayesian information criterion of least squares, n ln(RSS/n) + (parameters + 1) ln n.
 
-    Parameters
-    ----------
-    residuals : ndarray, shape (n,)
-        Model minus experiment [-].
-    parameters : int
-        Number of fitted parameters, the variance not counted [-].
-
-    Returns
-    -------
-    float
-        Lower is better; differences below 2 mean nothing, above 10 a lot.
+    residuals: model minus experiment [-]; parameters: number of fitted parameters, the variance not counted [-].
+    Returns lower is better; differences below 2 mean nothing, above 10 a lot.
     """
     n = residuals.size
     return n * math.log(float(residuals @ residuals) / n) + (parameters + 1) * math.log(n)
@@ -84,17 +55,7 @@ def gaussian_bic(residuals: FloatArray, parameters: int) -> float:
 def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
     """Fit the scatter law around given predictions by maximum likelihood.
 
-    Parameters
-    ----------
-    data : DataSet
-        Measurements with their rounding intervals.
-    mean : ndarray, shape (n,)
-        Predicted coefficients [-].
-
-    Returns
-    -------
-    floor, slope, log_likelihood : float
-        Parameters of `scatter` and the logarithm of the likelihood.
+    mean: predicted coefficients [-]. Returns parameters of `scatter` and the logarithm of the likelihood.
     """
     (log_floor, slope), best = _maximise(
         lambda p: float(
@@ -108,19 +69,8 @@ def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
 def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
     """Bayesian information criterion from the rounding-aware likelihood, scatter law fitted.
 
-    Parameters
-    ----------
-    data : DataSet
-        Measurements.
-    mean : ndarray, shape (n,)
-        Predictions [-].
-    parameters : int
-        Number of fitted parameters of the model; two more are those of the scatter [-].
-
-    Returns
-    -------
-    float
-        -2 ln L + (parameters + 2) ln n.
+    mean: predictions [-]; parameters: number of fitted parameters of the model; two more are those of the scatter [-].
+    Returns -2 ln L + (parameters + 2) ln n.
     """
     return -2.0 * fit_scatter(data, mean)[2] + (parameters + 2) * math.log(len(data))
 

@@ -153,10 +153,7 @@ def all_measurements() -> DataSet:
 def blocks() -> DataSet:
     """Return the measurements of single blocks, Table 3.
 
-    Returns
-    -------
-    DataSet
-        27 rows, of the groups S, M and L.
+    Returns 27 rows, of the groups S, M and L.
     """
     every = all_measurements()
     return every.rows([k for k, group in enumerate(every.group) if group != "table1"])
@@ -165,13 +162,6 @@ def blocks() -> DataSet:
 def provenance() -> dict[str, object]:
     """Return where the measurements come from, and how their rounding was read.
 
-    Returns
-    -------
-    dict
-        The provenance file.
-
-    Examples
-    --------
     >>> provenance()["doi"]
     '10.3390/buildings14072119'
     """

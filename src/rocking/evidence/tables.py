@@ -11,21 +11,11 @@ from rocking.restitution import Housner, Ked
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One printed number beside the recomputed one.
+    """One printed number beside the recomputed one."""
 
-    Parameters
-    ----------
-    printed : float
-        As the paper prints it.
-    recomputed : float
-        By this package.
-    digits : int
-        Decimals that the paper prints.
-    """
-
-    printed: float
-    recomputed: float
-    digits: int
+    printed: float  # as the paper prints it
+    recomputed: float  # by this package
+    digits: int  # decimals that the paper prints
 
     @property
     def difference(self) -> float:
@@ -40,41 +30,17 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class TableRow:
-    """One row of a table of the paper.
+    """One row of a table of the paper."""
 
-    Parameters
-    ----------
-    label : str
-        Block or interface.
-    slenderness : float
-        h/b [-].
-    measured : float
-        r_e, as printed [-].
-    entries : dict of str to Entry
-        ``housner``, ``ked``, ``relative_error``: what the table prints.
-    """
-
-    label: str
-    slenderness: float
-    measured: float
-    entries: dict[str, Entry]
+    label: str  # block or interface
+    slenderness: float  # h/b [-]
+    measured: float  # r_e, as printed [-]
+    entries: dict[str, Entry]  # ``housner``, ``ked``, ``relative_error``: what the table prints
 
 
 def recomputed(name: str) -> tuple[TableRow, ...]:
     """Return a data set of the paper with its printed columns recomputed.
 
-    Parameters
-    ----------
-    name : str
-        ``"table1"``, ``"table2"``, ``"S"``, ``"M"`` or ``"L"``.
-
-    Returns
-    -------
-    tuple of TableRow
-        In the paper's order.
-
-    Examples
-    --------
     >>> all(row.entries["ked"].agrees for row in recomputed("table2"))
     True
     """
@@ -101,15 +67,7 @@ def recomputed(name: str) -> tuple[TableRow, ...]:
 def mean_rows(data: DataSet) -> dict[float, float]:
     """Return the mean coefficient at each slenderness, as the paper forms Table 2 from Table 1.
 
-    Parameters
-    ----------
-    data : DataSet
-        Measurements.
-
-    Returns
-    -------
-    dict of float to float
-        Slenderness to mean r [-].
+    Returns slenderness to mean r [-].
     """
     return {
         float(ratio): float(data.coefficient[data.slenderness == ratio].mean()) for ratio in np.unique(data.slenderness)

@@ -47,22 +47,7 @@ def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.
 
     Husid (1969), Revista del IDIEM 8:21; straight lines between the samples of his plot.
 
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion; its horizontal part counts.
-    start, end : float
-        Percentages, the second one larger [%].
-
-    Returns
-    -------
-    tuple of float
-        The times, also inside steps [s].
-
-    Raises
-    ------
-    InvalidValueError
-        If a percentage is outside 0 to 100, these are not in order, or the motion is zero throughout.
+    start, end: percentages, the second one larger [%]. Returns the times, also inside steps [s].
     """
     motion = checked_motion(motion)
     start = checks.within("start", start, 0.0, 100.0, unit="%")

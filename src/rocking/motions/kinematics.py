@@ -56,18 +56,8 @@ def ground_displacement(motion: GroundMotion) -> FloatArray:
 def largest_velocity(motion: GroundMotion) -> float:
     """Return the largest velocity of the ground in either direction, also inside steps.
 
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion; its horizontal part counts.
+    Returns largest magnitude up to the last sample [m/s].
 
-    Returns
-    -------
-    float
-        Largest magnitude up to the last sample [m/s].
-
-    Examples
-    --------
     >>> largest_velocity(GroundMotion([1.0, -1.0], time_step=1.0))
     0.25
     """
@@ -83,18 +73,8 @@ def largest_velocity(motion: GroundMotion) -> float:
 def largest_displacement(motion: GroundMotion) -> float:
     """Return the largest displacement of the ground in either direction, also inside steps.
 
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion; its horizontal part counts.
+    Returns largest magnitude up to the last sample [m].
 
-    Returns
-    -------
-    float
-        Largest magnitude up to the last sample [m].
-
-    Examples
-    --------
     >>> round(largest_displacement(GroundMotion([1.0, -2.0], time_step=1.0)), 9)
     0.074074074
     """
@@ -113,18 +93,8 @@ def largest_displacement(motion: GroundMotion) -> float:
 def quadratic_roots(second: FloatArray, first: FloatArray, zeroth: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the real roots of many quadratic equations, without cancellation.
 
-    Parameters
-    ----------
-    second, first, zeroth : ndarray
-        Coefficients of ``second t^2 + first t + zeroth``.
+    Returns both roots of each; not finite where there is none.
 
-    Returns
-    -------
-    tuple of ndarray
-        Both roots of each; not finite where there is none.
-
-    Examples
-    --------
     >>> one, other = quadratic_roots(np.array([1.0]), np.array([-3.0]), np.array([2.0]))
     >>> float(one[0]), float(other[0])
     (2.0, 1.0)

@@ -183,25 +183,6 @@ class GroundMotion:
 def checked_motion(given: Any, name: str = "motion") -> GroundMotion:
     """Return a motion if it is a record; all functions of records ask this first.
 
-    Parameters
-    ----------
-    given : GroundMotion
-        The motion.
-    name : str
-        What the parameter is called.
-
-    Returns
-    -------
-    GroundMotion
-        The same motion.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is anything else, such as a pulse.
-
-    Examples
-    --------
     >>> checked_motion(GroundMotion([0.0, 1.0], 0.1)).peak
     1.0
     """

@@ -24,13 +24,7 @@ NEIGHBOURS = 10
 
 @cache
 def compiled() -> ModuleType | None:
-    """Return the compiled module, or None where it was not built.
-
-    Returns
-    -------
-    module or None
-        The module.
-    """
+    """Return the compiled module, or None where it was not built."""
     try:
         from rocking.motions import _filters
     except ImportError:
@@ -41,18 +35,6 @@ def compiled() -> ModuleType | None:
 def exponential(x: FloatArray) -> FloatArray:
     """Return the exponential function, to about a unit of the last digit.
 
-    Parameters
-    ----------
-    x : ndarray
-        Arguments of at most 709; below -708 the result is zero.
-
-    Returns
-    -------
-    ndarray
-        Their exponentials.
-
-    Examples
-    --------
     >>> exponential(np.array([-math.inf, 0.0, 1.0])).round(12).tolist()
     [0.0, 1.0, 2.718281828459]
     """
@@ -72,18 +54,6 @@ def exponential(x: FloatArray) -> FloatArray:
 def logarithm(x: FloatArray) -> FloatArray:
     """Return the natural logarithm, to about a unit of the last digit.
 
-    Parameters
-    ----------
-    x : ndarray
-        Arguments of at least zero.
-
-    Returns
-    -------
-    ndarray
-        Their logarithms.
-
-    Examples
-    --------
     >>> logarithm(np.array([0.0, 1.0, 10.0])).tolist()
     [-inf, 0.0, 2.302585092994046]
     """
@@ -105,18 +75,8 @@ def logarithm(x: FloatArray) -> FloatArray:
 def cosine_sine(x: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return cosine and sine, for arguments of up to some thousand turns.
 
-    Parameters
-    ----------
-    x : ndarray
-        Angles [rad].
+    x: angles [rad].
 
-    Returns
-    -------
-    tuple of ndarray
-        Cosines and sines.
-
-    Examples
-    --------
     >>> [round(float(part[0]), 15) for part in cosine_sine(np.array([math.pi / 6.0]))]
     [0.866025403784439, 0.5]
     """
@@ -142,22 +102,6 @@ def recurrence(
 ) -> tuple[FloatArray, FloatArray]:
     """Return two states that a matrix moves on, with something added to each after every step.
 
-    Parameters
-    ----------
-    move : ndarray, shape (2, 2)
-        The matrix.
-    start : tuple of float
-        States at the beginning.
-    first, second : ndarray, shape (n,)
-        What is added to the states.
-
-    Returns
-    -------
-    tuple of ndarray, shape (n + 1,)
-        Both states, from the beginning on.
-
-    Examples
-    --------
     >>> turn = np.array([[0.0, -1.0], [1.0, 0.0]])
     >>> [x.tolist() for x in recurrence(turn, (1.0, 0.0), np.array([0.5, 0.0]), np.zeros(2))]
     [[1.0, 0.5, -1.0], [0.0, 1.0, 0.5]]
@@ -188,27 +132,11 @@ def resonances(
 
     Each impulse goes into one oscillator, or is shared between `NEIGHBOURS` of them by Lagrange's weights.
 
-    Parameters
-    ----------
-    noise, omega : ndarray, shape (n,)
-        Impulses, and their factors: the frequency that each is meant for [rad/s].
-    place : ndarray, shape (n,)
-        Its place between the oscillators, counted from the first one that it feeds plus what is beyond the
-        interval in the middle of its neighbours, from 0 to 1; never falling [-].
-    shared : bool
-        Whether it is shared.
-    nodes : tuple of ndarray, shape (m,)
-        Decayed cosine and sine of one step of each oscillator [-].
-    lasting : ndarray, shape (m,)
-        Steps after the last impulse after which an oscillator is left out.
+    noise, omega: impulses, and their factors: the frequency that each is meant for [rad/s]; place: its place between
+    the oscillators, counted from the first one that it feeds plus what is beyond the interval in the middle of its
+    neighbours, from 0 to 1; never falling [-]; nodes: decayed cosine and sine of one step of each oscillator [-].
+    Returns sum of the decayed sines, and twice that of their squares, at every sample.
 
-    Returns
-    -------
-    tuple of ndarray, shape (n + 1,)
-        Sum of the decayed sines, and twice that of their squares, at every sample.
-
-    Examples
-    --------
     >>> one = np.ones(1)
     >>> total, squares = resonances(one, one, np.zeros(1), False, (0.8 * one, 0.6 * one), 9.0 * one)
     >>> total.tolist(), squares.round(12).tolist()

@@ -20,22 +20,13 @@ class Ricker(Pulse):
     """A Ricker wavelet, symmetric or antisymmetric about its middle.
 
     With t from the middle, the symmetric one is ``a_p (1 - 2 x^2) exp(-x^2)``, x = pi t / T_p, and the antisymmetric
-    one ``(a_p / beta) (z^2 - 3) z exp(-z^2 / 2)``, z = 2 pi t / (sqrt(3) T_p), beta = 1.3801... Beyond 2 (2.5)
-    periods from the middle nothing above 1e-15 of the peak is left, and it is cut there.
-
-    Parameters
-    ----------
-    amplitude : float
-        Peak acceleration a_p; a negative one turns it round [m/s2].
-    period : float
-        Period T_p [s].
-    shape : {"symmetric", "antisymmetric"}
-        Which of the two.
+    one ``(a_p / beta) (z^2 - 3) z exp(-z^2 / 2)``, z = 2 pi t / (sqrt(3) T_p), beta = 1.3801... Beyond 2 (2.5) periods
+    from the middle nothing above 1e-15 of the peak is left, and it is cut there.
     """
 
-    amplitude: float
-    period: float
-    shape: Literal["symmetric", "antisymmetric"] = "symmetric"
+    amplitude: float  # peak acceleration a_p; a negative one turns it round [m/s2]
+    period: float  # period T_p [s]
+    shape: Literal["symmetric", "antisymmetric"] = "symmetric"  # which of the two
 
     def __post_init__(self) -> None:
         """Check the peak."""
@@ -64,15 +55,7 @@ class Ricker(Pulse):
     def scaled(self, factor: float) -> "Ricker":
         """Return the pulse with its acceleration multiplied by a factor.
 
-        Parameters
-        ----------
-        factor : float
-            May be negative [-].
-
-        Returns
-        -------
-        Ricker
-            The scaled pulse.
+        factor: may be negative [-].
         """
         return replace(self, amplitude=checks.number("factor", factor) * self.amplitude)
 

@@ -16,24 +16,12 @@ Wave = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Sinusoids(Pulse):
-    """A sum of sinusoids from time zero to `duration`.
+    """A sum of sinusoids from time zero to `duration`."""
 
-    Parameters
-    ----------
-    title : str
-        What to call it.
-    waves : tuple of (float, float, float)
-        Amplitude [m/s2], circular frequency [rad/s] and phase [rad] of each sine.
-    length : float
-        Duration [s].
-    largest : float
-        Peak acceleration [m/s2].
-    """
-
-    title: str
-    waves: tuple[Wave, ...]
-    length: float
-    largest: float
+    title: str  # what to call it
+    waves: tuple[Wave, ...]  # amplitude [m/s2], circular frequency [rad/s] and phase [rad] of each sine
+    length: float  # duration [s]
+    largest: float  # peak acceleration [m/s2]
 
     def __post_init__(self) -> None:
         """Check the peak."""
@@ -62,15 +50,7 @@ class Sinusoids(Pulse):
     def scaled(self, factor: float) -> "Sinusoids":
         """Return the pulse with its acceleration multiplied by a factor.
 
-        Parameters
-        ----------
-        factor : float
-            May be negative [-].
-
-        Returns
-        -------
-        Sinusoids
-            The scaled pulse.
+        factor: may be negative [-].
         """
         factor = checks.number("factor", factor)
         waves = tuple((factor * amplitude, frequency, phase) for amplitude, frequency, phase in self.waves)

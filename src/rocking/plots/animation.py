@@ -65,18 +65,6 @@ def animate_html(response: Response, path: str | Path) -> Path:
 def page(response: Response) -> str:
     """Return the web page of a response.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    str
-        HTML.
-
-    Examples
-    --------
     >>> import rocking as rk
     >>> block = rk.Block(width=0.5, height=2.0)
     >>> page(rk.free_rocking(block, rotation=0.1))[:15]
@@ -114,15 +102,7 @@ def page(response: Response) -> str:
 def page_data(response: Response) -> dict[str, Any]:
     """Return what the page draws: histories as little-endian float32 in base64, events to the last digit.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    dict
-        SI units; `rotation`, `velocity`, `ground` and `acceleration` at equal steps from 0 to `end`, both included.
+    Returns SI units; `rotation`, `velocity`, `ground` and `acceleration` at equal steps from 0 to `end`, both included.
     """
     scene = scene_of(response)
     rocker, fall = response.rocker, response.overturning_time
@@ -204,17 +184,7 @@ def animate_gif(
 def slowest_speed(response: Response, fps: float = 25.0) -> float:
     """Return the slowest speed at which a GIF of a response has few enough frames, at least real speed.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    fps : float
-        Frames in a second of playing.
-
-    Returns
-    -------
-    float
-        Seconds of the response in a second of playing, rounded up to two digits behind the point [-].
+    Returns seconds of the response in a second of playing, rounded up to two digits behind the point [-].
     """
     lasts = round(100.0 / fps) / 100.0
     return max(1.0, float(np.ceil(100.0 * scene_until(response) / (lasts * (MOST_FRAMES - 2)))) / 100.0)

@@ -49,18 +49,7 @@ def film(
 ) -> None:
     """Write the frames of a response as a GIF.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    path : Path
-        The file.
-    lasts : float
-        How long a frame is shown, whole hundredths of a second [s].
-    step : float
-        Time of the response between frames [s].
-    progress : callable, optional
-        Called after each frame with the frames done and all frames.
+    lasts: how long a frame is shown, whole hundredths of a second [s]; step: time of the response between frames [s].
     """
     from matplotlib.animation import PillowWriter
 

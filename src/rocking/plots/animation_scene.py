@@ -22,38 +22,20 @@ _LEVEL = 1e-9
 
 @dataclass(frozen=True)
 class Shape:
-    """A body with its ground at y = 0 and the middle between its feet at x = 0.
+    """A body with its ground at y = 0 and the middle between its feet at x = 0."""
 
-    Parameters
-    ----------
-    regions : list of (float, list of ndarray)
-        Density over the largest one, and rings: the outline and its holes [m].
-    points : ndarray, shape (n, 3)
-        Mass points (x, y) [m] with their mass over the largest one; none for a solid body.
-    feet : (float, float)
-        Left and right foot [m].
-    centre : (float, float)
-        Centre of mass [m].
-    """
-
+    # density over the largest one, and rings: the outline and its holes [m]
     regions: list[tuple[float, list[FloatArray]]]
+    # mass points (x, y) [m] with their mass over the largest one; none for a solid body; shape (n, 3)
     points: FloatArray
-    feet: tuple[float, float]
-    centre: tuple[float, float]
+    feet: tuple[float, float]  # left and right foot [m]
+    centre: tuple[float, float]  # centre of mass [m]
 
     @classmethod
     def of(cls, body: Body) -> "Shape":
         """Return the shape of a body.
 
-        Parameters
-        ----------
-        body : Body
-            The body.
-
-        Returns
-        -------
-        Shape
-            Moved to the middle between its feet.
+        Returns moved to the middle between its feet.
         """
         left, right = body.local_feet
         middle = 0.5 * (left + right)
@@ -93,17 +75,8 @@ class Shape:
     def turned(self, corners: FloatArray, rotation: float) -> FloatArray:
         """Return points of the body after it has turned about the foot that it stands on.
 
-        Parameters
-        ----------
-        corners : ndarray, shape (n, 2)
-            Points of the body at rest [m].
-        rotation : float
-            theta, positive clockwise about the right foot [rad].
-
-        Returns
-        -------
-        ndarray, shape (n, 2)
-            Where they are then [m].
+        corners: points of the body at rest [m]; rotation: theta, positive clockwise about the right foot [rad]. Returns
+        where they are then [m].
         """
         pivot = np.array([self.feet[1] if rotation > 0.0 else self.feet[0], 0.0])
         c, s = np.cos(rotation), np.sin(rotation)
@@ -112,48 +85,24 @@ class Shape:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A response at equal steps of time, and the window through which it is seen.
+    """A response at equal steps of time, and the window through which it is seen."""
 
-    Parameters
-    ----------
-    shape : Shape
-        The body.
-    time : ndarray
-        Equal steps from zero to the end of what is shown [s].
-    rotation, velocity : ndarray
-        theta [rad] and theta' [rad/s].
-    ground, acceleration : ndarray
-        Displacement [m] and acceleration of the ground [m/s2].
-    follows : bool
-        Whether the window moves with the ground, since it moves farther than the body is large.
-    window : tuple of float
-        x_min, y_min, x_max, y_max [m].
-    """
-
-    shape: Shape
-    time: FloatArray = field(repr=False)
-    rotation: FloatArray = field(repr=False)
+    shape: Shape  # the body
+    time: FloatArray = field(repr=False)  # Equal steps from zero to the end of what is shown [s]
+    rotation: FloatArray = field(repr=False)  # rotation, velocity: theta [rad] and theta' [rad/s]
     velocity: FloatArray = field(repr=False)
+    # ground, acceleration: displacement [m] and acceleration of the ground [m/s2]
     ground: FloatArray = field(repr=False)
     acceleration: FloatArray = field(repr=False)
-    follows: bool
-    window: tuple[float, float, float, float]
+    follows: bool  # whether the window moves with the ground, since it moves farther than the body is large
+    window: tuple[float, float, float, float]  # x_min, y_min, x_max, y_max [m]
 
 
 def scene_of(response: Response, step: float | None = None) -> Scene:
     """Return the scene of a response.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    step : float, optional
-        Step of time; if not given, 120 samples a second or fewer [s].
-
-    Returns
-    -------
-    Scene
-        From its start to where nothing happens any more, or to where the body lies.
+    step: step of time; if not given, 120 samples a second or fewer [s]. Returns from its start to where nothing happens
+    any more, or to where the body lies.
     """
     shape = Shape.of(response.body)
     fall = fall_of(response, shape.lying)
@@ -177,17 +126,7 @@ def scene_of(response: Response, step: float | None = None) -> Scene:
 def scene_until(response: Response, fall: Fall | None = None) -> float:
     """Return the time up to which a response is shown in motion: to where the body lies, if it falls.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    fall : Fall, optional
-        Its fall, if that is known already.
-
-    Returns
-    -------
-    float
-        Time [s].
+    Returns time [s].
     """
     fall = fall_of(response, Shape.of(response.body).lying) if fall is None else fall
     return float(fall.time[-1]) if fall.time.size else shown_until(response)

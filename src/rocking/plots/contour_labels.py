@@ -16,19 +16,7 @@ _ROOM = 0.035
 
 
 def labelled_contours(axes: "Axes", x: FloatArray, y: FloatArray, values: FloatArray, levels: Sequence[float]) -> None:
-    """Draw contour lines with their numbers; a line without room for its number goes without.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where; its limits and scales are set already.
-    x, y : ndarray
-        Coordinates of columns and rows.
-    values : ndarray, shape (y, x)
-        Heights; NaN where there is no line.
-    levels : sequence of float
-        Heights of the lines.
-    """
+    """Draw contour lines with their numbers; a line without room for its number goes without."""
     look: dict[str, Any] = {"colors": _COLOR, "linewidths": 0.6, "zorder": 3}
     drawn = axes.contour(x, y, np.ma.masked_invalid(values), levels, **look)
     lines = [_inside(axes, np.concatenate([path.vertices, np.empty((0, 2))])) for path in drawn.get_paths()]

@@ -15,37 +15,14 @@ if TYPE_CHECKING:
 def curve(axes: "Axes", name: str, low: float, high: float, which: RestitutionModel | None = None) -> None:
     """Draw a model's coefficient against slenderness.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where.
-    name : str
-        Model, as in `MODEL_STYLE`.
-    low, high : float
-        Range of h/b [-].
-    which : RestitutionModel, optional
-        The model, if it is not the one of that name.
+    low, high: range of h/b [-].
     """
     ratio = np.linspace(low, high, 400)
     axes.plot(ratio, (which or model(name)).of_slenderness(ratio), **MODEL_STYLE[name])
 
 
 def points(axes: "Axes", data: DataSet, style: str, *, filled: bool = False, label: str | None = None) -> None:
-    """Draw measured coefficients with the interval that rounding leaves open.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where.
-    data : DataSet
-        Measurements.
-    style : str
-        Group, as in `GROUP_STYLE`.
-    filled : bool
-        Whether the markers are filled.
-    label : str, optional
-        Words for the legend.
-    """
+    """Draw measured coefficients with the interval that rounding leaves open."""
     look = {**GROUP_STYLE[style], **({} if label is None else {"label": label})}
     reach = np.array([data.coefficient - data.low, data.high - data.coefficient])
     axes.errorbar(
@@ -62,11 +39,5 @@ def points(axes: "Axes", data: DataSet, style: str, *, filled: bool = False, lab
 
 
 def slenderness_axis(axes: "Axes") -> None:
-    """Label the axis of slenderness.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where.
-    """
+    """Label the axis of slenderness."""
     axes.set_xlabel("slenderness ratio h/b [-]")

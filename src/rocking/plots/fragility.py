@@ -122,17 +122,8 @@ def _fine(levels: FloatArray) -> FloatArray:
 def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return counts of neighbouring levels together, where there are too many levels for points.
 
-    Parameters
-    ----------
-    levels : ndarray
-        Levels, increasing [unit of the measure].
-    reached, trials : ndarray
-        Counts at each [-].
-
-    Returns
-    -------
-    tuple of ndarray
-        Geometric mean of the levels of each group, weighted by trials; its counts. Groups without trials are left out.
+    levels: levels, increasing [unit of the measure]; reached, trials: counts at each [-]. Returns geometric mean of the
+    levels of each group, weighted by trials; its counts. Groups without trials are left out.
     """
     group = np.arange(levels.size)
     stripes = trials.sum() >= _OUTCOMES * levels.size
@@ -204,18 +195,6 @@ def _widths(at: FloatArray, ratios: bool) -> tuple[FloatArray, FloatArray]:
 def state_colors(states: int) -> list[str]:
     """Return colours from no rocking to overturned.
 
-    Parameters
-    ----------
-    states : int
-        Limit states: one fewer than the colours.
-
-    Returns
-    -------
-    list of str
-        Light to dark.
-
-    Examples
-    --------
     >>> len(state_colors(3))
     4
     """

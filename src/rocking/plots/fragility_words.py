@@ -6,18 +6,6 @@ from typing import Any
 def symbol(state: str) -> str:
     r"""Return the name of a state with its symbols.
 
-    Parameters
-    ----------
-    state : str
-        As of `LimitState`.
-
-    Returns
-    -------
-    str
-        For a legend.
-
-    Examples
-    --------
     >>> symbol("rotation > 0.5 alpha")
     '$\\theta > 0.5\\,\\alpha$'
     """
@@ -27,18 +15,7 @@ def symbol(state: str) -> str:
 
 
 def caption(analysis: Any) -> str:
-    """Return what must be said below the picture: the verdicts of states whose outcomes fix no likeliest curve.
-
-    Parameters
-    ----------
-    analysis : StripeAnalysis, CloudAnalysis or IncrementalAnalysis
-        The analysis.
-
-    Returns
-    -------
-    str
-        Empty if every curve is likeliest.
-    """
+    """Return what must be said below the picture: the verdicts of states whose outcomes fix no likeliest curve."""
     odd = {name: fit for name, fit in analysis.fits.items() if fit.separation.name != "OVERLAP"}
     told: dict[str, list[str]] = {}
     for name, fit in odd.items():

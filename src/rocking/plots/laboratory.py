@@ -20,13 +20,7 @@ _LINES = ("--", (0, (6, 2)), "-.", ":", "-")
 
 @in_journal_style
 def bed_dependence_figure() -> "Figure":
-    """Draw r of the contact bed against slenderness by points, and at h/b = 2 against hardness and damping.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Three panels.
-    """
+    """Draw r of the contact bed against slenderness by points, and at h/b = 2 against hardness and damping."""
     figure, (left, middle, right) = new_figure(DOUBLE, 2.8, columns=3)
     ratios, two = np.linspace(1.0, 10.0, 91), np.array([2.0])
     hardness, damping = np.geomspace(*HARDNESS, 61), np.geomspace(0.5, DAMPING[1], 41)
@@ -52,16 +46,6 @@ def explanations_figure(found: Explanation) -> "Figure":
     """Draw how the explanations fare: BIC above the best, and the left-out score above that of one bed.
 
     Lines reach two standard errors to either side.
-
-    Parameters
-    ----------
-    found : Explanation
-        The explanations.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Two panels.
     """
     figure, (left, right) = new_figure(DOUBLE, 0.9 + 0.2 * len(found.ranked), columns=2, sharey=True)
     place = np.arange(len(found.ranked))[::-1]
@@ -78,18 +62,7 @@ def explanations_figure(found: Explanation) -> "Figure":
 
 @in_journal_style
 def residuals_figure(found: Explanation) -> "Figure":
-    """Draw what one bed and the best explanation leave over, against slenderness.
-
-    Parameters
-    ----------
-    found : Explanation
-        The explanations.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Two panels.
-    """
+    """Draw what one bed and the best explanation leave over, against slenderness."""
     figure, (left, right) = new_figure(DOUBLE, 2.8, columns=2, sharey=True)
     for axes, each in ((left, found.plain), (right, found.ranked[0])):
         _residuals(axes, each.fit.predicted)

@@ -23,37 +23,18 @@ class Fall:
     The response ends at a quarter turn, or before it where its motion does and only energy decides. From there the
     equation of motion goes on, with whatever the ground still does, until a corner of the body meets the ground. There
     the body is taken to lie: what a hard landing on a side does is not part of the model.
-
-    Parameters
-    ----------
-    time : ndarray
-        Increasing, from the end of the response; empty if the body does not overturn [s].
-    rotation, velocity : ndarray
-        theta [rad] and theta' [rad/s].
     """
 
-    time: FloatArray
-    rotation: FloatArray
+    time: FloatArray  # increasing, from the end of the response; empty if the body does not overturn [s]
+    rotation: FloatArray  # rotation, velocity: theta [rad] and theta' [rad/s]
     velocity: FloatArray
 
 
 def fall_of(response: Response, lying: tuple[float, float]) -> Fall:
     """Return how the fall of a response goes on after its last state.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    lying : tuple of float
-        Rotations, below and above zero, at which the body lies on its left and on its right side [rad].
+    lying: rotations, below and above zero, at which the body lies on its left and on its right side [rad].
 
-    Returns
-    -------
-    Fall
-        To the ground.
-
-    Examples
-    --------
     >>> import rocking as rk
     >>> body, quarter = rk.Block(width=0.5, height=2.0), 0.5 * np.pi
     >>> fall = fall_of(rk.free_rocking(body, rotation=0.25), (-quarter, quarter))

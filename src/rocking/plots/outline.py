@@ -14,17 +14,7 @@ if TYPE_CHECKING:
 
 
 def draw_body(axes: "Axes", body: Body, *, filled: bool = True) -> None:
-    """Draw a body on its ground, darker where it is denser.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where.
-    body : Body
-        The body.
-    filled : bool
-        Whether to fill the outline.
-    """
+    """Draw a body on its ground, darker where it is denser."""
     from matplotlib.patches import PathPatch
 
     for path, shade in _paths(body):
@@ -39,15 +29,7 @@ def draw_body(axes: "Axes", body: Body, *, filled: bool = True) -> None:
 def outline_path(body: Body) -> list[FloatArray]:
     """Return every ring of a body in the user's coordinates.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-
-    Returns
-    -------
-    list of ndarray, shape (n, 2)
-        Outlines and holes [m]; none for mass points.
+    Returns outlines and holes [m]; none for mass points.
     """
     if isinstance(body, Block):
         body = body.to_section()

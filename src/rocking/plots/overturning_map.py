@@ -105,18 +105,7 @@ def _axes_of(found: Any) -> tuple[str, str]:
 
 
 def classes_of(found: "xr.Dataset") -> IntArray:
-    """Return what each point of a map is drawn as.
-
-    Parameters
-    ----------
-    found : xarray.Dataset
-        As of `overturning_map`.
-
-    Returns
-    -------
-    ndarray of int, shape (y, x)
-        Keys of `CLASSES`.
-    """
+    """Return what each point of a map is drawn as."""
     from rocking.studies.islands import safe_islands
 
     mode = np.asarray(found["mode"].values)
@@ -128,17 +117,7 @@ def classes_of(found: "xr.Dataset") -> IntArray:
 
 
 def draw_map(axes: "Axes", found: "xr.Dataset", kinds: IntArray) -> None:
-    """Draw the regions of a map, with labelled axes, logarithmic where the values grow by equal ratios.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where.
-    found : xarray.Dataset
-        As of `overturning_map`.
-    kinds : ndarray of int, shape (y, x)
-        Keys of `CLASSES`.
-    """
+    """Draw the regions of a map, with labelled axes, logarithmic where the values grow by equal ratios."""
     from matplotlib.colors import ListedColormap
 
     x, y = _axes_of(found)

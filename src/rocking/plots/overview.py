@@ -124,14 +124,7 @@ def calibration_figure(calibration: Calibration) -> "Figure":
 def band(axes: "Axes", calibration: Calibration, low: float = _LOW, high: float = _HIGH) -> None:
     """Draw the calibrated default with its 95 % interval.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where.
-    calibration : Calibration
-        The calibrated default.
-    low, high : float
-        Range of h/b [-].
+    low, high: range of h/b [-].
     """
     ratio = np.linspace(low, high, 80)
     prediction = calibration.predict(ratio)

@@ -25,10 +25,7 @@ def _alone(draw: Callable[[], "Figure"]) -> Draw:
 def paper_figures() -> dict[str, Draw]:
     """Return the figures of the report.
 
-    Returns
-    -------
-    dict of str to callable
-        File name to the function that draws it from the league and the calibration.
+    Returns file name to the function that draws it from the league and the calibration.
     """
     plain: dict[str, Callable[[], Figure]] = {
         "figure_1": figure_1,

@@ -12,35 +12,17 @@ FINE = (240, 300)
 
 @dataclass(frozen=True)
 class Place:
-    """Where some words fit.
+    """Where some words fit."""
 
-    Parameters
-    ----------
-    x, y : float
-        Centre, in shares of the panel [-].
-    words : str
-        The words, perhaps in two lines.
-    """
-
-    x: float
+    x: float  # x, y: centre, in shares of the panel [-]
     y: float
-    words: str
+    words: str  # the words, perhaps in two lines
 
 
 def rastered(values: IntArray, x: FloatArray, y: FloatArray) -> IntArray:
     """Return a map as it appears on a panel, pixel by pixel.
 
-    Parameters
-    ----------
-    values : ndarray of int, shape (y, x)
-        What is drawn.
-    x, y : ndarray
-        Coordinates, increasing; logarithms where the axis is logarithmic.
-
-    Returns
-    -------
-    ndarray of int, shape `FINE`
-        The nearest value at every pixel, the lowest row first.
+    Returns the nearest value at every pixel, the lowest row first.
     """
     picks = [_nearest(part, count) for part, count in ((y, FINE[0]), (x, FINE[1]))]
     return np.asarray(values[np.ix_(*picks)])
@@ -58,21 +40,7 @@ def _nearest(values: FloatArray, count: int) -> IntArray:
 def place_in(region: BoolArray, words: str, panel: tuple[float, float], size: float = 7.0) -> Place | None:
     """Return where words fit into a region, as far from its border as they can.
 
-    Parameters
-    ----------
-    region : ndarray of bool, shape `FINE`
-        The region.
-    words : str
-        The words; if they do not fit in one line they are tried in two and in three.
-    panel : tuple of float
-        Width and height of the panel [in].
-    size : float
-        Size of the letters [pt].
-
-    Returns
-    -------
-    Place or None
-        None if they fit nowhere.
+    panel: width and height of the panel [in]; size: size of the letters [pt].
     """
     from scipy import ndimage
 

@@ -17,36 +17,15 @@ _REST = 0.06
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """Rotation and velocity at many instants, with both values where the velocity jumps.
+    """Rotation and velocity at many instants, with both values where the velocity jumps."""
 
-    Parameters
-    ----------
-    time : ndarray
-        Instants, never decreasing; an impact is there twice [s].
-    rotation : ndarray
-        theta [rad].
-    velocity : ndarray
-        theta' [rad/s].
-    """
-
-    time: FloatArray
-    rotation: FloatArray
-    velocity: FloatArray
+    time: FloatArray  # instants, never decreasing; an impact is there twice [s]
+    rotation: FloatArray  # theta [rad]
+    velocity: FloatArray  # theta' [rad/s]
 
 
 def motion_curves(response: Response) -> Curves:
-    """Return rotation and velocity of a response with every jump upright.
-
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    Curves
-        From its start to its end.
-    """
+    """Return rotation and velocity of a response with every jump upright."""
     intervals = response.intervals
     rotation, velocity = intervals.inside(_INSIDE)
     time = intervals.start[:, None] + _INSIDE * intervals.length[:, None]
@@ -56,17 +35,7 @@ def motion_curves(response: Response) -> Curves:
 def velocity_at(response: Response, time: Any) -> FloatArray:
     """Return the angular velocity at any times within a response; at an impact the one after it.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    time : array_like
-        Times [s].
-
-    Returns
-    -------
-    ndarray
-        theta' [rad/s].
+    time: times [s]. Returns theta' [rad/s].
     """
     intervals = response.intervals
     t = np.clip(np.asarray(time, dtype=np.float64), 0.0, intervals.end[-1])
@@ -79,17 +48,7 @@ def velocity_at(response: Response, time: Any) -> FloatArray:
 def over_slenderness(response: Response, rotation: FloatArray) -> FloatArray:
     """Return rotations over the slenderness angle of the side they stand on.
 
-    Parameters
-    ----------
-    response : Response
-        The response, for its body.
-    rotation : ndarray
-        theta [rad].
-
-    Returns
-    -------
-    ndarray
-        Beyond one the centre of mass is past the foot [-].
+    rotation: theta [rad]. Returns beyond one the centre of mass is past the foot [-].
     """
     rocker = response.rocker
     return rotation / np.where(rotation > 0.0, rocker.right.slenderness_angle, rocker.left.slenderness_angle)
@@ -98,15 +57,7 @@ def over_slenderness(response: Response, rotation: FloatArray) -> FloatArray:
 def shown_until(response: Response) -> float:
     """Return the time up to which there is something to see: the motion, the last event, and a little rest.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    float
-        Time, at most the end of the response [s].
+    Returns Time, at most the end of the response [s].
     """
     end = float(response.time[-1]) or float(response.intervals.end[-1])  # it may lie before the second sample
     if response.outcome is Outcome.OVERTURNED or not response.trajectory.events:
@@ -125,15 +76,7 @@ def _quiet_end(response: Response) -> float:
 def ground_curve(response: Response) -> tuple[FloatArray, FloatArray]:
     """Return the horizontal acceleration of the ground as it is drawn, jumps at the ends of the motion upright.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    time, acceleration : ndarray
-        Times [s], the same one twice at a jump, and accelerations [m/s2].
+    Returns times [s], the same one twice at a jump, and accelerations [m/s2].
     """
     segments = response.segments
     parts = np.arange(1 if isinstance(response.motion, GroundMotion) else 3)
@@ -148,17 +91,7 @@ def ground_curve(response: Response) -> tuple[FloatArray, FloatArray]:
 def ground_place(response: Response, time: FloatArray) -> FloatArray:
     """Return the horizontal displacement of the ground, from rest, integrated exactly.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    time : ndarray
-        Times [s].
-
-    Returns
-    -------
-    ndarray
-        Displacement [m].
+    time: times [s]. Returns displacement [m].
     """
     segments = response.segments
     h, order = segments.step, np.arange(segments.degree + 1)

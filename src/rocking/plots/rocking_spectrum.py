@@ -97,17 +97,7 @@ def _curve(axes: "Axes", found: "xr.Dataset", place: int, alpha: float) -> None:
 def fractiles(found: "xr.Dataset", place: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return 16 %, 50 % and 84 % of the peak rotation over the motions, overturning counted as beyond all rotations.
 
-    Parameters
-    ----------
-    found : xarray.Dataset
-        As of `rocking_spectrum`.
-    place : int
-        Number of the slenderness angle.
-
-    Returns
-    -------
-    tuple of ndarray
-        One entry a period; NaN where the fractile overturned or nothing could be computed [-].
+    Returns one entry a period; NaN where the fractile overturned or nothing could be computed [-].
     """
     part = found.isel(slenderness_angle=place)
     mode = np.asarray(part["mode"].values)

@@ -61,18 +61,6 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (6, 2)))
 def look(place: int) -> dict[str, Any]:
     """Return colour and line of a curve.
 
-    Parameters
-    ----------
-    place : int
-        Its number, from 0.
-
-    Returns
-    -------
-    dict
-        For ``Axes.plot``.
-
-    Examples
-    --------
     >>> look(0)["color"], look(6)["color"] == look(0)["color"]
     ('#0072B2', True)
     """
@@ -82,22 +70,6 @@ def look(place: int) -> dict[str, Any]:
 def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
     """Return the label of an axis or a measure, with symbol and unit.
 
-    Parameters
-    ----------
-    name : str
-        Its name.
-    unit : str
-        Its unit, for names that have no symbol here.
-    linear : bool
-        Whether the equations are the slender-linear ones, whose threshold is g alpha.
-
-    Returns
-    -------
-    str
-        The label.
-
-    Examples
-    --------
     >>> axis_label("pgv"), axis_label("sa(0.5)", "m/s2")
     ('peak ground velocity [m/s]', 'Sa(0.5 s) [m/s$^2$]')
     """
@@ -110,18 +82,6 @@ def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
 def short_name(name: str) -> str:
     """Return the short name of a measure.
 
-    Parameters
-    ----------
-    name : str
-        Its name.
-
-    Returns
-    -------
-    str
-        As it stands in a picture.
-
-    Examples
-    --------
     >>> short_name("sa(1.0)"), short_name("pga")
     ('Sa(1.0 s)', 'PGA')
     """
@@ -133,18 +93,8 @@ def short_name(name: str) -> str:
 def plain(words: object) -> str:
     r"""Return words that are drawn as they are, on one line, whatever signs they hold.
 
-    Parameters
-    ----------
-    words : object
-        Anything.
+    Returns with dollar signs that start no formula.
 
-    Returns
-    -------
-    str
-        With dollar signs that start no formula.
-
-    Examples
-    --------
     >>> plain("a $5  vase")
     'a \\$5 vase'
     """
@@ -154,22 +104,6 @@ def plain(words: object) -> str:
 def wrapped(words: str, width: int, most: int = 4) -> str:
     r"""Return words in lines, cut off after the last.
 
-    Parameters
-    ----------
-    words : str
-        One or more sentences.
-    width : int
-        Characters in a line.
-    most : int
-        Lines at most.
-
-    Returns
-    -------
-    str
-        Lines with breaks between.
-
-    Examples
-    --------
     >>> wrapped("one two three four", 9, 2)
     'one two\nthree ...'
     """
@@ -181,18 +115,6 @@ def wrapped(words: str, width: int, most: int = 4) -> str:
 def geometric(values: FloatArray) -> bool:
     """Return whether numbers grow by equal ratios rather than by equal steps: they are drawn on a log axis.
 
-    Parameters
-    ----------
-    values : ndarray
-        Increasing numbers.
-
-    Returns
-    -------
-    bool
-        False for fewer than three.
-
-    Examples
-    --------
     >>> geometric(np.array([1.0, 2.0, 4.0])), geometric(np.array([1.0, 2.0, 3.0]))
     (True, False)
     """
@@ -203,15 +125,7 @@ def geometric(values: FloatArray) -> bool:
 
 
 def plain_log(axes: "Axes", which: str) -> None:
-    """Make an axis logarithmic, with plain numbers at a few ticks.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where; its limits are set already.
-    which : {"x", "y"}
-        Which axis.
-    """
+    """Make an axis logarithmic, with plain numbers at a few ticks."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     getattr(axes, f"set_{which}scale")("log")
@@ -226,34 +140,12 @@ def plain_log(axes: "Axes", which: str) -> None:
 
 
 def note(axes: "Axes", words: str, width: int = 62) -> None:
-    """Write a small line or two above a panel.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where.
-    words : str
-        What.
-    width : int
-        Characters in a line.
-    """
+    """Write a small line or two above a panel."""
     axes.set_title(wrapped(words, width).replace("m/s2", "m/s$^2$"), loc="left", fontsize=7, color=INK)
 
 
 def shown_in(axes: "Axes", which: str, unit: str, size: float) -> None:
-    """Give an axis the numbers of another unit than it was drawn in, round in that unit.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Where.
-    which : {"x", "y"}
-        Which axis.
-    unit : str
-        The unit, which takes the place of the one in brackets in the label.
-    size : float
-        How much one of it is, in the unit that was drawn.
-    """
+    """Give an axis the numbers of another unit than it was drawn in, round in that unit."""
     from matplotlib.ticker import FuncFormatter, Locator
 
     axis = axes.xaxis if which == "x" else axes.yaxis

@@ -64,15 +64,7 @@ _SETTINGS: Any = {
 def in_journal_style(draw: Callable[P, T]) -> Callable[P, T]:
     """Let a drawing function run in the journal style.
 
-    Parameters
-    ----------
-    draw : callable
-        Returns a figure.
-
-    Returns
-    -------
-    callable
-        The same, refusing with `MissingExtraError` if matplotlib is not installed.
+    Returns the same, refusing with `MissingExtraError` if matplotlib is not installed.
     """
 
     @wraps(draw)
@@ -97,21 +89,7 @@ def new_figure(
 ) -> tuple["Figure", list["Axes"]]:
     """Return a figure in the journal style with its axes.
 
-    Parameters
-    ----------
-    width, height : float
-        Size [in].
-    rows, columns : int
-        Grid of axes.
-    **options
-        For ``Figure.subplots``.
-
-    Returns
-    -------
-    figure : matplotlib.figure.Figure
-        Not registered with pyplot.
-    axes : list of matplotlib.axes.Axes
-        Row by row.
+    width, height: size [in].
     """
     from matplotlib.figure import Figure
 

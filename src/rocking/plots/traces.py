@@ -25,44 +25,19 @@ Peak = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class Traces:
-    """Acceleration, velocity and displacement at many instants, and where each is largest.
+    """Acceleration, velocity and displacement at many instants, and where each is largest."""
 
-    Parameters
-    ----------
-    time : ndarray
-        Instants from the first sample to the last, or over a pulse [s].
-    acceleration : ndarray
-        Acceleration of the ground [m/s2].
-    velocity : ndarray
-        Velocity of the ground, from rest [m/s].
-    displacement : ndarray
-        Displacement of the ground, from zero [m].
-    peaks : mapping of str to (float, float)
-        Time and signed value of the largest of each, exact also between the instants, by its name.
-    """
-
-    time: FloatArray
-    acceleration: FloatArray
-    velocity: FloatArray
-    displacement: FloatArray
+    time: FloatArray  # instants from the first sample to the last, or over a pulse [s]
+    acceleration: FloatArray  # acceleration of the ground [m/s2]
+    velocity: FloatArray  # velocity of the ground, from rest [m/s]
+    displacement: FloatArray  # displacement of the ground, from zero [m]
+    # time and signed value of the largest of each, exact also between the instants, by its name
     peaks: Mapping[str, Peak]
 
 
 def traces(motion: GroundMotion | Pulse) -> Traces:
     """Return the curves of a motion, fine enough to be drawn, with their exact peaks.
 
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion; its horizontal part counts.
-
-    Returns
-    -------
-    Traces
-        From zero to its duration.
-
-    Examples
-    --------
     >>> at, value = traces(GroundMotion([1.0, -1.0], time_step=1.0)).peaks["velocity"]
     >>> at, value
     (0.5, 0.25)
@@ -85,18 +60,6 @@ def fine_samples(motion: GroundMotion | Pulse) -> GroundMotion:
 
     The samples of a pulse begin and end with it, so that jumps at its ends stay jumps.
 
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
-
-    Returns
-    -------
-    GroundMotion
-        The samples.
-
-    Examples
-    --------
     >>> from rocking.motions.pulses import rectangular
     >>> motion = fine_samples(rectangular(amplitude=2.0, duration=0.5))
     >>> len(motion), motion.duration, motion.acceleration.min().item()

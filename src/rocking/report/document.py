@@ -9,81 +9,39 @@ MARKS = ("good", "fair", "bad", "plain")
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One cell of a table.
+    """One cell of a table."""
 
-    Parameters
-    ----------
-    text : str
-        What stands in it.
-    mark : str
-        One of `MARKS`.
-    """
-
-    text: str
-    mark: str = "plain"
+    text: str  # what stands in it
+    mark: str = "plain"  # one of `MARKS`
 
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """Plain text.
-
-    Parameters
-    ----------
-    text : str
-        The text.
-    lead : str
-        Words set in bold before it.
-    mark : str
-        One of `MARKS`; shown as a coloured bar or word.
-    """
+    """Plain text."""
 
     text: str
-    lead: str = ""
-    mark: str = "plain"
+    lead: str = ""  # words set in bold before it
+    mark: str = "plain"  # one of `MARKS`; shown as a coloured bar or word
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table with a caption.
+    """A table with a caption."""
 
-    Parameters
-    ----------
-    caption : str
-        What it shows.
-    header : sequence of str
-        Column names with units.
-    rows : sequence of sequence of Cell
-        The cells.
-    note : str
-        A line below.
-    stem : str
-        Name of its CSV file.
-    """
-
-    caption: str
-    header: Sequence[str]
+    caption: str  # what it shows
+    header: Sequence[str]  # column names with units
     rows: Sequence[Sequence[Cell]]
-    note: str = ""
-    stem: str = ""
+    note: str = ""  # A line below
+    stem: str = ""  # name of its CSV file
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure of the report.
+    """A figure of the report."""
 
-    Parameters
-    ----------
-    stem : str
-        Name of its files, without suffix.
-    caption : str
-        What it shows.
-    wide : bool
-        Whether it needs the full width.
-    """
-
-    stem: str
-    caption: str
-    wide: bool = True
+    stem: str  # name of its files, without suffix
+    caption: str  # what it shows
+    wide: bool = True  # whether it needs the full width
 
 
 Block = Paragraph | Table | Picture
@@ -91,18 +49,10 @@ Block = Paragraph | Table | Picture
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A section of the report.
-
-    Parameters
-    ----------
-    title : str
-        Its title.
-    blocks : sequence of Block
-        Its content.
-    """
+    """A section of the report."""
 
     title: str
-    blocks: Sequence[Block]
+    blocks: Sequence[Block]  # its content
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,18 +87,5 @@ class Document:
 
 
 def cell(text: object, mark: str = "plain") -> Cell:
-    """Return a cell from anything that prints.
-
-    Parameters
-    ----------
-    text : object
-        What stands in it.
-    mark : str
-        One of `MARKS`.
-
-    Returns
-    -------
-    Cell
-        The cell.
-    """
+    """Return a cell from anything that prints."""
     return Cell(str(text), mark)

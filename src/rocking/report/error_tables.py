@@ -15,10 +15,7 @@ _MODELS = (("Housner", Housner()), ("KED", Ked()))
 def error_blocks() -> list[Paragraph | Table]:
     """Return correlations, concordances and zones as report blocks.
 
-    Returns
-    -------
-    list of Paragraph or Table
-        One table of measures, one of relative errors.
+    Returns one table of measures, one of relative errors.
     """
     return [
         Paragraph(

@@ -5,18 +5,7 @@ from rocking.report.document import Cell, Paragraph, Picture, Table, cell
 
 
 def explanation_blocks(found: Explanation) -> list[Paragraph | Table | Picture]:
-    """Return the section.
-
-    Parameters
-    ----------
-    found : Explanation
-        The explanations, compared.
-
-    Returns
-    -------
-    list of Paragraph, Table and Picture
-        Verdict, method, table, pictures.
-    """
+    """Return the section."""
     return [
         *(Paragraph(sentence) for sentence in found.verdict),
         Paragraph(

@@ -20,26 +20,8 @@ Step = Callable[[str], None]
 def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[Path], list[str]]:
     """Write report, tables, figures and numbers.
 
-    Parameters
-    ----------
-    result : Reproduction
-        The paper, recomputed.
-    folder : Path
-        Folder to write, made if it does not exist.
-    step : callable
-        Told what is being done, for a progress bar.
-
-    Returns
-    -------
-    written : list of Path
-        The files to look at: report.html, report.pdf, results.json.
-    left_out : list of str
-        What was not written, because an optional package is missing, and how to install it.
-
-    Raises
-    ------
-    RockingError
-        If the folder cannot be written.
+    Returns written: the files to look at: report.html, report.pdf, results.json; left_out: what was not written,
+    because an optional package is missing, and how to install it.
     """
     pictures, tables = folder / "figures", folder / "tables"
     try:
@@ -71,33 +53,14 @@ def write_folder(result: Reproduction, folder: Path, step: Step) -> tuple[list[P
 
 
 def steps() -> int:
-    """Return how many steps `write_folder` reports.
-
-    Returns
-    -------
-    int
-        Figures, tables, HTML, PDF.
-    """
+    """Return how many steps `write_folder` reports."""
     from rocking.plots.paper import paper_figures
 
     return len(paper_figures()) + 3
 
 
 def as_plain(result: Reproduction, document: Document | None = None) -> dict[str, Any]:
-    """Return every number as plain values, for JSON.
-
-    Parameters
-    ----------
-    result : Reproduction
-        The paper, recomputed.
-    document : Document, optional
-        The report, if it is at hand.
-
-    Returns
-    -------
-    dict
-        Numbers and strings; SI units.
-    """
+    """Return every number as plain values, for JSON."""
     return {
         "verdict": list(result.verdict),
         "claims": [

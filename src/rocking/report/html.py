@@ -9,25 +9,7 @@ from rocking.report.document import Document
 
 
 def render_html(content: Document, pictures: Path) -> str:
-    """Return the report as HTML.
-
-    Parameters
-    ----------
-    content : Document
-        The report.
-    pictures : Path
-        Folder with the SVG file of every picture.
-
-    Returns
-    -------
-    str
-        One page, styles and pictures inside.
-
-    Raises
-    ------
-    MissingExtraError
-        If jinja2 is not installed.
-    """
+    """Return the report as HTML."""
     try:
         import jinja2
     except ImportError as error:

@@ -16,15 +16,7 @@ _MOST_NAMED = 5
 def inventory_document(assessment: Assessment) -> Document:
     """Return the report of an inventory.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        The inventory, assessed.
-
-    Returns
-    -------
-    Document
-        For the renderers of HTML and PDF.
+    Returns for the renderers of HTML and PDF.
     """
     sections = [_ranking(assessment), _numbers(assessment), _meaning(assessment), _shaking(assessment), _limits()]
     if assessment.not_assessed:
@@ -42,18 +34,6 @@ def inventory_document(assessment: Assessment) -> Document:
 def light_words(light: Light) -> str:
     r"""Return a light for eyes that do not see its colour.
 
-    Parameters
-    ----------
-    light : Light
-        The light.
-
-    Returns
-    -------
-    str
-        Letter and word.
-
-    Examples
-    --------
     >>> light_words(Light.RED)
     'R\xa0RED'
     """

@@ -21,24 +21,8 @@ STEM = "inventory"
 def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], list[str]]:
     """Write an assessment in every form; what needs a library that is not installed is left out and named.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        The inventory, assessed.
-    folder : Path
-        Folder to write, made if it does not exist.
-
-    Returns
-    -------
-    written : list of Path
-        The files, each of which is there as a whole or not at all.
-    left_out : list of str
-        What could not be written and how to get it, one sentence each.
-
-    Raises
-    ------
-    RockingError
-        If the folder cannot be written.
+    Returns written: the files, each of which is there as a whole or not at all; left_out: what could not be written and
+    how to get it, one sentence each.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -55,44 +39,13 @@ def write_inventory(assessment: Assessment, folder: Path) -> tuple[list[Path], l
 
 
 def write_inventory_file(assessment: Assessment, path: Path) -> Path:
-    """Write an assessment in one form, which is there as a whole or not at all.
-
-    Parameters
-    ----------
-    assessment : Assessment
-        The inventory, assessed.
-    path : Path
-        The file; the end of its name says the form: .html, .pdf, .xlsx, .csv, .json.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such form.
-    RockingError
-        If the file cannot be written.
-    """
+    """Write an assessment in one form, which is there as a whole or not at all."""
     check_form(path)
     return _write_whole(assessment, path)
 
 
 def check_form(path: Path) -> None:
-    """Refuse the name of a file in whose form no inventory can be written.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such form.
-    """
+    """Refuse the name of a file in whose form no inventory can be written."""
     if _form(path) not in _WRITERS:
         forms = ", ".join(f".{suffix}" for suffix in _WRITERS)
         raise InvalidValueError(f"an inventory can be written as {forms}, got {path.suffix!r:.40}")
@@ -117,15 +70,7 @@ def _write_whole(assessment: Assessment, path: Path) -> Path:
 def inventory_json(assessment: Assessment) -> str:
     """Return an assessment as JSON.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        The inventory, assessed.
-
-    Returns
-    -------
-    str
-        One object; SI units, named in the keys.
+    Returns one object; SI units, named in the keys.
     """
     return json.dumps(as_plain(assessment), indent=2, allow_nan=False, ensure_ascii=False)
 

@@ -16,20 +16,7 @@ _WIDTHS = {"name": 28, "in words": 70, "what to do": 70, "note": 28, "light": 14
 
 
 def write_spreadsheet(assessment: Assessment, path: Path) -> None:
-    """Write the table as an Excel workbook: the ranking, and the assumptions on a second sheet.
-
-    Parameters
-    ----------
-    assessment : Assessment
-        The inventory, assessed.
-    path : Path
-        File to write.
-
-    Raises
-    ------
-    MissingExtraError
-        If openpyxl is not installed.
-    """
+    """Write the table as an Excel workbook: the ranking, and the assumptions on a second sheet."""
     book = _openpyxl().Workbook()
     sheet = book.active
     sheet.title = "Ranking"

@@ -45,18 +45,7 @@ FIGURES = (
 
 
 def paper_document(result: Reproduction) -> Document:
-    """Return the report.
-
-    Parameters
-    ----------
-    result : Reproduction
-        The paper, recomputed.
-
-    Returns
-    -------
-    Document
-        Content for every renderer.
-    """
+    """Return the report."""
     return Document(
         "Mao et al. (2024), recomputed",
         "Coefficient of restitution of rocking bodies: every table, figure and claim of Buildings 14(7) 2119, "
@@ -78,18 +67,7 @@ def paper_document(result: Reproduction) -> Document:
 
 
 def look_at(result: Reproduction) -> list[tuple[str, str]]:
-    """Say what to look at first.
-
-    Parameters
-    ----------
-    result : Reproduction
-        The paper, recomputed.
-
-    Returns
-    -------
-    list of (str, str)
-        Name and sentence.
-    """
+    """Say what to look at first."""
     counts = {one: sum(c.verdict == one for c in result.claims) for one in (HOLDS, IN_PART, FAILS, UNRESOLVED)}
     found = sum(erratum.found for erratum in result.errata)
     best = result.league[0]

@@ -9,22 +9,7 @@ from rocking.report.document import Document, Paragraph, Picture, Section, Table
 
 
 def render_pdf(content: Document, pictures: Path, path: Path) -> None:
-    """Write the report as PDF.
-
-    Parameters
-    ----------
-    content : Document
-        The report.
-    pictures : Path
-        Folder with the SVG file of every picture.
-    path : Path
-        File to write.
-
-    Raises
-    ------
-    MissingExtraError
-        If typst is not installed.
-    """
+    """Write the report as PDF."""
     try:
         import typst
     except ImportError as error:

@@ -8,13 +8,7 @@ import numpy as np
 
 
 def made_with() -> dict[str, str]:
-    """Return versions and the fingerprints of the data.
-
-    Returns
-    -------
-    dict of str to str
-        Names to values.
-    """
+    """Return versions and the fingerprints of the data."""
     import scipy
 
     from rocking.evidence.measurements import provenance

@@ -20,43 +20,19 @@ TABLES = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Reproduction:
-    """The paper, recomputed.
+    """The paper, recomputed."""
 
-    Parameters
-    ----------
-    tables : dict of str to tuple of TableRow
-        Table to rows, printed beside recomputed.
-    claims : tuple of Claim
-        Every claim with its verdict.
-    errata : tuple of Erratum
-        What recomputing found.
-    league : tuple of LeagueRow
-        Every model against every measurement.
-    calibration : Calibration
-        The calibrated default.
-    coverage : Coverage
-        How its intervals cover what they have not seen.
-    verdict : tuple of str
-        What the evidence says, in words.
-    """
-
-    tables: dict[str, tuple[TableRow, ...]]
-    claims: tuple[Claim, ...]
-    errata: tuple[Erratum, ...]
-    league: tuple[LeagueRow, ...]
-    calibration: Calibration
-    coverage: Coverage
-    verdict: tuple[str, ...]
+    tables: dict[str, tuple[TableRow, ...]]  # Table to rows, printed beside recomputed
+    claims: tuple[Claim, ...]  # every claim with its verdict
+    errata: tuple[Erratum, ...]  # what recomputing found
+    league: tuple[LeagueRow, ...]  # every model against every measurement
+    calibration: Calibration  # the calibrated default
+    coverage: Coverage  # how its intervals cover what they have not seen
+    verdict: tuple[str, ...]  # what the evidence says, in words
 
 
 def reproduce() -> Reproduction:
-    """Recompute the paper.
-
-    Returns
-    -------
-    Reproduction
-        Tables, claims, errata, league, calibration, verdict.
-    """
+    """Recompute the paper."""
     standings = league()
     tables = {title: tuple(row for name in names for row in recomputed(name)) for title, names in TABLES.items()}
     return Reproduction(tables, claims(), errata(), standings, calibrate(), coverage(), verdict(standings))

@@ -11,56 +11,28 @@ _NUMBER = frozenset("+-\N{MINUS SIGN}0123456789")
 
 @dataclass(frozen=True, slots=True)
 class Image:
-    """A picture.
+    """A picture."""
 
-    Parameters
-    ----------
-    stem : str
-        Name of its file, without suffix.
-    caption : str
-        What it shows.
-    width : int
-        Share of the width of the page [%].
-    """
-
-    stem: str
-    caption: str
-    width: int = 100
+    stem: str  # name of its file, without suffix
+    caption: str  # what it shows
+    width: int = 100  # share of the width of the page [%]
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A picture, and a table to its right.
+    """A picture, and a table to its right."""
 
-    Parameters
-    ----------
-    left : Image
-        The picture.
-    right : Table
-        The table.
-    share : int
-        Share of the picture in the width [%].
-    """
-
-    left: Image
+    left: Image  # the picture
     right: Table
-    share: int = 40
+    share: int = 40  # share of the picture in the width [%]
 
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """Text as a machine reads it.
+    """Text as a machine reads it."""
 
-    Parameters
-    ----------
-    text : str
-        The text, line by line.
-    lead : str
-        Words before it.
-    """
-
-    text: str
-    lead: str = ""
+    text: str  # the text, line by line
+    lead: str = ""  # words before it
 
 
 Block = Paragraph | Table | Image | Pair | Listing
@@ -68,50 +40,24 @@ Block = Paragraph | Table | Image | Pair | Listing
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A section.
-
-    Parameters
-    ----------
-    title : str
-        Its title.
-    blocks : sequence of Block
-        Its content.
-    """
+    """A section."""
 
     title: str
-    blocks: Sequence[Block]
+    blocks: Sequence[Block]  # its content
 
 
 @dataclass(frozen=True, slots=True)
 class Pages:
-    """The whole report.
+    """The whole report."""
 
-    Parameters
-    ----------
-    title, subtitle : str
-        Title, and a line below it.
-    verdict : sequence of Paragraph
-        What matters most.
-    parts : sequence of Part
-        The content.
-    footer : str
-        Small print of every page.
-    """
-
-    title: str
+    title: str  # title, subtitle: title, and a line below it
     subtitle: str
-    verdict: Sequence[Paragraph]
-    parts: Sequence[Part]
-    footer: str = field(default="")
+    verdict: Sequence[Paragraph]  # what matters most
+    parts: Sequence[Part]  # the content
+    footer: str = field(default="")  # small print of every page
 
     def plain(self) -> dict[str, Any]:
-        """Return everything as plain values, for the template.
-
-        Returns
-        -------
-        dict
-            Text, lists and dicts.
-        """
+        """Return everything as plain values, for the template."""
         return {
             "title": self.title,
             "subtitle": self.subtitle,

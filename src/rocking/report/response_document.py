@@ -29,58 +29,26 @@ _LONGEST_LISTING = 12_000
 
 @dataclass(frozen=True)
 class Asked:
-    """What a report is about.
+    """What a report is about."""
 
-    Parameters
-    ----------
-    name : str
-        What the user calls the body; perhaps empty.
-    date : str
-        Day of the report; perhaps empty.
-    toml : str
-        The inputs as a file of the command line.
-    commands : sequence of str
-        What to type for the same result.
-    fingerprint : str
-        SHA-256 of the inputs.
-    software : str
-        Name and version.
-    """
-
-    name: str
-    date: str
-    toml: str
-    commands: Sequence[str]
-    fingerprint: str
-    software: str
+    name: str  # what the user calls the body; perhaps empty
+    date: str  # day of the report; perhaps empty
+    toml: str  # the inputs as a file of the command line
+    commands: Sequence[str]  # what to type for the same result
+    fingerprint: str  # SHA-256 of the inputs
+    software: str  # name and version
 
 
 @dataclass(frozen=True)
 class Found:
-    """What was computed.
+    """What was computed."""
 
-    Parameters
-    ----------
-    impact : ImpactAnswer
-        Body and coefficients.
-    motion : GroundMotion or Pulse, optional
-        The motion, scaled; None for free rocking.
-    measures : dict of str to Measure
-        Its intensity measures.
-    responses : mapping of str to Response
-        By label of the restitution; at least one.
-    refused : mapping of str to str
-        By label: why there is none.
-    friction : float
-        Coefficient of friction between body and ground [-].
-    """
-
-    impact: ImpactAnswer
-    motion: Motion | None
-    measures: dict[str, Measure]
-    responses: Mapping[str, Response]
-    refused: Mapping[str, str]
-    friction: float
+    impact: ImpactAnswer  # body and coefficients
+    motion: Motion | None  # the motion, scaled; None for free rocking
+    measures: dict[str, Measure]  # its intensity measures
+    responses: Mapping[str, Response]  # by label of the restitution; at least one
+    refused: Mapping[str, str]  # by label: why there is none
+    friction: float  # coefficient of friction between body and ground [-]
 
 
 PICTURES = ("body", "coefficients", "motion", "response")
@@ -88,20 +56,7 @@ PICTURES = ("body", "coefficients", "motion", "response")
 
 
 def response_pages(asked: Asked, found: Found) -> Pages:
-    """Return the report.
-
-    Parameters
-    ----------
-    asked : Asked
-        What it is about.
-    found : Found
-        What was computed.
-
-    Returns
-    -------
-    Pages
-        Its content.
-    """
+    """Return the report."""
     body = found.impact.body
     title = asked.name or _KINDS.get(type(body).__name__, "A rocking body")
     parts = [

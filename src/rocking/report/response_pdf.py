@@ -13,22 +13,7 @@ from rocking.report.response_blocks import Pages
 def response_pdf(pages: Pages, pictures: Mapping[str, bytes]) -> bytes:
     """Return the report as PDF.
 
-    Parameters
-    ----------
-    pages : Pages
-        The content.
-    pictures : mapping of str to bytes
-        SVG file of every picture by its stem.
-
-    Returns
-    -------
-    bytes
-        The file; the same for the same content.
-
-    Raises
-    ------
-    MissingExtraError
-        If typst is not installed.
+    Returns the file; the same for the same content.
     """
     try:
         import typst

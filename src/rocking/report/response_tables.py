@@ -21,20 +21,7 @@ _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Out
 
 
 def coefficients_table(answer: ImpactAnswer, foot: Foot) -> Table:
-    """Return the coefficients of a body under every model.
-
-    Parameters
-    ----------
-    answer : ImpactAnswer
-        Tables by foot.
-    foot : {"left", "right"}
-        The foot on which it lands.
-
-    Returns
-    -------
-    Table
-        One model a row.
-    """
+    """Return the coefficients of a body under every model."""
     header = ["model", "r [-]", "95 % interval", "impulse k [-]", "energy lost", "friction needed [-]", "notes"]
     rows = [_coefficient(row) for row in answer.tables[foot]]
     note = (
@@ -46,18 +33,7 @@ def coefficients_table(answer: ImpactAnswer, foot: Foot) -> Table:
 
 
 def measures_table(measures: Mapping[str, Measure]) -> Table:
-    """Return intensity measures.
-
-    Parameters
-    ----------
-    measures : mapping of str to Measure
-        The measures.
-
-    Returns
-    -------
-    Table
-        One measure a row.
-    """
+    """Return intensity measures."""
     rows = [[cell(one.name), cell(f"{one.value:.5g}"), cell(one.unit), cell(_in_g(one))] for one in measures.values()]
     return Table("Intensity of the motion", ["measure", "value", "unit", "in g"], rows)
 
@@ -65,17 +41,7 @@ def measures_table(measures: Mapping[str, Measure]) -> Table:
 def outcomes_table(responses: Mapping[str, Response], friction: float) -> Table:
     """Return how the body ends under every restitution.
 
-    Parameters
-    ----------
-    responses : mapping of str to Response
-        By label of the restitution.
-    friction : float
-        Coefficient of friction between body and ground [-].
-
-    Returns
-    -------
-    Table
-        One restitution a row.
+    friction: coefficient of friction between body and ground [-].
     """
     header = [
         "restitution", "r left", "r right", "outcome", "peak [deg]", "peak / \N{GREEK SMALL LETTER ALPHA} [-]",
@@ -93,17 +59,7 @@ def outcomes_table(responses: Mapping[str, Response], friction: float) -> Table:
 def impacts_table(label: str, response: Response) -> Table:
     """Return the impacts of a response.
 
-    Parameters
-    ----------
-    label : str
-        Its restitution.
-    response : Response
-        The response.
-
-    Returns
-    -------
-    Table
-        One impact a row, at most 24.
+    Returns one impact a row, at most 24.
     """
     header = ["impact", "time [s]", "velocity before [rad/s]", "after [rad/s]", "r [-]", "onto"]
     shown = response.impacts[:MOST_IMPACTS].tolist()

@@ -68,22 +68,9 @@ DAMPED: Final = (0.001, 0.001, 0.0015, 0.002)
 def stated_error(points: int, damping: float, flatness: FloatArray | float) -> FloatArray:
     """Return the stated error of the table.
 
-    Parameters
-    ----------
-    points : int
-        One of `POINTS`.
-    damping : float
-        Damping ratio, inside the table [-].
-    flatness : ndarray or float
-        Of the bodies, as in `BedTable` [-].
+    damping: damping ratio, inside the table [-]; flatness: of the bodies, as in `BedTable` [-]. Returns largest
+    difference in r, of the shape of the flatness [-].
 
-    Returns
-    -------
-    ndarray
-        Largest difference in r, of the shape of the flatness [-].
-
-    Examples
-    --------
     >>> stated_error(41, 0.7, [0.1, 0.38]).tolist()
     [0.002, 0.013]
     """
@@ -94,42 +81,19 @@ def stated_error(points: int, damping: float, flatness: FloatArray | float) -> F
 
 @dataclass(frozen=True, eq=False)
 class BedTable:
-    """Impulse positions kappa over the half base, from its middle (0) to the new foot (1).
+    """Impulse positions kappa over the half base, from its middle (0) to the new foot (1)."""
 
-    Parameters
-    ----------
-    flatness : ndarray
-        Nodes of 1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-].
-    offset : ndarray
-        Nodes of the way from the plumb line back to the middle of the base, over w [-].
-    damping : ndarray
-        Nodes of the damping ratio [-].
-    hardness : ndarray
-        Nodes of the dimensionless landing speed v sqrt(k / m) / g [-].
-    positions : ndarray
-        kappa by point count, flatness, offset, damping and hardness [-].
-    """
-
-    flatness: FloatArray
-    offset: FloatArray
-    damping: FloatArray
-    hardness: FloatArray
-    positions: FloatArray
+    flatness: FloatArray  # nodes of 1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-]
+    offset: FloatArray  # nodes of the way from the plumb line back to the middle of the base, over w [-]
+    damping: FloatArray  # nodes of the damping ratio [-]
+    hardness: FloatArray  # nodes of the dimensionless landing speed v sqrt(k / m) / g [-]
+    positions: FloatArray  # kappa by point count, flatness, offset, damping and hardness [-]
 
     def plane(self, points: int, damping: FloatArray | float, hardness: FloatArray | float) -> FloatArray:
         """Return the positions of one bed, or of one a body.
 
-        Parameters
-        ----------
-        points : int
-            One of `POINTS`.
-        damping, hardness : float or ndarray
-            Inside their ranges [-].
-
-        Returns
-        -------
-        ndarray
-            By flatness and offset, and by body where there are several [-].
+        damping, hardness: inside their ranges [-]. Returns by flatness and offset, and by body where there are several
+        [-].
         """
         i, along = _between(self._logarithms[0], each(math.log, damping))
         j, across = _between(self._logarithms[1], each(math.log, hardness))
@@ -145,17 +109,7 @@ class BedTable:
     def position(self, plane: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
         """Return the positions for bodies; those outside the table are given the value at its edge.
 
-        Parameters
-        ----------
-        plane : ndarray
-            From `plane` [-].
-        flatness, offset : ndarray
-            Of the bodies, of one shape [-].
-
-        Returns
-        -------
-        ndarray
-            kappa, of that shape [-].
+        plane: from `plane` [-]; flatness, offset: of the bodies, of one shape [-]. Returns kappa, of that shape [-].
         """
         i, across = _between(self.flatness, flatness)
         j, along = _between(self.offset, offset)
@@ -165,13 +119,7 @@ class BedTable:
         return np.asarray((1.0 - across) * first + across * second)
 
     def coarser(self) -> "BedTable":
-        """Return the table with a quarter of its nodes of damping and hardness: what its error would be then.
-
-        Returns
-        -------
-        BedTable
-            The coarser table.
-        """
+        """Return the table with a quarter of its nodes of damping and hardness: what its error would be then."""
         thin = np.ascontiguousarray(self.positions[..., ::4, ::4])
         return BedTable(self.flatness, self.offset, self.damping[::4], self.hardness[::4], thin)
 
@@ -179,10 +127,7 @@ class BedTable:
 def nodes() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return the nodes of the table.
 
-    Returns
-    -------
-    flatness, offset, damping, hardness : ndarray
-        As in `BedTable` [-].
+    Returns as in `BedTable` [-].
     """
     return (
         # flatter bodies almost stop on two points, where r is not smooth
@@ -198,10 +143,7 @@ def nodes() -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
 def bed_table() -> BedTable:
     """Return the table that is shipped; `rocking.studies.impact_laboratory.tabulated` computes it again.
 
-    Returns
-    -------
-    BedTable
-        The table, its positions stored as whole multiples of `STEP`.
+    Returns the table, its positions stored as whole multiples of `STEP`.
     """
     with files("rocking.restitution").joinpath("data", "contact_bed.npy").open("rb") as file:
         stored = np.load(file, allow_pickle=False)

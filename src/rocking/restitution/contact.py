@@ -10,17 +10,7 @@ from rocking.restitution.impact import ImpactGeometry
 def contact_of(body: Body, onto: Foot) -> FloatArray:
     """Return the flat stretches of the base, measured from the plumb line of the centre of mass.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    onto : {"left", "right"}
-        The new foot: positions grow towards it.
-
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        Ends of the stretches, in growing order; none for a body that stands on points [m].
+    Returns ends of the stretches, in growing order; none for a body that stands on points [m].
     """
     patches = np.array(body.local_contact, dtype=np.float64).reshape(-1, 2) - body.local_moments.x
     return patches if onto == "right" else np.ascontiguousarray(-patches[::-1, ::-1])
@@ -29,17 +19,7 @@ def contact_of(body: Body, onto: Foot) -> FloatArray:
 def is_whole_base(patches: FloatArray, geometry: ImpactGeometry) -> bool:
     """Return whether the base touches from foot to foot without a gap.
 
-    Parameters
-    ----------
-    patches : ndarray, shape (n, 2)
-        From `contact_of` [m].
-    geometry : ImpactGeometry
-        The same impact.
-
-    Returns
-    -------
-    bool
-        True for one stretch that ends at both feet.
+    patches: from `contact_of` [m]. Returns true for one stretch that ends at both feet.
     """
     if len(patches) != 1:
         return False

@@ -31,20 +31,10 @@ class Source(Enum):
 
 @dataclass(frozen=True, slots=True)
 class BedRestitution(Restitution):
-    """A coefficient of restitution that says whether it was read or resolved.
+    """A coefficient of restitution that says whether it was read or resolved."""
 
-    Parameters
-    ----------
-    model, raw, coefficient, flags
-        As in `Restitution`.
-    source : Source
-        Table, or an impact resolved in time.
-    stated_error : float
-        Error stated for it: of the table, or of the impact's steps [-].
-    """
-
-    source: Source = Source.TABLE
-    stated_error: float = 0.0
+    source: Source = Source.TABLE  # Table, or an impact resolved in time
+    stated_error: float = 0.0  # error stated for it: of the table, or of the impact's steps [-]
 
 
 @dataclass(frozen=True)

@@ -19,18 +19,6 @@ _SOURCES: dict[type, tuple[str, str]] = {}
 def file_of(word: str) -> str | None:
     """Return the file that a word names, if it names one.
 
-    Parameters
-    ----------
-    word : str
-        As in ``mine.py:Mine``.
-
-    Returns
-    -------
-    str or None
-        Its path.
-
-    Examples
-    --------
     >>> file_of("models/mine.py:Mine"), file_of("0.98*ked")
     ('models/mine.py', None)
     """
@@ -41,22 +29,7 @@ def file_of(word: str) -> str | None:
 def model_in_file(word: str, path: Path | None = None) -> RestitutionModel:
     """Return the model that a word names; its class goes by the hash of the file, and its source with it.
 
-    Parameters
-    ----------
-    word : str
-        As in ``mine.py:Mine``; the class may be left out where the file has one.
-    path : Path, optional
-        Where the file is, if not where the word says.
-
-    Returns
-    -------
-    RestitutionModel
-        It can be pickled: another process, or machine, makes it of the same source without the file.
-
-    Raises
-    ------
-    UnknownModelError
-        If there is no such file or model in it, or it fails.
+    Returns it can be pickled: another process, or machine, makes it of the same source without the file.
     """
     found = _WORD.fullmatch(word)
     file = Path(file_of(word) or word) if path is None else path

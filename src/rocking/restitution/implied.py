@@ -64,20 +64,8 @@ class Implication:
 def energy_bound(body: Body, onto: Foot) -> float:
     """Return the largest coefficient of restitution at which an impact creates no energy.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    onto : {"left", "right"}
-        The foot on which it lands.
+    Returns sqrt(I_old / I_new), of the moments of inertia about the feet; of two that differ, one is above 1 [-].
 
-    Returns
-    -------
-    float
-        sqrt(I_old / I_new), of the moments of inertia about the feet; of two that differ, one is above 1 [-].
-
-    Examples
-    --------
     >>> from rocking import Block
     >>> energy_bound(Block(width=1.0, height=2.0), "left")
     1.0

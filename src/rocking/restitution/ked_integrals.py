@@ -21,14 +21,8 @@ def fill_rectangles(ratio: FloatArray, least: float, out: FloatArray) -> None:
 
     ``r^2 = N/D`` with ``N/B^4 = l^3/12 - l/4 + atan(l)/4 + (l^4/4) atan(1/l)`` and ``D/B^4 = l (1 + l^2)/3``.
 
-    Parameters
-    ----------
-    ratio : ndarray
-        Slenderness ratios l = h/b > 0 [-].
-    least : float
-        The least of them, or less [-].
-    out : ndarray
-        Of the same shape; receives r, relative error below 3e-14 [-].
+    ratio: slenderness ratios l = h/b > 0 [-]; least: the least of them, or less [-]; out: of the same shape; receives
+    r, relative error below 3e-14 [-].
     """
     # N/D in partial fractions, t = 1/l: r^2 = 1/4 + (3 pi t/8 - 1) / (1 + l^2) + 3/4 atan(t) (l - t)
     t = np.divide(1.0, ratio, out=np.empty(ratio.shape))
@@ -63,15 +57,7 @@ def ring_integral(ring: FloatArray) -> float:
     By Green's theorem it is a quarter of the integral of y^4 d(phi) along the boundary, phi the polar angle: an
     elementary integral for every straight edge.
 
-    Parameters
-    ----------
-    ring : ndarray, shape (n, 2)
-        Vertices about the new foot [m]; counter-clockwise counts positive.
-
-    Returns
-    -------
-    float
-        The integral [m4].
+    ring: vertices about the new foot [m]; counter-clockwise counts positive. Returns the integral [m4].
     """
     start, end = ring, np.roll(ring, -1, axis=0)
     length = np.sqrt(np.square(end - start).sum(axis=1))

@@ -19,18 +19,11 @@ _State = tuple[float, ...]
 
 @dataclass(frozen=True, slots=True)
 class Landing:
-    """How a body leaves a bed.
+    """How a body leaves a bed."""
 
-    Parameters
-    ----------
-    end : float
-        End of the base that leaves the bed last, or the foot if that is nearer, over the lever of the new foot [-].
-    velocity : float
-        Angular velocity then, over the one before; zero where the body stops [-].
-    """
-
+    # end of the base that leaves the bed last, or the foot if that is nearer, over the lever of the new foot [-]
     end: float
-    velocity: float
+    velocity: float  # angular velocity then, over the one before; zero where the body stops [-]
 
 
 def land(kappa: float, back: float, stretches: FloatArray) -> Landing:
@@ -40,19 +33,8 @@ def land(kappa: float, back: float, stretches: FloatArray) -> Landing:
     with k_w times its indentation as long. Where the edge v / omega of the pressure passes an end of a stretch, the
     equations have a kink: there the integration stops and begins anew.
 
-    Parameters
-    ----------
-    kappa : float
-        m b_new^2 / (I_C + m h^2) [-].
-    back : float
-        Lever of the old foot [-].
-    stretches : ndarray, shape (n, 2)
-        Where the base touches, from the old foot (-back) to the new one (1) [-].
-
-    Returns
-    -------
-    Landing
-        Where and how fast.
+    kappa: m b_new^2 / (I_C + m h^2) [-]; back: lever of the old foot [-]; stretches: where the base touches, from the
+    old foot (-back) to the new one (1) [-].
     """
     bed = _Bed(kappa, stretches)
     state: _State = (-back, 1.0, 0.0, 0.0)

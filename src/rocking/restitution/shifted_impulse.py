@@ -77,17 +77,7 @@ class ShiftedImpulse(InertiaModel):
 def shifted(geometry: ImpactGeometry, k: FloatArray) -> FloatArray:
     """Return the coefficients for arrays of impulse positions.
 
-    Parameters
-    ----------
-    geometry : ImpactGeometry
-        Levers and inertia.
-    k : ndarray
-        Positions of the impulse; broadcast against the geometry [-].
-
-    Returns
-    -------
-    ndarray
-        Coefficients [-].
+    k: positions of the impulse; broadcast against the geometry [-]. Returns coefficients [-].
     """
     arm, gyration = k * geometry.new_lever, geometry.base_gyration
     return np.asarray((gyration - arm * geometry.old_lever) / (gyration + arm * geometry.new_lever))

@@ -42,23 +42,6 @@ def axes() -> dict[str, type[Axis]]:
 def axis_of(given: Any) -> Axis:
     """Return an axis from what a user gives.
 
-    Parameters
-    ----------
-    given : Axis or (str, array_like)
-        The axis, or its name and its values.
-
-    Returns
-    -------
-    Axis
-        The axis.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is neither, or there is no axis of that name.
-
-    Examples
-    --------
     >>> axis_of(("pga", [1.0, 2.0])).unit
     'm/s2'
     """

@@ -13,15 +13,9 @@ _SHIFTS, _ENOUGH = (0.25, 0.75, 0.5, 0.125), 2
 
 @dataclass(frozen=True)
 class Below:
-    """Samples of one body up to the first that overturns.
+    """Samples of one body up to the first that overturns."""
 
-    Parameters
-    ----------
-    scales : ndarray
-        Factors on the motion, increasing; all but the last survive [-].
-    """
-
-    scales: FloatArray
+    scales: FloatArray  # factors on the motion, increasing; all but the last survive [-]
 
     @property
     def gap(self) -> float:
@@ -32,18 +26,8 @@ class Below:
 def below(samples: Samples) -> dict[int, Below]:
     """Return the samples of each body up to the first that overturns.
 
-    Parameters
-    ----------
-    samples : Samples
-        Sorted, with results.
+    Returns by the number of the body; without those that never overturn, or do so at the lowest sample.
 
-    Returns
-    -------
-    dict of int to Below
-        By the number of the body; without those that never overturn, or do so at the lowest sample.
-
-    Examples
-    --------
     >>> n, x = np.array([0, 0, 0, 1, 1]), np.array([1.0, 2.0, 3.0, 1.0, 2.0])
     >>> found = below(Samples(n, x, np.array([-1, -1, 2, -1, -1]), n, x, x, x))
     >>> {k: each.scales.tolist() for k, each in found.items()}
@@ -61,15 +45,8 @@ def below(samples: Samples) -> dict[int, Below]:
 def search_below(scan: Scan, points: int) -> None:
     """Sample below the least amplitude that overturns until it holds.
 
-    A round spreads points over the range up to the first sample that overturns. A body is done when two rounds in
-    a row have found nothing that overturns below the survivors next to that sample, or after four.
-
-    Parameters
-    ----------
-    scan : Scan
-        The bodies, sampled once; what is found joins its samples.
-    points : int
-        New samples of a body in a round.
+    A round spreads points over the range up to the first sample that overturns. A body is done when two rounds in a row
+    have found nothing that overturns below the survivors next to that sample, or after four.
     """
     held: dict[int, int] = {}
     for shift in _SHIFTS:

@@ -55,21 +55,11 @@ class Polyline:
 
 @dataclass(frozen=True)
 class Edges:
-    """Crossed edges of a lattice, to be bisected all at once.
+    """Crossed edges of a lattice, to be bisected all at once."""
 
-    Parameters
-    ----------
-    number : ndarray of int
-        Their numbers, increasing.
-    point : ndarray, shape (edges, 2)
-        Vertices x, y.
-    modes : ndarray of int, shape (edges, 2)
-        Modes outside and inside.
-    """
-
-    number: IntArray
-    point: FloatArray
-    modes: IntArray
+    number: IntArray  # their numbers, increasing
+    point: FloatArray  # vertices x, y; shape (edges, 2)
+    modes: IntArray  # modes outside and inside; shape (edges, 2)
 
 
 def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -147,24 +137,7 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
 def checked(plane: Plane, by: str, tolerance: float) -> float:
     """Check what a boundary is asked with.
 
-    Parameters
-    ----------
-    plane : Plane
-        The question and its axes.
-    by : {"verdict", "mode"}
-        What is outlined.
-    tolerance : float
-        Width of the last brackets over the coordinate [-].
-
-    Returns
-    -------
-    float
-        The tolerance.
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range, or an axis has one value only.
+    tolerance: width of the last brackets over the coordinate [-].
     """
     if by not in {"verdict", "mode"}:
         raise InvalidValueError(f'by must be "verdict" or "mode", got {by!r:.60}')
@@ -177,21 +150,7 @@ def checked(plane: Plane, by: str, tolerance: float) -> float:
 def outlines(lattice: Lattice, seeds: tuple[IntArray, IntArray], by: str, tolerance: float) -> list[Polyline]:
     """Return the boundary on a lattice that has been refined.
 
-    Parameters
-    ----------
-    lattice : Lattice
-        Refined by mode.
-    seeds : tuple of ndarray of int
-        Columns and rows of the finest cells whose corners differ, as `Lattice.finest` returns them.
-    by : {"verdict", "mode"}
-        Whether to outline all that overturns, or what overturns after each number of impacts for itself.
-    tolerance : float
-        Width of the last brackets over the coordinate [-].
-
-    Returns
-    -------
-    list of Polyline
-        As of `boundary`.
+    tolerance: width of the last brackets over the coordinate [-].
     """
     if by == "verdict":
         return _outlined(lattice, verdicts, "overturned", tolerance, seeds)
@@ -260,21 +219,8 @@ def _centres(lattice: Lattice, inside: Inside, corners: BoolArray, i: IntArray, 
 def bisected(lattice: Lattice, inside: Inside, numbers: IntArray, tolerance: float) -> Edges:
     """Return where the boundary of a region crosses edges of a lattice: one batch for each halving.
 
-    Parameters
-    ----------
-    lattice : Lattice
-        The lattice; both ends of the edges are known.
-    inside : callable
-        Whether modes belong to the region.
-    numbers : ndarray of int
-        Numbers of the edges, as of `edge_numbers`.
-    tolerance : float
-        Width of the last bracket over the coordinate [-].
-
-    Returns
-    -------
-    Edges
-        Middles of the last brackets, and the modes at their ends.
+    tolerance: width of the last bracket over the coordinate [-]. Returns middles of the last brackets, and the modes at
+    their ends.
     """
     upright = numbers % 2 == 1
     i, j = (numbers // 2) % lattice.columns, (numbers // 2) // lattice.columns

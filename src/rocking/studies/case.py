@@ -14,59 +14,27 @@ from rocking.studies.question import Question, sides_of
 
 @dataclass(frozen=True)
 class Case:
-    """Variations of a question, one entry each; every axis returns it with something changed.
+    """Variations of a question, one entry each; every axis returns it with something changed."""
 
-    Parameters
-    ----------
-    question : Question
-        What is varied.
-    count : int
-        How many variations.
-    scale : ndarray
-        Factor on the motion [-].
-    stretch : ndarray
-        Factor on its time [-].
-    geometry : mapping of str to ndarray
-        Dimensions that vary, by the names of `changed_body` [m, rad].
-    sides : mapping of str to ndarray
-        alpha, p and r, right and left, once the bodies are known [rad, rad/s, -].
-    amplitude_is_set : bool
-        Whether an axis has set the amplitude, so that the velocity must set the time.
-    """
-
-    question: Question
-    count: int
-    scale: FloatArray
-    stretch: FloatArray
+    question: Question  # what is varied
+    count: int  # how many variations
+    scale: FloatArray  # factor on the motion [-]
+    stretch: FloatArray  # factor on its time [-]
+    # dimensions that vary, by the names of `changed_body` [m, rad]
     geometry: Mapping[str, FloatArray] = field(default_factory=dict)
+    # alpha, p and r, right and left, once the bodies are known [rad, rad/s, -]
     sides: Mapping[str, FloatArray] = field(default_factory=dict)
-    amplitude_is_set: bool = False
+    amplitude_is_set: bool = False  # whether an axis has set the amplitude, so that the velocity must set the time
 
     @classmethod
     def of(cls, question: Question, count: int) -> "Case":
-        """Return variations that do not vary yet.
-
-        Parameters
-        ----------
-        question : Question
-            What is varied.
-        count : int
-            How many.
-
-        Returns
-        -------
-        Case
-            All the same.
-        """
+        """Return variations that do not vary yet."""
         return cls(question, count, np.ones(count), np.ones(count))
 
     def settled(self) -> "Case":
         """Return the case with its bodies made, and the restitution evaluated for each different one.
 
-        Returns
-        -------
-        Case
-            With its sides; NaN, which the engine refuses row by row, where there is no such body.
+        Returns with its sides; NaN, which the engine refuses row by row, where there is no such body.
         """
         names = sorted(self.geometry)
         if not names:

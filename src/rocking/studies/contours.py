@@ -11,18 +11,6 @@ _ENDS = ((0, 1), (1, 2), (3, 2), (0, 3))
 def crossed_edges(inside: BoolArray) -> BoolArray:
     """Return which edges of cells have one end inside and one outside.
 
-    Parameters
-    ----------
-    inside : ndarray of bool, shape (cells, 4)
-        Lower left, lower right, upper right and upper left corner.
-
-    Returns
-    -------
-    ndarray of bool, shape (cells, 4)
-        Bottom, right, top, left.
-
-    Examples
-    --------
     >>> crossed_edges(np.array([[True, False, False, False]])).tolist()
     [[True, False, False, True]]
     """
@@ -32,17 +20,7 @@ def crossed_edges(inside: BoolArray) -> BoolArray:
 def edge_numbers(i: IntArray, j: IntArray, columns: int) -> IntArray:
     """Return the numbers of the edges of cells; neighbours share them.
 
-    Parameters
-    ----------
-    i, j : ndarray of int
-        Columns and rows of the lower left corners.
-    columns : int
-        Points in a row.
-
-    Returns
-    -------
-    ndarray of int, shape (cells, 4)
-        Twice the number of the left or lower end, plus one for upright edges: bottom, right, top, left.
+    Returns twice the number of the left or lower end, plus one for upright edges: bottom, right, top, left.
     """
     here = 2 * (j * columns + i)
     return np.stack([here, here + 3, here + 2 * columns, here + 1], axis=1)
@@ -54,19 +32,7 @@ def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
     A saddle, whose inside corners are opposite, is decided by its centre: the inside corners are joined if the centre
     is inside, else the outside ones.
 
-    Parameters
-    ----------
-    inside : ndarray of bool, shape (cells, 4)
-        Corners.
-    edges : ndarray of int, shape (cells, 4)
-        Numbers of the edges.
-    centre : ndarray of bool
-        Whether the centre is inside; it counts only in saddles.
-
-    Returns
-    -------
-    ndarray of int, shape (segments, 2)
-        Numbers of the edges at both ends.
+    Returns numbers of the edges at both ends.
     """
     crossed = crossed_edges(inside)
     count = crossed.sum(axis=1)
@@ -82,18 +48,8 @@ def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
 def chains(joined: IntArray) -> list[list[int]]:
     """Return the polylines that segments make; of closed ones the first edge is repeated at the end.
 
-    Parameters
-    ----------
-    joined : ndarray of int, shape (segments, 2)
-        Numbers of the edges at both ends of each segment.
+    Returns numbers of the edges in order; open ones first.
 
-    Returns
-    -------
-    list of list of int
-        Numbers of the edges in order; open ones first.
-
-    Examples
-    --------
     >>> chains(np.array([[1, 2], [3, 2], [5, 6], [6, 7], [7, 5]]))
     [[1, 2, 3], [5, 6, 7, 5]]
     """

@@ -10,15 +10,7 @@ from rocking.errors import InvalidValueError
 def reference_side(body: Body) -> str:
     """Return the side that the ground lifts the body about first: the less stocky one, the right one if equal.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-
-    Returns
-    -------
-    {"left", "right"}
-        The side that axes refer to when they speak of size and slenderness.
+    Returns the side that axes refer to when they speak of size and slenderness.
     """
     return "left" if body.side("left").slenderness_angle < body.side("right").slenderness_angle else "right"
 
@@ -26,26 +18,10 @@ def reference_side(body: Body) -> str:
 def changed_body(body: Body, parameters: Mapping[str, float]) -> Body:
     """Return a body with other dimensions.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    parameters : mapping of str to float
-        semi_diagonal [m] scales any body with all its lengths; slenderness_angle [rad], width and height [m] are for
-        a block. A slenderness alone keeps the semi-diagonal, a width alone the height, a height alone the width.
+    parameters: semi_diagonal [m] scales any body with all its lengths; slenderness_angle [rad], width and height [m]
+    are for a block. A slenderness alone keeps the semi-diagonal, a width alone the height, a height alone the width.
+    Returns the changed body; the same if there is nothing to change.
 
-    Returns
-    -------
-    Body
-        The changed body; the same if there is nothing to change.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such body.
-
-    Examples
-    --------
     >>> made = changed_body(Block(width=1.0, height=4.0), {"height": 3.0})
     >>> made.width, made.height
     (1.0, 3.0)

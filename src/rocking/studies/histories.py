@@ -216,20 +216,7 @@ class Histories(ABC):
 
 
 def part(rows: Rows, first: int, last: int) -> Rows:
-    """Return some of the rows.
-
-    Parameters
-    ----------
-    rows : Rows
-        All of them.
-    first, last : int
-        Places: from the first up to but not including the last.
-
-    Returns
-    -------
-    Rows
-        Those between.
-    """
+    """Return some of the rows."""
     values = {name: rows.values[name][first:last] for name in ROWS}
     return Rows(values, rows.motion[first:last], rows.key[first:last])
 
@@ -246,6 +233,12 @@ class Table(Histories):
         Number of each history's motion.
     values : dict of str to ndarray
         The keys of `rocking.dynamics.batch.ROWS` [rad, rad/s, -, rad, rad/s], one entry a history.
+    law : ImpactLaw, optional
+        How the coefficient changes from impact to impact.
+    settings : Settings, optional
+        How to integrate.
+    engine : {"auto", "fast", "reference"}
+        Which engine.
 
     Raises
     ------
@@ -310,6 +303,12 @@ class Product(Histories):
         the probability of a law that draws, 1 if not given [-].
     scales : ndarray, shape (scales,) or (motions, scales)
         Factors on the motions, the same for all or for each its own [-].
+    law : ImpactLaw, optional
+        How the coefficient changes from impact to impact.
+    settings : Settings, optional
+        How to integrate.
+    engine : {"auto", "fast", "reference"}
+        Which engine.
     """
 
     sides: dict[str, FloatArray]
@@ -390,14 +389,6 @@ def _own(array: np.ndarray, given: object) -> np.ndarray:
 def described_law(law: ImpactLaw) -> dict[str, Any]:
     """Return what makes a law of impact this law.
 
-    Parameters
-    ----------
-    law : ImpactLaw
-        The law.
-
-    Returns
-    -------
-    dict
-        Its class, and what it says of itself.
+    Returns its class, and what it says of itself.
     """
     return {"law": type(law).__name__, "class": full_name(type(law)), "content": law.content()}

@@ -20,22 +20,7 @@ _PIECE = 1 << 17
 
 
 class Lattice:
-    """Points between the values of two axes, numbered in steps of the finest level, and what is known of them.
-
-    Parameters
-    ----------
-    plane : Plane
-        The question and its axes.
-    levels : int
-        Levels of refinement; each halves the spacing.
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-
-    Raises
-    ------
-    InvalidValueError
-        If the levels are not within [0, 12], or the restitution is drawn at random.
-    """
+    """Points between the values of two axes, numbered in steps of the finest level, and what is known of them."""
 
     def __init__(self, plane: Plane, levels: int, progress: Callable[[int], None] | None = None) -> None:
         given: object = levels
@@ -52,18 +37,7 @@ class Lattice:
         self.peaks: FloatArray = np.empty(0)
 
     def coordinates(self, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return the coordinates of lattice points; those of the axes' own values to the last bit.
-
-        Parameters
-        ----------
-        i, j : ndarray of int
-            Column and row.
-
-        Returns
-        -------
-        x, y : ndarray
-            In the units of the axes.
-        """
+        """Return the coordinates of lattice points; those of the axes' own values to the last bit."""
         return self._between(self.plane.x, i), self._between(self.plane.y, j)
 
     def _between(self, axis: Axis, places: IntArray) -> FloatArray:
@@ -74,22 +48,13 @@ class Lattice:
     def base(self) -> IntArray:
         """Return the numbers of the axes' own values, increasing: those of x vary fastest.
 
-        Returns
-        -------
-        ndarray of int
-            Row times the number of columns, plus column.
+        Returns row times the number of columns, plus column.
         """
         i, j = np.arange(0, self.columns, self.step), np.arange(0, self.rows, self.step)
         return np.asarray((j[:, None] * self.columns + i).ravel())
 
     def compute(self, keys: IntArray) -> None:
-        """Compute those of some points that are not known, in one batch.
-
-        Parameters
-        ----------
-        keys : ndarray of int
-            Their numbers: row times the number of columns, plus column.
-        """
+        """Compute those of some points that are not known, in one batch."""
         new = absent(keys, self.keys)
         if not new.size:
             return
@@ -101,14 +66,7 @@ class Lattice:
     def learn(self, keys: IntArray, modes: IntArray, peaks: FloatArray) -> None:
         """Take in what is known of new points.
 
-        Parameters
-        ----------
-        keys : ndarray of int
-            Their numbers, increasing; none of them is known yet.
-        modes : ndarray of int
-            Their modes.
-        peaks : ndarray
-            Their relative peaks [-].
+        peaks: their relative peaks [-].
         """
         if not self.keys.size:
             self.keys, self.modes, self.peaks = keys, modes, peaks
@@ -121,15 +79,7 @@ class Lattice:
     def modes_at(self, i: IntArray, j: IntArray) -> IntArray:
         """Return the modes of points, computing those that are not known.
 
-        Parameters
-        ----------
-        i, j : ndarray of int
-            Columns and rows, of any shape.
-
-        Returns
-        -------
-        ndarray of int
-            Modes, of the same shape.
+        Returns Modes, of the same shape.
         """
         keys = j * self.columns + i
         self.compute(keys.ravel())
@@ -138,32 +88,14 @@ class Lattice:
     def corners(self, i: IntArray, j: IntArray, step: int) -> IntArray:
         """Return the modes at the corners of cells.
 
-        Parameters
-        ----------
-        i, j : ndarray of int
-            Columns and rows of the lower left corners.
-        step : int
-            Size of the cells.
-
-        Returns
-        -------
-        ndarray of int, shape (cells, 4)
-            Lower left, lower right, upper right, upper left.
+        Returns lower left, lower right, upper right, upper left.
         """
         return self.modes_at(*_corners(i, j, step))
 
     def finest(self, label: Label) -> tuple[IntArray, IntArray]:
         """Subdivide cells whose corners differ, level by level, and return those of the last level that differ.
 
-        Parameters
-        ----------
-        label : callable
-            What of the modes counts as different.
-
-        Returns
-        -------
-        i, j : ndarray of int
-            Columns and rows of the lower left corners.
+        Returns columns and rows of the lower left corners.
         """
         self.compute(self.base())
         i, j = self._differing_base(label)
@@ -201,20 +133,6 @@ class Lattice:
 def absent(keys: IntArray, known: IntArray) -> IntArray:
     """Return those of some numbers that are not among others: `numpy.setdiff1d` where the others are sorted already.
 
-    Parameters
-    ----------
-    keys : ndarray of int
-        The numbers, in any order, and more than once.
-    known : ndarray of int
-        The others, increasing.
-
-    Returns
-    -------
-    ndarray of int
-        Increasing, each once.
-
-    Examples
-    --------
     >>> absent(np.array([7, 3, 5, 3, 9]), np.array([1, 5, 7])).tolist()
     [3, 9]
     """
@@ -228,18 +146,6 @@ def absent(keys: IntArray, known: IntArray) -> IntArray:
 def merged(known: IntArray, new: IntArray) -> IntArray:
     """Return two sets of numbers as one.
 
-    Parameters
-    ----------
-    known, new : ndarray of int
-        Each increasing; none is in both.
-
-    Returns
-    -------
-    ndarray of int
-        Increasing.
-
-    Examples
-    --------
     >>> merged(np.array([1, 5, 7]), np.array([3, 9])).tolist()
     [1, 3, 5, 7, 9]
     """
@@ -253,36 +159,15 @@ def _corners(i: IntArray, j: IntArray, step: int) -> tuple[IntArray, IntArray]:
 
 
 def differing(labels: Any) -> BoolArray:
-    """Return which cells have corners that differ.
-
-    Parameters
-    ----------
-    labels : ndarray, shape (cells, 4)
-        Labels of the corners.
-
-    Returns
-    -------
-    ndarray of bool
-        One entry a cell.
-    """
+    """Return which cells have corners that differ."""
     return np.asarray(np.any(labels != labels[:, :1], axis=1))
 
 
 def verdicts(modes: IntArray) -> BoolArray:
     """Return whether modes are of overturning.
 
-    Parameters
-    ----------
-    modes : ndarray of int
-        Modes.
+    Returns true for n >= 0; failed ones are False, and for the caller to set aside.
 
-    Returns
-    -------
-    ndarray of bool
-        True for n >= 0; failed ones are False, and for the caller to set aside.
-
-    Examples
-    --------
     >>> verdicts(np.array([-3, -2, -1, 0, 2])).tolist()
     [False, False, False, True, True]
     """

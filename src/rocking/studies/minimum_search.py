@@ -24,26 +24,11 @@ _MOST_POINTS = 1_000_000
 
 @dataclass(frozen=True)
 class Effort:
-    """How closely to look.
+    """How closely to look."""
 
-    Parameters
-    ----------
-    points : int
-        First samples, in equal ratios [-].
-    levels : int
-        How often suspicious intervals are halved, from 0 to 12 [-].
-    tolerance : float
-        Width of the last brackets over the acceleration [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range.
-    """
-
-    points: int = 400
-    levels: int = 4
-    tolerance: float = 1e-12
+    points: int = 400  # first samples, in equal ratios [-]
+    levels: int = 4  # how often suspicious intervals are halved, from 0 to 12 [-]
+    tolerance: float = 1e-12  # width of the last brackets over the acceleration [-]
 
     def __post_init__(self) -> None:
         """Check the values."""
@@ -56,28 +41,14 @@ class Effort:
 
 @dataclass(frozen=True)
 class Cases:
-    """Bodies whose crossings are looked for together, each under a motion.
+    """Bodies whose crossings are looked for together, each under a motion."""
 
-    Parameters
-    ----------
-    sides : dict of str to ndarray
-        Sides of the bodies, as of `sides_of` [rad, rad/s, -].
-    peak : ndarray
-        Peak acceleration of the motion of each [m/s2].
-    uplift : ndarray
-        Acceleration that lifts each [m/s2].
-    low, high : ndarray
-        Accelerations between which to look [m/s2].
-    record : bool
-        Whether the motions are records, under which thin stretches may hide below the minimum.
-    """
-
-    sides: dict[str, FloatArray]
-    peak: FloatArray
-    uplift: FloatArray
-    low: FloatArray
+    sides: dict[str, FloatArray]  # sides of the bodies, as of `sides_of` [rad, rad/s, -]
+    peak: FloatArray  # peak acceleration of the motion of each [m/s2]
+    uplift: FloatArray  # acceleration that lifts each [m/s2]
+    low: FloatArray  # low, high: accelerations between which to look [m/s2]
     high: FloatArray
-    record: bool
+    record: bool  # whether the motions are records, under which thin stretches may hide below the minimum
 
     @classmethod
     def of(
@@ -86,26 +57,8 @@ class Cases:
     ) -> "Cases":  # fmt: skip
         """Return the cases of some bodies under one motion.
 
-        Parameters
-        ----------
-        motion : GroundMotion or Pulse
-            The motion.
-        sides : dict of str to ndarray
-            Sides of the bodies, as of `sides_of` [rad, rad/s, -].
-        settings : Settings
-            How to integrate.
-        lowest, highest : float, optional
-            Peak accelerations between which to look [m/s2].
-
-        Returns
-        -------
-        Cases
-            One for each body.
-
-        Raises
-        ------
-        InvalidValueError
-            If the motion is zero throughout, or the range is none.
+        sides: sides of the bodies, as of `sides_of` [rad, rad/s, -]; lowest, highest: peak accelerations between which
+        to look [m/s2].
         """
         if not motion.peak > 0.0:
             raise InvalidValueError(f"motion must have a peak above zero to be scaled, got {motion.name!r}")
@@ -114,18 +67,7 @@ class Cases:
 
     @classmethod
     def joined(cls, parts: Sequence["Cases"]) -> "Cases":
-        """Return the cases of several motions or restitutions as one.
-
-        Parameters
-        ----------
-        parts : sequence of Cases
-            All of records, or all of pulses.
-
-        Returns
-        -------
-        Cases
-            In this order.
-        """
+        """Return the cases of several motions or restitutions as one."""
         sides = {name: np.concatenate([each.sides[name] for each in parts]) for name in parts[0].sides}
         names = ("peak", "uplift", "low", "high")
         arrays = {name: np.concatenate([getattr(each, name) for each in parts]) for name in names}
@@ -134,15 +76,7 @@ class Cases:
     def grid(self, points: int) -> FloatArray:
         """Return the first factors on the motions.
 
-        Parameters
-        ----------
-        points : int
-            How many for each case [-].
-
-        Returns
-        -------
-        ndarray, shape (cases, points)
-            In equal ratios [-].
+        points: how many for each case [-]. Returns in equal ratios [-].
         """
         return np.asarray(np.geomspace(self.low, self.high, points, axis=1) / self.peak[:, None])
 
@@ -150,19 +84,7 @@ class Cases:
 def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Crossings | None, ...]:
     """Return the crossings of all cases, which are computed together and do not know of one another.
 
-    Parameters
-    ----------
-    cases : Cases
-        The cases.
-    effort : Effort
-        How closely to look.
-    run : callable
-        Computes histories: called for one round after another, always with the histories of all cases.
-
-    Returns
-    -------
-    tuple of Crossings or None
-        One for each case; None where no history could be computed.
+    Returns one for each case; None where no history could be computed.
     """
     scan = Scan(run, cases.sides, cases.grid(effort.points))
     if cases.record:

@@ -117,18 +117,7 @@ class PeakVelocity(_AmplitudeAxis):
     words = "peak ground velocity, by scaling the motion, or by stretching its time where the other axis scales it"
 
     def check_beside(self, other: Axis) -> None:
-        """Refuse a scale of zero, at which no stretching gives a velocity.
-
-        Parameters
-        ----------
-        other : Axis
-            The other axis.
-
-        Raises
-        ------
-        InvalidValueError
-            If a value of it is 0.
-        """
+        """Refuse a scale of zero, at which no stretching gives a velocity."""
         if isinstance(other, Scale):
             _refuse_zero(other.values)
 

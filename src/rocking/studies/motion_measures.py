@@ -19,23 +19,8 @@ _SAMPLES = 4096
 def main_period(motion: Motion) -> float:
     """Return the period T_p of a pulse.
 
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
+    Returns T_p; of a sum of sinusoids that of the first [s].
 
-    Returns
-    -------
-    float
-        T_p; of a sum of sinusoids that of the first [s].
-
-    Raises
-    ------
-    InvalidValueError
-        If it is a record, or a pulse without a period.
-
-    Examples
-    --------
     >>> from rocking.motions.pulses import sine
     >>> round(main_period(sine(2.0, 0.5)), 12)
     0.5
@@ -54,18 +39,8 @@ def main_period(motion: Motion) -> float:
 def peak_velocity(motion: Motion) -> float:
     """Return the largest velocity of the ground in either direction.
 
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
+    Returns largest magnitude during the motion [m/s].
 
-    Returns
-    -------
-    float
-        Largest magnitude during the motion [m/s].
-
-    Examples
-    --------
     >>> import math
     >>> from rocking.motions.pulses import sine
     >>> round(peak_velocity(sine(math.pi, 1.0)), 12)

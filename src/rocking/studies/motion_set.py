@@ -100,15 +100,7 @@ class MotionList(MotionSet):
 def digest(motion: Motion) -> str:
     """Return the SHA-256 of what an engine sees of a motion.
 
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
-
-    Returns
-    -------
-    str
-        64 hexadecimal digits: of the step, and the coefficients of the horizontal and vertical accelerations.
+    Returns 64 hexadecimal digits: of the step, and the coefficients of the horizontal and vertical accelerations.
     """
     import hashlib
 

@@ -28,35 +28,14 @@ UNLIFTED, SURVIVED, FAILED = -2, -1, -3
 
 @dataclass(frozen=True)
 class Question:
-    """One body under one motion, to be varied.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    motion : GroundMotion or Pulse
-        The motion.
-    restitution : str, RestitutionModel, float, mapping or ImpactLaw
-        As for `simulate`.
-    settings : Settings
-        How to integrate.
-    threads : int, optional
-        Threads of the fast engine; the results do not depend on them.
-    engine : {"auto", "fast", "reference"}
-        Which engine.
-
-    Raises
-    ------
-    InvalidValueError
-        If the motion is none, or the body or restitution is refused.
-    """
+    """One body under one motion, to be varied."""
 
     body: Body
     motion: Motion
-    restitution: Any = "ked"
-    settings: Settings = field(default_factory=Settings)
-    threads: int | None = None
-    engine: str = "auto"
+    restitution: Any = "ked"  # as for `simulate`
+    settings: Settings = field(default_factory=Settings)  # how to integrate
+    threads: int | None = None  # threads of the fast engine; the results do not depend on them
+    engine: str = "auto"  # which engine
 
     def __post_init__(self) -> None:
         """Refuse what cannot be asked."""
@@ -80,18 +59,7 @@ class Question:
         return Batch([self.motion.segments()], self.law, self.settings, self.threads, self.engine)
 
     def rocker_of(self, body: Body) -> Rocker:
-        """Return another body with the same restitution, evaluated for it.
-
-        Parameters
-        ----------
-        body : Body
-            The other body.
-
-        Returns
-        -------
-        Rocker
-            As the equations see it.
-        """
+        """Return another body with the same restitution, evaluated for it."""
         return Rocker.of_body(body, self.restitution, self.settings.gravity)
 
     def run(
@@ -103,26 +71,12 @@ class Question:
     ) -> tuple[Arrays, dict[str, int]]:
         """Return the results of many variations, their modes and relative peaks with them.
 
-        A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of
-        p s, all times multiplied by s: so one motion serves all stretches, and nothing is approximated.
+        A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of p
+        s, all times multiplied by s: so one motion serves all stretches, and nothing is approximated.
 
-        Parameters
-        ----------
-        values : dict of str to ndarray
-            Sides and scale, by the names of `rocking.dynamics.batch.ROWS` [rad, rad/s, -], one entry a history.
-        stretch : ndarray
-            Factors on the time of the motion [-].
-        key : array_like of int, optional
-            Numbers of the histories for random coefficients; 0, 1, ... if not given.
-        progress : callable, optional
-            Called with the number of histories done since the last call.
-
-        Returns
-        -------
-        results : dict of str to ndarray
-            The keys of `rocking.dynamics.engine.RESULTS`, mode [-] and peak_ratio [-].
-        work : dict of str to int
-            Counts of the engine.
+        values: sides and scale, by the names of `rocking.dynamics.batch.ROWS` [rad, rad/s, -], one entry a history;
+        stretch: factors on the time of the motion [-]. Returns results: the keys of `rocking.dynamics.engine.RESULTS`,
+        mode [-] and peak_ratio [-].
         """
         count = stretch.size
         if np.any(stretch != 1.0):
@@ -138,18 +92,7 @@ class Question:
         return found, work
 
     def check_stretching(self, name: str) -> None:
-        """Refuse to stretch time where the restitution would notice.
-
-        Parameters
-        ----------
-        name : str
-            What would stretch it.
-
-        Raises
-        ------
-        InvalidValueError
-            If the restitution depends on the speed in rad/s.
-        """
+        """Refuse to stretch time where the restitution would notice."""
         if self.law.kind in {1, -1}:
             raise InvalidValueError(
                 f"{name} stretches the time of the motion, which needs a restitution that does not depend on the speed "
@@ -157,18 +100,7 @@ class Question:
             )
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:
-        """Return what was computed from what and how, as plain values.
-
-        Parameters
-        ----------
-        work : dict of str to int
-            Counts of the engine; empty if the reference engine ran.
-
-        Returns
-        -------
-        dict
-            For the attributes of a dataset.
-        """
+        """Return what was computed from what and how, as plain values."""
         from rocking import __version__
 
         motion = self.motion
@@ -188,16 +120,8 @@ class Question:
 def sides_of(rockers: Sequence[Rocker | None]) -> dict[str, FloatArray]:
     """Return the sides of many bodies as arrays.
 
-    Parameters
-    ----------
-    rockers : sequence of Rocker or None
-        The bodies; None for one that could not be made.
-
-    Returns
-    -------
-    dict of str to ndarray
-        alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left, share_right,
-        share_left [-]; NaN where there is no body.
+    Returns alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left, share_right,
+    share_left [-]; NaN where there is no body.
     """
     return {
         f"{short}_{side}": np.array([np.nan if r is None else getattr(getattr(r, side), name) for r in rockers])
@@ -209,18 +133,8 @@ def sides_of(rockers: Sequence[Rocker | None]) -> dict[str, FloatArray]:
 def modes_of(results: Arrays) -> np.ndarray:
     """Return how each history ended.
 
-    Parameters
-    ----------
-    results : dict of str to ndarray
-        With outcome and impacts.
+    Returns -3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts.
 
-    Returns
-    -------
-    ndarray of int
-        -3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts.
-
-    Examples
-    --------
     >>> modes_of({"outcome": np.array([0, 1, 2, 3]), "impacts": np.array([0, 3, 1, 0])}).tolist()
     [-2, -1, 1, -3]
     """
@@ -233,16 +147,7 @@ def modes_of(results: Arrays) -> np.ndarray:
 def peak_ratio(peak: FloatArray, right: FloatArray, left: FloatArray) -> FloatArray:
     """Return the peak rotation over the slenderness angle of the side it stands on.
 
-    Parameters
-    ----------
-    peak : ndarray
-        Peak rotation with its sign [rad].
-    right, left : ndarray
-        Slenderness angles of the sides [rad].
-
-    Returns
-    -------
-    ndarray
-        The ratio; beyond one is not overturning [-].
+    peak: peak rotation with its sign [rad]; right, left: slenderness angles of the sides [rad]. Returns the ratio;
+    beyond one is not overturning [-].
     """
     return np.abs(peak) / np.where(np.asarray(peak) < 0.0, left, right)

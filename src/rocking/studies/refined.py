@@ -45,23 +45,7 @@ def refined(
 ) -> Refined:
     """Return a map that is known, refined wherever its modes differ between neighbours.
 
-    Parameters
-    ----------
-    plane : Plane
-        The question and its axes.
-    modes : ndarray of int, shape (y, x)
-        Modes of the map; taken over as they are.
-    levels : int
-        Levels of refinement.
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-    peaks : ndarray, optional
-        Relative peaks of the map; NaN if not given [-].
-
-    Returns
-    -------
-    Refined
-        All points; the map's own first, in its order.
+    peaks: relative peaks of the map; NaN if not given [-]. Returns all points; the map's own first, in its order.
     """
     return refine(Lattice(plane, levels, progress), modes, peaks)[0]
 
@@ -69,21 +53,9 @@ def refined(
 def refine(lattice: Lattice, modes: IntArray, peaks: Any = None) -> tuple[Refined, tuple[IntArray, IntArray]]:
     """Return a map that is known, refined on a lattice of which nothing is known yet, and its mixed finest cells.
 
-    Parameters
-    ----------
-    lattice : Lattice
-        Between the values of the map; what is computed stays known to it.
-    modes : ndarray of int, shape (y, x)
-        Modes of the map.
-    peaks : ndarray, optional
-        Relative peaks of the map; NaN if not given [-].
-
-    Returns
-    -------
-    refined : Refined
-        All points; the map's own first, in its order.
-    cells : tuple of ndarray of int
-        Columns and rows of the finest cells whose corners differ: where `rocking.studies.boundary.outlines` begins.
+    peaks: relative peaks of the map; NaN if not given [-]. Returns refined: all points; the map's own first, in its
+    order; cells: columns and rows of the finest cells whose corners differ: where `rocking.studies.boundary.outlines`
+    begins.
     """
     first = lattice.base()
     known = np.full(first.size, np.nan) if peaks is None else np.asarray(peaks, dtype=np.float64).ravel()

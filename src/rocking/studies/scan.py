@@ -20,64 +20,24 @@ _FIELDS = ("body", "scale", "mode", "side", "peak", "time", "lost")
 
 @dataclass
 class Samples:
-    """Histories of many bodies at many scales, sorted by body and scale.
+    """Histories of many bodies at many scales, sorted by body and scale."""
 
-    Parameters
-    ----------
-    body : ndarray of int
-        Number of the body.
-    scale : ndarray
-        Factor on the motion [-].
-    mode : ndarray of int
-        How it ended.
-    side : ndarray of int
-        Side to which it overturned.
-    peak : ndarray
-        Peak rotation over the slenderness angle [-].
-    time : ndarray
-        Time of overturning, NaN where it did not [s].
-    lost : ndarray
-        1 where the ground would have to pull, NaN where that is not known [-].
-    """
-
-    body: IntArray
-    scale: FloatArray
-    mode: IntArray
-    side: IntArray
-    peak: FloatArray
-    time: FloatArray
-    lost: FloatArray
+    body: IntArray  # number of the body
+    scale: FloatArray  # factor on the motion [-]
+    mode: IntArray  # how it ended
+    side: IntArray  # side to which it overturned
+    peak: FloatArray  # peak rotation over the slenderness angle [-]
+    time: FloatArray  # time of overturning, NaN where it did not [s]
+    lost: FloatArray  # 1 where the ground would have to pull, NaN where that is not known [-]
 
     def joined(self, other: "Samples") -> "Samples":
-        """Return these and others, sorted.
-
-        Parameters
-        ----------
-        other : Samples
-            The others.
-
-        Returns
-        -------
-        Samples
-            All of them.
-        """
+        """Return these and others, sorted."""
         both = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in _FIELDS}
         order = np.lexsort((both["scale"], both["body"]))
         return Samples(**{name: values[order] for name, values in both.items()})
 
     def where(self, keep: BoolArray) -> "Samples":
-        """Return some of them.
-
-        Parameters
-        ----------
-        keep : ndarray of bool
-            Which.
-
-        Returns
-        -------
-        Samples
-            Those.
-        """
+        """Return some of them."""
         return Samples(**{name: getattr(self, name)[keep] for name in _FIELDS})
 
     @property
@@ -98,38 +58,15 @@ class Samples:
 
 @dataclass
 class Brackets:
-    """Pairs of scales between which something changes.
+    """Pairs of scales between which something changes."""
 
-    Parameters
-    ----------
-    body : ndarray of int
-        Number of the body.
-    ends : ndarray, shape (n, 2)
-        Scales below and above [-].
-    modes : ndarray of int, shape (n, 2)
-        Modes there.
-    """
-
-    body: IntArray
-    ends: FloatArray
-    modes: IntArray
+    body: IntArray  # number of the body
+    ends: FloatArray  # scales below and above [-]; shape (n, 2)
+    modes: IntArray  # modes there; shape (n, 2)
 
     @classmethod
     def between(cls, samples: Samples, changes: BoolArray) -> "Brackets":
-        """Return brackets between neighbouring samples.
-
-        Parameters
-        ----------
-        samples : Samples
-            Sorted.
-        changes : ndarray of bool
-            Whether there is one after each sample but the last.
-
-        Returns
-        -------
-        Brackets
-            In order.
-        """
+        """Return brackets between neighbouring samples."""
         low, high = (np.flatnonzero(changes) + k for k in (0, 1))
         ends = np.stack([samples.scale[low], samples.scale[high]], axis=1)
         return cls(samples.body[low], ends, np.stack([samples.mode[low], samples.mode[high]], axis=1))
@@ -137,31 +74,13 @@ class Brackets:
     def wide(self, tolerance: float) -> IntArray:
         """Return which are wider than they shall be.
 
-        Parameters
-        ----------
-        tolerance : float
-            Relative width [-].
-
-        Returns
-        -------
-        ndarray of int
-            Their numbers.
+        tolerance: relative width [-].
         """
         (low, high), middle = self.ends.T, self.ends.mean(axis=1)
         return np.flatnonzero((high - low > tolerance * high) & (middle > low) & (middle < high))
 
     def move(self, rows: IntArray, upper: BoolArray, middle: Samples) -> None:
-        """Put one end of some brackets into their middles.
-
-        Parameters
-        ----------
-        rows : ndarray of int
-            Their numbers.
-        upper : ndarray of bool
-            Whether it is the upper end.
-        middle : Samples
-            Histories there.
-        """
+        """Put one end of some brackets into their middles."""
         end = upper.astype(np.int64)
         self.ends[rows, end], self.modes[rows, end] = middle.scale, middle.mode
 
@@ -169,14 +88,7 @@ class Brackets:
 class Scan:
     """Histories of some bodies, each under a motion of its own or all under one.
 
-    Parameters
-    ----------
-    run : callable
-        Computes histories.
-    sides : dict of str to ndarray
-        Sides of the bodies [rad, rad/s, -].
-    scales : ndarray, shape (bodies, points)
-        First factors on the motion, increasing [-].
+    sides: sides of the bodies [rad, rad/s, -]; scales: first factors on the motion, increasing [-].
     """
 
     def __init__(self, run: Run, sides: dict[str, FloatArray], scales: FloatArray) -> None:
@@ -186,17 +98,7 @@ class Scan:
     def compute(self, body: IntArray, scale: FloatArray) -> Samples:
         """Return histories; the random numbers of a body are the same at every scale.
 
-        Parameters
-        ----------
-        body : ndarray of int
-            Numbers of the bodies.
-        scale : ndarray
-            Factors on the motion [-].
-
-        Returns
-        -------
-        Samples
-            In the order given.
+        scale: factors on the motion [-].
         """
         values = {name: array[body] for name, array in self.sides.items()}
         found = self.run({**values, "scale": scale}, body)
@@ -235,15 +137,8 @@ class Scan:
     def brackets(self, tolerance: float) -> Brackets:
         """Return all changes of verdict between neighbouring samples, bisected together.
 
-        Parameters
-        ----------
-        tolerance : float
-            Relative width of the last brackets [-].
-
-        Returns
-        -------
-        Brackets
-            Sorted by body and scale; one whose middle failed stays as wide as it was.
+        tolerance: relative width of the last brackets [-]. Returns sorted by body and scale; one whose middle failed
+        stays as wide as it was.
         """
         s = self.samples.good
         found = Brackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
@@ -264,16 +159,8 @@ class Scan:
 def suspicious(s: Samples) -> BoolArray:
     """Return in which intervals between neighbouring samples of equal verdict another may hide.
 
-    Parameters
-    ----------
-    s : Samples
-        Sorted by body and scale, without failed ones.
-
-    Returns
-    -------
-    ndarray of bool
-        One entry an interval: where the peak of survivors, carried on as steeply as next to it, passes the top; next
-        to a largest peak of survivors; next to a longest time of overturning.
+    Returns one entry an interval: where the peak of survivors, carried on as steeply as next to it, passes the top;
+    next to a largest peak of survivors; next to a longest time of overturning.
     """
     same = s.same_body
     peak = np.where(s.falls, np.nan, s.peak)

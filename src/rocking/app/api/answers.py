@@ -22,39 +22,16 @@ MOST_TOGETHER = 3_000_000
 
 @dataclass(frozen=True, slots=True)
 class ResponseAnswers:
-    """What every restitution makes of one question.
-
-    Parameters
-    ----------
-    question : Question
-        The question.
-    found : dict of str to Response or str
-        By label: the response, or why there is none.
-    """
+    """What every restitution makes of one question."""
 
     question: Question
-    found: dict[str, Response | str]
+    found: dict[str, Response | str]  # by label: the response, or why there is none
 
     @classmethod
     def of(cls, question: Question) -> "ResponseAnswers":
         """Compute the responses.
 
-        Parameters
-        ----------
-        question : Question
-            The question.
-
-        Returns
-        -------
-        ResponseAnswers
-            At least one of them is there.
-
-        Raises
-        ------
-        InvalidValueError
-            If none of the restitutions has a response.
-        TooLarge
-            If the responses together have too many samples.
+        Returns at least one of them is there.
         """
         found: dict[str, Response | str] = {}
         samples = 0
@@ -75,19 +52,7 @@ class ResponseAnswers:
     def facts(self, points: int, name: str | None = None, window: tuple[float, float] | None = None) -> dict[str, Any]:
         """Return the answer of the API.
 
-        Parameters
-        ----------
-        points : int
-            Over how many dots the curves are drawn.
-        name : str, optional
-            What the user calls the body.
-        window : tuple of float, optional
-            The part of the time that is drawn [s].
-
-        Returns
-        -------
-        dict
-            ``answers``, ``verdict``, ``body`` and ``motion``.
+        window: the part of the time that is drawn [s].
         """
         asked, verdict = self.question, Verdict.of(self.responses)
         return {
@@ -108,23 +73,8 @@ def answer_facts(
 ) -> dict[str, Any]:
     """Return one response as the API tells it.
 
-    Parameters
-    ----------
-    label : str
-        Its restitution in words.
-    response : Response
-        The response.
-    question : Question
-        What was asked.
-    points : int
-        Over how many dots the curves are drawn.
-    window : tuple of float, optional
-        The part of the time that is drawn [s].
-
-    Returns
-    -------
-    dict
-        What `rocking.report.facts.response.response_facts` says, with ``label``, ``series`` and ``fall``.
+    window: the part of the time that is drawn [s]. Returns what `rocking.report.facts.response.response_facts` says,
+    with ``label``, ``series`` and ``fall``.
     """
     facts = response_facts(response, question.friction)
     series = response_series(response, points, window)

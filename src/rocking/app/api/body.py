@@ -35,20 +35,7 @@ WKT and GeoJSON, and for a drawing that does not state its unit. `body` of the a
     responses=answered(DescribedBody, "The body."),
 )
 async def body(request: Request, asked: BodyAsked) -> JsonAnswer:
-    """Answer with the facts of a body.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    asked : BodyAsked
-        What the user chose.
-
-    Returns
-    -------
-    JsonAnswer
-        Facts, outline and warnings.
-    """
+    """Answer with the facts of a body."""
     return await sized(request, asked.body, _body, asked)
 
 
@@ -68,21 +55,7 @@ async def body_file(
 ) -> JsonAnswer:
     """Answer with the body of a file as it stands in the inputs, and its facts.
 
-    Parameters
-    ----------
-    request : Request
-        The request.
-    name : str
-        Name of the file.
-    units : str, optional
-        Unit of its coordinates.
-    density : float, optional
-        Density of what has none of its own [kg/m3].
-
-    Returns
-    -------
-    JsonAnswer
-        `body`, and the facts beside it.
+    density: density of what has none of its own [kg/m3].
     """
     content = await request.body()
     return JsonAnswer(await heavy(request, _read, content, name, units, density))
@@ -91,19 +64,7 @@ async def body_file(
 def described(body: Body, gravity: float, name: str | None) -> dict[str, Any]:
     """Return what is said of a body.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    name : str, optional
-        What the user calls it.
-
-    Returns
-    -------
-    dict
-        Facts, outline and warnings.
+    gravity: acceleration of gravity [m/s2].
     """
     facts = body_facts(body, gravity)
     found = facts["warnings"] + [outside_evidence(body, foot) for foot in FEET]

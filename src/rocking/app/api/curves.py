@@ -22,22 +22,10 @@ _NEWTON_STEPS = 8
 def response_series(response: Response, points: int, window: tuple[float, float] | None = None) -> dict[str, Any]:
     """Return the curves of a response.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    points : int
-        Over how many dots they are drawn; each keeps the extremes of every curve.
-    window : tuple of float, optional
-        The part of the time that is drawn [s].
-
-    Returns
-    -------
-    dict
-        ``time``, ``rotation``, ``velocity``, ``kinetic``, ``potential``, ``work``, ``lost``, ``friction_demand`` (None
-        where it is infinite), ``vertical_force``, ``ground_acceleration``, ``ground_displacement``: SI units; and
-        ``shown`` of how many states (``of``): samples, events with the states before and after them, and where the
-        body turns round.
+    window: the part of the time that is drawn [s]. Returns ``time``, ``rotation``, ``velocity``, ``kinetic``,
+    ``potential``, ``work``, ``lost``, ``friction_demand`` (None where it is infinite), ``vertical_force``,
+    ``ground_acceleration``, ``ground_displacement``: SI units; and ``shown`` of how many states (``of``): samples,
+    events with the states before and after them, and where the body turns round.
     """
     whole, curves = _states(response)
     kept = thinned(whole, list(curves.values()), points, window)
@@ -55,16 +43,8 @@ def response_series(response: Response, points: int, window: tuple[float, float]
 def fall_series(response: Response) -> dict[str, Any]:
     """Return how the fall of a response goes on after its curves end.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    dict
-        ``time`` [s] and ``rotation`` [rad], empty if there is no more to fall; ``lying``: the rotations at which the
-        body lies on its left and on its right side [rad].
+    Returns ``time`` [s] and ``rotation`` [rad], empty if there is no more to fall; ``lying``: the rotations at which
+    the body lies on its left and on its right side [rad].
     """
     lying = Shape.of(response.body).lying
     fall = fall_of(response, lying)

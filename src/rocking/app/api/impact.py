@@ -35,20 +35,7 @@ _HELD: Remembered[JsonAnswer] = Remembered(64)
     responses=answered(ImpactAnswered, "Every model, the measurements, and the three stages."),
 )
 async def impact(request: Request, asked: ImpactAsked) -> JsonAnswer:
-    """Answer with coefficients, evidence and stages.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    asked : ImpactAsked
-        What the user chose.
-
-    Returns
-    -------
-    JsonAnswer
-        Facts of the impact.
-    """
+    """Answer with coefficients, evidence and stages."""
     return await sized(request, asked.body, _answer, asked)
 
 

@@ -43,18 +43,7 @@ UNLIMITED = "unlimited"
     responses=answered(Info, "What there is."),
 )
 def info(request: Request) -> JsonAnswer:
-    """Answer with version, engine, models, pulses, families, formats, units, measures, axes, kinds and limits.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-
-    Returns
-    -------
-    JsonAnswer
-        What there is.
-    """
+    """Answer with version, engine, models, pulses, families, formats, units, measures, axes, kinds and limits."""
     limits = {**asdict(state_of(request).settings.limits), **CAPS}
     return JsonAnswer({**_constant(), "limits": limits})
 

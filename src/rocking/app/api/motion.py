@@ -43,20 +43,7 @@ _LONGEST, _SHORTEST, _COUNT = 10.0, 0.03, 100
     responses=answered(MotionAnswered, "The motion."),
 )
 async def motion(request: Request, asked: MotionAsked) -> JsonAnswer:
-    """Answer with facts, curves, spectrum and measures.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    asked : MotionAsked
-        What the user chose.
-
-    Returns
-    -------
-    JsonAnswer
-        Facts of the motion.
-    """
+    """Answer with facts, curves, spectrum and measures."""
     return await heavy(request, _answer, asked, state_of(request).records)
 
 

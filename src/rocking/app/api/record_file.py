@@ -30,64 +30,24 @@ _ORDER = ("format", "units", "time_step", "component")
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """What a user says about a file.
+    """What a user says about a file."""
 
-    Parameters
-    ----------
-    format, units : str, optional
-        Name of the format and unit of acceleration.
-    time_step : float, optional
-        Step between samples [s].
-    """
-
-    format: str | None = None
+    format: str | None = None  # format, units: name of the format and unit of acceleration
     units: str | None = None
-    time_step: float | None = None
+    time_step: float | None = None  # step between samples [s]
 
 
 @dataclass(frozen=True)
 class Looked:
-    """What was found in a file.
+    """What was found in a file."""
 
-    Parameters
-    ----------
-    record : Record or None
-        The file, read with stand-ins for what is missing; None if its format must be told first.
-    needs : list of str
-        What must still be told.
-    message : str
-        Why, in the reader's words.
-    """
-
-    record: Record | None
-    needs: list[str] = field(default_factory=list)
-    message: str = ""
+    record: Record | None  # the file, read with stand-ins for what is missing; None if its format must be told first
+    needs: list[str] = field(default_factory=list)  # what must still be told
+    message: str = ""  # why, in the reader's words
 
     @classmethod
     def at(cls, content: bytes, name: str, told: Told) -> "Looked":
-        """Look at a file.
-
-        Parameters
-        ----------
-        content : bytes
-            The file.
-        name : str
-            Its name.
-        told : Told
-            What the user says about it.
-
-        Returns
-        -------
-        Looked
-            What it holds, what is missing.
-
-        Raises
-        ------
-        RecordError
-            If it cannot be read, or cannot be a motion, whatever is told.
-        TooLarge
-            If it has too many samples.
-        """
+        """Look at a file."""
         check_record(content)
         with TemporaryDirectory(prefix="rocking-") as folder:
             path = Path(folder) / safe_name(name, "record")
@@ -124,10 +84,7 @@ class Looked:
     def facts(self) -> dict[str, Any]:
         """Return what was found, as the API tells it.
 
-        Returns
-        -------
-        dict
-            ``format``, ``components``, ``needs``, ``choices`` for them and ``message``.
+        Returns ``format``, ``components``, ``needs``, ``choices`` for them and ``message``.
         """
         parts = () if self.record is None else self.record.components
         choices: dict[str, list[str]] = {

@@ -51,21 +51,7 @@ async def add_record(
 ) -> JsonAnswer:
     """Answer with what the file holds and what must still be told.
 
-    Parameters
-    ----------
-    request : Request
-        The request.
-    name : str
-        Name of the file.
-    format, units : str, optional
-        What the user says about it.
-    time_step : float, optional
-        Step between samples, where the file does not state it [s].
-
-    Returns
-    -------
-    JsonAnswer
-        Facts of the file.
+    time_step: step between samples, where the file does not state it [s].
     """
     content, told = await request.body(), Told(format, units, time_step)
     return JsonAnswer(await heavy(request, _added, state_of(request).records, content, name, told))
@@ -79,18 +65,7 @@ async def add_record(
     responses=answered(list[RecordKept], "The files."),
 )
 def list_records(request: Request) -> JsonAnswer:
-    """Answer with what is kept, the latest first.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-
-    Returns
-    -------
-    JsonAnswer
-        A list.
-    """
+    """Answer with what is kept, the latest first."""
     return JsonAnswer([asdict(made) for made in state_of(request).records.stored()])
 
 
@@ -110,21 +85,7 @@ async def look_at_record(
 ) -> JsonAnswer:
     """Answer with what a kept file holds and what must still be told.
 
-    Parameters
-    ----------
-    request : Request
-        The request.
-    record : str
-        SHA-256 of its bytes.
-    format, units : str, optional
-        What the user says about it.
-    time_step : float, optional
-        Step between samples, where the file does not state it [s].
-
-    Returns
-    -------
-    JsonAnswer
-        Facts of the file.
+    time_step: step between samples, where the file does not state it [s].
     """
     told = Told(format, units, time_step)
     return JsonAnswer(await heavy(request, _looked, state_of(request).records, record, told))
@@ -140,20 +101,7 @@ async def look_at_record(
 def delete_record(
     request: Request, record: Annotated[str, InPath(min_length=1, max_length=200, description="SHA-256")]
 ) -> JsonAnswer:
-    """Answer with the hash of what is no longer kept.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    record : str
-        SHA-256 of its bytes.
-
-    Returns
-    -------
-    JsonAnswer
-        The hash.
-    """
+    """Answer with the hash of what is no longer kept."""
     state_of(request).records.delete(record)
     return JsonAnswer({"deleted": record})
 

@@ -10,13 +10,7 @@ T = TypeVar("T")
 
 
 class Remembered(Generic[T]):
-    """The latest results by key; safe to use from several threads.
-
-    Parameters
-    ----------
-    most : int
-        How many are kept.
-    """
+    """The latest results by key; safe to use from several threads."""
 
     def __init__(self, most: int) -> None:
         self._most = most
@@ -24,20 +18,7 @@ class Remembered(Generic[T]):
         self._lock = threading.Lock()
 
     def get(self, key: str, compute: Callable[[], T]) -> T:
-        """Return the result of a key; one that cannot be computed is not kept.
-
-        Parameters
-        ----------
-        key : str
-            What is asked.
-        compute : callable
-            Computes the result if it is not there.
-
-        Returns
-        -------
-        T
-            The result.
-        """
+        """Return the result of a key; one that cannot be computed is not kept."""
         with self._lock:
             known = self._held.get(key)
             future: Future[T] = Future() if known is None else known

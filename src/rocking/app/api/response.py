@@ -31,20 +31,7 @@ whether the choice of the model decides. A restitution that has no response for 
     responses=answered(ResponseAnswered, "One answer for every restitution, and what they say together."),
 )
 async def response(request: Request, inputs: ResponseAsked) -> JsonAnswer:
-    """Answer with responses, verdict, outline and motion.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    inputs : ResponseAsked
-        What the user chose.
-
-    Returns
-    -------
-    JsonAnswer
-        One answer for every restitution.
-    """
+    """Answer with responses, verdict, outline and motion."""
     return JsonAnswer(await heavy(request, _answer, inputs, state_of(request).records))
 
 

@@ -16,21 +16,7 @@ def thinned(
     last sample and the lowest and the highest of every curve are kept, and one where a curve has no number: what is
     drawn covers the same dots as all samples would (Jugel et al. 2014, Proc. VLDB 7:797), whatever happens within one.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        Increasing.
-    curves : sequence of ndarray, shape (n,)
-        Values at these times; a gap where they are not finite.
-    points : int
-        How many runs.
-    window : tuple of float, optional
-        The part of the time that is shown; the samples on either side of it are kept, too.
-
-    Returns
-    -------
-    ndarray
-        Increasing indices; all in the window where it has no more than two samples for each run.
+    Returns increasing indices; all in the window where it has no more than two samples for each run.
     """
     first, last = (time[0], time[-1]) if window is None else window
     begin, end = np.searchsorted(time, first, side="right") - 1, np.searchsorted(time, last) + 1

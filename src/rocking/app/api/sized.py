@@ -20,24 +20,7 @@ _SMALL = 200
 async def sized(
     request: HTTPConnection, body: Document, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs
 ) -> T:
-    """Compute in a thread; a large body waits in line with other long computations.
-
-    Parameters
-    ----------
-    request : HTTPConnection
-        The request it is for.
-    body : Document
-        The body it is about.
-    function : callable
-        What to compute.
-    *args, **kwargs
-        Its arguments.
-
-    Returns
-    -------
-    T
-        What the function returns.
-    """
+    """Compute in a thread; a large body waits in line with other long computations."""
     if size_of(body) <= _SMALL:
         return await run_in_threadpool(function, *args, **kwargs)
     return await heavy(request, function, *args, **kwargs)

@@ -28,26 +28,7 @@ OCTETS: dict[str, Any] = {
 def body_in_file(content: bytes, name: str, units: str | None, density: float | None) -> BodyInput:
     """Return the body that a file describes.
 
-    Parameters
-    ----------
-    content : bytes
-        The file.
-    name : str
-        Its name, whose ending says the format.
-    units : str, optional
-        Unit of its coordinates, where it does not state it.
-    density : float, optional
-        Density of what has none of its own, in a drawing [kg/m3].
-
-    Returns
-    -------
-    BodyInput
-        As it stands in the inputs.
-
-    Raises
-    ------
-    RockingError
-        If it cannot be read as a body.
+    density: density of what has none of its own, in a drawing [kg/m3].
     """
     shown = safe_name(name, "body")
     check_file(content, shown)

@@ -49,10 +49,7 @@ class BodyInput(Document):
     def table(self) -> dict[str, Any]:
         """Return the body as a table of a body file or job file.
 
-        Returns
-        -------
-        dict
-            Plain values; what was not given is left out.
+        Returns plain values; what was not given is left out.
         """
         return self.model_dump(exclude_none=True, exclude_unset=True)
 

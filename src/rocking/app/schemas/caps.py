@@ -40,41 +40,13 @@ CAPS = {
 
 
 def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
-    """Refuse more of something than one answer takes.
-
-    Parameters
-    ----------
-    count : int
-        How many there are.
-    most : int
-        How many there may be.
-    what : str
-        What they are, with whatever has them: "a section holds up to {most} regions".
-    way_out : str
-        What the user can do instead.
-
-    Raises
-    ------
-    TooLarge
-        If there are more.
-    """
+    """Refuse more of something than one answer takes."""
     if count > most:
         raise TooLarge(f"{what.format(most=most)}, got {count}" + (f"; {way_out}" if way_out else ""))
 
 
 def check_size(given: Document) -> None:
-    """Refuse a body that is too large, before anything is made of it.
-
-    Parameters
-    ----------
-    given : Document
-        The body in a request.
-
-    Raises
-    ------
-    TooLarge
-        If it has too many regions, holes, vertices or points.
-    """
+    """Refuse a body that is too large, before anything is made of it."""
     regions, holes, vertices = _polygons(given)
     refuse_more(regions, MOST_REGIONS, "a section holds up to {most} regions", "join those of one density")
     refuse_more(holes, MOST_HOLES, "a section holds up to {most} holes", "leave out the small ones")
@@ -85,20 +57,7 @@ def check_size(given: Document) -> None:
 
 
 def check_file(content: bytes, name: str) -> None:
-    """Refuse a body file that holds far more than a body may have, before it is read.
-
-    Parameters
-    ----------
-    content : bytes
-        The file.
-    name : str
-        Its name, whose ending says the format.
-
-    Raises
-    ------
-    TooLarge
-        If it has too many points, or is a drawing with too much in it.
-    """
+    """Refuse a body file that holds far more than a body may have, before it is read."""
     drawing = name.lower().endswith(".dxf")
     if drawing:
         way_out = "save only the outline in a drawing of its own"
@@ -110,18 +69,7 @@ def check_file(content: bytes, name: str) -> None:
 
 
 def check_record(content: bytes) -> None:
-    """Refuse a record file of far more numbers than a record has, before any of them is read.
-
-    Parameters
-    ----------
-    content : bytes
-        The file; of binary ones only miniSEED, whose samples are packed, is looked at: others are left to the reader.
-
-    Raises
-    ------
-    TooLarge
-        If there are too many numbers.
-    """
+    """Refuse a record file of far more numbers than a record has, before any of them is read."""
     if _MINISEED.match(content):
         check_samples(_packed_samples(content))
         return
@@ -143,58 +91,20 @@ def _packed_samples(content: bytes) -> int:
 
 
 def check_samples(count: int) -> None:
-    """Refuse a record of too many samples.
-
-    Parameters
-    ----------
-    count : int
-        Samples of all its components.
-
-    Raises
-    ------
-    TooLarge
-        If there are too many.
-    """
+    """Refuse a record of too many samples."""
     what = "a record holds up to {most} numbers"
     refuse_more(count, MOST_RECORD_SAMPLES, what, "cut it, or leave out columns; Python reads longer ones")
 
 
 def check_contact(body: Body) -> Body:
-    """Return a body, unless its base touches the ground in too many places.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-
-    Returns
-    -------
-    Body
-        The same.
-
-    Raises
-    ------
-    TooLarge
-        If there are too many flat stretches.
-    """
+    """Return a body, unless its base touches the ground in too many places."""
     what = "a base touches the ground in up to {most} separate stretches"
     refuse_more(len(body.local_contact), MOST_STRETCHES, what, "leave out those that are no feet")
     return body
 
 
 def size_of(given: Document) -> int:
-    """Return how much there is to compute with.
-
-    Parameters
-    ----------
-    given : Document
-        The body in a request.
-
-    Returns
-    -------
-    int
-        Vertices and points.
-    """
+    """Return how much there is to compute with."""
     return _polygons(given)[-1] + (len(given.mass_points.points) if given.mass_points else 0)
 
 

@@ -62,13 +62,7 @@ _AGAIN = {"schema": {"type": "integer"}, "description": "when another try makes 
 
 
 def describe_api(app: FastAPI) -> None:
-    """Let the schema of the API say which calls need the key, and say once what an error looks like.
-
-    Parameters
-    ----------
-    app : FastAPI
-        The application.
-    """
+    """Let the schema of the API say which calls need the key, and say once what an error looks like."""
     plain = app.openapi
 
     def openapi() -> dict[str, Any]:

@@ -15,20 +15,7 @@ _LARGEST = 2**63
 def parsed_toml(text: str) -> dict[str, Any]:
     """Return the tables of a TOML text that somebody sent.
 
-    Parameters
-    ----------
-    text : str
-        The text.
-
-    Returns
-    -------
-    dict
-        Its tables; every whole number fits into 64 bits, so that it can be told again.
-
-    Raises
-    ------
-    Refused
-        If it is not TOML, too long, nested too deeply, or holds a number beyond 64 bits or a NUL.
+    Returns its tables; every whole number fits into 64 bits, so that it can be told again.
     """
     if len(text) > LONGEST:
         raise Refused(f"a TOML file may have up to {LONGEST >> 20} MiB, this has {len(text) / 2**20:.1f}")

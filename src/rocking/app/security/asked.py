@@ -33,49 +33,17 @@ class TooManyHeaders(Problem):
 
 @dataclass(frozen=True)
 class Asked:
-    """The head of a request or of a websocket handshake.
+    """The head of a request or of a websocket handshake."""
 
-    Parameters
-    ----------
-    method : str
-        In capitals; "WEBSOCKET" for a handshake.
-    target : str
-        Path as it stands in the request line, nothing decoded.
-    query : str
-        What follows the question mark.
-    scheme : str
-        "http" or "https".
-    headers : Mapping
-        Lower-case name -> value.
-    """
-
-    method: str
-    target: str
-    query: str
-    scheme: str
-    headers: Mapping[str, str]
+    method: str  # in capitals; "WEBSOCKET" for a handshake
+    target: str  # path as it stands in the request line, nothing decoded
+    query: str  # what follows the question mark
+    scheme: str  # "http" or "https"
+    headers: Mapping[str, str]  # lower-case name -> value
 
     @classmethod
     def of(cls, scope: Mapping[str, Any]) -> "Asked":
-        """Return the head of an ASGI connection.
-
-        Parameters
-        ----------
-        scope : Mapping
-            Of ASGI.
-
-        Returns
-        -------
-        Asked
-            Its head.
-
-        Raises
-        ------
-        BadRequest
-            If a header that decides something is there twice.
-        TooManyHeaders
-            If there are too many, or they are too long.
-        """
+        """Return the head of an ASGI connection."""
         pairs = scope["headers"]
         if len(pairs) > _MOST_HEADERS or sum(len(name) + len(value) for name, value in pairs) > _MOST_BYTES:
             raise TooManyHeaders(f"the head has more than {_MOST_HEADERS} headers or {_MOST_BYTES} bytes")
@@ -96,33 +64,18 @@ class Asked:
 
     @property
     def unsafe(self) -> bool:
-        """Return whether it may change something.
-
-        Returns
-        -------
-        bool
-            True for a websocket too.
-        """
+        """Return whether it may change something."""
         return self.method not in SAFE
 
     @property
     def of_api(self) -> bool:
-        """Return whether it asks the API and not for a page.
-
-        Returns
-        -------
-        bool
-            True for anything under /api/.
-        """
+        """Return whether it asks the API and not for a page."""
         return self.target.startswith("/api/")
 
     @property
     def has_body(self) -> bool:
         """Return whether a body follows.
 
-        Returns
-        -------
-        bool
-            By its length, or by its being chunked.
+        Returns by its length, or by its being chunked.
         """
         return "transfer-encoding" in self.headers or self.headers.get("content-length", "0") != "0"

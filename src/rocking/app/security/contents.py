@@ -10,32 +10,13 @@ BYTES = "application/octet-stream"
 def content_type(asked: Asked) -> str:
     """Return the type of a body without its parameters.
 
-    Parameters
-    ----------
-    asked : Asked
-        The head of the request.
-
-    Returns
-    -------
-    str
-        Lower case; empty if none is given.
+    Returns lower case; empty if none is given.
     """
     return asked.headers.get("content-type", "").partition(";")[0].strip().lower()
 
 
 def check_content(asked: Asked) -> None:
-    """Refuse bodies of other types, in another charset, or packed.
-
-    Parameters
-    ----------
-    asked : Asked
-        The head of the request.
-
-    Raises
-    ------
-    WrongContent
-        If the type is neither JSON nor bytes, the charset is not UTF-8, or the body is compressed.
-    """
+    """Refuse bodies of other types, in another charset, or packed."""
     kind = content_type(asked)
     if asked.headers.get("content-encoding", "identity").lower() != "identity":
         raise WrongContent("the body must not be compressed")

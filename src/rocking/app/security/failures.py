@@ -12,29 +12,13 @@ _LOG = logging.getLogger("rocking.app")
 
 
 class Failures:
-    """Answer 500, without a trace, where something raises that was not foreseen.
-
-    Parameters
-    ----------
-    app : ASGIApp
-        What may raise.
-    """
+    """Answer 500, without a trace, where something raises that was not foreseen."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Hand a request on, and answer if it fails.
-
-        Parameters
-        ----------
-        scope : Scope
-            Of ASGI.
-        receive : Receive
-            Of ASGI.
-        send : Send
-            Of ASGI.
-        """
+        """Hand a request on, and answer if it fails."""
         started = False
 
         async def watched(message: Message) -> None:

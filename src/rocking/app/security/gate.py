@@ -30,15 +30,7 @@ CHECKS: dict[str, Check] = {
 
 
 class Gate:
-    """Let pass what our own page or a script with the key asks, and nothing else.
-
-    Parameters
-    ----------
-    app : ASGIApp
-        What is behind.
-    settings : Settings
-        Address and limits.
-    """
+    """Let pass what our own page or a script with the key asks, and nothing else."""
 
     settings: Settings
     own: frozenset[str]
@@ -49,17 +41,7 @@ class Gate:
         self.own = own_hosts(settings)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Check a connection and hand it on, or refuse it.
-
-        Parameters
-        ----------
-        scope : Scope
-            Of ASGI.
-        receive : Receive
-            Of ASGI.
-        send : Send
-            Of ASGI.
-        """
+        """Check a connection and hand it on, or refuse it."""
         if scope["type"] != "lifespan":
             try:
                 asked = Asked.of(scope)

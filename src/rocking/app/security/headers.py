@@ -32,29 +32,13 @@ HEADERS = {
 
 
 class SafeHeaders:
-    """Put the headers on every answer.
-
-    Parameters
-    ----------
-    app : ASGIApp
-        What answers.
-    """
+    """Put the headers on every answer."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Hand a request on and complete its answer.
-
-        Parameters
-        ----------
-        scope : Scope
-            Of ASGI.
-        receive : Receive
-            Of ASGI.
-        send : Send
-            Of ASGI.
-        """
+        """Hand a request on and complete its answer."""
 
         async def complete(message: Message) -> None:
             if message["type"] == "http.response.start":

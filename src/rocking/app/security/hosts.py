@@ -8,18 +8,7 @@ _ALWAYS = ("127.0.0.1", "localhost", "[::1]")
 
 
 def own_hosts(settings: Settings) -> frozenset[str]:
-    """Return every Host header that is the server's own.
-
-    Parameters
-    ----------
-    settings : Settings
-        Address and port.
-
-    Returns
-    -------
-    frozenset of str
-        Lower case, with the port.
-    """
+    """Return every Host header that is the server's own."""
     given = f"[{settings.host}]" if ":" in settings.host else settings.host
     names = {*_ALWAYS, given.lower()}
     with_port = {f"{name}:{settings.port}" for name in names}
@@ -27,20 +16,7 @@ def own_hosts(settings: Settings) -> frozenset[str]:
 
 
 def check_host(asked: Asked, own: frozenset[str]) -> None:
-    """Refuse a request that was sent to another name.
-
-    Parameters
-    ----------
-    asked : Asked
-        The head of the request.
-    own : frozenset of str
-        The server's names.
-
-    Raises
-    ------
-    NotAllowed
-        If the Host header is missing or foreign.
-    """
+    """Refuse a request that was sent to another name."""
     if asked.headers.get("host", "").lower() not in own:
         raise NotAllowed(
             "the Host header is not this server's address: open it by the link that `rocking serve` prints"

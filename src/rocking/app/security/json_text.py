@@ -12,21 +12,7 @@ _LARGEST = 2**63
 
 
 def check_json(data: bytes, depth: int) -> None:
-    """Refuse a text that is not plain JSON.
-
-    Parameters
-    ----------
-    data : bytes
-        The body of a request.
-    depth : int
-        Deepest nesting that is allowed.
-
-    Raises
-    ------
-    Refused
-        If it is not UTF-8, not JSON, deeper than allowed, or holds a key twice, NaN, Infinity, a number too large for
-        float64 or 64-bit integers, a NUL or half a character.
-    """
+    """Refuse a text that is not plain JSON."""
     if not data.strip():
         return
     _check_depth(data, depth)

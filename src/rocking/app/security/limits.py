@@ -27,15 +27,7 @@ class Gone(Exception):  # noqa: N818 - nothing went wrong
 
 
 class BodyLimits:
-    """Read the body of every request up to a limit, and hand it on whole.
-
-    Parameters
-    ----------
-    app : ASGIApp
-        What is behind.
-    limits : Limits
-        How much is accepted.
-    """
+    """Read the body of every request up to a limit, and hand it on whole."""
 
     def __init__(self, app: ASGIApp, limits: Limits) -> None:
         self._app = app
@@ -43,17 +35,7 @@ class BodyLimits:
         self._held = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Read a body and hand the request on, or refuse it.
-
-        Parameters
-        ----------
-        scope : Scope
-            Of ASGI.
-        receive : Receive
-            Of ASGI.
-        send : Send
-            Of ASGI.
-        """
+        """Read a body and hand the request on, or refuse it."""
         if scope["type"] != "http" or scope["method"] in SAFE:
             await self._app(scope, receive, send)
             return

@@ -7,20 +7,7 @@ _OWN_SITES = {"same-origin", "none"}
 
 
 def check_origin(asked: Asked, own: frozenset[str]) -> None:
-    """Refuse a request of another page; one that may change something must say where it comes from.
-
-    Parameters
-    ----------
-    asked : Asked
-        The head of the request.
-    own : frozenset of str
-        The server's names, with the port.
-
-    Raises
-    ------
-    NotAllowed
-        If Origin is foreign, or missing where it is needed.
-    """
+    """Refuse a request of another page; one that may change something must say where it comes from."""
     origin = asked.headers.get("origin")
     if origin is None:
         if asked.unsafe:
@@ -31,18 +18,7 @@ def check_origin(asked: Asked, own: frozenset[str]) -> None:
 
 
 def check_site(asked: Asked) -> None:
-    """Refuse what a browser sends on behalf of another site, but for somebody following a link to a page.
-
-    Parameters
-    ----------
-    asked : Asked
-        The head of the request.
-
-    Raises
-    ------
-    NotAllowed
-        If the browser says that another site asks.
-    """
+    """Refuse what a browser sends on behalf of another site, but for somebody following a link to a page."""
     site = asked.headers.get("sec-fetch-site")
     if site is None or site in _OWN_SITES:
         return

@@ -38,17 +38,7 @@ class Link(Answer):
 def sign_in(request: Request, given: SignIn) -> SignedIn:
     """Exchange the token of a one-time link for a cookie: HttpOnly, SameSite=Strict.
 
-    Parameters
-    ----------
-    request : Request
-        The request.
-    given : SignIn
-        The token.
-
-    Returns
-    -------
-    SignedIn
-        True; the cookie is in the head of the answer.
+    Returns True; the cookie is in the head of the answer.
     """
     state = state_of(request)
     answer = JsonAnswer({"signed_in": True})
@@ -65,35 +55,13 @@ def sign_in(request: Request, given: SignIn) -> SignedIn:
 
 @router.get("", summary="Whether this browser or script is signed in")
 def signed_in(request: Request) -> SignedIn:
-    """Return whether this browser or script is signed in.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-
-    Returns
-    -------
-    SignedIn
-        True or False.
-    """
+    """Return whether this browser or script is signed in."""
     return SignedIn(signed_in=is_signed_in(request))
 
 
 @router.delete("", summary="Sign out")
 def sign_out(request: Request) -> SignedIn:
-    """Forget the session of this browser.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-
-    Returns
-    -------
-    SignedIn
-        False.
-    """
+    """Forget the session of this browser."""
     state = state_of(request)
     state.sessions.sign_out(request.cookies.get(cookie_name(state.settings.port)))
     return SignedIn(signed_in=False)
@@ -101,51 +69,18 @@ def sign_out(request: Request) -> SignedIn:
 
 @router.post("/link", summary="Make a link that signs one more browser in")
 def link(request: Request) -> Link:
-    """Make a link that signs one more browser in, once, within 15 minutes.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-
-    Returns
-    -------
-    Link
-        The link.
-    """
+    """Make a link that signs one more browser in, once, within 15 minutes."""
     state = state_of(request)
     return Link(url=f"{state.settings.origin}/#token={state.sessions.new_link()}")
 
 
 def cookie_name(port: int) -> str:
-    """Return the name of the session's cookie: cookies do not tell ports apart.
-
-    Parameters
-    ----------
-    port : int
-        Of the server.
-
-    Returns
-    -------
-    str
-        The name.
-    """
+    """Return the name of the session's cookie: cookies do not tell ports apart."""
     return f"rocking-{port}"
 
 
 def is_signed_in(request: HTTPConnection) -> bool:
-    """Return whether a request carries a live session's cookie or the key for scripts.
-
-    Parameters
-    ----------
-    request : HTTPConnection
-        A request or a websocket.
-
-    Returns
-    -------
-    bool
-        True if it does.
-    """
+    """Return whether a request carries a live session's cookie or the key for scripts."""
     state = state_of(request)
     scheme, _, key = request.headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer":
@@ -154,20 +89,7 @@ def is_signed_in(request: HTTPConnection) -> bool:
 
 
 def check_session(asked: Asked, request: HTTPConnection) -> None:
-    """Refuse what is not public to somebody who is not signed in.
-
-    Parameters
-    ----------
-    asked : Asked
-        The head of the request.
-    request : HTTPConnection
-        The same, as the application sees it.
-
-    Raises
-    ------
-    NotSignedIn
-        If there is no session and no key.
-    """
+    """Refuse what is not public to somebody who is not signed in."""
     public = not asked.of_api or ("GET" if asked.method == "HEAD" else asked.method, asked.target) in _PUBLIC
     if not public and not is_signed_in(request):
         raise NotSignedIn(

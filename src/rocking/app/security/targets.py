@@ -17,20 +17,7 @@ class TooLong(Problem):
 
 
 def check_method(asked: Asked) -> None:
-    """Refuse methods that nothing here takes; OPTIONS too, as no other site may ask.
-
-    Parameters
-    ----------
-    asked : Asked
-        The head of the request.
-
-    Raises
-    ------
-    WrongMethod
-        If it is none of GET, HEAD, POST, DELETE.
-    BadRequest
-        If a request that only reads has a body.
-    """
+    """Refuse methods that nothing here takes; OPTIONS too, as no other site may ask."""
     if asked.method not in _METHODS:
         raise WrongMethod("the method must be GET, HEAD, POST or DELETE")
     if asked.method in SAFE and asked.has_body:
@@ -40,19 +27,7 @@ def check_method(asked: Asked) -> None:
 def check_target(asked: Asked, most: int) -> None:
     """Refuse paths with anything but plain letters, digits, dots, dashes and slashes.
 
-    Parameters
-    ----------
-    asked : Asked
-        The head of the request.
-    most : int
-        Longest path and query [bytes].
-
-    Raises
-    ------
-    TooLong
-        If the path or the query is too long.
-    NotFound
-        If the path has a percent sign, a backslash, an empty or a hidden part.
+    most: longest path and query [bytes].
     """
     if len(asked.target) + len(asked.query) > most:
         raise TooLong(f"path and query are longer than {most} bytes")

@@ -19,26 +19,12 @@ _FOREVER = float("inf")
 
 
 def new_token() -> str:
-    """Return 256 random bits as text.
-
-    Returns
-    -------
-    str
-        43 letters, digits, dashes and underscores.
-    """
+    """Return 256 random bits as text."""
     return secrets.token_urlsafe(32)
 
 
 class Sessions:
-    """Who may ask: browsers that were signed in by a one-time link, and scripts that have the key.
-
-    Parameters
-    ----------
-    limits : Limits
-        Idle time and number of wrong tokens.
-    clock : callable, optional
-        Seconds that never go back.
-    """
+    """Who may ask: browsers that were signed in by a one-time link, and scripts that have the key."""
 
     def __init__(self, limits: Limits, clock: Callable[[], float] = time.monotonic) -> None:
         self._limits = limits
@@ -52,15 +38,7 @@ class Sessions:
     def new_link(self, seconds: float = _LINK_SECONDS) -> str:
         """Return a token that signs one browser in, once.
 
-        Parameters
-        ----------
-        seconds : float, optional
-            Time for which it is good [s].
-
-        Returns
-        -------
-        str
-            The token.
+        seconds: time for which it is good [s].
         """
         token = new_token()
         with self._lock:
@@ -70,34 +48,13 @@ class Sessions:
         return token
 
     def first_link(self) -> str:
-        """Return the token of the link that is printed at the start: good once, however late.
-
-        Returns
-        -------
-        str
-            The token.
-        """
+        """Return the token of the link that is printed at the start: good once, however late."""
         return self.new_link(_FOREVER)
 
     def sign_in(self, token: str) -> str:
         """Use a token up, and return the value of a session's cookie.
 
-        Parameters
-        ----------
-        token : str
-            Of a one-time link.
-
-        Returns
-        -------
-        str
-            Value of the cookie: a new one every time, whatever the browser had before.
-
-        Raises
-        ------
-        Busy
-            If too many wrong tokens came within a minute.
-        NotSignedIn
-            If the token is wrong, used up or too old.
+        Returns value of the cookie: a new one every time, whatever the browser had before.
         """
         with self._lock:
             now = self._clock()
@@ -118,15 +75,7 @@ class Sessions:
     def knows(self, value: str | None) -> bool:
         """Return whether a cookie is that of a live session, which it keeps alive.
 
-        Parameters
-        ----------
-        value : str, optional
-            Of the cookie.
-
-        Returns
-        -------
-        bool
-            True if somebody is signed in by it.
+        Returns true if somebody is signed in by it.
         """
         with self._lock:
             session = _found(value, self._sessions)
@@ -140,28 +89,11 @@ class Sessions:
         return True
 
     def knows_key(self, key: str | None) -> bool:
-        """Return whether this is the key for scripts.
-
-        Parameters
-        ----------
-        key : str, optional
-            What a script sent.
-
-        Returns
-        -------
-        bool
-            True if it is.
-        """
+        """Return whether this is the key for scripts."""
         return key is not None and hmac.compare_digest(_digest(key), _digest(self.key))
 
     def sign_out(self, value: str | None) -> None:
-        """Forget a session.
-
-        Parameters
-        ----------
-        value : str, optional
-            Of the cookie.
-        """
+        """Forget a session."""
         with self._lock:
             session = _found(value, self._sessions)
             if session is not None:

@@ -22,18 +22,7 @@ _PATIENCE = 3.0
 
 
 def main(arguments: list[str]) -> int:
-    """Begin or go on with the campaign of a study.
-
-    Parameters
-    ----------
-    arguments : list of str
-        Folder of the study, and number of workers.
-
-    Returns
-    -------
-    int
-        Exit code.
-    """
+    """Begin or go on with the campaign of a study."""
     _end_with_the_server()
     _be_nice()
     from rocking.errors import RockingError

@@ -33,30 +33,7 @@ MEDIA_TYPES: dict[str, str] = {
 def written(
     study: OpenStudy, kind: Kind, target: Path, what: str | None, restitution: int, crossing: Crossing | None = None
 ) -> None:
-    """Write a finished study into a file.
-
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-    kind : str
-        End of the file's name: a key of `MEDIA_TYPES`.
-    target : Path
-        The file.
-    what : str, optional
-        What of it, as `rocking.studies.job.export` takes it; the histories, or the fragility for NRML.
-    restitution : int
-        Number of the restitution, of pictures and fragility curves.
-    crossing : {"refuse", "common-dispersion"}, optional
-        What to do with fragility curves that cross, as `rocking.studies.job.export` takes it.
-
-    Raises
-    ------
-    NotFound
-        If there is no such restitution.
-    Refused
-        If this kind of study has no such file.
-    """
+    """Write a finished study into a file."""
     labels = list(study.job.job.parts.choices)
     if not 0 <= restitution < len(labels):
         raise NotFound(f"restitution must be a number from 0 to {len(labels) - 1}, got {restitution}")

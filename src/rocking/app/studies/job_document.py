@@ -30,40 +30,14 @@ _DEEPEST, _MOST_VALUES = 12, 500_000
 
 @dataclass(frozen=True)
 class JobDocument:
-    """A job as it came, and as its tables say it.
+    """A job as it came, and as its tables say it."""
 
-    Parameters
-    ----------
-    given : dict
-        As it came; records are named by their hashes.
-    document : Document
-        The same, checked.
-    """
-
-    given: dict[str, Any]
-    document: "Document"
+    given: dict[str, Any]  # as it came; records are named by their hashes
+    document: "Document"  # the same, checked
 
     @classmethod
     def of(cls, given: object) -> "JobDocument":
-        """Return a job that names no file, opens nothing, and fits its own kind.
-
-        Parameters
-        ----------
-        given : object
-            What came as JSON.
-
-        Returns
-        -------
-        JobDocument
-            The job.
-
-        Raises
-        ------
-        InvalidValueError
-            If it is no job, names a file, or a value is refused.
-        TooLarge
-            If there is more of something in it than a page takes.
-        """
+        """Return a job that names no file, opens nothing, and fits its own kind."""
         from pydantic import ValidationError
 
         from rocking.bodies.formats.words import sentence
@@ -140,18 +114,7 @@ class JobDocument:
         return int(self.histories + boundary * _choices(self.document))
 
     def toml(self, path_of: Callable[[str], str]) -> str:
-        """Return the job as a job file.
-
-        Parameters
-        ----------
-        path_of : callable
-            Takes the hash of a record, and returns its path relative to the job file.
-
-        Returns
-        -------
-        str
-            TOML.
-        """
+        """Return the job as a job file."""
         told = {name: value for name, value in self.given.items() if value is not None}
         motions = told["motions"] if isinstance(told["motions"], list) else [told["motions"]]
         told["motions"] = [_with_paths(table, path_of) for table in motions]

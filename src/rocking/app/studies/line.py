@@ -23,16 +23,7 @@ _GONE = "there is no such study; it may have been deleted"
 class Line:
     """Studies of which a few run, some wait and the others do neither; safe to use from several threads.
 
-    Parameters
-    ----------
-    studies : dict of str to Study
-        Those that are there already, by name in addresses.
-    workers : int
-        Threads or processes for a study.
-    at_once : int
-        Studies that run at the same time [-].
-    longest : int
-        Studies that may wait [-].
+    at_once: studies that run at the same time [-]; longest: studies that may wait [-].
     """
 
     def __init__(self, studies: dict[str, Study], workers: int, at_once: int, longest: int) -> None:
@@ -47,48 +38,14 @@ class Line:
         self.publish()
 
     def study(self, name: str) -> Study:
-        """Return a study.
-
-        Parameters
-        ----------
-        name : str
-            Its name in addresses.
-
-        Returns
-        -------
-        Study
-            The study.
-
-        Raises
-        ------
-        NotFound
-            If there is none.
-        """
+        """Return a study."""
         found = self._studies.get(name)
         if found is None:
             raise NotFound(_GONE)
         return found
 
     def enter(self, make: Callable[[], Study]) -> Study:
-        """Put a study in line; its place is kept while it is made.
-
-        Parameters
-        ----------
-        make : callable
-            Returns the study, which waits.
-
-        Returns
-        -------
-        Study
-            The study.
-
-        Raises
-        ------
-        Busy
-            If too many wait.
-        NotFound
-            If it was deleted meanwhile.
-        """
+        """Put a study in line; its place is kept while it is made."""
         with self.lock:
             waiting = self._entering + sum(each.meta.state == WAITING for each in self._studies.values())
             if waiting >= self._longest:
@@ -109,17 +66,7 @@ class Line:
     def leave(self, name: str) -> tuple[Study, StudyProcess | None]:
         """Take a study out for good.
 
-        Parameters
-        ----------
-        name : str
-            Its name in addresses.
-
-        Returns
-        -------
-        study : Study
-            The study, which does not come back.
-        process : StudyProcess, optional
-            What computes it, and still runs.
+        Returns study: the study, which does not come back.
         """
         with self.lock:
             found = self.study(name)
@@ -127,32 +74,13 @@ class Line:
             return self._studies.pop(name), found.process
 
     def end(self, study: Study, process: StudyProcess) -> None:
-        """Note how a study ended, once its process has; nothing if it was noted, or another process computes it.
-
-        Parameters
-        ----------
-        study : Study
-            The study.
-        process : StudyProcess
-            What computed it.
-        """
+        """Note how a study ended, once its process has; nothing if it was noted, or another process computes it."""
         with self.lock:
             if study.process is process:
                 study.end(closed=self.closed)
 
     def subscribe(self, tell: Callable[[], None]) -> Callable[[], None]:
-        """Be told of every change, from whatever thread.
-
-        Parameters
-        ----------
-        tell : callable
-            Called without arguments; it must return at once.
-
-        Returns
-        -------
-        callable
-            Ends it.
-        """
+        """Be told of every change, from whatever thread."""
         with self.lock:
             self._listeners.add(tell)
         return lambda: self._listeners.discard(tell)

@@ -19,15 +19,7 @@ _TRY_LATER = 1013
 
 
 async def serve(manager: StudyManager, socket: WebSocket) -> None:
-    """Send the list of studies now and after every change, until the browser goes.
-
-    Parameters
-    ----------
-    manager : StudyManager
-        The studies.
-    socket : WebSocket
-        The browser.
-    """
+    """Send the list of studies now and after every change, until the browser goes."""
     loop, changed = asyncio.get_running_loop(), asyncio.Event()
 
     def tell() -> None:

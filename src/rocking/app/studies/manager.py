@@ -36,18 +36,7 @@ _FULL = {errno.ENOSPC, errno.EDQUOT} if hasattr(errno, "EDQUOT") else {errno.ENO
 class StudyManager:
     """Launches studies, watches them, stops them, and knows all that are on disk.
 
-    Parameters
-    ----------
-    folder : Path
-        Data folder of the server; the studies are in ``studies``.
-    limits : Limits
-        How much it takes on.
-    records : Records
-        Uploaded records.
-    workers : int, optional
-        Threads or processes for a study; as many as the processor has, if not given.
-    at_once : int
-        Studies that run at the same time [-].
+    at_once: studies that run at the same time [-].
     """
 
     def __init__(
@@ -61,27 +50,7 @@ class StudyManager:
             self._line.changed()  # what an earlier server left goes on by itself
 
     def create(self, name: str | None, job: object) -> str:
-        """Put a new study in line.
-
-        Parameters
-        ----------
-        name : str, optional
-            What it is called; as the job says, if not given.
-        job : object
-            The job, as JSON; records are named by their hashes.
-
-        Returns
-        -------
-        str
-            Name of the study in addresses.
-
-        Raises
-        ------
-        TooLarge
-            If it has too many histories, or there is no room for its results.
-        NoRoom
-            If the disk is full.
-        """
+        """Put a new study in line."""
         document = JobDocument.of(job)
         count = document.most
         if count > self._limits.histories:
@@ -94,54 +63,19 @@ class StudyManager:
     def overview(self) -> list[dict[str, Any]]:
         """Return all studies, the newest first; nothing is read for it.
 
-        Returns
-        -------
-        list of dict
-            Name, kind, state and progress of each.
+        Returns Name, kind, state and progress of each.
         """
         return list(self._line.published.values())
 
     def get(self, study: str) -> dict[str, Any]:
-        """Return one study.
-
-        Parameters
-        ----------
-        study : str
-            Its name in addresses.
-
-        Returns
-        -------
-        dict
-            Name, kind, state and progress.
-
-        Raises
-        ------
-        NotFound
-            If there is none.
-        """
+        """Return one study."""
         found = self._line.published.get(study)
         if found is None:
             raise NotFound("there is no such study; it may have been deleted")
         return found
 
     def finished(self, study: str) -> StudyFolder:
-        """Return the folder of a study that is done.
-
-        Parameters
-        ----------
-        study : str
-            Its name in addresses.
-
-        Returns
-        -------
-        StudyFolder
-            The folder.
-
-        Raises
-        ------
-        Refused
-            If it is not done.
-        """
+        """Return the folder of a study that is done."""
         facts = self.get(study)
         if facts["state"] != DONE:
             share = f"{facts['histories_done']} of {facts['histories']} histories are finished"
@@ -149,18 +83,7 @@ class StudyManager:
         return self._line.study(study).folder
 
     def cancel(self, study: str) -> None:
-        """Stop a study within a second; what is finished is safe, and it can be resumed.
-
-        Parameters
-        ----------
-        study : str
-            Its name in addresses.
-
-        Raises
-        ------
-        Refused
-            If it neither waits nor runs.
-        """
+        """Stop a study within a second; what is finished is safe, and it can be resumed."""
         with self._line.lock:
             found = self._line.study(study)
             if found.meta.state not in {WAITING, RUNNING}:
@@ -174,18 +97,7 @@ class StudyManager:
         self._line.changed()
 
     def resume(self, study: str) -> None:
-        """Put a study in line again; it goes on where it stopped.
-
-        Parameters
-        ----------
-        study : str
-            Its name in addresses.
-
-        Raises
-        ------
-        Refused
-            If it waits, runs or is done, or what is on disk is not understood.
-        """
+        """Put a study in line again; it goes on where it stopped."""
 
         def again() -> Study:
             """Return the study, which waits again."""
@@ -202,13 +114,7 @@ class StudyManager:
         self._line.enter(again)
 
     def delete(self, study: str) -> None:
-        """Forget a study and all its results; one that runs is stopped.
-
-        Parameters
-        ----------
-        study : str
-            Its name in addresses.
-        """
+        """Forget a study and all its results; one that runs is stopped."""
         found, process = self._line.leave(study)
         if process is not None:
             process.stop()
@@ -218,18 +124,7 @@ class StudyManager:
         self._line.changed()
 
     def subscribe(self, tell: Callable[[], None]) -> Callable[[], None]:
-        """Be told of every change, from whatever thread.
-
-        Parameters
-        ----------
-        tell : callable
-            Called without arguments; it must return at once.
-
-        Returns
-        -------
-        callable
-            Ends it.
-        """
+        """Be told of every change, from whatever thread."""
         return self._line.subscribe(tell)
 
     @property

@@ -11,47 +11,20 @@ _RESERVED = {"con", "prn", "aux", "nul", *(f"{kind}{k}" for kind in ("com", "lpt
 
 
 def new_id() -> str:
-    """Return the name of a new study's folder.
-
-    Returns
-    -------
-    str
-        16 hexadecimal digits, drawn at random.
-    """
+    """Return the name of a new study's folder."""
     return secrets.token_hex(8)
 
 
 def is_id(text: str) -> bool:
-    """Return whether words can be the name of a study's folder.
-
-    Parameters
-    ----------
-    text : str
-        What came in an address.
-
-    Returns
-    -------
-    bool
-        True for 16 hexadecimal digits.
-    """
+    """Return whether words can be the name of a study's folder."""
     return _ID.match(text) is not None
 
 
 def shown(text: str) -> str:
     r"""Return words of a user as they may be shown: one line, nothing hidden in it.
 
-    Parameters
-    ----------
-    text : str
-        What the user wrote.
+    Returns at most 120 characters, without control, formatting and direction marks; never empty.
 
-    Returns
-    -------
-    str
-        At most 120 characters, without control, formatting and direction marks; never empty.
-
-    Examples
-    --------
     >>> shown("a\u202eb\n  c")
     'ab c'
     """
@@ -63,18 +36,8 @@ def shown(text: str) -> str:
 def file_name(text: str) -> str:
     """Return the name under which a record is kept in a study.
 
-    Parameters
-    ----------
-    text : str
-        As the user's file was called.
+    Returns Letters, digits, dots, dashes and underscores; no pattern, no path, no reserved word.
 
-    Returns
-    -------
-    str
-        Letters, digits, dots, dashes and underscores; no pattern, no path, no reserved word.
-
-    Examples
-    --------
     >>> file_name("../../etc/pass wd*.AT2")
     'pass_wd_.AT2'
     """

@@ -23,40 +23,17 @@ _ANSWERS = 64 * 2**20
 
 @dataclass(frozen=True)
 class OpenStudy:
-    """A finished study with its results.
+    """A finished study with its results."""
 
-    Parameters
-    ----------
-    id : str
-        Its name in addresses.
-    folder : StudyFolder
-        Where it is.
-    job : JobFolder
-        The campaign with its job.
-    """
-
-    id: str
-    folder: StudyFolder
-    job: "JobFolder"
+    id: str  # its name in addresses
+    folder: StudyFolder  # where it is
+    job: "JobFolder"  # the campaign with its job
 
     @classmethod
     def of(cls, folder: StudyFolder) -> "OpenStudy":
         """Open a study.
 
-        Parameters
-        ----------
-        folder : StudyFolder
-            Where it is.
-
-        Returns
-        -------
-        OpenStudy
-            The study; results are read when they are asked for.
-
-        Raises
-        ------
-        RockingError
-            If it is damaged.
+        Returns the study; results are read when they are asked for.
         """
         from rocking.studies.job import JobFolder
 
@@ -86,18 +63,7 @@ class OpenStudy:
         return {name: values.reshape(study.shape) for name, values in found.items()}
 
     def history(self, number: int) -> dict[str, Any]:
-        """Return the results of one history.
-
-        Parameters
-        ----------
-        number : int
-            Its number.
-
-        Returns
-        -------
-        dict
-            The keys of `rocking.studies.job.study.VARIABLES`: numbers.
-        """
+        """Return the results of one history."""
         alone = {name: values[number : number + 1] for name, values in self.raw.items()}
         return {name: values[0] for name, values in self.job.job.study.derived(number, number + 1, alone).items()}
 
@@ -115,18 +81,7 @@ class OpenStudy:
         return answer(self.job)
 
     def dataset(self, restitution: int = 0) -> "xr.Dataset":
-        """Return the results with one restitution as the pictures take them.
-
-        Parameters
-        ----------
-        restitution : int
-            Number of the restitution.
-
-        Returns
-        -------
-        xarray.Dataset
-            Over the other dimensions.
-        """
+        """Return the results with one restitution as the pictures take them."""
         import xarray as xr
 
         study = self.job.job.study
@@ -155,18 +110,7 @@ class OpenStudies:
         self._answers: OrderedDict[tuple[Any, ...], bytes] = OrderedDict()
 
     def get(self, folder: StudyFolder) -> OpenStudy:
-        """Return a study; one that was opened lately is not opened again.
-
-        Parameters
-        ----------
-        folder : StudyFolder
-            Where it is.
-
-        Returns
-        -------
-        OpenStudy
-            The study.
-        """
+        """Return a study; one that was opened lately is not opened again."""
         with self._lock:
             if folder.id in self._studies:
                 self._studies.move_to_end(folder.id)
@@ -179,20 +123,7 @@ class OpenStudies:
         return made
 
     def answer(self, key: tuple[Any, ...], make: Callable[[], bytes]) -> bytes:
-        """Return an answer; one that was given lately is not made again.
-
-        Parameters
-        ----------
-        key : tuple
-            Name of the study, and what was asked.
-        make : callable
-            Returns the answer.
-
-        Returns
-        -------
-        bytes
-            The answer.
-        """
+        """Return an answer; one that was given lately is not made again."""
         with self._lock:
             if key in self._answers:
                 self._answers.move_to_end(key)
@@ -205,29 +136,12 @@ class OpenStudies:
         return made
 
     def known(self, key: tuple[Any, ...]) -> bytes | None:
-        """Return an answer that was given lately.
-
-        Parameters
-        ----------
-        key : tuple
-            Name of the study, and what was asked.
-
-        Returns
-        -------
-        bytes, optional
-            The answer.
-        """
+        """Return an answer that was given lately."""
         with self._lock:
             return self._answers.get(key)
 
     def forget(self, study: str) -> None:
-        """Forget a study.
-
-        Parameters
-        ----------
-        study : str
-            Its name in addresses.
-        """
+        """Forget a study."""
         with self._lock:
             self._studies.pop(study, None)
             for key in [key for key in self._answers if key[0] == study]:

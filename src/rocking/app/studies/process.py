@@ -14,15 +14,7 @@ _LONGEST_SENTENCE = 1000
 
 
 class StudyProcess:
-    """A process, and the group of its workers, that computes a study.
-
-    Parameters
-    ----------
-    folder : StudyFolder
-        The study.
-    workers : int
-        Threads or processes that compute it.
-    """
+    """A process, and the group of its workers, that computes a study."""
 
     def __init__(self, folder: StudyFolder, workers: int) -> None:
         self.folder = folder
@@ -42,15 +34,7 @@ class StudyProcess:
     def stop(self, patience: float = GRACE) -> int:
         """Ask it to stop, and make it stop if it does not: what is finished is safe either way.
 
-        Parameters
-        ----------
-        patience : float
-            How long to wait for it [s].
-
-        Returns
-        -------
-        int
-            Its exit code.
+        patience: how long to wait for it [s].
         """
         if self._process.poll() is None:
             with contextlib.suppress(OSError, ValueError):  # some systems have no such signal
@@ -78,10 +62,7 @@ class StudyProcess:
     def refusal(self) -> str:
         """Return why it ended, in words that a user may see.
 
-        Returns
-        -------
-        str
-            Its own sentence, or where to look for more.
+        Returns its own sentence, or where to look for more.
         """
         try:
             with (self.folder.path / LOG).open("rb") as log:
@@ -97,13 +78,7 @@ class StudyProcess:
 
 
 def processors() -> int:
-    """Return how many processors this process may use.
-
-    Returns
-    -------
-    int
-        At least 1.
-    """
+    """Return how many processors this process may use."""
     try:
         return len(os.sched_getaffinity(0))
     except AttributeError:

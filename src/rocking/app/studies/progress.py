@@ -12,8 +12,6 @@ _LEAST = 0.15
 class Pace:
     """How fast histories are finished, over the last seconds, and how much work is done in a second.
 
-    Examples
-    --------
     >>> pace = Pace()
     >>> pace.look(0, 0.0, now=10.0), pace.look(100, 1.5, now=11.0), pace.look(600, 11.5, now=16.0)
     ((0.0, 0.0), (100.0, 0.0), (100.0, 2.0))
@@ -26,21 +24,10 @@ class Pace:
     def look(self, done: int, work: float, now: float | None = None) -> tuple[float, float]:
         """Note how many histories are finished, and return how fast they are.
 
-        Parameters
-        ----------
-        done : int
-            Finished histories [-].
-        work : float
-            What they have taken, of all workers together [s].
-        now : float, optional
-            Instant of a clock that never goes back; this one, if not given [s].
-
-        Returns
-        -------
-        rate : float
-            Histories a second, over the last seconds; 0 while nothing is known [1/s].
-        speed : float
-            Work that was done in a second, since the first histories were finished; 0 while nothing is known [-].
+        done: finished histories [-]; work: what they have taken, of all workers together [s]; now: instant of a clock
+        that never goes back; this one, if not given [s]. Returns rate: histories a second, over the last seconds; 0
+        while nothing is known [1/s]; speed: work that was done in a second, since the first histories were finished; 0
+        while nothing is known [-].
         """
         instant = time.monotonic() if now is None else now
         # a study finishes in jumps, a piece at a time: only looks that found more say anything

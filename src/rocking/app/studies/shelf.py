@@ -17,18 +17,7 @@ _UNREADABLE = f"its {META} cannot be read; nothing was changed: mend it and star
 
 
 def studies_in(folder: Path) -> dict[str, Study]:
-    """Return the studies of an earlier server; none of them runs.
-
-    Parameters
-    ----------
-    folder : Path
-        Where they are; it is made if it is not there, and cleared of what was being made or deleted.
-
-    Returns
-    -------
-    dict of str to Study
-        By name in addresses.
-    """
+    """Return the studies of an earlier server; none of them runs."""
     disk.make_folder(folder)
     folder.chmod(0o700)
     studies = {}
@@ -61,13 +50,7 @@ def _unknown(path: Path) -> Meta:
 
 
 def remove(study: Study) -> None:
-    """Remove a study from the disk; a server that is killed meanwhile does not find half of one.
-
-    Parameters
-    ----------
-    study : Study
-        The study, which nobody computes.
-    """
+    """Remove a study from the disk; a server that is killed meanwhile does not find half of one."""
     path = study.folder.path
     aside = path.with_name(f"{_DELETED}{path.name}")
     with suppress(FileNotFoundError):  # somebody was quicker
@@ -78,19 +61,7 @@ def remove(study: Study) -> None:
 def check_room(folder: Path, wanted: int, limit: int) -> None:
     """Refuse a study for which there is no room.
 
-    Parameters
-    ----------
-    folder : Path
-        Where the studies are.
-    wanted : int
-        What its results need [byte].
-    limit : int
-        What all studies together may take [byte].
-
-    Raises
-    ------
-    TooLarge
-        With both numbers.
+    wanted: what its results need [byte]; limit: what all studies together may take [byte].
     """
     used = _size(folder)
     room = min(shutil.disk_usage(folder).free, limit - used)

@@ -15,65 +15,29 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass
 class Study:
-    """A study.
+    """A study."""
 
-    Parameters
-    ----------
-    folder : StudyFolder
-        Where it is.
-    meta : Meta
-        What is known of it.
-    process : StudyProcess, optional
-        Who computes it now.
-    begun, done : int
-        Histories of the rounds that have begun, and finished ones, at the last look [-].
-    rate : float
-        Histories a second, at the last look [1/s].
-    estimate : Estimate, optional
-        Time that is left, at the last look; None while that is not known.
-    cancelled, left : bool
-        Whether a user wants it to stop, and whether it is being deleted.
-    unreadable : bool
-        Whether what is on disk is not understood: it is shown, and left as it is.
-    saved : bool
-        Whether the disk knows its state.
-    """
-
-    folder: StudyFolder
-    meta: Meta
-    process: StudyProcess | None = None
-    begun: int = 0
+    folder: StudyFolder  # where it is
+    meta: Meta  # what is known of it
+    process: StudyProcess | None = None  # who computes it now
+    begun: int = 0  # begun, done: histories of the rounds that have begun, and finished ones, at the last look [-]
     done: int = 0
-    rate: float = 0.0
-    estimate: Estimate | None = None
-    cancelled: bool = False
+    rate: float = 0.0  # histories a second, at the last look [1/s]
+    estimate: Estimate | None = None  # time that is left, at the last look; None while that is not known
+    cancelled: bool = False  # cancelled, left: whether a user wants it to stop, and whether it is being deleted
     left: bool = False
-    unreadable: bool = False
-    saved: bool = True
+    unreadable: bool = False  # whether what is on disk is not understood: it is shown, and left as it is
+    saved: bool = True  # whether the disk knows its state
     _pace: Pace = field(default_factory=Pace)
 
     def begin(self, workers: int) -> None:
-        """Start to compute.
-
-        Parameters
-        ----------
-        workers : int
-            Threads or processes.
-        """
+        """Start to compute."""
         self._pace, self.rate, self.estimate, self.cancelled = Pace(), 0.0, None, False
         self.process = StudyProcess(self.folder, workers)
         self.become(RUNNING)
 
     def become(self, state: str, message: str = "") -> None:
-        """Change the state, here and on disk; where the disk does not take it, here alone until `save` is called.
-
-        Parameters
-        ----------
-        state : str
-            The new one.
-        message : str
-            A sentence about it.
-        """
+        """Change the state, here and on disk; where the disk does not take it, here alone until `save` is called."""
         self.meta = replace(self.meta, state=state, message=message)
         self.saved = False
         self.save()
@@ -91,13 +55,7 @@ class Study:
             self.saved = isinstance(error, FileNotFoundError)  # there is no folder to write it in, nor will there be
 
     def look(self) -> bool:
-        """See how far it is.
-
-        Returns
-        -------
-        bool
-            Whether all of it is finished.
-        """
+        """See how far it is."""
         try:
             status, complete = self.folder.status()
         except (RockingError, OSError):  # the ledger is being made, or is damaged or gone: its process will say so
@@ -109,13 +67,7 @@ class Study:
         return complete
 
     def end(self, *, closed: bool) -> None:
-        """Note how it ended, once its process has; nothing if that was noted before.
-
-        Parameters
-        ----------
-        closed : bool
-            Whether the server is being closed.
-        """
+        """Note how it ended, once its process has; nothing if that was noted before."""
         process, self.process = self.process, None
         if process is None:
             return

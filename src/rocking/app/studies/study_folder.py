@@ -30,52 +30,26 @@ class Records(Protocol):
     """Where uploaded records are kept."""
 
     def path(self, sha256: str) -> Path:
-        """Return where a record is.
-
-        Parameters
-        ----------
-        sha256 : str
-            Its hash.
-        """
+        """Return where a record is."""
 
 
 @dataclass(frozen=True)
 class Meta:
-    """What is known of a study beside its campaign.
+    """What is known of a study beside its campaign."""
 
-    Parameters
-    ----------
-    name, kind : str
-        What it is called, fit to be shown, and what it computes.
-    created : str
-        When it was made, as of ISO 8601.
-    histories : int
-        How many it has.
-    state : str
-        One of `STATES`.
-    message : str
-        A sentence about how it ended; empty while there is none.
-    """
-
-    name: str
+    name: str  # name, kind: what it is called, fit to be shown, and what it computes
     kind: str
-    created: str
-    histories: int
-    state: str = WAITING
-    message: str = ""
+    created: str  # when it was made, as of ISO 8601
+    histories: int  # how many it has
+    state: str = WAITING  # one of `STATES`
+    message: str = ""  # A sentence about how it ended; empty while there is none
 
 
 @dataclass(frozen=True)
 class StudyFolder:
-    """The folder of a study.
+    """The folder of a study."""
 
-    Parameters
-    ----------
-    path : Path
-        Where it is; its name is that of the study.
-    """
-
-    path: Path
+    path: Path  # where it is; its name is that of the study
 
     @property
     def id(self) -> str:
@@ -88,24 +62,7 @@ class StudyFolder:
         return self.path / CAMPAIGN
 
     def create(self, meta: Meta, job: JobDocument, records: Records) -> None:
-        """Write what a study needs, so that it needs nothing else: a power cut leaves all of it or no `meta.json`.
-
-        Parameters
-        ----------
-        meta : Meta
-            What it is.
-        job : JobDocument
-            What it computes.
-        records : Records
-            Where the records are that it names.
-
-        Raises
-        ------
-        RockingError
-            If a record is not there, or something in the job is refused; nothing is left of the folder then.
-        InvalidValueError
-            If the job has another number of histories than was said.
-        """
+        """Write what a study needs, so that it needs nothing else: a power cut leaves all of it or no `meta.json`."""
         from rocking.studies.job import Job
 
         try:
@@ -140,22 +97,13 @@ class StudyFolder:
         return name
 
     def write(self, meta: Meta) -> None:
-        """Write what is known of the study, as a whole or not at all.
-
-        Parameters
-        ----------
-        meta : Meta
-            What is known.
-        """
+        """Write what is known of the study, as a whole or not at all."""
         disk.write_new(self.path / META, (json.dumps(asdict(meta), indent=1) + "\n").encode())
 
     def read(self) -> Meta | None:
         """Return what is known of the study.
 
-        Returns
-        -------
-        Meta, optional
-            None where there is none, or none that can be read.
+        Returns none where there is none, or none that can be read.
         """
         try:
             told = json.loads((self.path / META).read_bytes())
@@ -169,12 +117,7 @@ class StudyFolder:
     def status(self) -> tuple[Status | None, bool]:
         """Return how far the campaign is.
 
-        Returns
-        -------
-        status : Status, optional
-            Of an adaptive study that of the rounds that have begun; None where nothing has.
-        complete : bool
-            Whether all is computed.
+        Returns status: of an adaptive study that of the rounds that have begun; None where nothing has.
         """
         if not (self.campaign / JOB).is_file():
             return None, False
@@ -184,10 +127,7 @@ class StudyFolder:
     def ended(self) -> Meta | None:
         """Return what is known of a study when the server starts: what its end interrupted waits to go on by itself.
 
-        Returns
-        -------
-        Meta, optional
-            As it is on disk now; None where there is no study.
+        Returns as it is on disk now; None where there is no study.
         """
         meta = self.read()
         if meta is None or meta.state not in {WAITING, RUNNING, INTERRUPTED}:
@@ -203,33 +143,11 @@ class StudyFolder:
         return meta
 
     def without_paths(self, words: str) -> str:
-        """Return a sentence without the paths of this machine in it, which are nobody's business.
-
-        Parameters
-        ----------
-        words : str
-            The sentence.
-
-        Returns
-        -------
-        str
-            With names relative to the study.
-        """
+        """Return a sentence without the paths of this machine in it, which are nobody's business."""
         for folder in (self.campaign, self.path):
             words = words.replace(f"{folder}{os.sep}", "").replace(str(folder), "the study")
         return words.removeprefix(f"{JOB}: ")
 
     def facts(self, meta: Meta) -> dict[str, Any]:
-        """Return what is known, as the answer of the application.
-
-        Parameters
-        ----------
-        meta : Meta
-            What is known.
-
-        Returns
-        -------
-        dict
-            Plain values.
-        """
+        """Return what is known, as the answer of the application."""
         return {"id": self.id, **asdict(meta)}

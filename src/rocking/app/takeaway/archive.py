@@ -17,20 +17,7 @@ _ENCRYPTED = 0x1
 
 
 class Archive:
-    """The files of a ZIP archive, by their names.
-
-    Parameters
-    ----------
-    data : bytes
-        The archive.
-
-    Raises
-    ------
-    Refused
-        If it is damaged, or holds folders, two files of one name, or files that are encrypted or oddly packed.
-    TooLarge
-        If it holds too many files.
-    """
+    """The files of a ZIP archive, by their names."""
 
     def __init__(self, data: bytes) -> None:
         if data.count(_ENTRY) > _MOST_ENTRIES:  # before all of them are read
@@ -50,18 +37,7 @@ class Archive:
 
     @staticmethod
     def begins(data: bytes) -> bool:
-        """Return whether bytes begin as a ZIP archive does.
-
-        Parameters
-        ----------
-        data : bytes
-            Any file.
-
-        Returns
-        -------
-        bool
-            True if so.
-        """
+        """Return whether bytes begin as a ZIP archive does."""
         return data.startswith(_BEGINNINGS)
 
     @property
@@ -72,24 +48,7 @@ class Archive:
     def content(self, name: str, most: int) -> bytes:
         """Return a file, unpacked.
 
-        Parameters
-        ----------
-        name : str
-            One of `names`.
-        most : int
-            Largest size [bytes].
-
-        Returns
-        -------
-        bytes
-            Its content.
-
-        Raises
-        ------
-        Refused
-            If it is damaged.
-        TooLarge
-            If it is larger, whatever the archive says of its size.
+        most: largest size [bytes].
         """
         try:
             with self._archive.open(self._entries[name]) as file:

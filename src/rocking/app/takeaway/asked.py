@@ -20,21 +20,11 @@ from rocking.report.facts.impact import ImpactAnswer
 
 @dataclass(frozen=True)
 class Asked:
-    """Inputs, and what is computed from them, each once and only when somebody needs it.
+    """Inputs, and what is computed from them, each once and only when somebody needs it."""
 
-    Parameters
-    ----------
-    inputs : Inputs
-        What the user chose.
-    records : RecordStore
-        Uploaded records.
-    onto : {"left", "right", "both"}
-        Foot on which the body lands, for coefficients.
-    """
-
-    inputs: Inputs
-    records: RecordStore
-    onto: str = "both"
+    inputs: Inputs  # what the user chose
+    records: RecordStore  # uploaded records
+    onto: str = "both"  # foot on which the body lands, for coefficients
 
     @property
     def name(self) -> str:
@@ -86,23 +76,7 @@ class Asked:
         return {label: why for label, why in self.answers.found.items() if isinstance(why, str)}
 
     def chosen(self, index: int | None) -> Response:
-        """Return one response by its place.
-
-        Parameters
-        ----------
-        index : int or None
-            Place among the restitutions, from 0; the first that has a response if None.
-
-        Returns
-        -------
-        Response
-            The response.
-
-        Raises
-        ------
-        InvalidValueError
-            If there is no such place, or no response in it.
-        """
+        """Return one response by its place."""
         if index is None:
             return next(iter(self.responses.values()))
         found = list(self.answers.found.values())
@@ -114,20 +88,7 @@ class Asked:
         return one
 
     def words(self, what: str, index: int | None) -> str:
-        """Return what a file of one response is called: with its restitution, where there are several.
-
-        Parameters
-        ----------
-        what : str
-            What the file holds.
-        index : int or None
-            Place among the restitutions, from 0; the first that has a response if None.
-
-        Returns
-        -------
-        str
-            Words without an ending.
-        """
+        """Return what a file of one response is called: with its restitution, where there are several."""
         chosen = self.inputs.restitution
         if len(chosen.models or ()) + len(chosen.values or ()) < 2:
             return f"{self.name or 'rocking'} {what}"

@@ -14,15 +14,7 @@ _ORDINARY_FILE = 0o644 << 16
 def bundle_of(asked: Asked) -> bytes:
     """Return an archive with everything that the command line needs for the same result.
 
-    Parameters
-    ----------
-    asked : Asked
-        What the user chose.
-
-    Returns
-    -------
-    bytes
-        A ZIP file, the same bytes for the same inputs.
+    Returns A ZIP file, the same bytes for the same inputs.
     """
     inputs, record = asked.inputs, record_name(asked.inputs)
     stream = io.BytesIO()

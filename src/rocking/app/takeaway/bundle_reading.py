@@ -14,25 +14,7 @@ from rocking.app.takeaway.plain_text import record_file_name
 
 
 def inputs_from_file(data: bytes, records: RecordStore) -> Inputs:
-    """Return what a file of inputs says: TOML, or the archive of it and its record.
-
-    Parameters
-    ----------
-    data : bytes
-        The file.
-    records : RecordStore
-        Uploaded records; the record of an archive is added to them.
-
-    Returns
-    -------
-    Inputs
-        Checked.
-
-    Raises
-    ------
-    RockingError
-        If the file cannot be read, is too large, or holds what no inputs or no motion can be; nothing is kept then.
-    """
+    """Return what a file of inputs says: TOML, or the archive of it and its record."""
     if Archive.begins(data):
         return _inputs_from_archive(Archive(data), records)
     return inputs_from_toml(_text(data), _finder(records))

@@ -11,20 +11,8 @@ _SAID = {"gravity", "linear", "engine"}
 def simulate_words(inputs: Mapping[str, Any], record: str | None = None) -> str | None:
     """Return the command that gives the same result without a file of inputs.
 
-    Parameters
-    ----------
-    inputs : mapping
-        A document of inputs as plain values.
-    record : str, optional
-        Name of the record file, where the motion is one.
+    Returns the command, quoted for a shell; None where only a file of inputs can say it.
 
-    Returns
-    -------
-    str or None
-        The command, quoted for a shell; None where only a file of inputs can say it.
-
-    Examples
-    --------
     >>> block = {"units": "cm", "width": 50.0, "height": 200.0}
     >>> simulate_words({"body": block, "motion": {"pulse": "sine:amplitude=3,period=0.8"}})
     'rocking simulate --width 50.0 --height 200.0 --units cm --motion sine:amplitude=3,period=0.8 --restitution ked'

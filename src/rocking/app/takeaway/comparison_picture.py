@@ -31,18 +31,7 @@ _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Out
 
 @in_journal_style
 def comparison_picture(responses: Mapping[str, Response]) -> "Figure":
-    """Draw several responses to one motion: ground acceleration, rotations, velocities, energy lost at impacts.
-
-    Parameters
-    ----------
-    responses : mapping of str to Response
-        By label of the restitution, at least one.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Four panels over one time axis.
-    """
+    """Draw several responses to one motion: ground acceleration, rotations, velocities, energy lost at impacts."""
     first = next(iter(responses.values()))
     figure, axes = new_figure(DOUBLE, 5.6, rows=4, sharex=True, height_ratios=[0.7, 1.8, 1.0, 1.0])
     verdict = Verdict.of({restitution_words(label): one for label, one in responses.items()})
@@ -65,20 +54,7 @@ def comparison_picture(responses: Mapping[str, Response]) -> "Figure":
 
 
 def drawn_text(text: str, longest: int) -> str:
-    r"""Return a text that a picture shows as it is, with no dollar sign that begins a formula.
-
-    Parameters
-    ----------
-    text : str
-        Any text.
-    longest : int
-        Characters that are kept.
-
-    Returns
-    -------
-    str
-        One line.
-    """
+    r"""Return a text that a picture shows as it is, with no dollar sign that begins a formula."""
     return plain_line(text, longest).replace("$", r"\$")
 
 

@@ -35,22 +35,7 @@ _DATE = "day that is printed on the report, as 2026-11-21; none if left out"
 async def report(
     request: Request, inputs: ResponseInputs, date: Annotated[datetime.date | None, Query(description=_DATE)] = None
 ) -> Answer:
-    """Return the report: body, coefficients, motion, responses, and how to do it again.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    inputs : ResponseInputs
-        What the user chose.
-    date : date, optional
-        Day that is printed.
-
-    Returns
-    -------
-    Response
-        A PDF.
-    """
+    """Return the report: body, coefficients, motion, responses, and how to do it again."""
     asked = Asked(inputs, state_of(request).records)
     day = "" if date is None else f"{date.day} {date:%B %Y}"
     return attachment(await heavy(request, report_of, asked, day), _name(asked, "report.pdf"), "application/pdf")
@@ -65,24 +50,7 @@ async def report(
 async def animation(
     request: Request, kind: Literal["html", "gif"], inputs: ResponseInputs, restitution: Place = None
 ) -> Answer:
-    """Return one response in motion: a page that needs nothing else, or a GIF.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    kind : {"html", "gif"}
-        Format.
-    inputs : ResponseInputs
-        What the user chose.
-    restitution : int, optional
-        Place of the response.
-
-    Returns
-    -------
-    Response
-        The file.
-    """
+    """Return one response in motion: a page that needs nothing else, or a GIF."""
     asked = Asked(inputs, state_of(request).records)
     make = page_of if kind == "html" else gif_of
     data = await heavy(request, lambda: make(asked.chosen(restitution)))
@@ -96,20 +64,7 @@ async def animation(
     responses=answered_with_file("What `rocking simulate` takes.", "application/toml"),
 )
 async def inputs_file(request: Request, inputs: Inputs) -> Answer:
-    """Return the file that `rocking simulate` takes for the same result.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    inputs : Inputs
-        What the user chose.
-
-    Returns
-    -------
-    Response
-        TOML.
-    """
+    """Return the file that `rocking simulate` takes for the same result."""
     data = await heavy(request, inputs_as_toml, inputs)
     return attachment(data.encode("utf-8"), "response.toml", "application/toml")
 
@@ -121,20 +76,7 @@ async def inputs_file(request: Request, inputs: Inputs) -> Answer:
     responses=answered_with_file("The file of inputs, the record, and what to type.", "application/zip"),
 )
 async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
-    """Return an archive of the file of inputs, the record, and what to type.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    inputs : Inputs
-        What the user chose.
-
-    Returns
-    -------
-    Response
-        A ZIP file.
-    """
+    """Return an archive of the file of inputs, the record, and what to type."""
     asked = Asked(inputs, state_of(request).records)
     return attachment(await heavy(request, bundle_of, asked), _name(asked, "response.zip"), "application/zip")
 
@@ -147,18 +89,7 @@ async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
     responses=answered(Inputs, "The inputs."),
 )
 async def inputs_read(request: Request) -> JsonAnswer:
-    """Return the inputs that a file of inputs holds, or the archive of it and its record, which is kept.
-
-    Parameters
-    ----------
-    request : Request
-        With the bytes of the TOML or ZIP file.
-
-    Returns
-    -------
-    JsonAnswer
-        The inputs.
-    """
+    """Return the inputs that a file of inputs holds, or the archive of it and its record, which is kept."""
     data = await request.body()
     return JsonAnswer(plain_inputs(await heavy(request, inputs_from_file, data, state_of(request).records)))
 

@@ -27,17 +27,7 @@ ONE_AT_A_TIME = RLock()
 def drawn(make: "Callable[[], Figure]", kind: PictureKind) -> bytes:
     """Draw a picture and return its file.
 
-    Parameters
-    ----------
-    make : callable
-        Returns the figure.
-    kind : {"png", "svg"}
-        Format.
-
-    Returns
-    -------
-    bytes
-        The file, the same for the same figure.
+    Returns the file, the same for the same figure.
     """
     with TemporaryDirectory(prefix="rocking-picture-") as folder:
         path = Path(folder) / f"picture.{kind}"
@@ -46,15 +36,7 @@ def drawn(make: "Callable[[], Figure]", kind: PictureKind) -> bytes:
 
 
 def draw_to(make: "Callable[[], Figure]", path: Path) -> None:
-    """Draw a picture into a file.
-
-    Parameters
-    ----------
-    make : callable
-        Returns the figure.
-    path : Path
-        File ending in .png, .svg or .pdf.
-    """
+    """Draw a picture into a file."""
     from rocking.plots.style import write
 
     with ONE_AT_A_TIME:

@@ -22,18 +22,7 @@ _REFUSED = 3
 
 
 def page_of(response: Response) -> bytes:
-    """Return a web page in which the body rocks.
-
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    bytes
-        The page, which needs nothing else.
-    """
+    """Return a web page in which the body rocks."""
     from rocking.plots.animation import page
 
     label = response.rocker.label
@@ -42,27 +31,7 @@ def page_of(response: Response) -> bytes:
 
 
 def gif_of(response: Response) -> bytes:
-    """Return a GIF in which the body rocks, with 150 frames at most.
-
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    bytes
-        The file.
-
-    Raises
-    ------
-    Busy
-        If it takes longer than 90 s.
-    Refused
-        If it cannot be drawn.
-    RuntimeError
-        If the process that draws breaks down.
-    """
+    """Return a GIF in which the body rocks, with 150 frames at most."""
     with TemporaryDirectory(prefix="rocking-film-") as folder:
         path = Path(folder) / "animation.gif"
         command = [sys.executable, "-m", "rocking.app.takeaway.film", str(path)]

@@ -32,32 +32,13 @@ FindRecord = Callable[[str], str | None]
 def plain_inputs(inputs: Inputs) -> dict[str, Any]:
     """Return inputs as plain values.
 
-    Parameters
-    ----------
-    inputs : Inputs
-        What the user chose.
-
-    Returns
-    -------
-    dict
-        What was not given is left out.
+    Returns what was not given is left out.
     """
     return inputs.model_dump(exclude_none=True, exclude_unset=True)
 
 
 def fingerprint(inputs: Inputs) -> str:
-    """Return the SHA-256 of inputs, the same however they were written.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        What the user chose.
-
-    Returns
-    -------
-    str
-        64 hexadecimal digits.
-    """
+    """Return the SHA-256 of inputs, the same however they were written."""
     words = json.dumps(inputs.model_dump(exclude_none=True), sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(words.encode()).hexdigest()
 
@@ -65,15 +46,7 @@ def fingerprint(inputs: Inputs) -> str:
 def record_name(inputs: Inputs) -> str | None:
     """Return the name of the record file beside a file of inputs.
 
-    Parameters
-    ----------
-    inputs : Inputs
-        What the user chose.
-
-    Returns
-    -------
-    str or None
-        A name without folders; None if the motion is no record.
+    Returns A name without folders; None if the motion is no record.
     """
     if inputs.motion is None or inputs.motion.record is None:
         return None
@@ -83,15 +56,7 @@ def record_name(inputs: Inputs) -> str | None:
 def commands(inputs: Inputs) -> list[str]:
     """Return what to type for the same result.
 
-    Parameters
-    ----------
-    inputs : Inputs
-        What the user chose.
-
-    Returns
-    -------
-    list of str
-        With the file of inputs, and in words where that is possible; none while nothing moves the body.
+    Returns with the file of inputs, and in words where that is possible; none while nothing moves the body.
     """
     if inputs.motion is None and inputs.response.free is None:
         return []
@@ -100,18 +65,7 @@ def commands(inputs: Inputs) -> list[str]:
 
 
 def inputs_as_toml(inputs: Inputs) -> str:
-    """Return inputs as a file that `rocking simulate` takes.
-
-    Parameters
-    ----------
-    inputs : Inputs
-        What the user chose.
-
-    Returns
-    -------
-    str
-        TOML; numbers keep every digit.
-    """
+    """Return inputs as a file that `rocking simulate` takes."""
     told, friction = plain_inputs(inputs), inputs.response.friction
     tables: dict[str, Any] = {
         "response": {**({} if isinstance(friction, Assumed) else {"friction": friction}), **told.get("response", {})},
@@ -124,25 +78,7 @@ def inputs_as_toml(inputs: Inputs) -> str:
 
 
 def inputs_from_toml(text: str, find: FindRecord) -> Inputs:
-    """Return what a file of inputs says.
-
-    Parameters
-    ----------
-    text : str
-        TOML, as `inputs_as_toml` writes it or a person.
-    find : callable
-        Finds an uploaded record by its hash or name.
-
-    Returns
-    -------
-    Inputs
-        Checked.
-
-    Raises
-    ------
-    Refused
-        If it is not TOML, a key or a value is not allowed, or it names a record that was not uploaded.
-    """
+    """Return what a file of inputs says."""
     document = parsed_toml(text)
     unknown = sorted(set(document) - set(_TABLES))
     if unknown and "campaign" in document:

@@ -11,20 +11,7 @@ if TYPE_CHECKING:
 
 
 def in_words(figure: "Figure", labels: Iterable[str]) -> "Figure":
-    """Write the names of restitutions into a picture, wherever it has their labels.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The picture.
-    labels : iterable of str
-        The labels.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The same.
-    """
+    """Write the names of restitutions into a picture, wherever it has their labels."""
     from matplotlib.text import Text
 
     known = {label: restitution_words(label) for label in labels}

@@ -39,50 +39,14 @@ async def picture(
         int | None, Query(ge=0, description="only this response, counted from 0; all of them if left out")
     ] = None,
 ) -> Answer:
-    """Return a picture as a file: the body, its coefficients, the three stages, the motion, or the responses.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    what : str
-        Which picture.
-    kind : {"png", "svg"}
-        Format.
-    inputs : Inputs
-        What the user chose.
-    onto : {"left", "right", "both"}
-        Foot on which the body lands.
-    restitution : int, optional
-        Place of the response that is drawn alone.
-
-    Returns
-    -------
-    Response
-        The file.
-    """
+    """Return a picture as a file: the body, its coefficients, the three stages, the motion, or the responses."""
     asked = Asked(inputs, state_of(request).records, onto)
     data = await heavy(request, drawn, lambda: named(figure_of(what, asked, restitution), what, asked.name), kind)
     return attachment(data, f"{asked.name or 'rocking'} {what}.{kind}", MEDIA_TYPES[kind])
 
 
 def figure_of(what: str, asked: Asked, restitution: int | None = None) -> "Figure":
-    """Return a picture.
-
-    Parameters
-    ----------
-    what : str
-        body, coefficients, stages, motion or response.
-    asked : Asked
-        What the user chose.
-    restitution : int, optional
-        Place of the response that is drawn alone.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The picture.
-    """
+    """Return a picture."""
     from rocking.plots.body_picture import body_picture, coefficient_picture
     from rocking.plots.figure_2 import figure_2
     from rocking.plots.ground_motion import ground_motion_picture
@@ -110,22 +74,7 @@ def _responses(asked: Asked, restitution: int | None) -> "Figure":
 
 
 def named(figure: "Figure", what: str, name: str) -> "Figure":
-    """Write the name of the body over a picture that has no title of its own.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        The picture.
-    what : str
-        Which one.
-    name : str
-        What the user calls the body.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The same.
-    """
+    """Write the name of the body over a picture that has no title of its own."""
     return _titled(figure, name) if name and what in {"body", "coefficients", "stages"} else figure
 
 

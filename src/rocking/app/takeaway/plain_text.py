@@ -20,20 +20,6 @@ def plain_line(text: str, longest: int = LONGEST_LINE) -> str:
     Control characters, marks that turn the direction of writing, line breaks and tabs are what makes a name do
     something in a terminal, a file of XML or a comment; none of them is left.
 
-    Parameters
-    ----------
-    text : str
-        Any text.
-    longest : int
-        Characters that are kept; what is cut off is told by three dots.
-
-    Returns
-    -------
-    str
-        One line, perhaps empty.
-
-    Examples
-    --------
     >>> plain_line("a\n[b]\x1b[31m\u202e")
     'a [b][31m'
     """
@@ -45,18 +31,8 @@ def plain_line(text: str, longest: int = LONGEST_LINE) -> str:
 def cell_text(text: str) -> str:
     """Return a text that a spreadsheet takes for text, whatever it begins with.
 
-    Parameters
-    ----------
-    text : str
-        Any text.
+    Returns with an apostrophe before what would begin a formula.
 
-    Returns
-    -------
-    str
-        With an apostrophe before what would begin a formula.
-
-    Examples
-    --------
     >>> cell_text("=1+1"), cell_text("Vase 3")
     ("'=1+1", 'Vase 3')
     """
@@ -67,20 +43,8 @@ def cell_text(text: str) -> str:
 def record_file_name(name: str, otherwise: str = "record.txt") -> str:
     r"""Return the name under which a record file is put into an archive: letters, digits, dot, dash, underscore.
 
-    Parameters
-    ----------
-    name : str
-        As the user's computer calls it, perhaps with folders.
-    otherwise : str
-        What it is called if nothing is left.
+    Returns A name without folders that every system accepts.
 
-    Returns
-    -------
-    str
-        A name without folders that every system accepts.
-
-    Examples
-    --------
     >>> record_file_name(r"C:\records\Kobe 1995.AT2"), record_file_name("../../etc/passwd"), record_file_name("CON.txt")
     ('Kobe_1995.AT2', 'passwd', '_CON.txt')
     """

@@ -16,20 +16,7 @@ from rocking.report.response_pdf import response_pdf
 
 
 def report_of(asked: Asked, date: str) -> bytes:
-    """Return the report as PDF.
-
-    Parameters
-    ----------
-    asked : Asked
-        What the user chose.
-    date : str
-        Day of the report, as the user's calendar says; perhaps empty.
-
-    Returns
-    -------
-    bytes
-        The file.
-    """
+    """Return the report as PDF."""
     moved = asked.inputs.motion is not None
     found = Found(
         asked.impact,

@@ -43,28 +43,7 @@ async def table(
         Query(ge=0, description="which response, counted from 0; if left out the first one, in xlsx all of them"),
     ] = None,
 ) -> Answer:
-    """Return a table as a file that Excel, MATLAB, Python or R opens.
-
-    Parameters
-    ----------
-    request : Request
-        The request.
-    what : str
-        Which table.
-    kind : {"csv", "xlsx", "mat", "nc"}
-        Format.
-    inputs : Inputs
-        What the user chose.
-    onto : {"left", "right", "both"}
-        Foot on which the body lands.
-    restitution : int, optional
-        Place of the response.
-
-    Returns
-    -------
-    Response
-        The file.
-    """
+    """Return a table as a file that Excel, MATLAB, Python or R opens."""
     asked = Asked(inputs, state_of(request).records, onto)
     data, words = await heavy(request, _named_table, what, kind, asked, restitution)
     return attachment(data, f"{words}.{kind}", MEDIA_TYPES[kind])
@@ -77,24 +56,7 @@ def _named_table(what: str, kind: str, asked: Asked, restitution: int | None) ->
 
 
 def table_of(what: str, kind: str, asked: Asked, restitution: int | None = None) -> bytes:
-    """Return a table as a file.
-
-    Parameters
-    ----------
-    what : str
-        A name of `What`.
-    kind : str
-        A format of `Kind`.
-    asked : Asked
-        What the user chose.
-    restitution : int, optional
-        Place of the response.
-
-    Returns
-    -------
-    bytes
-        The file.
-    """
+    """Return a table as a file."""
     if what == "response":
         return _response(kind, asked, restitution)
     return written([_sheet(what, asked)], kind)

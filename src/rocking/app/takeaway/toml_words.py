@@ -15,18 +15,6 @@ _ONE_LINE = 80
 def toml_of(document: Mapping[str, Any]) -> str:
     r"""Return tables as TOML; numbers keep every digit, and what is None is left out.
 
-    Parameters
-    ----------
-    document : mapping
-        Keys to numbers, text, lists, and mappings of such.
-
-    Returns
-    -------
-    str
-        TOML, ending with a line break.
-
-    Examples
-    --------
     >>> print(toml_of({"body": {"units": "m", "block": {"width": 0.5}}}), end="")
     [body]
     units = "m"
@@ -40,23 +28,6 @@ def toml_of(document: Mapping[str, Any]) -> str:
 def toml_value(value: Any) -> str:
     r"""Return one value as TOML in one line.
 
-    Parameters
-    ----------
-    value : Any
-        Number, truth value, text, or a list or a mapping of such.
-
-    Returns
-    -------
-    str
-        Its words.
-
-    Raises
-    ------
-    InvalidValueError
-        If TOML has no such value.
-
-    Examples
-    --------
     >>> toml_value([0.1, True, 'a "b"\x00'])
     '[0.1, true, "a \\"b\\"\\u0000"]'
     """

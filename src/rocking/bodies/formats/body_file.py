@@ -92,23 +92,6 @@ def body_from_toml(text: str, name: str = "<text>", folder: str | Path | None = 
 def parsed_toml(text: Any) -> dict[str, Any]:
     """Return the tables of a TOML text.
 
-    Parameters
-    ----------
-    text : str
-        TOML.
-
-    Returns
-    -------
-    dict
-        As it is written, nothing checked.
-
-    Raises
-    ------
-    BodyFileError
-        If it is no text, too long, or not TOML.
-
-    Examples
-    --------
     >>> parsed_toml('units = "m"')
     {'units': 'm'}
     """
@@ -215,25 +198,7 @@ def _regions(table: "schema.RegionTable", units: str, folder: Path | None) -> li
 
 
 def beside(folder: Path | None, name: str) -> Path:
-    """Return the path of a file that a body file names: below its own folder, wherever the text came from.
-
-    Parameters
-    ----------
-    folder : Path, optional
-        Folder of the body file; without it no file can be named.
-    name : str
-        Name of the file, relative to the folder.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    BodyFileError
-        If it lies elsewhere, or no file can have such a name.
-    """
+    """Return the path of a file that a body file names: below its own folder, wherever the text came from."""
     if folder is None:
         raise BodyFileError(f"names the file {name!r}, but text without a folder cannot name files")
     try:

@@ -19,27 +19,8 @@ _LARGEST_BULGE = 1000.0
 def sides(angle: float, radius: float, tolerance: float) -> int:
     """Return how many chords an arc needs.
 
-    Parameters
-    ----------
-    angle : float
-        Angle that the arc spans [rad].
-    radius : float
-        Its radius, in any unit of length.
-    tolerance : float
-        Largest distance between chord and arc, in the same unit.
+    angle: angle that the arc spans [rad]. Returns number of chords: at least three for a full turn [-].
 
-    Returns
-    -------
-    int
-        Number of chords: at least three for a full turn [-].
-
-    Raises
-    ------
-    BodyFileError
-        If the tolerance is too fine for this radius.
-
-    Examples
-    --------
     >>> sides(2.0 * math.pi, 1.0, 1e-3)
     71
     """
@@ -52,22 +33,8 @@ def sides(angle: float, radius: float, tolerance: float) -> int:
 def closed_ellipse(centre: complex, major: complex, minor: complex, tolerance: float) -> FloatArray:
     """Return a full ellipse, or circle, as an inscribed polygon.
 
-    Parameters
-    ----------
-    centre : complex
-        Its centre x + iy.
-    major, minor : complex
-        Its half axes as vectors, in the same unit of length.
-    tolerance : float
-        Largest distance between chord and curve, in the same unit.
+    Returns Vertices; n is a multiple of 4, so that the polygon has the symmetry of the ellipse.
 
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        Vertices; n is a multiple of 4, so that the polygon has the symmetry of the ellipse.
-
-    Examples
-    --------
     >>> closed_ellipse(0j, 2.0 + 0j, 1j, 1.0).tolist()[0]
     [2.0, 0.0]
     """
@@ -81,28 +48,9 @@ def closed_ellipse(centre: complex, major: complex, minor: complex, tolerance: f
 def closed_polyline(points: Sequence[complex], bulges: Sequence[float], tolerance: float) -> FloatArray:
     """Return a closed polyline with its bulges flattened.
 
-    Parameters
-    ----------
-    points : sequence of complex
-        Vertices x + iy.
-    bulges : sequence of float
-        Of the segment that starts at each vertex: the tangent of a quarter of the arc's angle, above zero where
-        the arc turns counter-clockwise [-].
-    tolerance : float
-        Largest distance between chord and arc, in the unit of the points.
+    bulges: of the segment that starts at each vertex: the tangent of a quarter of the arc's angle, above zero where the
+    arc turns counter-clockwise [-].
 
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        Vertices.
-
-    Raises
-    ------
-    BodyFileError
-        If a bulge is beyond every sensible arc, or there are too many vertices.
-
-    Examples
-    --------
     A square whose top is a half circle:
 
     >>> ring = closed_polyline([0j, 2 + 0j, 2 + 2j, 2j], [0.0, 0.0, 1.0, 0.0], tolerance=0.01)

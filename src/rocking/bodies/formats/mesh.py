@@ -29,34 +29,16 @@ _SINGLE = 2.0**-24
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A closed surface from a file, with what was done to close it.
+    """A closed surface from a file, with what was done to close it."""
 
-    Parameters
-    ----------
-    shape : Polyhedron
-        The volume, the middle of its box at the origin [m].
-    middle : ndarray, shape (3,)
-        Where that middle lies in the file's coordinates, z up [m].
-    repairs : tuple of str
-        One sentence for each change and each doubt.
-    """
-
-    shape: Polyhedron
-    middle: FloatArray
-    repairs: tuple[str, ...]
+    shape: Polyhedron  # the volume, the middle of its box at the origin [m]
+    middle: FloatArray  # where that middle lies in the file's coordinates, z up [m]; shape (3,)
+    repairs: tuple[str, ...]  # one sentence for each change and each doubt
 
     def part(self, density: float = DEFAULT_DENSITY) -> Part:
         """Return the volume in its place, in one material.
 
-        Parameters
-        ----------
-        density : float
-            Density [kg/m3].
-
-        Returns
-        -------
-        Part
-            For a `Solid` of several parts.
+        density: density [kg/m3].
         """
         return Part(self.shape, density, translation=self.middle)
 
@@ -65,19 +47,8 @@ class Mesh:
     ) -> Solid:
         """Return the volume as a body that stands on its lowest point.
 
-        Parameters
-        ----------
-        density : float
-            Density [kg/m3].
-        base : array_like, shape (n, 2), optional
-            Points (x, y) that it stands on, in the file's place [m].
-        base_tolerance : float, optional
-            Vertices this close to the lowest one stand on the ground [m]; scans need some millimetres.
-
-        Returns
-        -------
-        Solid
-            The body.
+        density: density [kg/m3]; base: points (x, y) that it stands on, in the file's place [m]; base_tolerance:
+        vertices this close to the lowest one stand on the ground [m]; scans need some millimetres.
         """
         part = self.part(density)
         return Solid(part, base=base, ground=float(part.box()[0, 2]), base_tolerance=base_tolerance)
@@ -93,35 +64,8 @@ def mesh_from_file(
 ) -> Mesh:
     """Return the volume inside a surface mesh: welded, oriented, closed, centred.
 
-    Parameters
-    ----------
-    path : str or Path
-        STL, OBJ, PLY or GLB file.
-    units : {"m", "cm", "mm", "ft", "in"}
-        Unit of the coordinates; files of these formats do not say it reliably.
-    up : {"z", "y"}
-        Axis that points up in the file; GLB files have "y" by their specification.
-    weld_tolerance : float, optional
-        Vertices this close are merged [m]; by default equal ones, and if that leaves the surface open, those within
-        1e-6 of its size.
-    fill_holes : bool
-        Whether holes of less than 1 % of the surface may be closed.
-
-    Returns
-    -------
-    Mesh
-        Shape, place and repairs.
-
-    Raises
-    ------
-    BodyFileError
-        If the file is no such mesh or damaged.
-    GeometryError
-        If the surface cannot be closed safely or passes through itself.
-    InvalidValueError
-        If unit or axis are unknown.
-    MissingExtraError
-        If trimesh is not installed.
+    weld_tolerance: vertices this close are merged [m]; by default equal ones, and if that leaves the surface open,
+    those within 1e-6 of its size.
     """
     path = Path(path)
     scale = checks.length_unit(units)
@@ -153,27 +97,8 @@ def solid_from_mesh(
 ) -> tuple[Solid, tuple[str, ...]]:
     """Return the body that a surface mesh describes, and what was repaired.
 
-    Parameters
-    ----------
-    path : str or Path
-        STL, OBJ, PLY or GLB file.
-    density : float
-        Density [kg/m3].
-    units : {"m", "cm", "mm", "ft", "in"}
-        Unit of the coordinates.
-    base : array_like, shape (n, 2), optional
-        Points (x, y) that it stands on [m].
-    base_tolerance : float, optional
-        Vertices this close to the lowest one stand on the ground [m].
-    **options
-        For `mesh_from_file`: ``up``, ``weld_tolerance``, ``fill_holes``.
-
-    Returns
-    -------
-    solid : Solid
-        The body.
-    repairs : tuple of str
-        One sentence for each change and each doubt.
+    density: density [kg/m3]; base: points (x, y) that it stands on [m]; base_tolerance: vertices this close to the
+    lowest one stand on the ground [m]. Returns repairs: one sentence for each change and each doubt.
     """
     mesh = mesh_from_file(path, units=units, **options)
     with blamed(Path(path).name):

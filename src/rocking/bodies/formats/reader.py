@@ -20,24 +20,12 @@ from rocking.errors import BodyFileError
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asked for: a file, a unit, a density, and how the body stands.
+    """What the user asked for: a file, a unit, a density, and how the body stands."""
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    units : str or None
-        Unit of its coordinates.
-    density : float or None
-        Density of what has none of its own [kg/m3].
-    placement : Placement
-        Feet, depth and ground [m].
-    """
-
-    path: Path
-    units: str | None
-    density: float | None
-    placement: Placement
+    path: Path  # the file
+    units: str | None  # unit of its coordinates
+    density: float | None  # density of what has none of its own [kg/m3]
+    placement: Placement  # feet, depth and ground [m]
 
     @property
     def some_density(self) -> float:
@@ -45,18 +33,7 @@ class Request:
         return DEFAULT_DENSITY if self.density is None else self.density
 
     def needed_units(self) -> str:
-        """Return the unit of a file whose format has no place for one.
-
-        Returns
-        -------
-        str
-            The unit.
-
-        Raises
-        ------
-        BodyFileError
-            If none was given.
-        """
+        """Return the unit of a file whose format has no place for one."""
         if self.units is None:
             raise BodyFileError(f"does not state its unit; give units=, one of {', '.join(LENGTH_UNITS)}")
         return self.units

@@ -14,30 +14,12 @@ Nested = tuple[FloatArray, list[FloatArray]]
 def nested(rings: Sequence[FloatArray], names: Sequence[str]) -> list[Nested]:
     """Sort rings into outlines and their holes by the even-odd rule.
 
-    A ring inside no other or inside an even number of others is an outline; one inside an odd number is a hole of
-    the innermost of them.
+    A ring inside no other or inside an even number of others is an outline; one inside an odd number is a hole of the
+    innermost of them.
 
-    Parameters
-    ----------
-    rings : sequence of ndarray
-        Closed curves that do not cross, in any order and sense [m].
-    names : sequence of str
-        What errors call them.
+    rings: closed curves that do not cross, in any order and sense [m]. Returns in the order in which the outlines were
+    given.
 
-    Returns
-    -------
-    list of (outline, holes)
-        In the order in which the outlines were given.
-
-    Raises
-    ------
-    BodyFileError
-        If the same ring is drawn twice.
-    GeometryError
-        If a ring crosses itself or encloses no area.
-
-    Examples
-    --------
     >>> square = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
     >>> [(outline, hole)] = nested([square + 1.0, 3.0 * square], ["inner", "outer"])
     >>> float(outline.max()), float(hole[0].max())

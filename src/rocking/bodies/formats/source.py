@@ -26,23 +26,6 @@ class Placement(TypedDict, total=False):
 def blamed(where: str) -> Iterator[None]:
     """Put a place in front of every refusal that is raised inside.
 
-    Parameters
-    ----------
-    where : str
-        File, table or feature that the values come from.
-
-    Yields
-    ------
-    None
-        Nothing.
-
-    Raises
-    ------
-    RockingError
-        What was raised inside, with the place in front; a missing extra as it is.
-
-    Examples
-    --------
     >>> with blamed("pier.toml"):
     ...     raise BodyFileError("no [section]")
     Traceback (most recent call last):
@@ -60,25 +43,6 @@ def blamed(where: str) -> Iterator[None]:
 def readable(path: Path) -> Iterator[None]:
     """Make a refusal of whatever else a body file provokes; where it came from stays chained.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Yields
-    ------
-    None
-        Nothing.
-
-    Raises
-    ------
-    BodyFileError
-        In place of any error that is not this package's own.
-    RockingError
-        This package's own, as it is.
-
-    Examples
-    --------
     >>> with readable(Path("drum.ply")):
     ...     raise IndexError("list index out of range")
     Traceback (most recent call last):
@@ -96,22 +60,7 @@ def readable(path: Path) -> Iterator[None]:
 def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:
     """Return the path of a regular file of acceptable size.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    limit : int
-        Size above which it is refused [byte].
-
-    Returns
-    -------
-    Path
-        The same path.
-
-    Raises
-    ------
-    BodyFileError
-        If there is no such file, or it is too large.
+    limit: size above which it is refused [byte].
     """
     try:
         found, size = path.is_file(), path.stat().st_size
@@ -129,22 +78,7 @@ def checked_file(path: Path, limit: int = LARGEST_FILE) -> Path:
 def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
     """Return the text of a UTF-8 file.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    limit : int
-        Size above which it is refused [byte].
-
-    Returns
-    -------
-    str
-        Its text, without a byte order mark.
-
-    Raises
-    ------
-    BodyFileError
-        If it cannot be read, is too large, or is not UTF-8 text.
+    limit: size above which it is refused [byte]. Returns its text, without a byte order mark.
     """
     try:
         return checked_file(path, limit).read_text(encoding="utf-8-sig")
@@ -157,15 +91,7 @@ def read_text(path: Path, limit: int = LARGEST_FILE) -> str:
 def check_count(vertices: int) -> None:
     """Refuse a body of more vertices than the limit.
 
-    Parameters
-    ----------
-    vertices : int
-        Number of vertices [-].
-
-    Raises
-    ------
-    BodyFileError
-        If there are too many.
+    vertices: number of vertices [-].
     """
     if vertices > MOST_VERTICES:
         raise BodyFileError(f"has {vertices} vertices; a body may have up to {MOST_VERTICES}; simplify the outline")

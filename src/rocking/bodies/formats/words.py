@@ -33,20 +33,6 @@ _SHOWN.maxstring = _SHOWN.maxother = 60
 def suggestion(word: str, known: Iterable[str]) -> str:
     """Return what to say after an unknown word: the nearest known one and all that are allowed.
 
-    Parameters
-    ----------
-    word : str
-        The unknown word.
-    known : iterable of str
-        The words that are allowed.
-
-    Returns
-    -------
-    str
-        The end of a sentence.
-
-    Examples
-    --------
     >>> suggestion("heigth", ["height", "width"])
     '; did you mean height? Allowed: height, width'
     """
@@ -59,17 +45,7 @@ def suggestion(word: str, known: Iterable[str]) -> str:
 def sentence(error: "ValidationError", units: Any) -> str:
     """Return a validation error as one sentence with key path, value and allowed range.
 
-    Parameters
-    ----------
-    error : ValidationError
-        What pydantic found.
-    units : Any
-        Unit of length that the file states, or whatever stands there.
-
-    Returns
-    -------
-    str
-        The first problem, and how many more there are.
+    Returns the first problem, and how many more there are.
     """
     problems = error.errors(include_url=False)
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""

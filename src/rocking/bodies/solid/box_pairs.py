@@ -12,21 +12,11 @@ _CHUNK = 200_000
 def meeting_boxes(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
     """Return the pairs of boxes that have a point in common, a piece at a time.
 
-    The boxes are halved at the median of their middles, along the longest side of each half, down to single ones;
-    the tree is then walked against itself from its root. Memory stays bounded, however many pairs there are.
+    The boxes are halved at the median of their middles, along the longest side of each half, down to single ones; the
+    tree is then walked against itself from its root. Memory stays bounded, however many pairs there are.
 
-    Parameters
-    ----------
-    low, high : ndarray, shape (n, 3)
-        Lowest and highest corners [m].
+    low, high: lowest and highest corners [m]. Returns numbers of the boxes; each pair comes once.
 
-    Yields
-    ------
-    first, second : ndarray of int
-        Numbers of the boxes; each pair comes once.
-
-    Examples
-    --------
     >>> low = np.array([[0.0, 0.0, 0.0], [0.5, 0.5, 0.5], [2.0, 0.0, 0.0]])
     >>> [sorted((int(i), int(j))) for a, b in meeting_boxes(low, low + 1.0) for i, j in zip(a, b, strict=True)]
     [[0, 1]]

@@ -11,23 +11,11 @@ _MOST_PAIRS = 2_000_000
 def inside(points: FloatArray, triangles: FloatArray) -> BoolArray:
     """Return which points lie inside a closed, oriented surface.
 
-    Upward faces above a point count +1, downward ones -1; inside, the sum is 1. Points and faces are sorted into
-    tiles of the plan first, so that each point meets the faces near its own plumb line only.
+    Upward faces above a point count +1, downward ones -1; inside, the sum is 1. Points and faces are sorted into tiles
+    of the plan first, so that each point meets the faces near its own plumb line only.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Points [m].
-    triangles : ndarray, shape (m, 3, 3)
-        Corners, counter-clockwise seen from outside [m].
+    points: points [m]; triangles: corners, counter-clockwise seen from outside [m].
 
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-        True inside; on the surface either.
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import box
     >>> inside(np.array([[0.1, 0.1, 0.5], [0.1, 0.1, 1.5]]), box(1.0, 1.0, 1.0).corners).tolist()
     [True, False]
@@ -38,20 +26,9 @@ def inside(points: FloatArray, triangles: FloatArray) -> BoolArray:
 def winding(points: FloatArray, triangles: FloatArray) -> FloatArray:
     """Return how many times a closed, oriented surface winds round each point.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Points [m].
-    triangles : ndarray, shape (m, 3, 3)
-        Corners, counter-clockwise seen from outside [m].
+    points: points [m]; triangles: corners, counter-clockwise seen from outside [m]. Returns 1 inside a body, 0 outside;
+    anything else where the surface overlaps itself or is inside out [-].
 
-    Returns
-    -------
-    ndarray, shape (n,)
-        1 inside a body, 0 outside; anything else where the surface overlaps itself or is inside out [-].
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import box
     >>> cube = box(1.0, 1.0, 1.0).corners
     >>> winding(np.array([[0.1, 0.1, 0.5]]), np.concatenate([cube, cube])).tolist()

@@ -14,22 +14,7 @@ _LISTED = 3
 def boundary_loops(faces: IntArray, points: FloatArray) -> list[IntArray]:
     """Return the rings of edges that have a face on one side only.
 
-    Parameters
-    ----------
-    faces : ndarray of int, shape (m, 3)
-        Triangles of a welded surface, neighbours turned the same way.
-    points : ndarray, shape (n, 3)
-        Vertices [m].
-
-    Returns
-    -------
-    list of ndarray of int
-        Vertices of each ring, in the sense that the missing faces would have.
-
-    Raises
-    ------
-    GeometryError
-        If the open edges form no simple rings.
+    points: vertices [m]. Returns vertices of each ring, in the sense that the missing faces would have.
     """
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     _, inverse, counts = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
@@ -59,17 +44,7 @@ def boundary_loops(faces: IntArray, points: FloatArray) -> list[IntArray]:
 def holes_sentence(loops: list[IntArray], points: FloatArray) -> str:
     """Return what a user must know about the holes of a surface.
 
-    Parameters
-    ----------
-    loops : list of ndarray of int
-        Rings of the holes.
-    points : ndarray, shape (n, 3)
-        Vertices in the user's coordinates [m].
-
-    Returns
-    -------
-    str
-        The sentence: how many, how large, where.
+    points: vertices in the user's coordinates [m]. Returns the sentence: how many, how large, where.
     """
     order = sorted(loops, key=lambda ring: -_width(points[ring]))
     listed = "; ".join(
@@ -87,28 +62,7 @@ def holes_sentence(loops: list[IntArray], points: FloatArray) -> str:
 def filled(points: FloatArray, faces: IntArray, loops: list[IntArray], said: list[str]) -> tuple[FloatArray, IntArray]:
     """Return the surface with a fan of triangles over each hole.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Vertices [m].
-    faces : ndarray of int, shape (m, 3)
-        Triangles.
-    loops : list of ndarray of int
-        Rings of the holes.
-    said : list of str
-        Receives a sentence.
-
-    Returns
-    -------
-    points : ndarray
-        Vertices with the middle of each hole added.
-    faces : ndarray of int
-        Triangles with the fans added.
-
-    Raises
-    ------
-    GeometryError
-        If the holes are more than 1 % of the surface.
+    points: vertices [m]. Returns points: vertices with the middle of each hole added.
     """
     if not loops:
         return points, faces

@@ -102,18 +102,7 @@ class SolidMoments:
 
 
 def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
-    """Return the moments of several parts together; holes have negative mass.
-
-    Parameters
-    ----------
-    parts : iterable of SolidMoments
-        The parts, in one frame.
-
-    Returns
-    -------
-    SolidMoments
-        Of the whole.
-    """
+    """Return the moments of several parts together; holes have negative mass."""
     listed = list(parts)
     masses = np.array([part.mass for part in listed])
     centres = np.array([part.centre for part in listed])
@@ -126,22 +115,13 @@ def combined(parts: Iterable[SolidMoments]) -> SolidMoments:
 def polyhedron_moments(triangles: FloatArray) -> SolidMoments:
     """Exact moments of the volume inside a closed surface of triangles (divergence theorem).
 
-    The surface is moved to the middle of its box first, so that nothing cancels far from the origin. Each triangle
-    (a, b, c) stands for the tetrahedron over it, of signed volume ``a.(b x c)/6`` and second moments
-    ``V/20 (a a^T + b b^T + c c^T + s s^T)``, ``s = a + b + c``.
+    The surface is moved to the middle of its box first, so that nothing cancels far from the origin. Each triangle (a,
+    b, c) stands for the tetrahedron over it, of signed volume ``a.(b x c)/6`` and second moments ``V/20 (a a^T + b b^T
+    + c c^T + s s^T)``, ``s = a + b + c``.
 
-    Parameters
-    ----------
-    triangles : ndarray, shape (n, 3, 3)
-        Corners [m], counter-clockwise seen from outside; inward faces count negative.
+    triangles: corners [m], counter-clockwise seen from outside; inward faces count negative. Returns of the volume,
+    unit weight; the volume is negative if the surface is inside out.
 
-    Returns
-    -------
-    SolidMoments
-        Of the volume, unit weight; the volume is negative if the surface is inside out.
-
-    Examples
-    --------
     >>> corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     >>> faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
     >>> round(6.0 * polyhedron_moments(corners[faces]).mass, 12)

@@ -18,16 +18,6 @@ def check_disjoint(parts: Sequence[Part]) -> None:
     """Refuse parts that overlap; shared faces are welcome.
 
     Two parts overlap if any of 20 x 20 x 20 points in the common box of both lies inside both.
-
-    Parameters
-    ----------
-    parts : sequence of Part
-        The parts, in one frame near the origin.
-
-    Raises
-    ------
-    GeometryError
-        Naming the two parts and about how much volume they share.
     """
     boxes = np.array([part.box() for part in parts])
     for i in range(len(parts)):

@@ -204,16 +204,6 @@ class Part:
 def replace_density(part: Part, density: float) -> Part:
     """Return the part with another density.
 
-    Parameters
-    ----------
-    part : Part
-        The part.
-    density : float
-        Density [kg/m3].
-
-    Returns
-    -------
-    Part
-        Same shape and place.
+    density: density [kg/m3]. Returns same shape and place.
     """
     return Part(part.shape, density, rotation=part.rotation, translation=part.translation)

@@ -20,42 +20,22 @@ _THINNEST = 1e-7
 
 @dataclass(frozen=True)
 class Piercing:
-    """Where faces of a surface pass through each other.
+    """Where faces of a surface pass through each other."""
 
-    Parameters
-    ----------
-    pairs : int
-        Pairs of faces that do.
-    place : ndarray, shape (3,)
-        Middle of the longest line in which two of them cross [m].
-    complete : bool
-        Whether every pair could be tried.
-    """
-
-    pairs: int
-    place: FloatArray
-    complete: bool
+    pairs: int  # pairs of faces that do
+    place: FloatArray  # middle of the longest line in which two of them cross [m]; shape (3,)
+    complete: bool  # whether every pair could be tried
 
 
 def pierced(triangles: FloatArray) -> Piercing:
     """Return where triangles pass through each other; those that share corners or edges, or touch, do not.
 
-    Two triangles cross if each has corners on both sides of the other's plane and the pieces of the common line of
-    both planes that lie in them overlap (T. Moeller, "A fast triangle-triangle intersection test", 1997), all by more
-    than 1e-6 of the size. Triangles in one plane do not cross, nor do those that are thinner than 1e-7 of the size.
+    Two triangles cross if each has corners on both sides of the other's plane and the pieces of the common line of both
+    planes that lie in them overlap (T. Moeller, "A fast triangle-triangle intersection test", 1997), all by more than
+    1e-6 of the size. Triangles in one plane do not cross, nor do those that are thinner than 1e-7 of the size.
 
-    Parameters
-    ----------
-    triangles : ndarray, shape (n, 3, 3)
-        Corners, the middle of their box near the origin [m].
+    triangles: corners, the middle of their box near the origin [m].
 
-    Returns
-    -------
-    Piercing
-        Number of pairs and one place.
-
-    Examples
-    --------
     >>> flat = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 2.0, 0.0]])
     >>> pierced(np.stack([flat, flat[:, [2, 1, 0]]])).pairs
     1

@@ -50,20 +50,7 @@ def rotation_about(axis: ArrayLike, angle: float) -> FloatArray:
 def rotation_matrix(value: ArrayLike | None) -> FloatArray:
     """Return `value` as a rotation matrix.
 
-    Parameters
-    ----------
-    value : array_like, shape (3, 3), or None
-        The matrix; None is no rotation [-].
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        A copy.
-
-    Raises
-    ------
-    GeometryError
-        If it is no rotation: not orthogonal, or a mirror.
+    value: the matrix; None is no rotation [-].
     """
     if value is None:
         return np.eye(3)

@@ -201,15 +201,7 @@ class Polyhedron(Shape):
 def open_edges(faces: IntArray) -> IntArray:
     """Return the directed edges that no face runs along the other way.
 
-    Parameters
-    ----------
-    faces : ndarray of int, shape (m, 3)
-        Triangles.
-
-    Returns
-    -------
-    ndarray of int, shape (n, 2)
-        Empty if the surface is closed and oriented.
+    Returns empty if the surface is closed and oriented.
     """
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
     base = int(edges.max(initial=0)) + 1

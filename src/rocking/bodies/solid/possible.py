@@ -19,22 +19,10 @@ def check_possible(parts: Sequence[Part]) -> None:
     """Refuse parts whose moments are not those of any mass inside their box and hull.
 
     The volume is above zero; the centre lies in the box, and for a mesh in the convex hull; the second moments J are
-    nowhere negative, which is the triangle inequality of the inertia ``tr(J) 1 - J``; and along each axis they are
-    at most ``m (c - low) (high - c)``, the greatest that masses between low and high with the centre c can have
-    (R. Bhatia, C. Davis, "A better bound on the variance", 2000).
+    nowhere negative, which is the triangle inequality of the inertia ``tr(J) 1 - J``; and along each axis they are at
+    most ``m (c - low) (high - c)``, the greatest that masses between low and high with the centre c can have (R.
+    Bhatia, C. Davis, "A better bound on the variance", 2000).
 
-    Parameters
-    ----------
-    parts : sequence of Part
-        The parts, in one frame near the origin.
-
-    Raises
-    ------
-    GeometryError
-        Naming the part and what is impossible.
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import box
     >>> check_possible([Part(box(1.0, 1.0, 4.0))])
     """

@@ -23,21 +23,11 @@ WELD = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Repaired:
-    """A closed surface and what was done to get it.
+    """A closed surface and what was done to get it."""
 
-    Parameters
-    ----------
-    shape : Polyhedron
-        The volume, the middle of its box at the origin.
-    middle : ndarray, shape (3,)
-        Where that middle lies in the given coordinates [m].
-    repairs : tuple of str
-        One sentence for each change; empty if the surface was fine.
-    """
-
-    shape: Polyhedron
-    middle: FloatArray
-    repairs: tuple[str, ...]
+    shape: Polyhedron  # the volume, the middle of its box at the origin
+    middle: FloatArray  # where that middle lies in the given coordinates [m]; shape (3,)
+    repairs: tuple[str, ...]  # one sentence for each change; empty if the surface was fine
 
 
 def repaired(
@@ -50,32 +40,10 @@ def repaired(
 ) -> Repaired:
     """Return the closed surface that triangles describe, with a sentence for every change.
 
-    Parameters
-    ----------
-    vertices : ndarray, shape (n, 3)
-        Vertices [m].
-    faces : ndarray of int, shape (m, 3)
-        Triangles.
-    weld_tolerance : float, optional
-        Vertices this close are merged [m]; by default equal ones, and if that leaves the surface open, those within
-        1e-6 of its size.
-    fill_holes : bool
-        Whether holes of less than 1 % of the surface may be closed.
-    place : callable
-        Turns a place in the given coordinates [m] into the words that the user reads.
+    vertices: vertices [m]; weld_tolerance: vertices this close are merged [m]; by default equal ones, and if that
+    leaves the surface open, those within 1e-6 of its size; place: turns a place in the given coordinates [m] into the
+    words that the user reads.
 
-    Returns
-    -------
-    Repaired
-        Shape and sentences.
-
-    Raises
-    ------
-    GeometryError
-        If the triangles do not enclose a volume and no small repair makes them, or pass through each other.
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import box
     >>> cube = box(1.0, 1.0, 1.0)
     >>> faces = cube.faces.copy()

@@ -24,21 +24,11 @@ _MOST_SAMPLES = 400_000
 def gauss_order(ratio: float) -> int:
     """Return the points a direction that a cell needs, from its size over its distance to the singular set.
 
-    The integrand is analytic within a Bernstein ellipse through the singular set; with ``z = 2/ratio`` its size is
-    ``z + sqrt(1 + z^2)``, and a rule of n points errs by that to the power -2n.
+    The integrand is analytic within a Bernstein ellipse through the singular set; with ``z = 2/ratio`` its size is ``z
+    + sqrt(1 + z^2)``, and a rule of n points errs by that to the power -2n.
 
-    Parameters
-    ----------
-    ratio : float
-        Diameter of the cell over its distance [-].
+    ratio: diameter of the cell over its distance [-].
 
-    Returns
-    -------
-    int
-        Points for 14 digits.
-
-    Examples
-    --------
     >>> gauss_order(1.0), gauss_order(0.1)
     (12, 5)
     """
@@ -51,24 +41,10 @@ def samples(
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Yield Gauss points of a closed surface in batches, cells split until each is smaller than its distance.
 
-    Parameters
-    ----------
-    surfaces : iterable of Surface
-        The surface, in a frame whose origin is the point B on the singular set [m].
-    distance : callable
-        Takes points (n, 3) and returns their distances to the singular set [m].
-    negligible : float
-        Cells whose cone over B counts less are not split further, in the unit of `bound` times m3.
-    bound : callable, optional
-        Takes points (n, 3) and returns what the integrand cannot exceed there; by default 1 [-].
+    surfaces: the surface, in a frame whose origin is the point B on the singular set [m]; distance: takes points (n, 3)
+    and returns their distances to the singular set [m]; bound: takes points (n, 3) and returns what the integrand
+    cannot exceed there; by default 1 [-]. Returns points [m] and weighted outward normals [m2] (shape (n, 3)).
 
-    Yields
-    ------
-    points, areas : ndarray, shape (n, 3)
-        Points [m] and weighted outward normals [m2].
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import box
     >>> batches = samples(box(1.0, 2.0, 3.0).surfaces(), lambda s: np.linalg.norm(s, axis=1), 1e-15)
     >>> volume = sum(float((points * areas).sum()) for points, areas in batches) / 3.0

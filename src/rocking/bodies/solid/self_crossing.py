@@ -22,18 +22,8 @@ _REPAIR = (
 def in_metres(place: FloatArray) -> str:
     """Return a place in words.
 
-    Parameters
-    ----------
-    place : ndarray, shape (3,)
-        The place [m].
+    place: the place [m].
 
-    Returns
-    -------
-    str
-        Coordinates with their unit.
-
-    Examples
-    --------
     >>> in_metres(np.array([0.5, 0.0, 2.0]))
     '(0.5, 0, 2) m'
     """
@@ -44,29 +34,13 @@ def check_crossings(triangles: FloatArray, said: Callable[[FloatArray], str] = i
     """Refuse a surface that passes through itself.
 
     Every pair of faces is tried, to a millionth of the size. Beside 500 faces, chosen by their area, the surface must
-    wind once or not at all round points on either side: that finds lobes that are inside out and overlaps that meet
-    in corners and edges of the mesh only. Not seen are such lobes where they take less than about a hundredth of the
+    wind once or not at all round points on either side: that finds lobes that are inside out and overlaps that meet in
+    corners and edges of the mesh only. Not seen are such lobes where they take less than about a hundredth of the
     surface, folds within one plane, which enclose nothing, and crossings shallower than a millionth of the size.
 
-    Parameters
-    ----------
-    triangles : ndarray, shape (n, 3, 3)
-        Corners of the faces of a closed, oriented surface [m].
-    said : callable
-        Turns a place [m] into the user's words.
+    triangles: corners of the faces of a closed, oriented surface [m]; said: turns a place [m] into the user's words.
+    Returns whether every pair of faces could be tried; False on surfaces of which tens of millions lie side by side.
 
-    Returns
-    -------
-    bool
-        Whether every pair of faces could be tried; False on surfaces of which tens of millions lie side by side.
-
-    Raises
-    ------
-    GeometryError
-        Saying where the surface passes through itself.
-
-    Examples
-    --------
     >>> from rocking.bodies.solid import box
     >>> check_crossings(box(1.0, 1.0, 4.0).corners)
     True

@@ -16,17 +16,10 @@ from rocking.portable import applied
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Footprint:
-    """What a shape leaves on the plane it may stand on.
+    """What a shape leaves on the plane it may stand on."""
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Corners that may touch the ground [m].
-    discs : tuple of (ndarray, float)
-        Centre [m] and radius [m] of round faces that may stand flat on it.
-    """
-
-    points: FloatArray
+    points: FloatArray  # corners that may touch the ground [m]; shape (n, 3)
+    # centre [m] and radius [m] of round faces that may stand flat on it
     discs: tuple[tuple[FloatArray, float], ...] = ()
 
 
@@ -142,27 +135,7 @@ class Shape(ABC):
 
 
 def vector(name: str, value: Any, unit: str = "m") -> FloatArray:
-    """Return `value` as three finite numbers.
-
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : array_like, shape (3,)
-        What the user gave.
-    unit : str
-        Unit that the error shows.
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        A copy.
-
-    Raises
-    ------
-    GeometryError
-        If these are not three finite numbers.
-    """
+    """Return `value` as three finite numbers."""
     array = checks.real_array(name, value, unit)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise GeometryError(f"{name} must be three finite numbers (x, y, z) [{unit}], got {value!r:.60}")
@@ -172,19 +145,7 @@ def vector(name: str, value: Any, unit: str = "m") -> FloatArray:
 def placed_points(points: FloatArray, rotation: FloatArray | None, translation: FloatArray | None) -> FloatArray:
     """Return points rotated, then translated.
 
-    Parameters
-    ----------
-    points : ndarray, shape (..., 3)
-        Points [m].
-    rotation : ndarray, shape (3, 3), optional
-        Rotation matrix [-].
-    translation : ndarray, shape (3,), optional
-        Displacement [m].
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        The placed points [m].
+    points: points [m]; rotation: rotation matrix [-]; translation: displacement [m]. Returns the placed points [m].
     """
     turned = points if rotation is None else applied(rotation, points)
     return turned if translation is None else turned + translation

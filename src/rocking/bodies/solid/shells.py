@@ -17,18 +17,6 @@ def turned_consistently(faces: IntArray, said: list[str]) -> IntArray:
     """Return the faces turned so that neighbours across an edge agree.
 
     In each connected piece the smaller number of faces is turned.
-
-    Parameters
-    ----------
-    faces : ndarray of int, shape (m, 3)
-        Triangles of a welded surface.
-    said : list of str
-        Receives a sentence if faces were turned.
-
-    Returns
-    -------
-    ndarray of int, shape (m, 3)
-        The same triangles.
     """
     first, second, disagree = _neighbours(faces)
     labels = _labels(len(faces), first, second)
@@ -45,24 +33,7 @@ def turned_consistently(faces: IntArray, said: list[str]) -> IntArray:
 def oriented_shells(points: FloatArray, faces: IntArray, said: list[str]) -> IntArray:
     """Return the faces with outer shells looking outward and shells inside others looking inward.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Vertices [m].
-    faces : ndarray of int, shape (m, 3)
-        Triangles of a closed surface, neighbours turned the same way.
-    said : list of str
-        Receives a sentence for what was turned, and for shells and cavities.
-
-    Returns
-    -------
-    ndarray of int, shape (m, 3)
-        The same triangles.
-
-    Raises
-    ------
-    GeometryError
-        If shells cross each other, or there are more than 200.
+    points: vertices [m].
     """
     labels = _labels(len(faces), *_neighbours(faces)[:2])
     count = int(labels.max()) + 1

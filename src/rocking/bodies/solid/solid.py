@@ -263,22 +263,8 @@ class Solid:
 def found_base(parts: Sequence[Part], tolerance: float) -> Base:
     """Return what parts stand on: the hull of their corners on the ground, or the round face there.
 
-    Parameters
-    ----------
-    parts : sequence of Part
-        The parts, the ground at z = 0.
-    tolerance : float
-        Corners this close to the ground stand on it [m].
-
-    Returns
-    -------
-    Base
-        A polygon, or a circle if everything else lies inside it.
-
-    Raises
-    ------
-    GeometryError
-        If there is no base with an area, or corners and round faces both reach out.
+    tolerance: corners this close to the ground stand on it [m]. Returns A polygon, or a circle if everything else lies
+    inside it.
     """
     prints = [part.footprint(0.0, tolerance) for part in parts]
     points = np.concatenate([print_[0] for print_ in prints])

@@ -17,76 +17,32 @@ class Surface(ABC):
 
     @abstractmethod
     def cells(self) -> FloatArray:
-        """Return the coarse cells that cover the surface once.
-
-        Returns
-        -------
-        ndarray, shape (n, ...)
-            The cells.
-        """
+        """Return the coarse cells that cover the surface once."""
 
     @abstractmethod
     def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return points that span each cell, with the area vectors they stand for.
 
-        Parameters
-        ----------
-        cells : ndarray, shape (n, ...)
-            Cells.
-
-        Returns
-        -------
-        points : ndarray, shape (n, m, 3)
-            The middle first [m].
-        areas : ndarray, shape (n, m, 3)
-            Outward normal times the area of the whole cell, as it is at each of the points [m2].
+        Returns points: the middle first [m] (shape (n, m, 3)); areas: outward normal times the area of the whole cell,
+        as it is at each of the points [m2] (shape (n, m, 3)).
         """
 
     @abstractmethod
     def split(self, cells: FloatArray) -> FloatArray:
-        """Return four cells for each.
-
-        Parameters
-        ----------
-        cells : ndarray, shape (n, ...)
-            Cells.
-
-        Returns
-        -------
-        ndarray, shape (4 n, ...)
-            Their quarters.
-        """
+        """Return four cells for each."""
 
     @abstractmethod
     def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
         """Return Gauss points of the cells with their area vectors.
 
-        Parameters
-        ----------
-        cells : ndarray, shape (n, ...)
-            Cells.
-        order : int
-            Points in each of the two directions.
-
-        Returns
-        -------
-        points, areas : ndarray, shape (n order^2, 3)
-            Points [m] and weighted outward normals [m2].
+        Returns points [m] and weighted outward normals [m2] (shape (n order^2, 3)).
         """
 
     @abstractmethod
     def triangles(self, divisions: int) -> FloatArray:
         """Return triangles that picture the surface.
 
-        Parameters
-        ----------
-        divisions : int
-            Divisions of a quarter turn, and of a flat piece.
-
-        Returns
-        -------
-        ndarray, shape (n, 3, 3)
-            Corners, counter-clockwise seen from outside [m].
+        Returns Corners, counter-clockwise seen from outside [m].
         """
 
 
@@ -94,15 +50,7 @@ class Surface(ABC):
 def gauss(order: int) -> tuple[FloatArray, FloatArray]:
     """Return the Gauss-Legendre rule on [0, 1].
 
-    Parameters
-    ----------
-    order : int
-        Number of points.
-
-    Returns
-    -------
-    nodes, weights : ndarray
-        Exact for polynomials of degree ``2 order - 1``.
+    Returns exact for polynomials of degree ``2 order - 1``.
     """
     nodes, weights = gauss_legendre(order)
     return 0.5 * (1.0 + nodes), 0.5 * weights
@@ -115,17 +63,8 @@ def gauss_triangle(order: int) -> tuple[FloatArray, FloatArray]:
     Towards the corner that the square collapses to, the nodes are those of the weight u (Gauss-Jacobi, by Golub and
     Welsch's eigenvalues), so that nothing of the order is lost to the collapse.
 
-    Parameters
-    ----------
-    order : int
-        Points in each direction, n.
-
-    Returns
-    -------
-    shares : ndarray, shape (n^2, 3)
-        Shares of the three corners [-].
-    weights : ndarray, shape (n^2,)
-        Weights of sum 1; exact for polynomials of degree ``2 n - 1``.
+    Returns shares: shares of the three corners [-] (shape (n^2, 3)); weights: weights of sum 1; exact for polynomials
+    of degree ``2 n - 1`` (shape (n^2,)).
     """
     k = np.arange(1.0, order)
     side = np.sqrt(k * (k + 1.0)) / (2.0 * k + 1.0)
@@ -141,15 +80,7 @@ def gauss_triangle(order: int) -> tuple[FloatArray, FloatArray]:
 def gauss_square(order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the product rule on the unit square.
 
-    Parameters
-    ----------
-    order : int
-        Points in each direction.
-
-    Returns
-    -------
-    u, v, weights : ndarray, shape (order^2,)
-        Nodes and weights.
+    Returns nodes and weights (shape (order^2,)).
     """
     nodes, weights = gauss(order)
     u, v = np.meshgrid(nodes, nodes, indexing="ij")
@@ -159,15 +90,7 @@ def gauss_square(order: int) -> tuple[FloatArray, FloatArray, FloatArray]:
 def area_vectors(triangles: FloatArray) -> FloatArray:
     """Return normals of triangles times their areas.
 
-    Parameters
-    ----------
-    triangles : ndarray, shape (n, 3, 3)
-        Corners [m].
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        Area vectors [m2].
+    triangles: corners [m]. Returns area vectors [m2].
     """
     a, b, c = np.moveaxis(triangles, 1, 0)
     vectors: FloatArray = 0.5 * np.cross(b - a, c - a)

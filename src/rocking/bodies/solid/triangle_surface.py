@@ -11,38 +11,21 @@ from rocking.portable import times
 
 @dataclass(frozen=True, eq=False)
 class TriangleSurface(Surface):
-    """Flat triangles.
+    """Flat triangles."""
 
-    Parameters
-    ----------
-    corners : ndarray, shape (n, 3, 3)
-        Corners, counter-clockwise seen from outside [m].
-    """
-
-    corners: FloatArray
+    corners: FloatArray  # corners, counter-clockwise seen from outside [m]; shape (n, 3, 3)
 
     def cells(self) -> FloatArray:
         """Return the triangles themselves.
 
-        Returns
-        -------
-        ndarray, shape (n, 3, 3)
-            Corners [m].
+        Returns corners [m].
         """
         return self.corners
 
     def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return centroid and corners of each triangle, with its area vector.
 
-        Parameters
-        ----------
-        cells : ndarray, shape (n, 3, 3)
-            Triangles [m].
-
-        Returns
-        -------
-        points, areas : ndarray, shape (n, 4, 3)
-            Points [m] and area vectors [m2].
+        cells: triangles [m]. Returns points [m] and area vectors [m2] (shape (n, 4, 3)).
         """
         points = np.concatenate([cells.mean(axis=1, keepdims=True), cells], axis=1)
         return points, np.repeat(area_vectors(cells)[:, None], 4, axis=1)
@@ -50,15 +33,7 @@ class TriangleSurface(Surface):
     def split(self, cells: FloatArray) -> FloatArray:
         """Return the four triangles between corners and midpoints.
 
-        Parameters
-        ----------
-        cells : ndarray, shape (n, 3, 3)
-            Triangles [m].
-
-        Returns
-        -------
-        ndarray, shape (4 n, 3, 3)
-            Their quarters.
+        cells: triangles [m].
         """
         a, b, c = np.moveaxis(cells, 1, 0)
         ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
@@ -68,17 +43,7 @@ class TriangleSurface(Surface):
     def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
         """Return Gauss points of a square collapsed onto each triangle.
 
-        Parameters
-        ----------
-        cells : ndarray, shape (n, 3, 3)
-            Triangles [m].
-        order : int
-            Points in each direction.
-
-        Returns
-        -------
-        points, areas : ndarray, shape (n order^2, 3)
-            Points [m] and weighted area vectors [m2].
+        cells: triangles [m]. Returns points [m] and weighted area vectors [m2] (shape (n order^2, 3)).
         """
         shares, weights = gauss_triangle(order)
         points = times(shares, cells)
@@ -88,15 +53,7 @@ class TriangleSurface(Surface):
     def triangles(self, divisions: int) -> FloatArray:
         """Return the triangles, split until none is longer than the largest over `divisions`.
 
-        Parameters
-        ----------
-        divisions : int
-            Divisions of the longest edge.
-
-        Returns
-        -------
-        ndarray, shape (n, 3, 3)
-            Corners [m].
+        Returns corners [m].
         """
         cells, done = self.corners, []
         limit = 1.001 * float(_longest(cells).max()) / divisions

@@ -10,20 +10,8 @@ from rocking.conventions import FloatArray
 def triangulated(outline: FloatArray, holes: Sequence[FloatArray] = ()) -> FloatArray:
     """Return counter-clockwise triangles that fill a polygon.
 
-    Parameters
-    ----------
-    outline : ndarray, shape (n, 2)
-        Outer ring [m].
-    holes : sequence of ndarray
-        Inner rings [m].
+    outline: outer ring [m]; holes: inner rings [m]. Returns Corners, all of them corners of the polygon [m].
 
-    Returns
-    -------
-    ndarray, shape (m, 3, 2)
-        Corners, all of them corners of the polygon [m].
-
-    Examples
-    --------
     >>> len(triangulated(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])))
     2
     """

@@ -17,31 +17,15 @@ from rocking.conventions import BoolArray, FloatArray
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Meridian:
-    """One piece of the profile that is turned.
+    """One piece of the profile that is turned."""
 
-    Parameters
-    ----------
-    data : ndarray, shape (2, 2)
-        As `TurnedSurface` takes it.
-    arc : bool
-        Whether it is an arc of an ellipse.
-    """
-
-    data: FloatArray
-    arc: bool = False
+    data: FloatArray  # as `TurnedSurface` takes it; shape (2, 2)
+    arc: bool = False  # whether it is an arc of an ellipse
 
     def at(self, share: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return radius and height along the piece.
 
-        Parameters
-        ----------
-        share : ndarray
-            Position along it, 0 to 1 [-].
-
-        Returns
-        -------
-        radius, height : ndarray
-            Radius [-] and height [m].
+        share: position along it, 0 to 1 [-]. Returns radius [-] and height [m].
         """
         first, second = self.data
         if self.arc:
@@ -52,15 +36,7 @@ class Meridian:
     def scaled(self, size: float) -> "Meridian":
         """Return the piece with its heights times `size`, its radii as they are.
 
-        Parameters
-        ----------
-        size : float
-            Factor [-].
-
-        Returns
-        -------
-        Meridian
-            The piece of the larger or smaller shape.
+        size: factor [-]. Returns the piece of the larger or smaller shape.
         """
         factors = np.array([[1.0, 1.0], [size, size]] if self.arc else [[1.0, size], [1.0, size]])
         return Meridian(self.data * factors, self.arc)

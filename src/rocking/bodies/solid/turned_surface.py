@@ -12,36 +12,20 @@ from rocking.portable import times
 
 @dataclass(frozen=True, eq=False)
 class TurnedSurface(Surface):
-    """A meridian turned about the z axis, stretched to half axes, then placed.
+    """A meridian turned about the z axis, stretched to half axes, then placed."""
 
-    Parameters
-    ----------
-    meridian : ndarray, shape (2, 2)
-        Straight: (radius, height) at both ends [m]. Arc: its two polar angles from the top [rad] in the first
-        row, its height of centre and vertical half axis [m] in the second; the radius is then 1.
-    half_axes : (float, float)
-        Stretch along x and y [-], or the half axes of the ellipse [m] for an arc.
-    arc : bool
-        Whether the meridian is an arc of an ellipse.
-    rotation : ndarray, shape (3, 3)
-        Rotation matrix [-].
-    translation : ndarray, shape (3,)
-        Displacement [m].
-    """
-
+    # straight: (radius, height) at both ends [m]. Arc: its two polar angles from the top [rad] in the first row, its
+    # height of centre and vertical half axis [m] in the second; the radius is then 1; shape (2, 2)
     meridian: FloatArray
-    half_axes: tuple[float, float]
-    arc: bool
-    rotation: FloatArray
-    translation: FloatArray
+    half_axes: tuple[float, float]  # stretch along x and y [-], or the half axes of the ellipse [m] for an arc
+    arc: bool  # whether the meridian is an arc of an ellipse
+    rotation: FloatArray  # rotation matrix [-]; shape (3, 3)
+    translation: FloatArray  # displacement [m]; shape (3,)
 
     def cells(self) -> FloatArray:
         """Return the whole turn in eight sectors, the meridian in pieces of at most an eighth of a turn.
 
-        Returns
-        -------
-        ndarray, shape (n, 4)
-            Ends (u0, u1) along the meridian, in shares of it, and (phi0, phi1) around [rad].
+        Returns ends (u0, u1) along the meridian, in shares of it, and (phi0, phi1) around [rad].
         """
         u = np.linspace(0.0, 1.0, 1 + max(1, math.ceil(self._sweep / (0.25 * math.pi) - 1e-9)))
         phi = np.linspace(0.0, 2.0 * math.pi, 9)
@@ -50,33 +34,14 @@ class TurnedSurface(Surface):
     def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the middle and eight points around of each cell, with area vectors.
 
-        Parameters
-        ----------
-        cells : ndarray, shape (n, 4)
-            Cells.
-
-        Returns
-        -------
-        points, areas : ndarray, shape (n, 9, 3)
-            Points [m] and area vectors [m2].
+        Returns points [m] and area vectors [m2] (shape (n, 9, 3)).
         """
         ends = np.array([0.5, 0.0, 1.0])
         s, t = (grid.ravel() for grid in np.meshgrid(ends, ends, indexing="ij"))
         return self._at(cells, s, t)
 
     def split(self, cells: FloatArray) -> FloatArray:
-        """Return the quarters of each cell.
-
-        Parameters
-        ----------
-        cells : ndarray, shape (n, 4)
-            Cells.
-
-        Returns
-        -------
-        ndarray, shape (4 n, 4)
-            Their quarters.
-        """
+        """Return the quarters of each cell."""
         u0, u1, p0, p1 = cells.T
         um, pm = 0.5 * (u0 + u1), 0.5 * (p0 + p1)
         quarters = ((u0, um, p0, pm), (um, u1, p0, pm), (u0, um, pm, p1), (um, u1, pm, p1))
@@ -85,17 +50,7 @@ class TurnedSurface(Surface):
     def sample(self, cells: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
         """Return Gauss points of each cell, at least eight in each direction for the curvature's sake.
 
-        Parameters
-        ----------
-        cells : ndarray, shape (n, 4)
-            Cells.
-        order : int
-            Points in each direction.
-
-        Returns
-        -------
-        points, areas : ndarray, shape (n m^2, 3)
-            Points [m] and weighted area vectors [m2].
+        Returns points [m] and weighted area vectors [m2] (shape (n m^2, 3)).
         """
         u, v, weights = gauss_square(max(order, 8))
         points, areas = self._at(cells, u, v)
@@ -104,15 +59,7 @@ class TurnedSurface(Surface):
     def triangles(self, divisions: int) -> FloatArray:
         """Return two triangles for each patch of a regular net.
 
-        Parameters
-        ----------
-        divisions : int
-            Divisions of a quarter turn.
-
-        Returns
-        -------
-        ndarray, shape (n, 3, 3)
-            Corners [m]; none without area.
+        Returns corners [m]; none without area.
         """
         pieces = divisions * (math.ceil(self._sweep / (0.5 * math.pi) - 1e-9) if self.arc else 1)
         u, v = np.linspace(0.0, 1.0, pieces + 1), np.linspace(0.0, 1.0, 4 * divisions + 1)

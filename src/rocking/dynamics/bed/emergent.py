@@ -58,25 +58,7 @@ class Emergent:
 
 
 def emergent_of(setup: Setup, results: FloatArray, counts: IntArray) -> Emergent:
-    """Return the coefficients of restitution of an impact.
-
-    Parameters
-    ----------
-    setup : Setup
-        The impact.
-    results, counts : ndarray
-        Its rows of results.
-
-    Returns
-    -------
-    Emergent
-        The three measures.
-
-    Raises
-    ------
-    InvalidValueError
-        If the computation did not come to an end.
-    """
+    """Return the coefficients of restitution of an impact."""
     status = status_of(counts)
     if status in {BedStatus.FAILED, BedStatus.TOO_MANY_STEPS}:
         raise InvalidValueError(
@@ -96,18 +78,7 @@ def emergent_of(setup: Setup, results: FloatArray, counts: IntArray) -> Emergent
 
 
 def status_of(counts: IntArray) -> BedStatus:
-    """Return how a computation ended.
-
-    Parameters
-    ----------
-    counts : ndarray
-        Its row of whole numbers.
-
-    Returns
-    -------
-    BedStatus
-        The end.
-    """
+    """Return how a computation ended."""
     return tuple(BedStatus)[int(counts[COUNTS.index("status")])]
 
 

@@ -22,10 +22,7 @@ def _module() -> ModuleType | None:
 def available() -> bool:
     """Return whether the bed's fast engine was built with this installation.
 
-    Returns
-    -------
-    bool
-        True if it is there; otherwise the reference serves.
+    Returns true if it is there; otherwise the reference serves.
     """
     return _module() is not None
 
@@ -33,17 +30,7 @@ def available() -> bool:
 def one(setup: Setup, most_steps: int) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
     """Compute one impact with its history.
 
-    Parameters
-    ----------
-    setup : Setup
-        The impact.
-    most_steps : int
-        Steps after which it is given up.
-
-    Returns
-    -------
-    results, counts, samples, forces, intervals : ndarray
-        Columns `RESULTS`, `COUNTS`, `SAMPLES`; forces of the points at the samples [N]; contacts (point, on, off).
+    Returns columns `RESULTS`, `COUNTS`, `SAMPLES`; forces of the points at the samples [N]; contacts (point, on, off).
     """
     module = _module()
     assert module is not None
@@ -64,19 +51,7 @@ def one(setup: Setup, most_steps: int) -> tuple[FloatArray, IntArray, FloatArray
 def many(setups: Sequence[Setup], most_steps: int, threads: int) -> tuple[FloatArray, IntArray]:
     """Compute many impacts; no row sees another, so that threads do not change a bit.
 
-    Parameters
-    ----------
-    setups : sequence of Setup
-        The impacts.
-    most_steps : int
-        Steps after which one is given up.
-    threads : int
-        Threads that share the rows.
-
-    Returns
-    -------
-    results, counts : ndarray
-        Columns `RESULTS` and `COUNTS`, a row an impact.
+    Returns columns `RESULTS` and `COUNTS`, a row an impact.
     """
     module = _module()
     assert module is not None

@@ -19,30 +19,14 @@ class LawKind(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class LawNumbers:
-    """A law as both engines take it, after the mass of the body is known.
+    """A law as both engines take it, after the mass of the body is known."""
 
-    Parameters
-    ----------
-    kind : LawKind
-        Branch of the equations.
-    stiffness : float
-        Of one copy of the law [N/m, or N/m^exponent].
-    damping : float
-        Kelvin-Voigt dashpot [N s/m].
-    exponent : float
-        Power of the depth [-].
-    viscosity : float
-        Hunt-Crossley chi [s/m].
-    rebound : float
-        Velocity ratio of plastic unloading [-].
-    """
-
-    kind: LawKind
-    stiffness: float
-    damping: float = 0.0
-    exponent: float = 1.0
-    viscosity: float = 0.0
-    rebound: float = 1.0
+    kind: LawKind  # branch of the equations
+    stiffness: float  # of one copy of the law [N/m, or N/m^exponent]
+    damping: float = 0.0  # kelvin-Voigt dashpot [N s/m]
+    exponent: float = 1.0  # power of the depth [-]
+    viscosity: float = 0.0  # hunt-Crossley chi [s/m]
+    rebound: float = 1.0  # velocity ratio of plastic unloading [-]
 
 
 class ContactLaw(ABC):
@@ -75,25 +59,12 @@ class ContactLaw(ABC):
 def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatArray) -> FloatArray:
     """Return the force of one copy of a law, written without its branches.
 
-    Kelvin-Voigt ``F = max(0, k d + c d')``, Hunt-Crossley ``F = k d^n max(0, 1 + chi d')``, plastic unloading
-    ``F = max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0.
-    docs/theory.md, Section 13; Walton and Braun (1986) for the unloading branch.
+    Kelvin-Voigt ``F = max(0, k d + c d')``, Hunt-Crossley ``F = k d^n max(0, 1 + chi d')``, plastic unloading ``F =
+    max(0, min(k d, k / e^2 (d - d_p)))`` with the set ``d_p = (1 - e^2) d_max``; zero for d <= 0. docs/theory.md,
+    Section 13; Walton and Braun (1986) for the unloading branch.
 
-    Parameters
-    ----------
-    law : LawNumbers
-        The law.
-    depth : ndarray
-        Depths d of the points [m].
-    speed : ndarray
-        Their rates d', positive while they sink [m/s].
-    deepest : ndarray
-        Greatest depths so far; only plastic unloading remembers them [m].
-
-    Returns
-    -------
-    ndarray
-        Forces on the body, upwards [N].
+    depth: depths d of the points [m]; speed: their rates d', positive while they sink [m/s]; deepest: greatest depths
+    so far; only plastic unloading remembers them [m]. Returns forces on the body, upwards [N].
     """
     pressed = np.maximum(depth, 0.0)
     if law.kind is LawKind.KELVIN_VOIGT:
@@ -114,19 +85,8 @@ def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatA
 def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArray:
     """Return the elastic energy of one copy of a law.
 
-    Parameters
-    ----------
-    law : LawNumbers
-        The law.
-    depth : ndarray
-        Depths of the points [m].
-    deepest : ndarray
-        Greatest depths so far [m].
-
-    Returns
-    -------
-    ndarray
-        Energy that unloading would return [J].
+    depth: depths of the points [m]; deepest: greatest depths so far [m]. Returns energy that unloading would return
+    [J].
     """
     pressed = np.maximum(depth, 0.0)
     if law.kind is LawKind.PLASTIC:
@@ -140,17 +100,7 @@ def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArra
 def depth_under(law: LawNumbers, load: float) -> float:
     """Return how deep a static load presses one copy of a law.
 
-    Parameters
-    ----------
-    law : LawNumbers
-        The law.
-    load : float
-        Force on it [N].
-
-    Returns
-    -------
-    float
-        Depth; zero for a law without stiffness [m].
+    load: force on it [N]. Returns Depth; zero for a law without stiffness [m].
     """
     if law.stiffness == 0.0:
         return 0.0
@@ -160,21 +110,8 @@ def depth_under(law: LawNumbers, load: float) -> float:
 def depth_absorbing(law: LawNumbers, copies: float, energy: float, speed: float) -> float:
     """Return how deep the law goes to take up an energy at a steady speed: the scale of depths of an impact.
 
-    Parameters
-    ----------
-    law : LawNumbers
-        The law.
-    copies : float
-        Copies of it that work side by side [-].
-    energy : float
-        Energy of the impact [J].
-    speed : float
-        Landing speed [m/s].
-
-    Returns
-    -------
-    float
-        Depth [m].
+    copies: copies of it that work side by side [-]; energy: energy of the impact [J]; speed: landing speed [m/s].
+    Returns depth [m].
     """
     order = law.exponent + 1.0
     candidates = []

@@ -7,20 +7,9 @@ from rocking.dynamics.bed.scaled import ScaledImpact, resolved_coefficients
 def model_coefficients(bodies: FloatArray, bed: tuple[int, float, float, float]) -> FloatArray:
     """Return coefficients of restitution of bodies on one bed, resolved in time.
 
-    Parameters
-    ----------
-    bodies : ndarray, shape (n, 3)
-        Flatness, offset and height share, as in `ScaledImpact` [-].
-    bed : (int, float, float, float)
-        Points, damping, hardness and friction [-].
+    bodies: flatness, offset and height share, as in `ScaledImpact` [-]; bed: points, damping, hardness and friction
+    [-]. Returns theta_dot_after / theta_dot_before [-].
 
-    Returns
-    -------
-    ndarray, shape (n,)
-        theta_dot_after / theta_dot_before [-].
-
-    Examples
-    --------
     >>> import numpy as np
     >>> model_coefficients(np.array([[0.15, 0.0, 0.7]]), (2, 7.0, 300.0, 0.8)).round(2).tolist()
     [0.7]

@@ -23,13 +23,7 @@ Y, THETA, U, W, OMEGA, TRAVEL, BED_LOSS, FRICTION_LOSS, IMPULSE, MOMENT, SHEAR, 
 
 
 class Field:
-    """Right-hand side of an impact: state, losses and the deepest depths of the points.
-
-    Parameters
-    ----------
-    setup : Setup
-        The impact.
-    """
+    """Right-hand side of an impact: state, losses and the deepest depths of the points."""
 
     def __init__(self, setup: Setup) -> None:
         self.setup = setup
@@ -40,15 +34,7 @@ class Field:
     def points(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return depths, their rates and the forces of all points.
 
-        Parameters
-        ----------
-        x : ndarray
-            Extended state.
-
-        Returns
-        -------
-        depth, rate, force : ndarray
-            [m], [m/s], [N].
+        Returns [m], [m/s], [N].
         """
         at, heights = self.bed.positions, self.bed.heights
         if self.bed.kinematics == "small":
@@ -63,17 +49,7 @@ class Field:
     def forces(self, x: FloatArray) -> tuple[FloatArray, float, float]:
         """Return accelerations, shear force and normal force.
 
-        Parameters
-        ----------
-        x : ndarray
-            Extended state.
-
-        Returns
-        -------
-        accelerations : ndarray
-            Of u, w and theta_dot.
-        shear, normal : float
-            Along and across the ground [N].
+        Returns shear, normal: along and across the ground [N].
         """
         _, _, value = self.points(x)
         r, g, a = self.setup.rigid, self.setup.gravity, self.setup.push
@@ -124,15 +100,7 @@ class Field:
     def energy(self, x: FloatArray) -> tuple[float, float]:
         """Return mechanical and elastic energy.
 
-        Parameters
-        ----------
-        x : ndarray
-            Extended state.
-
-        Returns
-        -------
-        total, elastic : float
-            [J].
+        Returns [J].
         """
         r = self.setup.rigid
         m, h, u = r.mass, r.height, x[U] + r.height * x[OMEGA]
@@ -144,15 +112,7 @@ class Field:
         return kinetic + weight + push + elastic, elastic
 
     def settle(self, x: FloatArray, *, leaves: bool = False) -> None:
-        """Decide whether the base sticks, where it is at rest.
-
-        Parameters
-        ----------
-        x : ndarray
-            Extended state.
-        leaves : bool
-            Whether it has just been found to slide.
-        """
+        """Decide whether the base sticks, where it is at rest."""
         if self.kind is not FrictionKind.COULOMB:
             return
         self.slip = 0
@@ -166,19 +126,8 @@ def one(
 ) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
     """Compute one impact with its history.
 
-    Parameters
-    ----------
-    setup : Setup
-        The impact.
-    method : {"DOP853", "LSODA"}
-        An integrator of `scipy.integrate.solve_ivp`; "LSODA" for a stiff bed.
-    tolerance : float, optional
-        Relative error of a step, by default a thousandth of the setup's [-].
-
-    Returns
-    -------
-    results, counts, samples, forces, intervals : ndarray
-        As `fast.one`; contacts between the samples, which are not located.
+    tolerance: relative error of a step, by default a thousandth of the setup's [-]. Returns as `fast.one`; contacts
+    between the samples, which are not located.
     """
     from scipy.integrate import solve_ivp
 

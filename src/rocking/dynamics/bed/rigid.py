@@ -12,43 +12,19 @@ from rocking.dynamics.bed.contact_bed import ContactBed
 
 @dataclass(frozen=True)
 class RigidRocking:
-    """The body on rigid points: pivot, potential and inertia at each rotation.
+    """The body on rigid points: pivot, potential and inertia at each rotation."""
 
-    Parameters
-    ----------
-    mass, inertia : float
-        Mass [kg] and polar moment about the centre of mass [kg m2].
-    height : float
-        Height of the centre of mass over the base line [m].
-    gravity : float
-        Vertical acceleration g + a_z [m/s2].
-    bed : ContactBed
-        Points, profile and kinematics.
-    """
-
-    mass: float
+    mass: float  # mass, inertia: mass [kg] and polar moment about the centre of mass [kg m2]
     inertia: float
-    height: float
-    gravity: float
-    bed: ContactBed
+    height: float  # height of the centre of mass over the base line [m]
+    gravity: float  # vertical acceleration g + a_z [m/s2]
+    bed: ContactBed  # points, profile and kinematics
 
     @classmethod
     def of_body(cls, body: Body, bed: ContactBed, gravity: float) -> "RigidRocking":
         """Return the rigid rocking of a body.
 
-        Parameters
-        ----------
-        body : Body
-            The body.
-        bed : ContactBed
-            Its bed.
-        gravity : float
-            Vertical acceleration [m/s2].
-
-        Returns
-        -------
-        RigidRocking
-            The same on rigid points.
+        gravity: vertical acceleration [m/s2].
         """
         moments = body.local_moments
         return cls(moments.mass, moments.polar, moments.y, gravity, bed)
@@ -56,30 +32,14 @@ class RigidRocking:
     def pivot(self, rotation: float) -> int:
         """Return the point that touches at a rotation.
 
-        Parameters
-        ----------
-        rotation : float
-            theta, positive when the new foot is the pivot [rad].
-
-        Returns
-        -------
-        int
-            Its index.
+        rotation: theta, positive when the new foot is the pivot [rad].
         """
         return int(np.argmax(self._lifts(rotation)))
 
     def lift(self, rotation: float) -> float:
         """Return how far the base centre is above the ground at a rotation.
 
-        Parameters
-        ----------
-        rotation : float
-            theta [rad].
-
-        Returns
-        -------
-        float
-            Height of the base centre [m].
+        rotation: theta [rad]. Returns height of the base centre [m].
         """
         return float(self._lifts(rotation).max())
 
@@ -91,15 +51,7 @@ class RigidRocking:
     def potential(self, rotation: float) -> float:
         """Return the potential energy above standing upright on the bed.
 
-        Parameters
-        ----------
-        rotation : float
-            theta [rad].
-
-        Returns
-        -------
-        float
-            m g (lift + h (cos theta - 1)), zero at theta = 0 [J].
+        rotation: theta [rad]. Returns m g (lift + h (cos theta - 1)), zero at theta = 0 [J].
         """
         fall = 2.0 * self.height * math.sin(0.5 * rotation) ** 2
         return self.mass * self.gravity * (self.lift(rotation) - self.lift(0.0) - fall)
@@ -107,30 +59,14 @@ class RigidRocking:
     def inertia_about(self, point: int) -> float:
         """Return the inertia of rocking about a point.
 
-        Parameters
-        ----------
-        point : int
-            Index of the pivot.
-
-        Returns
-        -------
-        float
-            I_c + m (h^2 + s^2) [kg m2].
+        Returns I_c + m (h^2 + s^2) [kg m2].
         """
         return float(self.inertia + self.mass * (self.height**2 + self.bed.positions[point] ** 2))
 
     def support(self, rotation: float, velocity: float) -> float:
         """Return the force on the pivot while the body rocks.
 
-        Parameters
-        ----------
-        rotation, velocity : float
-            theta [rad] and its rate [rad/s].
-
-        Returns
-        -------
-        float
-            Vertical force [N].
+        rotation, velocity: theta [rad] and its rate [rad/s]. Returns vertical force [N].
         """
         point = self.pivot(rotation)
         s, h = float(self.bed.positions[point]), self.height
@@ -143,15 +79,7 @@ class RigidRocking:
     def furthest(self, side: float) -> float:
         """Return the rotation of greatest potential on one side: rigid rocking beyond it topples.
 
-        Parameters
-        ----------
-        side : float
-            +1 for the new foot, -1 for the old one.
-
-        Returns
-        -------
-        float
-            |theta|, at most pi/4 for a squat body [rad].
+        Returns |theta|, at most pi/4 for a squat body [rad].
         """
         reach = max(side * self.bed.ends[1 if side > 0 else 0], 0.0)
         angle = (

@@ -29,36 +29,18 @@ _TOLERANCES = (1e-8, 3e-8, 1e-7, 1e-6)
 class ScaledImpact:
     """A body on a Kelvin-Voigt bed, in numbers without units.
 
-    Parameters
-    ----------
-    flatness : float
-        1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-].
-    offset : float
-        Way from the plumb line back to the middle of the base, over w [-].
-    points : int
-        Contact points from foot to foot.
-    damping : float
-        Damping ratio of the whole bed [-].
-    hardness : float
-        Landing speed of the new foot times sqrt(k / m) over gravity [-].
-    friction : float
-        Coefficient of friction; infinite where the base cannot slide [-].
-    height_share : float
-        m h^2 / (I_C + m h^2): the height of the centre, which matters where the base slides [-].
-
-    Examples
-    --------
     >>> impact = ScaledImpact(flatness=0.15, offset=0.0, points=2, damping=1.0, hardness=300.0)
     >>> round(float(resolved_coefficients([impact])[0]), 2)
     0.7
     """
 
-    flatness: float
-    offset: float
-    points: int
-    damping: float
-    hardness: float
-    friction: float = math.inf
+    flatness: float  # 1 / (1 + rho), rho = (I_C + m h^2) / (m w^2), w half the distance of the feet [-]
+    offset: float  # way from the plumb line back to the middle of the base, over w [-]
+    points: int  # contact points from foot to foot
+    damping: float  # damping ratio of the whole bed [-]
+    hardness: float  # landing speed of the new foot times sqrt(k / m) over gravity [-]
+    friction: float = math.inf  # coefficient of friction; infinite where the base cannot slide [-]
+    # m h^2 / (I_C + m h^2): the height of the centre, which matters where the base slides [-]
     height_share: float = 0.7
 
     def __post_init__(self) -> None:
@@ -79,22 +61,7 @@ class ScaledImpact:
 def resolved_coefficients(impacts: Sequence[ScaledImpact], *, threads: int = 1) -> FloatArray:
     """Return coefficients of restitution resolved in time.
 
-    Parameters
-    ----------
-    impacts : sequence of ScaledImpact
-        Bodies on beds.
-    threads : int
-        Threads of the fast engine.
-
-    Returns
-    -------
-    ndarray
-        theta_dot_after / theta_dot_before, by the next peak [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If an impact did not end.
+    Returns theta_dot_after / theta_dot_before, by the next peak [-].
     """
     setups = [impact.setup for impact in impacts]
     r = np.full(len(setups), np.nan)

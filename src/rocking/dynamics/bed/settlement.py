@@ -12,21 +12,8 @@ from rocking.portable import dot
 def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: float) -> tuple[float, float]:
     """Return the static depth of the pivot and the elastic energy, all points that touch counted.
 
-    Parameters
-    ----------
-    rigid : RigidRocking
-        Body and bed.
-    law : LawNumbers
-        Contact law.
-    rotation : float
-        theta of the base [rad].
-    load : float
-        Vertical force [N].
-
-    Returns
-    -------
-    depth, energy : float
-        Below rigid rocking [m], and what the points store [J].
+    rotation: theta of the base [rad]; load: vertical force [N]. Returns below rigid rocking [m], and what the points
+    store [J].
     """
     bed, pivot = rigid.bed, rigid.pivot(rotation)
     tilt = rotation if bed.kinematics == "small" else math.sin(rotation)

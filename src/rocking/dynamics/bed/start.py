@@ -14,34 +14,20 @@ from rocking.errors import InvalidValueError
 
 @dataclass(frozen=True)
 class Start:
-    """State of the body when the computation begins, and the scales of the impact.
+    """State of the body when the computation begins, and the scales of the impact."""
 
-    Parameters
-    ----------
-    state : tuple of float
-        Base centre height y [m], rotation [rad], velocities u, w along and across the base [m/s],
-        rotation rate [rad/s].
-    landing_velocity : float
-        theta_dot of rigid rocking on the old foot as it reaches theta = 0 [rad/s].
-    energy : float
-        Kinetic energy of that rocking [J].
-    depth, speed, half_base : float
-        Scales of the impact: depth of the bed [m], speed of the new foot [m/s], half the bed's length [m].
-    old_foot, new_foot : int
-        Points that carry the body before and after.
-    impulsive : bool
-        Whether gravity is left out.
-    """
-
+    # base centre height y [m], rotation [rad], velocities u, w along and across the base [m/s], rotation rate [rad/s]
     state: tuple[float, float, float, float, float]
-    landing_velocity: float
-    energy: float
+    landing_velocity: float  # theta_dot of rigid rocking on the old foot as it reaches theta = 0 [rad/s]
+    energy: float  # kinetic energy of that rocking [J]
+    # depth, speed, half_base: scales of the impact: depth of the bed [m], speed of the new foot [m/s], half the bed's
+    # length [m]
     depth: float
     speed: float
     half_base: float
-    old_foot: int
+    old_foot: int  # old_foot, new_foot: points that carry the body before and after
     new_foot: int
-    impulsive: bool
+    impulsive: bool  # whether gravity is left out
 
 
 def start_of(
@@ -57,28 +43,8 @@ def start_of(
     With gravity the body starts as high as it must to land with the velocity asked for, at rest if half its range of
     rotations is enough, its old foot as deep in the bed as the support force asks. An impulsive impact starts flat.
 
-    Parameters
-    ----------
-    rigid : RigidRocking
-        The body on rigid points.
-    law : LawNumbers
-        Contact law.
-    rotation : float, optional
-        Rotation about the old foot at which the body is let go [rad].
-    angular_velocity : float, optional
-        theta_dot at which it lands [rad/s].
-    impulsive : bool
-        Whether gravity is left out.
-
-    Returns
-    -------
-    Start
-        State and scales.
-
-    Raises
-    ------
-    InvalidValueError
-        If not exactly one of rotation and velocity is given, or the impact is impossible.
+    rotation: rotation about the old foot at which the body is let go [rad]; angular_velocity: theta_dot at which it
+    lands [rad/s].
     """
     if (rotation is None) == (angular_velocity is None):
         raise InvalidValueError("give rotation or angular_velocity, one of them: each follows from the other")

@@ -31,30 +31,14 @@ SAMPLES: Final = (
 
 @dataclass(frozen=True)
 class Setup:
-    """One impact, ready to be computed.
+    """One impact, ready to be computed."""
 
-    Parameters
-    ----------
-    rigid : RigidRocking
-        Body and bed.
-    law : LawNumbers
-        Contact law under this body.
-    start : Start
-        Initial state and scales.
-    push : float
-        Horizontal ground acceleration [m/s2].
-    tolerance : float
-        Relative error of a step [-].
-    longest : float
-        Time after which the computation ends [s].
-    """
-
-    rigid: RigidRocking
-    law: LawNumbers
-    start: Start
-    push: float
-    tolerance: float
-    longest: float
+    rigid: RigidRocking  # body and bed
+    law: LawNumbers  # contact law under this body
+    start: Start  # initial state and scales
+    push: float  # horizontal ground acceleration [m/s2]
+    tolerance: float  # relative error of a step [-]
+    longest: float  # time after which the computation ends [s]
 
     @property
     def gravity(self) -> float:
@@ -73,18 +57,7 @@ class Setup:
 
 
 def numbers_of(setup: Setup) -> FloatArray:
-    """Return the row of numbers of an impact.
-
-    Parameters
-    ----------
-    setup : Setup
-        The impact.
-
-    Returns
-    -------
-    ndarray
-        As the fast engine reads it.
-    """
+    """Return the row of numbers of an impact."""
     r, law, start = setup.rigid, setup.law, setup.start
     _, coefficient, creep = r.bed.friction.numbers
     return np.array([
@@ -95,22 +68,7 @@ def numbers_of(setup: Setup) -> FloatArray:
 
 
 def choices_of(setup: Setup, first: int, most_steps: int) -> IntArray:
-    """Return the row of whole numbers of an impact.
-
-    Parameters
-    ----------
-    setup : Setup
-        The impact.
-    first : int
-        Where its points begin in the table of points.
-    most_steps : int
-        Steps after which it is given up.
-
-    Returns
-    -------
-    ndarray
-        As the fast engine reads it.
-    """
+    """Return the row of whole numbers of an impact."""
     bed, start = setup.rigid.bed, setup.start
     kind = int(bed.friction.numbers[0])
     exact = int(bed.kinematics == "exact")

@@ -13,25 +13,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PlanarEnergy:
-    """Energy in the frame of the ground.
+    """Energy in the frame of the ground."""
 
-    Parameters
-    ----------
-    time : ndarray
-        Times of the samples [s].
-    kinetic, potential : ndarray
-        Of the body; the potential one above where it stands [J].
-    work : ndarray
-        Done by the ground since the start [J].
-    lost_in_impacts, lost_in_friction : ndarray
-        Since the start [J].
-    """
-
-    time: FloatArray
-    kinetic: FloatArray
+    time: FloatArray  # times of the samples [s]
+    kinetic: FloatArray  # kinetic, potential: of the body; the potential one above where it stands [J]
     potential: FloatArray
-    work: FloatArray
-    lost_in_impacts: FloatArray
+    work: FloatArray  # done by the ground since the start [J]
+    lost_in_impacts: FloatArray  # lost_in_impacts, lost_in_friction: since the start [J]
     lost_in_friction: FloatArray
 
     @property
@@ -51,25 +39,13 @@ class PlanarEnergy:
 
 @dataclass(frozen=True)
 class PlanarForces:
-    """Forces of the ground on the body.
+    """Forces of the ground on the body."""
 
-    Parameters
-    ----------
-    time : ndarray
-        Times of the samples [s].
-    horizontal : ndarray
-        On both feet together, to the right [N].
-    left, right : ndarray
-        Vertical force on each foot [N].
-    usage : ndarray
-        |horizontal| over mu times the vertical force; zero in flight [-].
-    """
-
-    time: FloatArray
-    horizontal: FloatArray
-    left: FloatArray
+    time: FloatArray  # times of the samples [s]
+    horizontal: FloatArray  # on both feet together, to the right [N]
+    left: FloatArray  # left, right: vertical force on each foot [N]
     right: FloatArray
-    usage: FloatArray
+    usage: FloatArray  # |horizontal| over mu times the vertical force; zero in flight [-]
 
     @property
     def vertical(self) -> FloatArray:
@@ -78,18 +54,7 @@ class PlanarForces:
 
 
 def energy_of(response: "PlanarResponse") -> PlanarEnergy:
-    """Return the energy of a response.
-
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-
-    Returns
-    -------
-    PlanarEnergy
-        At its samples.
-    """
+    """Return the energy of a response."""
     mass, j = response.footing.mass, response.footing.inertia
     u, w, spin = response.horizontal_velocity, response.vertical_velocity, response.angular_velocity
     return PlanarEnergy(
@@ -105,15 +70,7 @@ def energy_of(response: "PlanarResponse") -> PlanarEnergy:
 def forces_of(response: "PlanarResponse") -> PlanarForces:
     """Return the forces of a response.
 
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-
-    Returns
-    -------
-    PlanarForces
-        At its samples, as limits from before.
+    Returns at its samples, as limits from before.
     """
     mass, friction = response.footing.mass, response.law.friction
     tangential = response.sampled("tangential")

@@ -24,17 +24,7 @@ _SAME = 1e-6
 def candidates(footing: Footing, state: State) -> list[Mode]:
     """Return the modes that the velocities allow.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state.
-
-    Returns
-    -------
-    list of Mode
-        Modes with most feet first, and those that stick before those that slide.
+    Returns modes with most feet first, and those that stick before those that slide.
     """
     resting = [foot for foot in state.touching if away(footing, state, foot) == 0.0]
     subsets = chain.from_iterable(combinations(resting, n) for n in range(len(resting), 0, -1))
@@ -48,38 +38,17 @@ def candidates(footing: Footing, state: State) -> list[Mode]:
 
 
 class Choice(NamedTuple):
-    """The mode that follows.
-
-    Parameters
-    ----------
-    mode : Mode
-        The mode.
-    tolerance : float
-        Below it, over their scale, coefficients counted as zero [-].
-    """
+    """The mode that follows."""
 
     mode: Mode
-    tolerance: float
+    tolerance: float  # below it, over their scale, coefficients counted as zero [-]
 
 
 def choose(footing: Footing, state: State, ground: Ground, friction: float) -> Choice | Status:
     """Return the mode that follows a state.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state, after impacts: no foot moves into the ground.
-    ground : Ground
-        The motion of the ground from there on; its unit of time is the natural time of the body.
-    friction : float
-        Coulomb's coefficient [-].
-
-    Returns
-    -------
-    Choice or Status
-        The mode; where there is none, or where two of them move the body differently, a status that says so.
+    friction: Coulomb's coefficient [-]. Returns the mode; where there is none, or where two of them move the body
+    differently, a status that says so.
     """
     weight = weight_of(ground)
     tried = [(mode, course(footing, state, mode, ground, friction, _ORDER)) for mode in candidates(footing, state)]
@@ -95,15 +64,7 @@ def choose(footing: Footing, state: State, ground: Ground, friction: float) -> C
 def weight_of(ground: Ground) -> float:
     """Return the acceleration that contact forces are measured by.
 
-    Parameters
-    ----------
-    ground : Ground
-        The motion of the ground.
-
-    Returns
-    -------
-    float
-        |g + a_z| + |a_x|, and at least a little [m/s2].
+    Returns |g + a_z| + |a_x|, and at least a little [m/s2].
     """
     return max(abs(ground.lift[0]) + abs(ground.push[0]), 1e-3)
 

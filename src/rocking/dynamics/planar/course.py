@@ -16,51 +16,22 @@ from rocking.dynamics.planar.turning import turning
 
 @dataclass(frozen=True)
 class Course:
-    """Series of a mode; the time within it runs from 0 to 1.
+    """Series of a mode; the time within it runs from 0 to 1."""
 
-    Parameters
-    ----------
-    unit : float
-        Duration of all [s].
-    rotation, x, rise : ndarray
-        theta [rad], x and rise of the centre [m].
-    tangential : ndarray
-        Total force of the ground to the right, per unit of mass [m/s2].
-    normals : dict of int to ndarray
-        Vertical force at each foot that carries, per unit of mass [m/s2].
-    sliding : ndarray, optional
-        Velocity of the feet that carry along the ground; None without feet [m/s].
-    gaps : dict of int to ndarray
-        Height of each foot that does not carry; over the base where one foot carries and so turned by theta [m, rad].
-    stiff : float
-        Below or at zero no force is possible (Painleve) [-].
-    """
-
-    unit: float
-    rotation: FloatArray
+    unit: float  # duration of all [s]
+    rotation: FloatArray  # rotation, x, rise: theta [rad], x and rise of the centre [m]
     x: FloatArray
     rise: FloatArray
-    tangential: FloatArray
+    tangential: FloatArray  # total force of the ground to the right, per unit of mass [m/s2]
+    # vertical force at each foot that carries, per unit of mass [m/s2]
     normals: dict[int, FloatArray] = field(default_factory=dict)
-    sliding: FloatArray | None = None
+    sliding: FloatArray | None = None  # velocity of the feet that carry along the ground; None without feet [m/s]
+    # height of each foot that does not carry; over the base where one foot carries and so turned by theta [m, rad]
     gaps: dict[int, FloatArray] = field(default_factory=dict)
-    stiff: float = 1.0
+    stiff: float = 1.0  # below or at zero no force is possible (Painleve) [-]
 
     def state(self, at: float, touching: tuple[int, ...]) -> State:
-        """Return the state at an instant.
-
-        Parameters
-        ----------
-        at : float
-            Time, from 0 to 1.
-        touching : tuple of int
-            Feet that touch the ground then.
-
-        Returns
-        -------
-        State
-            Positions and velocities.
-        """
+        """Return the state at an instant."""
         x, rise, rotation = (value(c, at) for c in (self.x, self.rise, self.rotation))
         u, w, spin = (value(derivative(c), at) / self.unit for c in (self.x, self.rise, self.rotation))
         return State(x, rise, rotation, u, w, spin, touching)
@@ -68,15 +39,7 @@ class Course:
     def shortened(self, part: float) -> "Course":
         """Return the beginning of the course.
 
-        Parameters
-        ----------
-        part : float
-            How much of it, in (0, 1].
-
-        Returns
-        -------
-        Course
-            The same series of a shorter unit.
+        Returns the same series of a shorter unit.
         """
         if part == 1.0:
             return self
@@ -97,25 +60,7 @@ class Course:
 def course(footing: Footing, state: State, mode: Mode, ground: Ground, friction: float, order: int) -> Course:
     """Return the course of a body in a mode.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state at the start.
-    mode : Mode
-        Which feet carry, and whether they slide.
-    ground : Ground
-        The motion of the ground.
-    friction : float
-        Coulomb's coefficient [-].
-    order : int
-        Highest power of theta.
-
-    Returns
-    -------
-    Course
-        Its series.
+    friction: Coulomb's coefficient [-].
     """
     if not mode.feet:
         return _flight(footing, state, ground, order)

@@ -38,18 +38,7 @@ _AFTER = 60.0
 class Planar:
     """One history.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    segments : Segments
-        The motion [m/s2].
-    law : ContactLaw
-        Friction and restitution.
-    settings : PlanarSettings
-        Gravity, limits, tolerance.
-    scale : float
-        Factor on the motion [-].
+    segments: the motion [m/s2]; scale: factor on the motion [-].
     """
 
     def __init__(
@@ -77,18 +66,7 @@ class Planar:
         self.latest: Course | None = None
 
     def run(self, state: State | None = None) -> History:
-        """Return the history from a state.
-
-        Parameters
-        ----------
-        state : State, optional
-            Position and velocity at time zero; standing at rest if not given.
-
-        Returns
-        -------
-        History
-            The history.
-        """
+        """Return the history from a state."""
         self.state = state or State()
         if any(away(self.footing, self.state, foot) < 0.0 for foot in self.state.touching):
             self._strike(FLIGHT)

@@ -24,17 +24,7 @@ IMPACT = np.dtype(
 def regimes_of(history: History, footing: Footing) -> np.ndarray:
     """Return the regimes of a history in order.
 
-    Parameters
-    ----------
-    history : History
-        The history.
-    footing : Footing
-        The body.
-
-    Returns
-    -------
-    ndarray
-        Of type `REGIME`; intervals of no duration are left out.
+    Returns of type `REGIME`; intervals of no duration are left out.
     """
     changes = history.log.changes
     ends = [*(time for time, _ in changes[1:]), history.end][: len(changes)]
@@ -57,18 +47,8 @@ def _distance(history: History, footing: Footing, mode: Mode, start: float, end:
 def impacts_of(history: History, footing: Footing) -> np.ndarray:
     """Return the impacts of a history in order.
 
-    Parameters
-    ----------
-    history : History
-        The history.
-    footing : Footing
-        The body.
-
-    Returns
-    -------
-    ndarray
-        Of type `IMPACT`. On a flat base only the sum of the impulses along the ground is determined; it is shared as
-        the vertical impulses are.
+    Returns of type `IMPACT`. On a flat base only the sum of the impulses along the ground is determined; it is shared
+    as the vertical impulses are.
     """
     rows = []
     for blow in history.log.blows:
@@ -85,17 +65,8 @@ def impacts_of(history: History, footing: Footing) -> np.ndarray:
 def places_of(history: History, time: FloatArray) -> FloatArray:
     """Return where the body is at some times.
 
-    Parameters
-    ----------
-    history : History
-        The history.
-    time : ndarray
-        Times within it [s].
-
-    Returns
-    -------
-    ndarray
-        x [m], rise [m] and theta [rad] along the last axis; at an instant between two pieces the later one counts.
+    time: times within it [s]. Returns x [m], rise [m] and theta [rad] along the last axis; at an instant between two
+    pieces the later one counts.
     """
     pieces = history.log.pieces
     if not pieces:

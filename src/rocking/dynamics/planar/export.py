@@ -42,15 +42,7 @@ _INTERVAL_UNITS = {"start": "s", "end": "s", "distance": "m"}
 def columns(response: "PlanarResponse") -> dict[str, FloatArray]:
     """Return the samples of a response by name.
 
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-
-    Returns
-    -------
-    dict of str to ndarray
-        All of one length, in the order of `COLUMNS`.
+    Returns all of one length, in the order of `COLUMNS`.
     """
     energy, forces = response.energy, response.forces
     values = (
@@ -63,18 +55,7 @@ def columns(response: "PlanarResponse") -> dict[str, FloatArray]:
 
 
 def provenance(response: "PlanarResponse") -> dict[str, Any]:
-    """Return what was computed from what, as plain values.
-
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-
-    Returns
-    -------
-    dict
-        Numbers and words.
-    """
+    """Return what was computed from what, as plain values."""
     from rocking.dynamics.export import software
 
     motion, law, footing = response.motion, response.law, response.footing
@@ -107,15 +88,7 @@ def provenance(response: "PlanarResponse") -> dict[str, Any]:
 def exported(response: "PlanarResponse") -> Exported:
     """Return what the files of a response hold.
 
-    Parameters
-    ----------
-    response : PlanarResponse
-        The response.
-
-    Returns
-    -------
-    Exported
-        Samples, impacts, intervals of one regime, and provenance.
+    Returns Samples, impacts, intervals of one regime, and provenance.
     """
     about = {name: (unit, words) for name, unit, words in COLUMNS}
     samples = {name: Quantity(values, *about[name]) for name, values in columns(response).items()}

@@ -20,45 +20,17 @@ BOTH = (LEFT, RIGHT)
 
 @dataclass(frozen=True)
 class Footing:
-    """Where the feet are, seen from the centre of mass.
+    """Where the feet are, seen from the centre of mass."""
 
-    Parameters
-    ----------
-    mass : float
-        Mass m [kg].
-    inertia : float
-        Polar moment about the centre over the mass, I_C / m [m2].
-    height : float
-        Height h of the centre above the ground when the body stands [m].
-    left, right : float
-        Horizontal distances of the feet from the centre, both above zero [m].
-    """
-
-    mass: float
-    inertia: float
-    height: float
-    left: float
+    mass: float  # mass m [kg]
+    inertia: float  # polar moment about the centre over the mass, I_C / m [m2]
+    height: float  # height h of the centre above the ground when the body stands [m]
+    left: float  # left, right: horizontal distances of the feet from the centre, both above zero [m]
     right: float
 
     @classmethod
     def of_body(cls, body: Body) -> "Footing":
-        """Return the footing of a body.
-
-        Parameters
-        ----------
-        body : Body
-            The body.
-
-        Returns
-        -------
-        Footing
-            Its levers and inertia.
-
-        Raises
-        ------
-        InvalidValueError
-            If it is no plane body.
-        """
+        """Return the footing of a body."""
         if not isinstance(body, Body):
             raise InvalidValueError(f"body must be a Block, Section or MassPoints, got {body!r:.60}")
         left, right = body.side("left"), body.side("right")
@@ -78,47 +50,21 @@ class Footing:
     def lever(self, foot: int) -> float:
         """Return the lever d of a foot.
 
-        Parameters
-        ----------
-        foot : int
-            -1 for the left one, +1 for the right one.
-
-        Returns
-        -------
-        float
-            Below zero for the left foot [m].
+        Returns below zero for the left foot [m].
         """
         return self.right if foot > 0 else -self.left
 
     def slenderness_angle(self, foot: int) -> float:
         """Return alpha = atan(b / h) of a side.
 
-        Parameters
-        ----------
-        foot : int
-            -1 or +1.
-
-        Returns
-        -------
-        float
-            The angle [rad].
+        Returns the angle [rad].
         """
         return math.atan2(abs(self.lever(foot)), self.height)
 
     def arm(self, foot: int, rotation: float) -> tuple[float, float]:
         """Return where a foot is, seen from the centre.
 
-        Parameters
-        ----------
-        foot : int
-            -1 or +1.
-        rotation : float
-            theta [rad].
-
-        Returns
-        -------
-        r_x, r_z : float
-            To the right and upwards [m].
+        rotation: theta [rad]. Returns to the right and upwards [m].
         """
         d, sine, cosine = self.lever(foot), math.sin(rotation), math.cos(rotation)
         return d * cosine - self.height * sine, -d * sine - self.height * cosine
@@ -126,16 +72,6 @@ class Footing:
     def rise_on(self, foot: int, rotation: float) -> float:
         """Return how far the centre is above its height at rest while a foot touches the ground.
 
-        Parameters
-        ----------
-        foot : int
-            -1 or +1.
-        rotation : float
-            theta [rad].
-
-        Returns
-        -------
-        float
-            ``d sin(theta) - 2 h sin(theta / 2)^2``, exactly zero at theta = 0 [m].
+        rotation: theta [rad]. Returns ``d sin(theta) - 2 h sin(theta / 2)^2``, exactly zero at theta = 0 [m].
         """
         return self.lever(foot) * math.sin(rotation) - 2.0 * self.height * math.sin(0.5 * rotation) ** 2

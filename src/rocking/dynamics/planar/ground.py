@@ -4,33 +4,14 @@ from typing import NamedTuple
 
 
 class Ground(NamedTuple):
-    """The ground over a unit of time.
+    """The ground over a unit of time."""
 
-    Parameters
-    ----------
-    push, lift : list of float
-        Coefficients of a_x and of g + a_z [m/s2].
-    unit : float
-        The unit of time [s].
-    """
-
-    push: list[float]
+    push: list[float]  # push, lift: coefficients of a_x and of g + a_z [m/s2]
     lift: list[float]
-    unit: float
+    unit: float  # the unit of time [s]
 
     def shortened(self, part: float) -> "Ground":
-        """Return the beginning of the same motion.
-
-        Parameters
-        ----------
-        part : float
-            How much of it, in (0, 1].
-
-        Returns
-        -------
-        Ground
-            Over a shorter unit.
-        """
+        """Return the beginning of the same motion."""
         if part == 1.0:
             return self
         push, lift = ([c * part**k for k, c in enumerate(series)] for series in (self.push, self.lift))

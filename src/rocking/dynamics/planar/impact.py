@@ -20,45 +20,19 @@ _ROUNDING = 1e-13
 
 
 class Struck(NamedTuple):
-    """What an impact does.
+    """What an impact does."""
 
-    Parameters
-    ----------
-    state : State
-        The state after it.
-    normal : dict of int to float
-        Vertical impulse at each foot, per unit of mass [m/s].
-    tangential : float
-        Sum of the impulses along the ground, per unit of mass [m/s].
-    slip : int
-        Direction in which the feet slide while they are struck; 0 if they stick.
-    """
-
-    state: State
-    normal: dict[int, float]
-    tangential: float
-    slip: int
+    state: State  # the state after it
+    normal: dict[int, float]  # vertical impulse at each foot, per unit of mass [m/s]
+    tangential: float  # sum of the impulses along the ground, per unit of mass [m/s]
+    slip: int  # direction in which the feet slide while they are struck; 0 if they stick
 
 
 def strike(footing: Footing, state: State, friction: float, bounce: dict[int, float]) -> Struck | Status:
     """Return what an impact does.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state before; the feet that it touches the ground with take part.
-    friction : float
-        Coulomb's coefficient [-].
-    bounce : dict of int to float
-        e_N of each foot that touches [-].
-
-    Returns
-    -------
-    Struck or Status
-        The state after it with the impulses; a status where there is no solution, where two of them differ, or where
-        energy would be created.
+    friction: Coulomb's coefficient [-]; bounce: e_N of each foot that touches [-]. Returns the state after it with the
+    impulses; a status where there is no solution, where two of them differ, or where energy would be created.
     """
     targets = {foot: -bounce[foot] * away(footing, state, foot) for foot in state.touching}
     speed = largest_speed(footing, state)
@@ -75,17 +49,7 @@ def strike(footing: Footing, state: State, friction: float, bounce: dict[int, fl
 def largest_speed(footing: Footing, state: State) -> float:
     """Return the size of the velocities from which those of the feet are differences.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state.
-
-    Returns
-    -------
-    float
-        By which their rounding is measured [m/s].
+    Returns by which their rounding is measured [m/s].
     """
     return max(abs(state.u), abs(state.w), footing.size * abs(state.spin))
 
@@ -160,19 +124,8 @@ def _differ(footing: Footing, one: State, other: State, speed: float) -> bool:
 def cleaned(footing: Footing, struck: Struck, stop: float) -> State:
     """Return the state after an impact with rounding taken out of velocities that are zero.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    struck : Struck
-        The impact.
-    stop : float
-        Velocities of a foot below this are zero [m/s].
-
-    Returns
-    -------
-    State
-        The state; its feet are still those that touched before.
+    stop: velocities of a foot below this are zero [m/s]. Returns the state; its feet are still those that touched
+    before.
     """
     state = struck.state
     resting = tuple(foot for foot in state.touching if abs(away(footing, state, foot)) <= stop)

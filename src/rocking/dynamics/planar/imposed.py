@@ -20,24 +20,9 @@ _ROUNDING = 1e-12
 def strike_with(footing: Footing, state: State, foot: int, friction: float, r: float) -> Struck | Status | None:
     """Return what a rocking impact does when its coefficient of restitution is imposed.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state before, flat on the ground and turning about the old foot, which may slide.
-    foot : int
-        The new foot.
-    friction : float
-        Coulomb's coefficient [-].
-    r : float
-        theta_dot_after / theta_dot_before of the impact without slip [-].
-
-    Returns
-    -------
-    Struck or Status or None
-        The state after it with the impulses; a status where energy would be created; None where an impulse at that
-        place would pull, or press the old foot into the ground.
+    friction: Coulomb's coefficient [-]; r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns
+    the state after it with the impulses; a status where energy would be created; None where an impulse at that place
+    would pull, or press the old foot into the ground.
     """
     place = foot * (1.0 - r) * (footing.inertia + footing.height**2)
     place /= abs(footing.lever(-foot)) + r * abs(footing.lever(foot))

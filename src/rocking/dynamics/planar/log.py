@@ -23,62 +23,30 @@ SAMPLED = (
 
 
 class Piece(NamedTuple):
-    """A smooth piece of the history.
+    """A smooth piece of the history."""
 
-    Parameters
-    ----------
-    start, duration : float
-        When it starts and how long it lasts [s].
-    course : Course
-        Its series.
-    at : float
-        Where it ends within the series, in (0, 1].
-    """
-
-    start: float
+    start: float  # start, duration: when it starts and how long it lasts [s]
     duration: float
-    course: Course
-    at: float
+    course: Course  # its series
+    at: float  # where it ends within the series, in (0, 1]
 
 
 class Blow(NamedTuple):
-    """An impact.
+    """An impact."""
 
-    Parameters
-    ----------
-    time : float
-        When [s].
-    before : State
-        The state before it.
-    struck : Struck
-        Impulses and state after it.
-    after : State
-        The state from which the history goes on.
-    loss : float
-        Energy lost, per unit of mass [J/kg].
-    """
-
-    time: float
-    before: State
-    struck: Struck
-    after: State
-    loss: float
+    time: float  # when [s]
+    before: State  # the state before it
+    struck: Struck  # impulses and state after it
+    after: State  # the state from which the history goes on
+    loss: float  # energy lost, per unit of mass [J/kg]
 
 
 @dataclass
 class Log:
-    """The record of a history, per unit of mass.
+    """The record of a history, per unit of mass."""
 
-    Parameters
-    ----------
-    count : int
-        Number of stretches of the motion; there is one sample more.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    """
-
-    count: int
-    gravity: float
+    count: int  # number of stretches of the motion; there is one sample more
+    gravity: float  # acceleration of gravity [m/s2]
     work: float = 0.0
     friction_loss: float = 0.0
     impact_loss: float = 0.0
@@ -97,18 +65,7 @@ class Log:
     def pass_through(self, start: float, course: Course, ground: Ground, at: float, friction: float) -> None:
         """Add a piece to the books.
 
-        Parameters
-        ----------
-        start : float
-            When it starts [s].
-        course : Course
-            Its series.
-        ground : Ground
-            The motion of the ground, over the same unit.
-        at : float
-            Where it ends, in (0, 1].
-        friction : float
-            Coulomb's coefficient [-].
+        start: when it starts [s]; friction: Coulomb's coefficient [-].
         """
         self.pieces.append(Piece(start, at * course.unit, course, at))
         lift = np.array(ground.lift)
@@ -135,21 +92,7 @@ class Log:
                 self.usage = max(self.usage, tangential / normal / friction if friction else 1.0)
 
     def sample(self, row: int, state: State, mode: Mode, course: Course | None, at: float) -> None:
-        """Write a sample.
-
-        Parameters
-        ----------
-        row : int
-            Its number.
-        state : State
-            The state.
-        mode : Mode
-            The mode up to then.
-        course : Course, optional
-            Where the forces are from.
-        at : float
-            Time within it.
-        """
+        """Write a sample."""
         if row > self.count:
             return
         forces = [0.0, 0.0, 0.0]
@@ -160,25 +103,14 @@ class Log:
         self.samples[row] = (*state[:6], *forces, *books, mode.regime.code)
 
     def strike(self, blow: Blow) -> None:
-        """Add an impact to the books.
-
-        Parameters
-        ----------
-        blow : Blow
-            The impact.
-        """
+        """Add an impact to the books."""
         self.blows.append(blow)
         self.impact_loss += blow.loss
 
     def change(self, time: float, mode: Mode) -> None:
         """Note that another mode starts.
 
-        Parameters
-        ----------
-        time : float
-            When [s].
-        mode : Mode
-            The mode.
+        time: when [s].
         """
         if self.changes and self.changes[-1][0] == time:
             self.changes.pop()

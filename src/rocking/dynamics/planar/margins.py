@@ -33,46 +33,19 @@ class Kind(Enum):
 
 
 class Margin(NamedTuple):
-    """A quantity that must not fall below zero.
+    """A quantity that must not fall below zero."""
 
-    Parameters
-    ----------
-    kind : Kind
-        What happens where it does.
-    series : ndarray
-        Its series.
-    exact : int
-        How many leading coefficients carry no rounding, so that their sign counts however small they are.
-    scale : float
-        Size that rounding of the others is measured by.
-    """
-
-    kind: Kind
+    kind: Kind  # what happens where it does
     series: FloatArray
-    exact: int
-    scale: float
+    exact: int  # how many leading coefficients carry no rounding, so that their sign counts however small they are
+    scale: float  # size that rounding of the others is measured by
 
 
 def margins(footing: Footing, mode: Mode, course: Course, friction: float, weight: float) -> list[Margin]:
     """Return what must stay above zero in a mode.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    mode : Mode
-        The mode.
-    course : Course
-        Its course.
-    friction : float
-        Coulomb's coefficient [-].
-    weight : float
-        Acceleration that forces are measured by, such as g + |a_x| + |a_z| [m/s2].
-
-    Returns
-    -------
-    list of Margin
-        The quantities.
+    friction: Coulomb's coefficient [-]; weight: acceleration that forces are measured by, such as g + |a_x| + |a_z|
+    [m/s2].
     """
     found = [Margin(Kind.RELEASE, normal, 0, weight) for normal in course.normals.values()]
     per_gap = weight * course.unit**2 / (1.0 if not mode.feet else footing.size)
@@ -94,19 +67,9 @@ def margins(footing: Footing, mode: Mode, course: Course, friction: float, weigh
 def leading(margin: Margin, stretch: float, tolerance: float) -> int:
     """Return which coefficient decides the sign of a margin a moment after the start.
 
-    Parameters
-    ----------
-    margin : Margin
-        The margin.
-    stretch : float
-        Duration of the course over the natural time of the body, so that all coefficients are measured alike [-].
-    tolerance : float
-        Below it, over the scale, a coefficient counts as zero [-].
-
-    Returns
-    -------
-    int
-        Its number; -1 where all of them vanish.
+    stretch: duration of the course over the natural time of the body, so that all coefficients are measured alike [-];
+    tolerance: below it, over the scale, a coefficient counts as zero [-]. Returns its number; -1 where all of them
+    vanish.
     """
     bound = tolerance * margin.scale
     for k, c in enumerate(margin.series[:_DEPTH].tolist()):
@@ -119,19 +82,8 @@ def leading(margin: Margin, stretch: float, tolerance: float) -> int:
 def consistent(found: list[Margin], stretch: float, tolerance: float) -> bool:
     """Return whether all margins are above zero, or zero, for a while.
 
-    Parameters
-    ----------
-    found : list of Margin
-        The margins of a mode.
-    stretch : float
-        Duration of the course over the natural time of the body [-].
-    tolerance : float
-        Below it a coefficient counts as zero [-].
-
-    Returns
-    -------
-    bool
-        Whether the mode can last.
+    stretch: duration of the course over the natural time of the body [-]; tolerance: below it a coefficient counts as
+    zero [-].
     """
     decisive = ((m, leading(m, stretch, tolerance)) for m in found)
     return all(k < 0 or m.series[k] > 0.0 for m, k in decisive)
@@ -140,21 +92,8 @@ def consistent(found: list[Margin], stretch: float, tolerance: float) -> bool:
 def first_end(found: list[Margin], stretch: float, tolerance: float) -> tuple[float, Kind] | None:
     """Return when the first margin falls below zero.
 
-    Parameters
-    ----------
-    found : list of Margin
-        The margins of a consistent mode.
-    stretch : float
-        Duration of the course over the natural time of the body [-].
-    tolerance : float
-        Below it a coefficient counts as zero [-].
-
-    Returns
-    -------
-    at : float
-        Time, in (0, 1].
-    kind : Kind
-        What happens; None instead of both where nothing does.
+    stretch: duration of the course over the natural time of the body [-]; tolerance: below it a coefficient counts as
+    zero [-]. Returns kind: what happens; None instead of both where nothing does.
     """
     first: tuple[float, Kind] | None = None
     for margin in found:

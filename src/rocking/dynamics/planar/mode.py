@@ -22,18 +22,10 @@ class Regime(Enum):
 
 
 class Mode(NamedTuple):
-    """One smooth piece of the motion.
+    """One smooth piece of the motion."""
 
-    Parameters
-    ----------
-    feet : tuple of int
-        Feet that carry: none, -1 (left), +1 (right) or both.
-    slip : int
-        Direction in which they slide: -1, 0 (they stick) or +1.
-    """
-
-    feet: tuple[int, ...]
-    slip: int = 0
+    feet: tuple[int, ...]  # feet that carry: none, -1 (left), +1 (right) or both
+    slip: int = 0  # direction in which they slide: -1, 0 (they stick) or +1
 
     @property
     def regime(self) -> Regime:

@@ -7,58 +7,21 @@ from rocking.portable import convolved
 
 
 def padded(series: list[float] | FloatArray, size: int) -> FloatArray:
-    """Return a series with zeros after it.
-
-    Parameters
-    ----------
-    series : list of float or ndarray
-        Coefficients from the power 0.
-    size : int
-        How many in all.
-
-    Returns
-    -------
-    ndarray
-        A new array.
-    """
+    """Return a series with zeros after it."""
     made = np.zeros(size)
     made[: len(series)] = series[:size]
     return made
 
 
 def derivative(series: FloatArray) -> FloatArray:
-    """Return the derivative of a series, of the same length.
-
-    Parameters
-    ----------
-    series : ndarray
-        Coefficients from the power 0.
-
-    Returns
-    -------
-    ndarray
-        Coefficients from the power 0.
-    """
+    """Return the derivative of a series, of the same length."""
     made = np.zeros(series.size)
     made[:-1] = series[1:] * np.arange(1, series.size)
     return made
 
 
 def value(series: FloatArray, at: float) -> float:
-    """Return the value of a series.
-
-    Parameters
-    ----------
-    series : ndarray
-        Coefficients from the power 0.
-    at : float
-        Where.
-
-    Returns
-    -------
-    float
-        The value.
-    """
+    """Return the value of a series."""
     total = 0.0
     for c in series[::-1].tolist():
         total = total * at + c
@@ -66,20 +29,7 @@ def value(series: FloatArray, at: float) -> float:
 
 
 def integral(first: FloatArray, second: FloatArray, at: float) -> float:
-    """Return the integral of a product of series from 0 to an instant.
-
-    Parameters
-    ----------
-    first, second : ndarray
-        Coefficients from the power 0.
-    at : float
-        Upper end.
-
-    Returns
-    -------
-    float
-        The integral.
-    """
+    """Return the integral of a product of series from 0 to an instant."""
     product = convolved(first, second)
     return at * value(product / np.arange(1, product.size + 1), at)
 
@@ -87,19 +37,8 @@ def integral(first: FloatArray, second: FloatArray, at: float) -> float:
 def twice(acceleration: FloatArray, start: float, rate: float, unit: float) -> FloatArray:
     """Return the position that follows from an acceleration.
 
-    Parameters
-    ----------
-    acceleration : ndarray
-        Coefficients over a unit of time [m/s2].
-    start, rate : float
-        Position [m] and velocity [m/s] at the start.
-    unit : float
-        The unit of time [s].
-
-    Returns
-    -------
-    ndarray
-        Coefficients of the position, as many [m].
+    acceleration: coefficients over a unit of time [m/s2]; start, rate: position [m] and velocity [m/s] at the start;
+    unit: the unit of time [s]. Returns coefficients of the position, as many [m].
     """
     made = np.zeros(acceleration.size)
     made[0], made[1] = start, rate * unit

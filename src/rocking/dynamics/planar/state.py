@@ -6,43 +6,23 @@ from rocking.dynamics.planar.footing import BOTH, Footing
 
 
 class State(NamedTuple):
-    """Where the body is and how it moves.
+    """Where the body is and how it moves."""
 
-    Parameters
-    ----------
-    x, rise, rotation : float
-        Displacement of the centre of mass to the right [m] and upwards [m] from where it stood, and theta [rad].
-    u, w, spin : float
-        Their rates [m/s, m/s, rad/s].
-    touching : tuple of int
-        Feet that touch the ground, exactly.
-    """
-
+    # x, rise, rotation: displacement of the centre of mass to the right [m] and upwards [m] from where it stood, and
+    # theta [rad]
     x: float = 0.0
     rise: float = 0.0
     rotation: float = 0.0
-    u: float = 0.0
+    u: float = 0.0  # u, w, spin: their rates [m/s, m/s, rad/s]
     w: float = 0.0
     spin: float = 0.0
-    touching: tuple[int, ...] = BOTH
+    touching: tuple[int, ...] = BOTH  # feet that touch the ground, exactly
 
 
 def along(footing: Footing, state: State, foot: int) -> float:
     """Return the velocity of a foot along the ground.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state.
-    foot : int
-        -1 or +1.
-
-    Returns
-    -------
-    float
-        v_t, to the right; exactly zero where the foot was made to stick [m/s].
+    Returns v_t, to the right; exactly zero where the foot was made to stick [m/s].
     """
     return state.u + footing.arm(foot, state.rotation)[1] * state.spin
 
@@ -50,19 +30,7 @@ def along(footing: Footing, state: State, foot: int) -> float:
 def away(footing: Footing, state: State, foot: int) -> float:
     """Return the velocity of a foot away from the ground.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state.
-    foot : int
-        -1 or +1.
-
-    Returns
-    -------
-    float
-        v_n, upwards; exactly zero where the foot was put to rest [m/s].
+    Returns v_n, upwards; exactly zero where the foot was put to rest [m/s].
     """
     return state.w - footing.arm(foot, state.rotation)[0] * state.spin
 
@@ -70,21 +38,7 @@ def away(footing: Footing, state: State, foot: int) -> float:
 def kept(footing: Footing, state: State, feet: tuple[int, ...], *, stick: bool) -> State:
     """Return the state with rounding taken out of what the contacts fix.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state.
-    feet : tuple of int
-        Feet that stay on the ground.
-    stick : bool
-        Whether they do not slide.
-
-    Returns
-    -------
-    State
-        With ``v_n = 0``, and ``v_t = 0`` if they stick, exactly.
+    Returns with ``v_n = 0``, and ``v_t = 0`` if they stick, exactly.
     """
     if not feet:
         return state
@@ -100,16 +54,6 @@ def kept(footing: Footing, state: State, feet: tuple[int, ...], *, stick: bool) 
 def kinetic(footing: Footing, state: State) -> float:
     """Return the kinetic energy in the frame of the ground, per unit of mass.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    state : State
-        Its state.
-
-    Returns
-    -------
-    float
-        ``(x'^2 + z'^2 + (I_C / m) theta'^2) / 2`` [J/kg].
+    Returns ``(x'^2 + z'^2 + (I_C / m) theta'^2) / 2`` [J/kg].
     """
     return 0.5 * (state.u**2 + state.w**2 + footing.inertia * state.spin**2)

@@ -9,19 +9,8 @@ from rocking.dynamics.planar.footing import Footing
 def stirring(footing: Footing, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:
     """Return the stretches in which a body at rest might be lifted or moved.
 
-    Parameters
-    ----------
-    footing : Footing
-        The body.
-    push, lift : ndarray, shape (n, degree + 1)
-        Coefficients of a_x and g + a_z [m/s2].
-    friction : float
-        Coulomb's coefficient [-].
-
-    Returns
-    -------
-    ndarray of int
-        Numbers of the stretches; in all others every margin stays above zero.
+    push, lift: coefficients of a_x and g + a_z [m/s2]; friction: Coulomb's coefficient [-]. Returns numbers of the
+    stretches; in all others every margin stays above zero.
     """
     turn = push * footing.height
     held = [lift * footing.right + turn, lift * footing.left - turn, friction * lift - push, friction * lift + push]

@@ -17,20 +17,12 @@ _SMALLEST = 1e-22
 
 
 class Turning(NamedTuple):
-    """Series over a unit of time.
+    """Series over a unit of time."""
 
-    Parameters
-    ----------
-    rotation, arm_x, arm_z : list of float
-        Coefficients of theta [rad] and of the arm [m].
-    stiff : float
-        ``j + r_x L`` at the start, over its value without friction; 1 for a foot that sticks [-].
-    """
-
-    rotation: list[float]
+    rotation: list[float]  # rotation, arm_x, arm_z: coefficients of theta [rad] and of the arm [m]
     arm_x: list[float]
     arm_z: list[float]
-    stiff: float
+    stiff: float  # ``j + r_x L`` at the start, over its value without friction; 1 for a foot that sticks [-]
 
 
 class _Stick:
@@ -82,28 +74,10 @@ def turning(
 ) -> Turning:
     """Return the series of a body that turns about one foot.
 
-    Parameters
-    ----------
-    inertia : float
-        j = I_C / m [m2].
-    arm : (float, float)
-        r_x and r_z at the start [m].
-    motion : (float, float)
-        theta [rad] and theta' [rad/s] at the start.
-    ground : (sequence of float, sequence of float, float)
-        Coefficients of a_x and of g + a_z over the unit of time [m/s2], and that unit [s].
-    pull : float, optional
-        ``sigma mu`` where the foot slides; None where it sticks [-].
-    order : int
-        Highest power of theta.
+    inertia: j = I_C / m [m2]; arm: r_x and r_z at the start [m]; motion: theta [rad] and theta' [rad/s] at the start;
+    ground: coefficients of a_x and of g + a_z over the unit of time [m/s2], and that unit [s]; pull: ``sigma mu`` where
+    the foot slides; None where it sticks [-].
 
-    Returns
-    -------
-    Turning
-        The series.
-
-    Examples
-    --------
     >>> found = turning(1.0, (0.0, -1.0), (0.0, 0.0), ([2.0], [10.0], 1.0), None, 2)
     >>> found.rotation  # theta'' = -a_x h / (j + h^2)
     [0.0, 0.0, -0.5]

@@ -13,18 +13,7 @@ Rows = list[list[Any]]
 
 
 def rows_of(products: Sequence[Sequence[Any]]) -> Rows:
-    """Return the rotation matrix that belongs to the products of the components of a quaternion.
-
-    Parameters
-    ----------
-    products : sequence of sequences
-        The products s s, s x, and so on, of numbers, arrays, or terms of a series; only the upper half is used.
-
-    Returns
-    -------
-    list of list
-        R, homogeneous of degree two.
-    """
+    """Return the rotation matrix that belongs to the products of the components of a quaternion."""
     (ss, sx, sy, sz), (_, xx, xy, xz), (_, _, yy, yz), (_, _, _, zz) = products
     return [
         [ss + xx - yy - zz, 2.0 * (xy - sz), 2.0 * (xz + sy)],
@@ -37,36 +26,15 @@ _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
 def cross(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the vector product, at a fraction of the cost of numpy's for single vectors.
-
-    Parameters
-    ----------
-    left, right : ndarray, shape (..., 3)
-        Vectors.
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        Their product.
-    """
+    """Return the vector product, at a fraction of the cost of numpy's for single vectors."""
     return np.asarray(left[..., _NEXT] * right[..., _LAST] - left[..., _LAST] * right[..., _NEXT])
 
 
 def matrix(quaternion: FloatArray) -> FloatArray:
     """Return the rotation matrices of quaternions.
 
-    Parameters
-    ----------
-    quaternion : ndarray, shape (..., 4)
-        Unit quaternions (s, x, y, z) [-].
+    quaternion: unit quaternions (s, x, y, z) [-]. Returns body axes to axes of the ground [-].
 
-    Returns
-    -------
-    ndarray, shape (..., 3, 3)
-        Body axes to axes of the ground [-].
-
-    Examples
-    --------
     >>> matrix(turn([0.0, 0.0, 1.0], 0.5 * math.pi)).round(12)[:, 0].tolist()  # a quarter turn takes x to y
     [0.0, 1.0, 0.0]
     """
@@ -78,17 +46,7 @@ def matrix(quaternion: FloatArray) -> FloatArray:
 def turn(axis: FloatArray | list[float], angle: float) -> FloatArray:
     """Return the quaternion of a rotation about an axis.
 
-    Parameters
-    ----------
-    axis : array_like, shape (3,)
-        Any length above zero [-].
-    angle : float
-        By the right hand [rad].
-
-    Returns
-    -------
-    ndarray, shape (4,)
-        Unit quaternion [-].
+    axis: any length above zero [-]; angle: by the right hand [rad]. Returns unit quaternion [-].
     """
     unit = np.asarray(axis, dtype=np.float64)
     unit = unit / norm(unit)
@@ -98,15 +56,7 @@ def turn(axis: FloatArray | list[float], angle: float) -> FloatArray:
 def product(left: FloatArray, right: FloatArray) -> FloatArray:
     """Return the rotation `right` followed by the rotation `left`, both in axes of the ground.
 
-    Parameters
-    ----------
-    left, right : ndarray, shape (4,)
-        Unit quaternions [-].
-
-    Returns
-    -------
-    ndarray, shape (4,)
-        Their Hamilton product [-].
+    left, right: unit quaternions [-]. Returns their Hamilton product [-].
     """
     scalar = left[0] * right[0] - dot(left[1:], right[1:])
     return np.concatenate([[scalar], left[0] * right[1:] + right[0] * left[1:] + cross(left[1:], right[1:])])
@@ -115,15 +65,7 @@ def product(left: FloatArray, right: FloatArray) -> FloatArray:
 def normalised(quaternion: FloatArray) -> FloatArray:
     """Return a quaternion of unit length.
 
-    Parameters
-    ----------
-    quaternion : ndarray, shape (4,)
-        Not zero [-].
-
-    Returns
-    -------
-    ndarray, shape (4,)
-        Of unit length [-].
+    quaternion: not zero [-]. Returns of unit length [-].
     """
     return np.asarray(quaternion / norm(quaternion))
 
@@ -131,15 +73,7 @@ def normalised(quaternion: FloatArray) -> FloatArray:
 def flat(quaternion: FloatArray) -> FloatArray:
     """Return the attitude of a body on its whole base: what is left of an attitude without its tilt.
 
-    Parameters
-    ----------
-    quaternion : ndarray, shape (4,)
-        Attitude, tilted by less than half a turn [-].
-
-    Returns
-    -------
-    ndarray, shape (4,)
-        Turned about the vertical only [-].
+    quaternion: attitude, tilted by less than half a turn [-]. Returns turned about the vertical only [-].
     """
     return normalised(np.array([quaternion[0], 0.0, 0.0, quaternion[3]]))
 
@@ -147,17 +81,7 @@ def flat(quaternion: FloatArray) -> FloatArray:
 def levelled(quaternion: FloatArray, axis: FloatArray) -> FloatArray:
     """Return an attitude turned by the least angle so that an axis of the body is horizontal.
 
-    Parameters
-    ----------
-    quaternion : ndarray, shape (4,)
-        Attitude [-].
-    axis : ndarray, shape (3,)
-        Unit vector in body axes, nearly horizontal [-].
-
-    Returns
-    -------
-    ndarray, shape (4,)
-        Attitude [-].
+    quaternion: attitude [-]; axis: unit vector in body axes, nearly horizontal [-]. Returns attitude [-].
     """
     direction = applied(matrix(quaternion), axis)
     rise = float(direction[2])
@@ -172,18 +96,8 @@ def levelled(quaternion: FloatArray, axis: FloatArray) -> FloatArray:
 def tilt(quaternion: FloatArray) -> FloatArray:
     """Return the angles between the axis of the body and the vertical.
 
-    Parameters
-    ----------
-    quaternion : ndarray, shape (..., 4)
-        Attitudes [-].
+    quaternion: attitudes [-]. Returns Tilt, from 0 to pi [rad].
 
-    Returns
-    -------
-    ndarray
-        Tilt, from 0 to pi [rad].
-
-    Examples
-    --------
     >>> round(float(tilt(turn([1.0, 1.0, 0.0], 0.3))), 12)
     0.3
     """
@@ -194,15 +108,7 @@ def tilt(quaternion: FloatArray) -> FloatArray:
 def azimuth(quaternion: FloatArray) -> FloatArray:
     """Return the directions in which bodies lean: of the horizontal part of their axis.
 
-    Parameters
-    ----------
-    quaternion : ndarray, shape (..., 4)
-        Attitudes [-].
-
-    Returns
-    -------
-    ndarray
-        From x towards y, in (-pi, pi]; zero for a body that does not lean [rad].
+    quaternion: attitudes [-]. Returns from x towards y, in (-pi, pi]; zero for a body that does not lean [rad].
     """
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
     return each(math.atan2, y * z - s * x, x * z + s * y)

@@ -19,15 +19,7 @@ _HALVINGS = 60
 
 
 class Course:
-    """The record of a history.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    settings : SpatialSettings
-        How it is integrated.
-    """
+    """The record of a history."""
 
     def __init__(self, body: SpatialBody, settings: SpatialSettings) -> None:
         self.body, self.settings = body, settings
@@ -49,18 +41,7 @@ class Course:
     ) -> None:
         """Keep an event.
 
-        Parameters
-        ----------
-        time : float
-            When [s].
-        kind : SpatialEventKind
-            What.
-        stance : Stance
-            On what the body stands from then on.
-        before, after : float
-            Kinetic energies [J].
-        impulses : ndarray, optional
-            Of an impact [N s].
+        time: when [s]; before, after: kinetic energies [J]; impulses: of an impact [N s].
         """
         self.events.append(
             SpatialEvent(time, kind, stance, before, after, np.zeros(0) if impulses is None else impulses)
@@ -71,16 +52,8 @@ class Course:
     ) -> None:
         """Keep a step, and what it says about tilt and fall.
 
-        Parameters
-        ----------
-        piece : Piece
-            The step.
-        until : float
-            Where it ends, in units of its length [-].
-        up, pivot : ndarray, shape (3,)
-            Vertical and point of contact in body axes at its end [-], [m].
-        vertical : ndarray, shape (order + 1,), optional
-            Series of the cosine of the tilt; None for a body at rest [-].
+        until: where it ends, in units of its length [-]; up, pivot: vertical and point of contact in body axes at its
+        end [-], [m]; vertical: series of the cosine of the tilt; None for a body at rest [-].
         """
         if until > 0.0 or not self.pieces:
             self.pieces.append(
@@ -100,21 +73,9 @@ class Course:
     ) -> tuple[Outcome, Status] | None:
         """Return how a history has ended, if it has.
 
-        Parameters
-        ----------
-        time : float
-            Now [s].
-        quaternion, velocity, pivot : ndarray
-            Attitude (4,) [-], angular velocity (3,) [rad/s] and point of contact (3,) in body axes [m].
-        final : bool, optional
-            Whether the motion is over; None where nothing more will be decided.
-
-        Returns
-        -------
-        outcome : Outcome
-            It lies, or it can no longer overturn: less energy is left than that takes.
-        status : Status
-            Good; None instead of both if it goes on.
+        time: now [s]; quaternion, velocity, pivot: attitude (4,) [-], angular velocity (3,) [rad/s] and point of
+        contact (3,) in body axes [m]. Returns outcome: it lies, or it can no longer overturn: less energy is left than
+        that takes; status: Good; None instead of both if it goes on.
         """
         up = attitude.matrix(quaternion)[2]
         if up[2] <= 0.0:
@@ -132,43 +93,16 @@ class Course:
     def falls(self, pivot: FloatArray, up: FloatArray) -> Outcome:
         """Return what a loss of contact means: a body whose centre is beyond its support falls.
 
-        Parameters
-        ----------
-        pivot, up : ndarray, shape (3,)
-            Point of contact and vertical in body axes [m], [-].
-
-        Returns
-        -------
-        Outcome
-            Overturned, or no result.
+        pivot, up: point of contact and vertical in body axes [m], [-].
         """
         return Outcome.OVERTURNED if _leaning_over(self.body, up, pivot) > 0.0 else Outcome.FAILED
 
     def calm(self) -> Outcome:
-        """Return how a history ends at rest.
-
-        Returns
-        -------
-        Outcome
-            Rocked, or never lifted.
-        """
+        """Return how a history ends at rest."""
         return Outcome.ROCKED if self.events else Outcome.NO_UPLIFT
 
     def trajectory(self, outcome: Outcome, status: Status) -> SpatialTrajectory:
-        """Return what was kept.
-
-        Parameters
-        ----------
-        outcome : Outcome
-            How it ended.
-        status : Status
-            Whether it could be computed.
-
-        Returns
-        -------
-        SpatialTrajectory
-            The history.
-        """
+        """Return what was kept."""
         failed, over = outcome is Outcome.FAILED, outcome is Outcome.OVERTURNED
         return SpatialTrajectory(
             pieces=self.pieces,

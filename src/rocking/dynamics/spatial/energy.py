@@ -21,16 +21,6 @@ def energy_of(response: "SpatialResponse") -> ResponseEnergy:
 
     The work of the ground is integrated along the history, -m a_g . v_C by Gauss's rule on every step of the engine;
     the losses are those of the impacts. Nothing is computed from the balance, so that the balance can be checked.
-
-    Parameters
-    ----------
-    response : SpatialResponse
-        The response.
-
-    Returns
-    -------
-    ResponseEnergy
-        At its samples.
     """
     body, time = response.body, response.time
     states, impacts = response.states, response.trajectory.impacts

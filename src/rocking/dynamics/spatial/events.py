@@ -23,43 +23,20 @@ NEARLY_FLAT = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """The series of a step, over a unit of time that is the step.
+    """The series of a step, over a unit of time that is the step."""
 
-    Parameters
-    ----------
-    length : float
-        Duration [s].
-    velocities : ndarray, shape (order + 1, 3)
-        Angular velocity in body axes [rad/s].
-    up : ndarray, shape (order + 1, 3)
-        Vertical in body axes [-].
-    field : ndarray, shape (3, degree + 1)
-        Gravity less the acceleration of the ground, in axes of the ground [m/s2].
-    heading : ndarray, shape (3,)
-        Where the edge of the stance points on the ground; zero without an edge [-].
-    """
-
-    length: float
-    velocities: FloatArray
-    up: FloatArray
+    length: float  # duration [s]
+    velocities: FloatArray  # angular velocity in body axes [rad/s]; shape (order + 1, 3)
+    up: FloatArray  # vertical in body axes [-]; shape (order + 1, 3)
+    # gravity less the acceleration of the ground, in axes of the ground [m/s2]; shape (3, degree + 1)
     field: FloatArray
-    heading: FloatArray
+    heading: FloatArray  # where the edge of the stance points on the ground; zero without an edge [-]; shape (3,)
 
 
 def watched(body: SpatialBody, stance: Stance) -> tuple[int, ...]:
     """Return the vertices whose gaps must be watched: the base is convex, so no other one closes before them.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    stance : Stance
-        On what it stands.
-
-    Returns
-    -------
-    tuple of int
-        Both neighbours of a vertex; the vertex farthest from an edge.
+    Returns both neighbours of a vertex; the vertex farthest from an edge.
     """
     count = len(body.vertices)
     if stance.contact is Contact.VERTEX and stance.points:
@@ -73,23 +50,7 @@ def watched(body: SpatialBody, stance: Stance) -> tuple[int, ...]:
 def first_contact(body: SpatialBody, stance: Stance, step: Step, touching: tuple[int, ...]) -> tuple[float, int] | None:
     """Return when a gap first closes.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body, with a polygon for a base.
-    stance : Stance
-        On what it stands.
-    step : Step
-        The step.
-    touching : tuple of int
-        Vertices that leave the ground at its start.
-
-    Returns
-    -------
-    at : float
-        Where, from 0 to 1.
-    vertex : int
-        Which; None instead of both if no gap closes.
+    Returns vertex: Which; None instead of both if no gap closes.
     """
     found: list[tuple[float, int]] = []
     floor = 0.5 * SLOW_OPENING * norm(step.field[:, 0]) * step.length**2
@@ -108,20 +69,8 @@ def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
     of the tilt: faster than gravity, for milliseconds. In truth the rim slips or hops by less than the gap under the
     base; here it is held down, without work, and the history says for how long.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        With a round base.
-    up : ndarray, shape (3,)
-        Vertical in body axes [-].
+    up: vertical in body axes [-]. Returns below 1 % of the slenderness angle.
 
-    Returns
-    -------
-    bool
-        Below 1 % of the slenderness angle.
-
-    Examples
-    --------
     >>> bottle = SpatialBody.cylinder(0.5, 2.0)
     >>> [nearly_flat(bottle, np.array([sine, 0.0, 1.0])) for sine in (1e-3, 1e-2)]
     [True, False]
@@ -130,22 +79,7 @@ def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
 
 
 def rim_events(body: SpatialBody, stance: Stance, step: Step) -> float | None:
-    """Return when a round base begins to roll, or lies flat.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        With a round base.
-    stance : Stance
-        A point of the rim, or rolling.
-    step : Step
-        The step.
-
-    Returns
-    -------
-    float, optional
-        Where, from 0 to 1.
-    """
+    """Return when a round base begins to roll, or lies flat."""
     if stance.contact is Contact.ROLLING:
         first = step.up[0, :2]
         sine = applied(step.up[:, :2], first) / norm(first)

@@ -17,18 +17,7 @@ _IMPACT_UNITS = {"time": "s", "energy_before": "J", "energy_after": "J", "impuls
 
 
 def columns(response: "SpatialResponse") -> dict[str, Quantity]:
-    """Return the samples of a response in space by name.
-
-    Parameters
-    ----------
-    response : SpatialResponse
-        The response.
-
-    Returns
-    -------
-    dict of str to Quantity
-        All of one length.
-    """
+    """Return the samples of a response in space by name."""
     energy, states = response.energy, response.states
     ground = response.ground.at(response.time)
     made = {"time": Quantity(response.time, "s", "time")}
@@ -51,15 +40,7 @@ def columns(response: "SpatialResponse") -> dict[str, Quantity]:
 def provenance(response: "SpatialResponse") -> dict[str, Any]:
     """Return what was computed from what, as plain values.
 
-    Parameters
-    ----------
-    response : SpatialResponse
-        The response.
-
-    Returns
-    -------
-    dict
-        Numbers, words and lists of numbers; ``overturning_direction_rad`` only where it overturned.
+    Returns Numbers, words and lists of numbers; ``overturning_direction_rad`` only where it overturned.
     """
     from rocking.dynamics.export import software
 
@@ -85,15 +66,7 @@ def provenance(response: "SpatialResponse") -> dict[str, Any]:
 def exported(response: "SpatialResponse") -> Exported:
     """Return what the files of a response in space hold.
 
-    Parameters
-    ----------
-    response : SpatialResponse
-        The response.
-
-    Returns
-    -------
-    Exported
-        Samples, impacts, intervals of one contact, and provenance.
+    Returns Samples, impacts, intervals of one contact, and provenance.
     """
     impacts = {name: Quantity(response.impacts[name], unit) for name, unit in _IMPACT_UNITS.items()}
     impacts["contact"] = Quantity(response.impacts["contact"], words="contact that stays")

@@ -23,37 +23,13 @@ from rocking.portable import applied, dot, inverse, powers
 
 
 def cross_of(products: Sequence[Sequence[float]]) -> list[float]:
-    """Return the vector product of two vectors, or a term of its series, from the products of their components.
-
-    Parameters
-    ----------
-    products : sequence of sequences of float
-        Every component of the first times every one of the second, 3 by 3.
-
-    Returns
-    -------
-    list of float
-        Their vector product.
-    """
+    """Return the vector product of two vectors, or a term of its series, from the products of their components."""
     (_, xy, xz), (yx, _, yz), (zx, zy, _) = products
     return [yz - zy, zx - xz, xy - yx]
 
 
 def turned(products: Sequence[Sequence[float]], share: float) -> list[float]:
-    """Return a term of q (0, w) / 2, the rate of a quaternion.
-
-    Parameters
-    ----------
-    products : sequence of sequences of float
-        Every component of q times every one of the angular velocity in body axes, 4 by 3.
-    share : float
-        Factor.
-
-    Returns
-    -------
-    list of float
-        The four components.
-    """
+    """Return a term of q (0, w) / 2, the rate of a quaternion."""
     (sx, sy, sz), (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = products
     half = 0.5 * share
     return [-half * (xx + yy + zz), half * (sx + yz - zy), half * (sy + zx - xz), half * (sz + xy - yx)]
@@ -64,17 +40,7 @@ def carried(quaternion: FloatArray, field: FloatArray) -> list[float]:
 
     They turn backwards, ``v' = v x w``, and each derivative of G(t) is what the one before changes by as well.
 
-    Parameters
-    ----------
-    quaternion : ndarray, shape (4,)
-        Attitude [-].
-    field : ndarray, shape (3, degree + 1)
-        G over the step, coefficients by power.
-
-    Returns
-    -------
-    list of float
-        The components of the vertical, of G, and of its derivatives.
+    quaternion: attitude [-]. Returns the components of the vertical, of G, and of its derivatives.
     """
     back, factorials = matrix(quaternion).T, np.multiply.accumulate([1.0, *range(1, field.shape[1])])
     vectors = [back[:, 2], *[applied(back, g) for g in (field * factorials).T]]
@@ -84,14 +50,7 @@ def carried(quaternion: FloatArray, field: FloatArray) -> list[float]:
 class PivotFlow:
     """Motion about a fixed point of the body, or about an axis through it.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    pivot : ndarray, shape (3,)
-        The fixed point, in body axes [m].
-    axis : ndarray, shape (3,), optional
-        Unit vector of a fixed axis, in body axes and horizontal [-].
+    pivot: the fixed point, in body axes [m]; axis: unit vector of a fixed axis, in body axes and horizontal [-].
     """
 
     def __init__(self, body: SpatialBody, pivot: FloatArray, axis: FloatArray | None = None) -> None:
@@ -106,25 +65,10 @@ class PivotFlow:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the Taylor series of a step, over a unit of time that is the step.
 
-        Parameters
-        ----------
-        quaternion : ndarray, shape (4,)
-            Attitude at the start [-].
-        velocity : ndarray, shape (3,)
-            Angular velocity in body axes at the start [rad/s].
-        length : float
-            Duration of the step [s].
-        field : ndarray, shape (3, degree + 1)
-            Gravity less the acceleration of the ground over the step, coefficients by power [m/s2].
-        order : int
-            Highest power.
-
-        Returns
-        -------
-        quaternions, velocities : ndarray, shape (order + 1, 4) and (order + 1, 3)
-            Coefficients by power.
-        up : ndarray, shape (order + 1, 3)
-            Coefficients of the vertical in body axes [-].
+        quaternion: attitude at the start [-]; velocity: angular velocity in body axes at the start [rad/s]; length:
+        duration of the step [s]; field: gravity less the acceleration of the ground over the step, coefficients by
+        power [m/s2]. Returns quaternions, velocities: coefficients by power (shape (order + 1, 4)); up: coefficients of
+        the vertical in body axes [-] (shape (order + 1, 3)).
         """
         inertia, mobility, (x, y, z) = self.gyroscopic.tolist(), self.mobility.tolist(), self.arm.tolist()
         w, state = velocity.tolist(), [*quaternion.tolist(), *carried(quaternion, field)]
@@ -148,20 +92,8 @@ class PivotFlow:
 def terms_needed(rate: float, most: int) -> int:
     """Return how many terms of an exponential series of a rate are above rounding.
 
-    Parameters
-    ----------
-    rate : float
-        Rate of change times the length of the step [-].
-    most : int
-        Never more than these.
+    rate: rate of change times the length of the step [-].
 
-    Returns
-    -------
-    int
-        Order of a Taylor step.
-
-    Examples
-    --------
     >>> terms_needed(0.01, 30), terms_needed(1.0, 30)
     (8, 20)
     """
@@ -175,19 +107,8 @@ def terms_needed(rate: float, most: int) -> int:
 def trusted_part(quaternions: FloatArray, velocities: FloatArray, length: float, tolerance: float) -> float:
     """Return the part of a step over which the last two terms of its series stay below a tolerance.
 
-    Parameters
-    ----------
-    quaternions, velocities : ndarray, shape (order + 1, 4) and (order + 1, 3)
-        Coefficients by power.
-    length : float
-        Duration of the step [s].
-    tolerance : float
-        For quaternions of unit length [-].
-
-    Returns
-    -------
-    float
-        From 0, where a coefficient is not finite, to 1.
+    length: duration of the step [s]; tolerance: for quaternions of unit length [-]. Returns from 0, where a coefficient
+    is not finite, to 1.
     """
     if not (np.isfinite(quaternions).all() and np.isfinite(velocities).all()):
         return 0.0
@@ -201,38 +122,12 @@ def trusted_part(quaternions: FloatArray, velocities: FloatArray, length: float,
 
 
 def value(series: FloatArray, at: float) -> FloatArray:
-    """Return the value of series of vectors.
-
-    Parameters
-    ----------
-    series : ndarray, shape (order + 1, n)
-        Coefficients by power.
-    at : float
-        Where, from 0 to 1.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        The value.
-    """
+    """Return the value of series of vectors."""
     if at == 1.0:
         return np.asarray(series[::-1].sum(axis=0))
     return np.asarray((powers(at, len(series))[:, None] * series)[::-1].sum(axis=0))
 
 
 def stretched(series: FloatArray, part: float) -> FloatArray:
-    """Return series over a part of their unit of time as series over a unit.
-
-    Parameters
-    ----------
-    series : ndarray, shape (order + 1, n)
-        Coefficients by power.
-    part : float
-        The part.
-
-    Returns
-    -------
-    ndarray
-        Coefficients by power.
-    """
+    """Return series over a part of their unit of time as series over a unit."""
     return series if part == 1.0 else series * powers(part, len(series))[:, None]

@@ -18,17 +18,10 @@ _SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class SpatialGround:
-    """Accelerations of the ground along x, y and z, from time zero on; at rest after the last stretch.
+    """Accelerations of the ground along x, y and z, from time zero on; at rest after the last stretch."""
 
-    Parameters
-    ----------
-    times : ndarray, shape (n + 1,)
-        Ends of the stretches; the first one is zero [s].
-    coefficients : ndarray, shape (n, 3, degree + 1)
-        Accelerations over each stretch by power, over a unit of time that is the stretch [m/s2].
-    """
-
-    times: FloatArray
+    times: FloatArray  # ends of the stretches; the first one is zero [s]; shape (n + 1,)
+    # accelerations over each stretch by power, over a unit of time that is the stretch [m/s2]; shape (n, 3, degree + 1)
     coefficients: FloatArray
 
     @property
@@ -44,17 +37,8 @@ class SpatialGround:
     def part(self, stretch: int, start: float, length: float) -> FloatArray:
         """Return the accelerations over a part of a stretch.
 
-        Parameters
-        ----------
-        stretch : int
-            Its number; beyond the last one the ground is at rest.
-        start, length : float
-            When the part starts, and its duration [s].
-
-        Returns
-        -------
-        ndarray, shape (3, degree + 1)
-            By power, over a unit of time that is the part [m/s2].
+        start, length: when the part starts, and its duration [s]. Returns by power, over a unit of time that is the
+        part [m/s2].
         """
         if stretch >= self.count:
             return np.zeros((3, 1))
@@ -67,15 +51,7 @@ class SpatialGround:
     def at(self, time: FloatArray) -> FloatArray:
         """Return the accelerations at some times.
 
-        Parameters
-        ----------
-        time : ndarray, shape (n,)
-            Times [s].
-
-        Returns
-        -------
-        ndarray, shape (n, 3)
-            Where a motion jumps, the value after the jump [m/s2].
+        time: times [s]. Returns where a motion jumps, the value after the jump [m/s2].
         """
         inside = (time >= 0.0) & (time < self.end)
         k = np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, max(self.count - 1, 0))
@@ -91,24 +67,9 @@ def ground_of(
 ) -> SpatialGround:
     """Return three motions with one clock as one.
 
-    Parameters
-    ----------
-    x, y, vertical : GroundMotion or Pulse, optional
-        Components; None for a direction without motion [m/s2].
-    until : float
-        When the ground is taken to stop, if that is before the motions end [s].
-    scale : float
-        Factor on all of them [-].
-
-    Returns
-    -------
-    SpatialGround
-        The motion; no stretches if there is none.
-
-    Raises
-    ------
-    InvalidValueError
-        If a component is none of these, or brings a vertical part of its own.
+    x, y, vertical: components; None for a direction without motion [m/s2]; until: when the ground is taken to stop, if
+    that is before the motions end [s]; scale: factor on all of them [-]. Returns the motion; no stretches if there is
+    none.
     """
     rows = [_component(name, motion) for name, motion in (("x", x), ("y", y), ("vertical", vertical))]
     ends = [times for times, _ in rows if times.size]

@@ -63,13 +63,7 @@ class SpatialImpactLaw(Protocol):
 
 @dataclass(frozen=True)
 class ModelLaw:
-    """A model of `rocking.restitution.spatial` as the law of a history.
-
-    Parameters
-    ----------
-    model : SpatialModel
-        The model.
-    """
+    """A model of `rocking.restitution.spatial` as the law of a history."""
 
     model: SpatialModel
 
@@ -89,15 +83,7 @@ class ModelLaw:
     ) -> FloatArray:
         """Return what the model's equation gives.
 
-        Parameters
-        ----------
-        body, before, after, axis, up, velocity
-            As in `SpatialImpactLaw`.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            Angular velocity after, in body axes [rad/s].
+        Returns angular velocity after, in body axes [rad/s].
         """
         onto = Corner(after) if axis is None else Edge(after, axis)
         return self.model.turned(LeaningImpact(body.moments, velocity, before, onto, up, body.matter))
@@ -115,24 +101,9 @@ def projected(
     The impulse acts at the new pivot B, so angular momentum about B stays: ``I_B w+ = I_C w- + m rho_B x (w- x
     rho_A)``; about an edge its component along the edge.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    before, after : ndarray, shape (3,)
-        Pivots before and after, in body axes [m].
-    axis : ndarray, shape (3,), optional
-        Unit vector of the new edge; None for a vertex [-].
-    velocity : ndarray, shape (3,)
-        Angular velocity before, in body axes [rad/s].
+    before, after: pivots before and after, in body axes [m]; axis: unit vector of the new edge; None for a vertex [-];
+    velocity: angular velocity before, in body axes [rad/s]. Returns angular velocity after, in body axes [rad/s].
 
-    Returns
-    -------
-    ndarray, shape (3,)
-        Angular velocity after, in body axes [rad/s].
-
-    Examples
-    --------
     >>> box = SpatialBody.box(1.0, 1.0, 4.0)  # corner to opposite corner: 59 / 71
     >>> diagonal = np.array([1.0, -1.0, 0.0])
     >>> ratio = projected(box, box.vertices[0], box.vertices[2], None, diagonal) / 59.0 * 71.0
@@ -148,13 +119,10 @@ class FixedSpatial:
     It is a ratio of magnitudes in every impact, from an edge to the parallel one as from a corner to any other, and
     never creates energy: a body that lands on its longer lever keeps at most what it had.
 
-    A vertex that only grazes the ground costs this share as well, which no real impact does: for bodies that turn
-    about edges, not for wobbling ones.
+    A vertex that only grazes the ground costs this share as well, which no real impact does: for bodies that turn about
+    edges, not for wobbling ones.
 
-    Parameters
-    ----------
-    coefficient : float
-        r, from 0 to 1 [-].
+    coefficient: r, from 0 to 1 [-].
     """
 
     def __init__(self, coefficient: float) -> None:
@@ -176,15 +144,7 @@ class FixedSpatial:
     ) -> FloatArray:
         """Return the scaled projection.
 
-        Parameters
-        ----------
-        body, before, after, axis, up, velocity
-            As in `SpatialImpactLaw`.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            Angular velocity after, in body axes [rad/s].
+        Returns angular velocity after, in body axes [rad/s].
         """
         made = projected(body, before, after, axis, velocity)
         left = body.kinetic(after, made)
@@ -198,27 +158,6 @@ class FixedSpatial:
 def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLaw:
     """Return an impact law.
 
-    Parameters
-    ----------
-    restitution : str, float, SpatialModel or SpatialImpactLaw
-        Name of a model in space, with or without "-3d", a coefficient from 0 to 1, a model, or a law.
-    body : SpatialBody, optional
-        The body that it is for.
-
-    Returns
-    -------
-    SpatialImpactLaw
-        The law.
-
-    Raises
-    ------
-    UnknownModelError
-        If there is no model of that name.
-    InvalidValueError
-        If it is none of these, or the model needs to know of what the body consists and the body does not.
-
-    Examples
-    --------
     >>> law_of("ked-3d", SpatialBody.box(1.0, 1.0, 4.0)).label
     'ked-3d'
     """

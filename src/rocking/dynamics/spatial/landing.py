@@ -23,21 +23,7 @@ def landed(body: SpatialBody, state: State, touching: tuple[int, ...], law: Spat
     Where no contact set is without pull (a vertex that grazes the ground while it moves fast along it would stick only
     if it were pulled down), the one with the least pull is taken; its impulses show it.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    state : State
-        Before the impact.
-    touching : tuple of int
-        Vertices on the ground.
-    law : SpatialImpactLaw
-        What it costs.
-
-    Returns
-    -------
-    Choice
-        What stays, and the angular velocity after.
+    Returns what stays, and the angular velocity after.
     """
     found = of_impact(body, state, touching, law)
     return found[0] if found else _least_pull(body, state, touching)
@@ -65,19 +51,7 @@ def stuck(body: SpatialBody, state: State, touching: tuple[int, ...]) -> Choice:
     A body that turns about the vertical on one corner while its neighbour chatters beside it comes to stick on both: in
     the limit both are at rest, and without slip nothing else is. Its impulses show the pull: in truth a corner slips.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        With a polygon for a base.
-    state : State
-        Before the impact.
-    touching : tuple of int
-        Vertices on the ground.
-
-    Returns
-    -------
-    Choice
-        Edge or face, after a plastic impact.
+    Returns edge or face, after a plastic impact.
     """
     stance = next(candidates(body, touching))
     velocity = np.zeros(3)
@@ -89,17 +63,7 @@ def stuck(body: SpatialBody, state: State, touching: tuple[int, ...]) -> Choice:
 def laid_down(body: SpatialBody, state: State) -> Choice | None:
     """Return a round base laid flat, where the ground would hold it there: rolling alone never comes to rest.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        With a round base.
-    state : State
-        Hardly any energy left.
-
-    Returns
-    -------
-    Choice, optional
-        At rest; None where it would be lifted at once.
+    Returns at rest; None where it would be lifted at once.
     """
     flat, still = stances.face(body), np.zeros(3)
     holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
@@ -109,19 +73,7 @@ def laid_down(body: SpatialBody, state: State) -> Choice | None:
 def rim_landed(body: SpatialBody, state: State, law: SpatialImpactLaw) -> Choice:
     """Return what the impact of a round base that falls flat leaves: its far side, or all of it.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        With a round base.
-    state : State
-        Before the impact; the pivot is on the rim.
-    law : SpatialImpactLaw
-        What it costs.
-
-    Returns
-    -------
-    Choice
-        What stays, and the angular velocity after.
+    Returns what stays, and the angular velocity after.
     """
     far = stances.rim(body, -state.pivot[:2])
     plastic = projected(body, state.pivot, far.pivot, None, state.velocity)
@@ -139,25 +91,8 @@ def settled(
 ) -> Choice:
     """Return what a body stands on once points that would fall back at once are taken to stay.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    state : State
-        After the impact, with the pivot of the choice.
-    choice : Choice
-        What the impact left.
-    touching : tuple of int
-        Vertices on the ground.
-    slow : float
-        Speed below which a point that leaves the ground counts as staying [m/s].
-    weak : bool
-        Whether so little energy is left that the whole base counts as touching.
-
-    Returns
-    -------
-    Choice
-        The same stance where forces hold it.
+    slow: speed below which a point that leaves the ground counts as staying [m/s]. Returns the same stance where forces
+    hold it.
     """
     if body.round:
         push = forces(body, stances.face(body), np.zeros(3), state.up, state.field)[1]
@@ -173,21 +108,8 @@ def settled(
 def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[Stance, tuple[int, ...]]:
     """Return the stance that initial conditions imply: the lowest of the touching points stay where they are.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    velocity : ndarray, shape (3,)
-        Angular velocity in body axes [rad/s].
-    up : ndarray, shape (3,)
-        Vertical in body axes [-].
-
-    Returns
-    -------
-    stance : Stance
-        Edge, vertex or rim; the face for a body that stands still on it.
-    touching : tuple of int
-        Vertices on the ground.
+    velocity: angular velocity in body axes [rad/s]; up: vertical in body axes [-]. Returns stance: Edge, vertex or rim;
+    the face for a body that stands still on it.
     """
     if body.round:
         return _started_round(body, velocity, up), ()

@@ -15,17 +15,10 @@ class Matter:
     """A solid and where it is in the axes of a body, made when somebody asks.
 
     Most models of an impact need mass, centre and inertia alone; those that need every mass point ask for this.
-
-    Parameters
-    ----------
-    make : callable
-        Returns the solid.
-    shift : ndarray, shape (3,)
-        Origin of the body's axes in the coordinates in which the solid is described [m].
     """
 
-    make: Callable[[], Solid]
-    shift: FloatArray
+    make: Callable[[], Solid]  # returns the solid
+    shift: FloatArray  # origin of the body's axes in the coordinates in which the solid is described [m]; shape (3,)
 
     @cached_property
     def placed(self) -> tuple[Solid, FloatArray]:
@@ -36,12 +29,7 @@ class Matter:
     def __call__(self) -> tuple[Solid, FloatArray]:
         """Return `placed`, as impacts ask for it.
 
-        Returns
-        -------
-        solid : Solid
-            The solid.
-        origin : ndarray, shape (3,)
-            Origin of its own frame in axes of the body [m].
+        Returns origin: origin of its own frame in axes of the body [m] (shape (3,)).
         """
         return self.placed
 
@@ -49,17 +37,7 @@ class Matter:
     def of_box(cls, width: float, depth: float, height: float, density: float) -> "Matter":
         """Return the matter of a box whose base is centred over the origin.
 
-        Parameters
-        ----------
-        width, depth, height : float
-            Full sizes along x, y and z [m].
-        density : float
-            Density [kg/m3].
-
-        Returns
-        -------
-        Matter
-            Of the box.
+        width, depth, height: full sizes along x, y and z [m]; density: density [kg/m3].
         """
         return cls(partial(_box, width, depth, height, density), np.zeros(3))
 
@@ -67,17 +45,7 @@ class Matter:
     def of_cylinder(cls, diameter: float, height: float, density: float) -> "Matter":
         """Return the matter of a cylinder whose base is centred over the origin.
 
-        Parameters
-        ----------
-        diameter, height : float
-            Full sizes [m].
-        density : float
-            Density [kg/m3].
-
-        Returns
-        -------
-        Matter
-            Of the cylinder.
+        diameter, height: full sizes [m]; density: density [kg/m3].
         """
         return cls(partial(_cylinder, diameter, height, density), np.zeros(3))
 
@@ -85,17 +53,7 @@ class Matter:
     def of_solid(cls, solid: Solid, shift: FloatArray) -> "Matter":
         """Return the matter of a solid.
 
-        Parameters
-        ----------
-        solid : Solid
-            The solid.
-        shift : ndarray, shape (3,)
-            Origin of the body's axes in the coordinates of the solid [m].
-
-        Returns
-        -------
-        Matter
-            The solid itself.
+        shift: origin of the body's axes in the coordinates of the solid [m].
         """
         return cls(partial(_same, solid), shift)
 

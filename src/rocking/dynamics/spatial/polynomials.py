@@ -16,19 +16,7 @@ NOTHING = 1e-13
 def first_zero(series: FloatArray, *, started: bool, floor: float = 0.0) -> float | None:
     """Return where a series first falls below zero.
 
-    Parameters
-    ----------
-    series : ndarray, shape (order + 1,)
-        Coefficients by power, over a unit of time.
-    started : bool
-        Whether it is a gap that has just opened: the zero at its start does not count.
-    floor : float
-        Then, size of its first two further coefficients that counts as zero.
-
-    Returns
-    -------
-    float, optional
-        From 0 to 1; None if it does not fall.
+    Returns from 0 to 1; None if it does not fall.
     """
     terms = series.tolist()
     if started:
@@ -48,50 +36,17 @@ def first_zero(series: FloatArray, *, started: bool, floor: float = 0.0) -> floa
 
 
 def cauchy(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the product of two series, up to the order of the first.
-
-    Parameters
-    ----------
-    left, right : ndarray, shape (order + 1,)
-        Coefficients by power.
-
-    Returns
-    -------
-    ndarray, shape (order + 1,)
-        Coefficients by power.
-    """
+    """Return the product of two series, up to the order of the first."""
     return convolved(left, right[: len(left)])[: len(left)]
 
 
 def dot(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the scalar product of two series of vectors.
-
-    Parameters
-    ----------
-    left, right : ndarray, shape (order + 1, n)
-        Coefficients by power.
-
-    Returns
-    -------
-    ndarray, shape (order + 1,)
-        Coefficients by power.
-    """
+    """Return the scalar product of two series of vectors."""
     return np.asarray(sum(cauchy(left[:, i], right[:, i]) for i in range(left.shape[1])))
 
 
 def square_root(square: FloatArray) -> FloatArray:
-    """Return the square root of a series that starts above zero.
-
-    Parameters
-    ----------
-    square : ndarray, shape (order + 1,)
-        Coefficients by power.
-
-    Returns
-    -------
-    ndarray, shape (order + 1,)
-        Coefficients by power.
-    """
+    """Return the square root of a series that starts above zero."""
     root = [math.sqrt(square[0])]
     for k, term in enumerate(square.tolist()[1:], 1):
         root.append((term - sum(map(mul, root[1:k], root[k - 1 : 0 : -1]))) / (2.0 * root[0]))
@@ -99,18 +54,5 @@ def square_root(square: FloatArray) -> FloatArray:
 
 
 def padded(series: FloatArray, count: int) -> FloatArray:
-    """Return a series of another length.
-
-    Parameters
-    ----------
-    series : ndarray, shape (n,)
-        Coefficients by power.
-    count : int
-        How many to have.
-
-    Returns
-    -------
-    ndarray, shape (count,)
-        Cut, or with zeros after them.
-    """
+    """Return a series of another length."""
     return np.pad(series, (0, max(0, count - len(series))))[:count]

@@ -29,19 +29,7 @@ _PATIENCE, _MOST_LATE = 300.0, 10_000  # time over 1 / p, and steps, after the e
 
 
 class SpatialReference:
-    """One history.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    ground : SpatialGround
-        The motion.
-    law : SpatialImpactLaw
-        What impacts cost.
-    settings : SpatialSettings
-        Gravity, limits, tolerance.
-    """
+    """One history."""
 
     def __init__(
         self, body: SpatialBody, ground: SpatialGround, law: SpatialImpactLaw, settings: SpatialSettings
@@ -65,19 +53,9 @@ class SpatialReference:
     def run(self, quaternion: FloatArray, velocity: FloatArray, horizon: float) -> SpatialTrajectory:
         """Return the history from given initial conditions.
 
-        Parameters
-        ----------
-        quaternion : ndarray, shape (4,)
-            Attitude at time zero; the lowest points of the base are on the ground [-].
-        velocity : ndarray, shape (3,)
-            Angular velocity in body axes [rad/s].
-        horizon : float
-            How long to follow the body; longer where its fate is still open then [s].
-
-        Returns
-        -------
-        SpatialTrajectory
-            The history.
+        quaternion: attitude at time zero; the lowest points of the base are on the ground [-]; velocity: angular
+        velocity in body axes [rad/s]; horizon: how long to follow the body; longer where its fate is still open then
+        [s].
         """
         self.horizon = horizon
         self.course = Course(self.body, self.settings)

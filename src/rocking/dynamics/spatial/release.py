@@ -21,21 +21,8 @@ def first_release(body: SpatialBody, stance: Stance, step: Step) -> tuple[float,
     friction at that end holds it down, so that neither the edge nor its other end alone is without contradiction), the
     edge stays, and the pull shows in `end_forces`: such a corner slips in truth.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    stance : Stance
-        Vertex, edge, or rolling.
-    step : Step
-        The step.
-
-    Returns
-    -------
-    at : float
-        Where, from 0 to 1.
-    which : int
-        Number of the end in the stance that is released, -1 for all contact; None instead of both if none is.
+    Returns which: number of the end in the stance that is released, -1 for all contact; None instead of both if none
+    is.
     """
     normal = _normal(body, stance, step)
     lost = first_zero(normal, started=False)
@@ -54,21 +41,7 @@ def first_release(body: SpatialBody, stance: Stance, step: Step) -> tuple[float,
 def end_forces(body: SpatialBody, stance: Stance, step: Step, at: float) -> tuple[float, float]:
     """Return the vertical forces per unit mass at both ends of an edge.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    stance : Stance
-        An edge.
-    step : Step
-        The step.
-    at : float
-        Where, from 0 to 1.
-
-    Returns
-    -------
-    first, second : float
-        Below zero the ground would have to pull [N/kg].
+    Returns below zero the ground would have to pull [N/kg].
     """
     second = value(_second(body, stance, step).tolist(), at)
     return value(_normal(body, stance, step).tolist(), at) - second, second

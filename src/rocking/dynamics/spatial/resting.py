@@ -23,28 +23,9 @@ def next_uplift(
     The centre of pressure is at c - h a / (g + a_z); it is inside while (c - v_i) . n_i (g + a_z) - h n_i . a >= 0 for
     every edge, polynomials of time; for a round base while b^2 (g + a_z)^2 - |c (g + a_z) - h a|^2 >= 0.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    ground : SpatialGround
-        The motion.
-    rotation : ndarray, shape (3, 3)
-        Body axes to axes of the ground; about the vertical only.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    since : tuple of int and float
-        Stretch, and time within it in units of its duration, from which on it rests.
-
-    Returns
-    -------
-    stretch : int
-        Number of the stretch.
-    tau : float
-        Time within it, in units of its duration.
-    edges : tuple of int
-        Edges that the centre of pressure crosses just then; empty where it jumps out of the base, and for a round base.
-        None instead of all three if it is never lifted.
+    gravity: acceleration of gravity [m/s2]. Returns tau: time within it, in units of its duration; edges: edges that
+    the centre of pressure crosses just then; empty where it jumps out of the base, and for a round base. None instead
+    of all three if it is never lifted.
     """
     stretch, tau = since
     if stretch >= ground.count:
@@ -62,19 +43,7 @@ def next_uplift(
 def lifted(body: SpatialBody, state: State, edges: tuple[int, ...]) -> Stance | None:
     """Return on what a body stands when it is lifted from rest.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    state : State
-        At rest.
-    edges : tuple of int
-        Edges that the centre of pressure crosses just then; none where it jumps out of the base.
-
-    Returns
-    -------
-    Stance, optional
-        None if the ground would have to pull.
+    Returns none if the ground would have to pull.
     """
     if body.round:
         pressure = -state.field[2] * body.centre[:2] + body.centre[2] * state.field[:2]

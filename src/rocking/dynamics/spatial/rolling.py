@@ -71,13 +71,7 @@ class _Series:
 
 
 class RollingFlow:
-    """Rolling of a round base.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        With a round base.
-    """
+    """Rolling of a round base."""
 
     def __init__(self, body: SpatialBody) -> None:
         self.body = body
@@ -91,21 +85,10 @@ class RollingFlow:
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return the Taylor series of a step, over a unit of time that is the step.
 
-        Parameters
-        ----------
-        state : tuple of ndarray
-            Attitude (4,) [-], angular velocity in body axes (3,) [rad/s], place of the contact on the ground (2,) [m].
-        length : float
-            Duration of the step [s].
-        field : ndarray, shape (3, degree + 1)
-            Gravity less the acceleration of the ground over the step, coefficients by power [m/s2].
-        order : int
-            Highest power.
-
-        Returns
-        -------
-        quaternions, velocities, up, places : ndarray
-            Coefficients by power; shapes (order + 1, 4), (order + 1, 3), (order + 1, 3), (order + 1, 2).
+        state: attitude (4,) [-], angular velocity in body axes (3,) [rad/s], place of the contact on the ground (2,)
+        [m]; length: duration of the step [s]; field: gravity less the acceleration of the ground over the step,
+        coefficients by power [m/s2]. Returns coefficients by power; shapes (order + 1, 4), (order + 1, 3), (order + 1,
+        3), (order + 1, 2).
         """
         s = _Series(state, field)
         for k in range(order):

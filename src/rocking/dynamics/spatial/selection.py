@@ -27,40 +27,19 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A body at an instant, in its own axes.
+    """A body at an instant, in its own axes."""
 
-    Parameters
-    ----------
-    pivot : ndarray, shape (3,)
-        A point at rest on the ground [m].
-    velocity : ndarray, shape (3,)
-        Angular velocity [rad/s].
-    up : ndarray, shape (3,)
-        Vertical [-].
-    field : ndarray, shape (3,)
-        Gravity less the acceleration of the ground [m/s2].
-    along : ndarray, shape (3,)
-        Of a body on an edge, from the pivot to the other end of the edge; zero on a vertex [m].
-    """
-
-    pivot: FloatArray
-    velocity: FloatArray
-    up: FloatArray
-    field: FloatArray
+    pivot: FloatArray  # A point at rest on the ground [m]; shape (3,)
+    velocity: FloatArray  # angular velocity [rad/s]; shape (3,)
+    up: FloatArray  # vertical [-]; shape (3,)
+    field: FloatArray  # gravity less the acceleration of the ground [m/s2]; shape (3,)
+    # of a body on an edge, from the pivot to the other end of the edge; zero on a vertex [m]; shape (3,)
     along: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(3))
 
     def nearest(self, stance: Stance) -> FloatArray:
         """Return the point at rest that is nearest to a new stance: from there laws measure the step.
 
-        Parameters
-        ----------
-        stance : Stance
-            What stays on the ground; of an edge its middle counts.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            The pivot, or a point of the edge, in body axes [m].
+        Returns the pivot, or a point of the edge, in body axes [m].
         """
         length = float((self.along * self.along).sum())
         if length == 0.0:
@@ -73,38 +52,15 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """What stays, and how the body goes on.
+    """What stays, and how the body goes on."""
 
-    Parameters
-    ----------
-    stance : Stance
-        On what the body stands.
-    velocity : ndarray, shape (3,)
-        Angular velocity, in body axes [rad/s].
-    supports : ndarray
-        Impulses or forces of the ground, as `supports` of the stance has them [N s] or [N].
-    """
-
-    stance: Stance
-    velocity: FloatArray
-    supports: FloatArray
+    stance: Stance  # on what the body stands
+    velocity: FloatArray  # angular velocity, in body axes [rad/s]; shape (3,)
+    supports: FloatArray  # impulses or forces of the ground, as `supports` of the stance has them [N s] or [N]
 
 
 def candidates(body: SpatialBody, touching: tuple[int, ...]) -> Iterator[Stance]:
-    """Yield the contact sets that can stay, larger ones first.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    touching : tuple of int
-        Vertices on the ground.
-
-    Yields
-    ------
-    Stance
-        Face, edges, vertices.
-    """
+    """Yield the contact sets that can stay, larger ones first."""
     count = len(body.vertices)
     if len(touching) == count:
         yield stances.face(body)
@@ -116,24 +72,7 @@ def candidates(body: SpatialBody, touching: tuple[int, ...]) -> Iterator[Stance]
 
 
 def of_impact(body: SpatialBody, state: State, touching: tuple[int, ...], law: SpatialImpactLaw) -> list[Choice]:
-    """Return every contact set that an impact may leave, the largest first.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    state : State
-        Before the impact.
-    touching : tuple of int
-        Vertices on the ground.
-    law : SpatialImpactLaw
-        What the impact costs.
-
-    Returns
-    -------
-    list of Choice
-        One for almost all states.
-    """
+    """Return every contact set that an impact may leave, the largest first."""
     found = []
     scale = float(np.abs(state.velocity).max()) * body.size
     for stance in candidates(body, touching):
@@ -154,21 +93,7 @@ def of_impact(body: SpatialBody, state: State, touching: tuple[int, ...], law: S
 def of_forces(body: SpatialBody, state: State, touching: tuple[int, ...], first: Stance | None = None) -> list[Choice]:
     """Return every contact set that stays when no gap opens with a speed, a preferred one first.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    state : State
-        At an instant at which the gaps of the touching points neither open nor close.
-    touching : tuple of int
-        Vertices on the ground.
-    first : Stance, optional
-        What the body stood on.
-
-    Returns
-    -------
-    list of Choice
-        Empty if the ground would have to pull.
+    Returns empty if the ground would have to pull.
     """
     found: list[Choice] = []
     scale = norm(state.field)
@@ -197,21 +122,7 @@ def _try_forces(
 def impulses(body: SpatialBody, state: State, stance: Stance, velocity: FloatArray) -> FloatArray:
     """Return the impulses of the ground in an impact.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    state : State
-        Before the impact.
-    stance : Stance
-        What stays on the ground.
-    velocity : ndarray, shape (3,)
-        Angular velocity after, in body axes [rad/s].
-
-    Returns
-    -------
-    ndarray
-        As of `supports` of the stance [N s].
+    velocity: angular velocity after, in body axes [rad/s]. Returns as of `supports` of the stance [N s].
     """
     new = body.centre - stance.pivot
     push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))
@@ -224,25 +135,9 @@ def forces(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the angular acceleration on a stance and the forces of the ground.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    stance : Stance
-        What stays on the ground; not rolling.
-    velocity : ndarray, shape (3,)
-        Angular velocity, in body axes [rad/s].
-    up : ndarray, shape (3,)
-        Vertical in body axes [-].
-    field : ndarray, shape (3,)
-        Gravity less the acceleration of the ground, in body axes [m/s2].
-
-    Returns
-    -------
-    acceleration : ndarray, shape (3,)
-        Angular, in body axes [rad/s2].
-    supports : ndarray
-        As of `supports` of the stance [N].
+    velocity: angular velocity, in body axes [rad/s]; up: vertical in body axes [-]; field: gravity less the
+    acceleration of the ground, in body axes [m/s2]. Returns acceleration: Angular, in body axes [rad/s2] (shape (3,));
+    supports: as of `supports` of the stance [N].
     """
     arm, inertia = body.centre - stance.pivot, body.inertia_about(stance.pivot)
     rate: FloatArray

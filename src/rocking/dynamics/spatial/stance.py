@@ -15,116 +15,44 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class Stance:
-    """What stays on the ground.
+    """What stays on the ground."""
 
-    Parameters
-    ----------
-    contact : Contact
-        The regime.
-    points : tuple of int
-        Numbers of the vertices that stay; none for round bases.
-    pivot : ndarray, shape (3,)
-        A point that stays, in body axes [m].
-    axis : ndarray, shape (3,), optional
-        Unit vector along an edge that stays, in body axes [-].
-    length : float
-        Length of that edge [m].
-    """
-
-    contact: Contact
-    points: tuple[int, ...]
-    pivot: FloatArray
-    axis: FloatArray | None = None
-    length: float = 0.0
+    contact: Contact  # the regime
+    points: tuple[int, ...]  # numbers of the vertices that stay; none for round bases
+    pivot: FloatArray  # A point that stays, in body axes [m]; shape (3,)
+    axis: FloatArray | None = None  # unit vector along an edge that stays, in body axes [-]; shape (3,)
+    length: float = 0.0  # length of that edge [m]
 
 
 def face(body: SpatialBody) -> Stance:
-    """Return standing on the whole base.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-
-    Returns
-    -------
-    Stance
-        At rest.
-    """
+    """Return standing on the whole base."""
     pivot = np.zeros(3) if body.round else body.vertices[0]
     return Stance(Contact.REST, tuple(range(len(body.vertices))), pivot)
 
 
 def edge(body: SpatialBody, number: int) -> Stance:
-    """Return standing on an edge.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    number : int
-        Of the edge; it runs from the vertex of that number to the next one.
-
-    Returns
-    -------
-    Stance
-        Turning about the edge.
-    """
+    """Return standing on an edge."""
     after = (number + 1) % len(body.vertices)
     length = norm(body.vertices[after] - body.vertices[number])
     return Stance(Contact.EDGE, (number, after), body.vertices[number], body.edges[number], length)
 
 
 def vertex(body: SpatialBody, number: int) -> Stance:
-    """Return standing on a vertex.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    number : int
-        Of the vertex.
-
-    Returns
-    -------
-    Stance
-        Turning about the vertex.
-    """
+    """Return standing on a vertex."""
     return Stance(Contact.VERTEX, (number,), body.vertices[number])
 
 
 def rim(body: SpatialBody, direction: FloatArray) -> Stance:
     """Return standing on a point of a round base.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    direction : ndarray, shape (2,)
-        From the centre of the base to the point, in body axes, any length above zero.
-
-    Returns
-    -------
-    Stance
-        Turning about that point: what rolling starts with while the base is nearly flat.
+    Returns turning about that point: what rolling starts with while the base is nearly flat.
     """
     unit = direction / norm(direction)
     return Stance(Contact.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
 
 
 def rolling(stance: Stance) -> Stance:
-    """Return rolling that starts on the point of a stance.
-
-    Parameters
-    ----------
-    stance : Stance
-        On a point of the rim.
-
-    Returns
-    -------
-    Stance
-        Rolling.
-    """
+    """Return rolling that starts on the point of a stance."""
     return replace(stance, contact=Contact.ROLLING)
 
 
@@ -135,22 +63,9 @@ def supports(body: SpatialBody, stance: Stance, force: FloatArray, moment: Float
     about the pivot and Z upwards, Z x M = sum N_i r_i over the points of contact: so an edge has the two forces at its
     ends, and a face the moments of the vertical forces about each edge, over its distance scale.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    stance : Stance
-        On what it stands.
-    force, moment : ndarray, shape (3,)
-        Force of the ground and its moment about the pivot, in body axes [N], [N m]; or impulses.
-    up : ndarray, shape (3,)
-        Vertical in body axes [-].
-
-    Returns
-    -------
-    ndarray
-        Vertical force at a vertex; at both ends of an edge; for a face N times the distance of its centre of pressure
-        from each edge over the size of the body [N].
+    force, moment: force of the ground and its moment about the pivot, in body axes [N], [N m]; or impulses; up:
+    vertical in body axes [-]. Returns vertical force at a vertex; at both ends of an edge; for a face N times the
+    distance of its centre of pressure from each edge over the size of the body [N].
     """
     normal = dot(force, up)
     if stance.axis is not None:
@@ -168,19 +83,7 @@ def supports(body: SpatialBody, stance: Stance, force: FloatArray, moment: Float
 def touching_point(body: SpatialBody, stance: Stance, up: FloatArray) -> FloatArray:
     """Return the point of the body that is on the ground.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    stance : Stance
-        On what it stands.
-    up : ndarray, shape (3,)
-        Vertical in body axes [-].
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        The pivot; of a rolling body the lowest point of its rim, in body axes [m].
+    up: vertical in body axes [-]. Returns the pivot; of a rolling body the lowest point of its rim, in body axes [m].
     """
     if stance.contact is not Contact.ROLLING:
         return stance.pivot
@@ -191,19 +94,7 @@ def touching_point(body: SpatialBody, stance: Stance, up: FloatArray) -> FloatAr
 def rise(body: SpatialBody, pivot: FloatArray, up: FloatArray) -> float:
     """Return how much higher the centre of mass is than at rest.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    pivot : ndarray, shape (3,)
-        A point on the ground, in body axes [m].
-    up : ndarray, shape (3,)
-        Vertical in body axes [-].
-
-    Returns
-    -------
-    float
-        Rise [m].
+    pivot: A point on the ground, in body axes [m]; up: vertical in body axes [-]. Returns rise [m].
     """
     arm = body.centre - pivot
     level2 = float(up[0] ** 2 + up[1] ** 2)

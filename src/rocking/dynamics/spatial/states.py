@@ -15,30 +15,14 @@ from rocking.portable import applied, times
 
 @dataclass(frozen=True, eq=False)
 class States:
-    """A body at n instants.
-
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    quaternion : ndarray, shape (n, 4)
-        Attitude (s, x, y, z), body axes to axes of the ground [-].
-    body_velocity : ndarray, shape (n, 3)
-        Angular velocity in body axes [rad/s].
-    pivot : ndarray, shape (n, 3)
-        A point on the ground, in body axes [m].
-    place : ndarray, shape (n, 2)
-        The same point on the ground [m].
-    contact : ndarray of int, shape (n,)
-        Number of the regime.
-    """
+    """A body at n instants."""
 
     body: SpatialBody
-    quaternion: FloatArray
-    body_velocity: FloatArray
-    pivot: FloatArray
-    place: FloatArray
-    contact: IntArray
+    quaternion: FloatArray  # attitude (s, x, y, z), body axes to axes of the ground [-]; shape (n, 4)
+    body_velocity: FloatArray  # angular velocity in body axes [rad/s]; shape (n, 3)
+    pivot: FloatArray  # A point on the ground, in body axes [m]; shape (n, 3)
+    place: FloatArray  # the same point on the ground [m]; shape (n, 2)
+    contact: IntArray  # number of the regime; shape (n,)
 
     @cached_property
     def rotation(self) -> FloatArray:
@@ -53,15 +37,7 @@ class States:
     def point(self, point: FloatArray) -> FloatArray:
         """Return where a point of the body is.
 
-        Parameters
-        ----------
-        point : ndarray, shape (3,)
-            In body axes [m].
-
-        Returns
-        -------
-        ndarray, shape (n, 3)
-            Relative to the ground, which carries the origin along [m].
+        point: in body axes [m]. Returns relative to the ground, which carries the origin along [m].
         """
         moved = applied(self.rotation, point - self.pivot)
         moved[:, :2] += self.place
@@ -100,19 +76,7 @@ class States:
 def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray) -> States:
     """Return the states of a history; at an impact, after it.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    trajectory : SpatialTrajectory
-        The history.
-    time : ndarray, shape (n,)
-        Times within it [s].
-
-    Returns
-    -------
-    States
-        At these times.
+    time: times within it [s].
     """
     pieces = trajectory.pieces
     starts = np.array([piece.start for piece in pieces])
@@ -135,19 +99,8 @@ def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray
 def pivots(body: SpatialBody, piece: Piece, quaternions: FloatArray) -> FloatArray:
     """Return the points on the ground, in body axes.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    piece : Piece
-        A step.
-    quaternions : ndarray, shape (n, 4)
-        Attitudes within it [-].
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        Pivot of the stance; of a rolling body the lowest points of its rim [m].
+    quaternions: attitudes within it [-]. Returns pivot of the stance; of a rolling body the lowest points of its rim
+    [m].
     """
     if piece.stance.contact is not Contact.ROLLING:
         return np.broadcast_to(piece.stance.pivot, (len(quaternions), 3))

@@ -23,55 +23,30 @@ class SpatialEventKind(Enum):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SpatialEvent:
-    """An uplift, an impact, a change of contact or a coming to rest.
+    """An uplift, an impact, a change of contact or a coming to rest."""
 
-    Parameters
-    ----------
-    time : float
-        When [s].
-    kind : SpatialEventKind
-        What.
-    stance : Stance
-        On what the body stands from then on.
-    before, after : float
-        Kinetic energy before and after [J].
-    impulses : ndarray
-        Of an impact, vertical: at the vertex, at both ends of the edge, or as `supports` of a face [N s].
-    """
-
-    time: float
-    kind: SpatialEventKind
-    stance: Stance
-    before: float
+    time: float  # when [s]
+    kind: SpatialEventKind  # what
+    stance: Stance  # on what the body stands from then on
+    before: float  # before, after: kinetic energy before and after [J]
     after: float
+    # of an impact, vertical: at the vertex, at both ends of the edge, or as `supports` of a face [N s]
     impulses: FloatArray = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Piece:
-    """A step of the engine.
+    """A step of the engine."""
 
-    Parameters
-    ----------
-    start, length : float
-        When it starts, and the unit of time of its series [s].
-    until : float
-        Where it ends, in that unit [-].
-    quaternions, velocities : ndarray, shape (order + 1, 4) and (order + 1, 3)
-        Attitude [-] and angular velocity in body axes [rad/s], coefficients by power.
-    places : ndarray, shape (n, 2)
-        Place of the pivot or contact on the ground, coefficients by power [m].
-    stance : Stance
-        On what the body stands.
-    """
-
-    start: float
+    start: float  # start, length: when it starts, and the unit of time of its series [s]
     length: float
-    until: float
+    until: float  # where it ends, in that unit [-]
+    # quaternions, velocities: attitude [-] and angular velocity in body axes [rad/s], coefficients by power; shape
+    # (order + 1, 4)
     quaternions: FloatArray
     velocities: FloatArray
-    places: FloatArray
-    stance: Stance
+    places: FloatArray  # place of the pivot or contact on the ground, coefficients by power [m]; shape (n, 2)
+    stance: Stance  # on what the body stands
 
     @property
     def end(self) -> float:
@@ -81,15 +56,7 @@ class Piece:
     def at(self, share: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return attitude, angular velocity and place of the pivot.
 
-        Parameters
-        ----------
-        share : ndarray, shape (n,)
-            Times in units of the length, from 0 to `until`.
-
-        Returns
-        -------
-        quaternions, velocities, places : ndarray, shape (n, 4), (n, 3), (n, 2)
-            At these times.
+        Returns at these times (shape (n, 4)).
         """
         by_power = powers(share, max(len(self.quaternions), len(self.places)))
         made = [times(by_power[:, : len(c)], c) for c in (self.quaternions, self.velocities, self.places)]
@@ -99,41 +66,22 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class SpatialTrajectory:
-    """A history.
+    """A history."""
 
-    Parameters
-    ----------
-    pieces : list of Piece
-        In order of time, without gaps.
-    events : list of SpatialEvent
-        In order of time.
-    outcome : Outcome
-        How it ended.
-    status : Status
-        Whether it could be computed.
-    peak_tilt, peak_time : float
-        Largest angle between the axis of the body and the vertical [rad], and when [s].
-    overturning_time : float
-        When the centre of mass passed over the contact for the last time; NaN if the body did not overturn [s].
-    fell_over : Stance, optional
-        The edge or vertex over which it overturned.
-    held : float
-        For how long an end of an edge was held down although the ground would have had to pull there, because its
-        friction kept it from opening: there it slips in truth; or a rim nearly flat, which hops [s].
-    engine : str
-        Which engine, and how.
-    """
-
-    pieces: list[Piece] = field(repr=False)
-    events: list[SpatialEvent] = field(repr=False)
-    outcome: Outcome
-    status: Status
+    pieces: list[Piece] = field(repr=False)  # in order of time, without gaps
+    events: list[SpatialEvent] = field(repr=False)  # in order of time
+    outcome: Outcome  # how it ended
+    status: Status  # whether it could be computed
+    # peak_tilt, peak_time: largest angle between the axis of the body and the vertical [rad], and when [s]
     peak_tilt: float
     peak_time: float
+    # when the centre of mass passed over the contact for the last time; NaN if the body did not overturn [s]
     overturning_time: float
-    fell_over: Stance | None
+    fell_over: Stance | None  # the edge or vertex over which it overturned
+    # for how long an end of an edge was held down although the ground would have had to pull there, because its
+    # friction kept it from opening: there it slips in truth; or a rim nearly flat, which hops [s]
     held: float
-    engine: str
+    engine: str  # which engine, and how
 
     @property
     def impacts(self) -> list[SpatialEvent]:

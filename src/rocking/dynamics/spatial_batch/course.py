@@ -42,32 +42,8 @@ def course_of(
 ) -> np.ndarray:
     """Return the course of a history as the compiled engine computes it in any batch, bit for bit.
 
-    Parameters
-    ----------
-    body : SpatialBody
-        The body.
-    ground : SpatialGround
-        The motion.
-    horizon : float
-        How long to follow the body [s].
-    restitution : str, float or SpatialImpactLaw
-        As for `simulate_spatial_batch`.
-    scale : float
-        Factor on the motion [-].
-    start : SpatialStart, optional
-        Initial conditions.
-    settings : SpatialBatchSettings, optional
-        How to integrate.
-
-    Returns
-    -------
-    ndarray
-        With the fields of `COURSE`, in order of time.
-
-    Raises
-    ------
-    MissingExtraError
-        If the compiled engine was not built.
+    horizon: how long to follow the body [s]; scale: factor on the motion [-]. Returns with the fields of `COURSE`, in
+    order of time.
     """
     made = settings or SpatialBatchSettings()
     laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])

@@ -27,27 +27,13 @@ def _module() -> ModuleType | None:
 def available() -> bool:
     """Return whether the compiled engine is there.
 
-    Returns
-    -------
-    bool
-        If not, the reference engine serves row by row.
+    Returns if not, the reference engine serves row by row.
     """
     return _module() is not None
 
 
 def module() -> ModuleType:
-    """Return the compiled module.
-
-    Returns
-    -------
-    module
-        The engine.
-
-    Raises
-    ------
-    MissingExtraError
-        If it was not built.
-    """
+    """Return the compiled module."""
     found = _module()
     if found is None:
         raise MissingExtraError(f'{_NOT_BUILT}; engine="reference" gives the same results, slowly')
@@ -55,25 +41,7 @@ def module() -> ModuleType:
 
 
 def chosen(asked: str) -> str:
-    """Return which engine will run, and say so if it is not the one that users expect.
-
-    Parameters
-    ----------
-    asked : {"auto", "fast", "reference"}
-        What was asked for.
-
-    Returns
-    -------
-    str
-        "fast" or "reference".
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such engine.
-    MissingExtraError
-        If the fast one was asked for and not built.
-    """
+    """Return which engine will run, and say so if it is not the one that users expect."""
     asked = checks.one_of("engine", asked, _ENGINES)
     if asked == "fast":
         module()
@@ -84,18 +52,7 @@ def chosen(asked: str) -> str:
 
 
 def instruction_set() -> str:
-    """Return what the compiled engine will use: the environment variable ROCKING_ISA, or the fastest there is.
-
-    Returns
-    -------
-    str
-        One of ``avx512``, ``avx2`` and ``plain``.
-
-    Raises
-    ------
-    InvalidValueError
-        If the environment asks for one that this processor lacks.
-    """
+    """Return what the compiled engine will use: the environment variable ROCKING_ISA, or the fastest there is."""
     wanted, known = os.environ.get("ROCKING_ISA", ""), list(module().instruction_sets())
     if wanted and wanted not in known:
         raise InvalidValueError(f"ROCKING_ISA must be one of {', '.join(known)}, got {wanted!r}")

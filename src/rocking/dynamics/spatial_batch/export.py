@@ -28,26 +28,9 @@ def provenance(
 ) -> dict[str, Any]:
     """Return of what a batch was computed, beside its labels.
 
-    Parameters
-    ----------
-    bodies : sequence of SpatialBody or None
-        The bodies.
-    motions : sequence
-        Motions, or tuples of components.
-    starts : sequence of SpatialStart
-        Initial conditions.
-    settings : SpatialBatchSettings
-        How it was integrated.
-    duration : float, optional
-        How long bodies were followed, where given [s].
+    duration: how long bodies were followed, where given [s]. Returns numbers and words; bodies and starts as JSON, and
+    a digest of all bodies.
 
-    Returns
-    -------
-    dict
-        Numbers and words; bodies and starts as JSON, and a digest of all bodies.
-
-    Examples
-    --------
     >>> made = provenance([SpatialBody.box(1.0, 1.0, 4.0)], [None], [SpatialStart()], SpatialBatchSettings(), None)
     >>> made["duration_s"], len(json.loads(made["bodies"]))
     ('to the end of the motion', 1)
@@ -66,18 +49,7 @@ def provenance(
 
 
 def stated(batch: "SpatialBatch") -> dict[str, Any]:
-    """Return the provenance of a batch with software, engine and refusals.
-
-    Parameters
-    ----------
-    batch : SpatialBatch
-        The batch.
-
-    Returns
-    -------
-    dict
-        Numbers and words.
-    """
+    """Return the provenance of a batch with software, engine and refusals."""
     from rocking.dynamics.export import software
 
     refused = json.dumps({str(number): reason for number, reason in batch.refused.items()})
@@ -87,15 +59,7 @@ def stated(batch: "SpatialBatch") -> dict[str, Any]:
 def exported(batch: "SpatialBatch") -> Exported:
     """Return what the files of a batch hold.
 
-    Parameters
-    ----------
-    batch : SpatialBatch
-        The batch.
-
-    Returns
-    -------
-    Exported
-        One row a history: numbers of body, motion and start, names of motion and restitution, scale, all results.
+    Returns one row a history: numbers of body, motion and start, names of motion and restitution, scale, all results.
     """
     from rocking.dynamics.spatial_batch.result import DIMENSIONS, UNITS
 

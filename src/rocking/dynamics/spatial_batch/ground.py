@@ -11,25 +11,8 @@ from rocking.motions.motion import GroundMotion
 def joined(components: tuple[Component, ...], until: float) -> SpatialGround:
     """Return up to three components as one motion, the same as `ground_of` gives.
 
-    Parameters
-    ----------
-    components : tuple of GroundMotion, Pulse or None
-        Along x, y and z.
-    until : float
-        When the ground is taken to stop, if that is before the motions end [s].
+    until: when the ground is taken to stop, if that is before the motions end [s].
 
-    Returns
-    -------
-    SpatialGround
-        The motion.
-
-    Raises
-    ------
-    InvalidValueError
-        If a component is none of these, or brings a vertical part of its own.
-
-    Examples
-    --------
     >>> joined((GroundMotion([0.0, 1.0, 0.0], 0.5), None), np.inf).coefficients[:, 0].tolist()
     [[0.0, 1.0], [1.0, -1.0]]
     """

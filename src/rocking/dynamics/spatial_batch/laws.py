@@ -14,24 +14,13 @@ _FIXED = 2
 
 @dataclass(frozen=True)
 class BatchLaw:
-    """An impact law of a batch.
+    """An impact law of a batch."""
 
-    Parameters
-    ----------
-    law : SpatialImpactLaw, optional
-        What the reference engine takes; None where the body decides it (ked-3d and ked-3d-point).
-    label : str
-        Its name, or its coefficient.
-    code : int
-        Its number in the compiled engine.
-    coefficient : float
-        r of a fixed coefficient, otherwise 0 [-].
-    """
-
+    # what the reference engine takes; None where the body decides it (ked-3d and ked-3d-point)
     law: SpatialImpactLaw | None
-    label: str
-    code: int
-    coefficient: float = 0.0
+    label: str  # its name, or its coefficient
+    code: int  # its number in the compiled engine
+    coefficient: float = 0.0  # r of a fixed coefficient, otherwise 0 [-]
 
     @property
     def needs_moments(self) -> bool:
@@ -45,26 +34,7 @@ class BatchLaw:
 
 
 def batch_law(restitution: Any) -> BatchLaw:
-    """Return an impact law of a batch.
-
-    Parameters
-    ----------
-    restitution : str, float or SpatialImpactLaw
-        "housner-3d", "horizontal-momentum-3d", "ked-3d", "ked-3d-point", a coefficient from 0 to 1, or an object
-        that stands for one of these.
-
-    Returns
-    -------
-    BatchLaw
-        The law.
-
-    Raises
-    ------
-    InvalidValueError
-        If the compiled engine does not know the law; `simulate_spatial` takes any.
-    UnknownModelError
-        If there is no law of that name.
-    """
+    """Return an impact law of a batch."""
     law = law_of(restitution)
     if isinstance(law, ModelLaw) and law.model.needs_solid and law.label in CODES:
         return BatchLaw(None, law.label, CODES[law.label])

@@ -14,17 +14,7 @@ from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTraject
 def results_of(found: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
     """Return the row of a history.
 
-    Parameters
-    ----------
-    found : SpatialTrajectory
-        The history.
-
-    Returns
-    -------
-    results : ndarray, shape (9,)
-        The floats of a row, in order; NaN without result.
-    counts : list of int
-        Its codes and counts, in order.
+    Returns results: the floats of a row, in order; NaN without result (shape (9,)).
     """
     last, events = found.pieces[-1], found.events
     failed, over = found.outcome is Outcome.FAILED, found.outcome is Outcome.OVERTURNED

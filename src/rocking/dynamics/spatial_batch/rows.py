@@ -13,27 +13,13 @@ from rocking.dynamics.spatial_batch.tables import ROW
 
 @dataclass(frozen=True, eq=False)
 class RowTable:
-    """All that the rows are made of.
+    """All that the rows are made of."""
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Numbers of bodies, motions, scales, restitutions and starts.
-    scales : ndarray
-        Factors on the motions [-].
-    laws : sequence of BatchLaw
-        Impact laws.
-    starts : sequence of SpatialStart
-        Initial conditions.
-    horizons : ndarray, shape (bodies, motions)
-        How long to follow each body [s].
-    """
-
-    shape: tuple[int, int, int, int, int]
-    scales: FloatArray
-    laws: Sequence[BatchLaw]
-    starts: Sequence[SpatialStart]
-    horizons: FloatArray
+    shape: tuple[int, int, int, int, int]  # numbers of bodies, motions, scales, restitutions and starts
+    scales: FloatArray  # factors on the motions [-]
+    laws: Sequence[BatchLaw]  # impact laws
+    starts: Sequence[SpatialStart]  # initial conditions
+    horizons: FloatArray  # how long to follow each body [s]; shape (bodies, motions)
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -42,17 +28,8 @@ class RowTable:
     def piece(self, first: int, last: int) -> tuple[FloatArray, IntArray]:
         """Return some rows.
 
-        Parameters
-        ----------
-        first, last : int
-            From which to before which.
-
-        Returns
-        -------
-        numbers : ndarray, shape (n, 10)
-            Coefficient, scale, horizon, attitude, angular velocity in body axes; NaN for a start that is none.
-        choices : ndarray of int, shape (n, 3)
-            Body, motion, law.
+        Returns numbers: Coefficient, scale, horizon, attitude, angular velocity in body axes; NaN for a start that is
+        none (shape (n, 10)); choices: Body, motion, law (shape (n, 3)).
         """
         body, motion, scale, law, start = np.unravel_index(np.arange(first, last), self.shape)
         numbers = np.empty((last - first, ROW))

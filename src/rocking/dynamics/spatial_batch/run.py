@@ -32,21 +32,7 @@ Progress = Callable[[int], None] | None
 def stock_of(bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, gravity: float) -> Any:
     """Return bodies and motions as the compiled engine keeps them.
 
-    Parameters
-    ----------
-    bodies : sequence of SpatialBody or None
-        The bodies.
-    grounds : sequence of SpatialGround
-        The motions.
-    table : RowTable
-        The rows: its laws say what is needed of the bodies.
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Returns
-    -------
-    object
-        `rocking.dynamics._spatial.Stock`.
+    gravity: acceleration of gravity [m/s2].
     """
     numbers, corners, vertices = tables.body_table(bodies, gravity)
     kept = tables.kept_table(bodies) if any(law.needs_moments for law in table.laws) else np.zeros(0)
@@ -75,35 +61,7 @@ def run_compiled(
     threads: int | None,
     progress: Progress,
 ) -> tuple[Results, str]:
-    """Return the results of all rows by the compiled engine.
-
-    Parameters
-    ----------
-    bodies : sequence of SpatialBody or None
-        The bodies.
-    grounds : sequence of SpatialGround
-        The motions.
-    table : RowTable
-        The rows.
-    settings : SpatialBatchSettings
-        How to integrate.
-    threads : int, optional
-        Threads; as many as the processor has, if not given.
-    progress : callable, optional
-        Called with the number of rows done.
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        Results by name.
-    engine : str
-        Which engine, and how.
-
-    Raises
-    ------
-    InvalidValueError
-        If threads is no whole number above zero.
-    """
+    """Return the results of all rows by the compiled engine."""
     given: object = threads
     if given is not None and (isinstance(given, bool) or not isinstance(given, int) or given < 1):
         raise InvalidValueError(f"threads must be a whole number >= 1, got {threads!r}")
@@ -127,20 +85,7 @@ def run_reference(
     settings: SpatialBatchSettings,
     progress: Progress,
 ) -> tuple[Results, str]:
-    """Return the results of all rows by the reference engine.
-
-    Parameters
-    ----------
-    bodies, grounds, table, settings, progress
-        As for `run_compiled`; tolerance and longest step are those of the reference engine.
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        Results by name.
-    engine : str
-        Which engine.
-    """
+    """Return the results of all rows by the reference engine."""
     results, counts = np.full((len(table), tables.RESULTS), np.nan), np.empty((len(table), tables.COUNTS), np.int64)
     fields = SpatialSettings(settings.gravity, settings.rest_speed, settings.most_events)
     for k in range(len(table)):
@@ -154,20 +99,7 @@ def run_reference(
 
 
 def named(results: FloatArray, counts: IntArray) -> Results:
-    """Return the columns of the tables of results by name.
-
-    Parameters
-    ----------
-    results : ndarray, shape (n, 9)
-        Numbers.
-    counts : ndarray of int, shape (n, 9)
-        Codes and counts.
-
-    Returns
-    -------
-    dict of str to ndarray
-        One array a column.
-    """
+    """Return the columns of the tables of results by name."""
     made: Results = {name: np.ascontiguousarray(counts[:, k]) for k, name in enumerate(WHOLES)}
     return made | {name: np.ascontiguousarray(results[:, k]) for k, name in enumerate(FLOATS)}
 

@@ -26,26 +26,9 @@ BODY, ROW, RESULTS, COUNTS = 17, 10, 9, 9
 def body_table(bodies: Sequence[SpatialBody | None], gravity: float) -> tuple[FloatArray, IntArray, FloatArray]:
     """Return bodies as numbers.
 
-    Parameters
-    ----------
-    bodies : sequence of SpatialBody or None
-        The bodies; None for one that was refused.
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Returns
-    -------
-    numbers : ndarray, shape (n, 17)
-        Mass, frequency, size, lift, radius, centre, inertia; NaN where there is no body.
-    corners : ndarray of int, shape (n, 2)
-        First vertex and number of vertices; no vertices for a round base.
-    vertices : ndarray, shape (m, 2)
-        Vertices of all of them [m].
-
-    Raises
-    ------
-    InvalidValueError
-        If a base has more vertices than the compiled engine takes.
+    gravity: acceleration of gravity [m/s2]. Returns numbers: Mass, frequency, size, lift, radius, centre, inertia; NaN
+    where there is no body (shape (n, 17)); corners: first vertex and number of vertices; no vertices for a round base
+    (shape (n, 2)); vertices: vertices of all of them [m] (shape (m, 2)).
     """
     numbers, corners = np.full((len(bodies), BODY), np.nan), np.zeros((len(bodies), 2), np.int64)
     points: list[FloatArray] = []
@@ -71,20 +54,7 @@ def body_table(bodies: Sequence[SpatialBody | None], gravity: float) -> tuple[Fl
 def kept_table(bodies: Sequence[SpatialBody | None]) -> FloatArray:
     """Return the moments of the mass that ked-3d-point needs, for every vertex and then every edge of every body.
 
-    Parameters
-    ----------
-    bodies : sequence of SpatialBody or None
-        The bodies.
-
-    Returns
-    -------
-    ndarray
-        117 numbers each; NaN for a body whose distribution of mass is not known [kg, kg m, kg m2].
-
-    Raises
-    ------
-    InvalidValueError
-        If a base is round.
+    Returns 117 numbers each; NaN for a body whose distribution of mass is not known [kg, kg m, kg m2].
     """
     rows: list[FloatArray] = []
     for body in bodies:
@@ -105,17 +75,9 @@ def kept_table(bodies: Sequence[SpatialBody | None]) -> FloatArray:
 def position_table(bodies: Sequence[SpatialBody | None]) -> tuple[IntArray, FloatArray]:
     """Return where the impulse of a landing of the whole base acts, which ked-3d needs.
 
-    Parameters
-    ----------
-    bodies : sequence of SpatialBody or None
-        The bodies.
-
-    Returns
-    -------
-    places : ndarray of int, shape (n, 2)
-        First interval and number of intervals; none for a body whose distribution of mass is not known.
-    positions : ndarray, shape (m, 3 + HIGHEST)
-        First and last azimuth of an interval [rad], and the coefficients of k over it [-].
+    Returns places: first interval and number of intervals; none for a body whose distribution of mass is not known
+    (shape (n, 2)); positions: first and last azimuth of an interval [rad], and the coefficients of k over it [-] (shape
+    (m, 3 + HIGHEST)).
     """
     places = np.zeros((len(bodies), 2), np.int64)
     rows: list[list[float]] = []
@@ -151,26 +113,8 @@ def _kept(body: SpatialBody) -> FloatArray:
 def motion_table(grounds: Sequence[SpatialGround]) -> tuple[int, IntArray, FloatArray, FloatArray]:
     """Return motions as numbers.
 
-    Parameters
-    ----------
-    grounds : sequence of SpatialGround
-        The motions.
-
-    Returns
-    -------
-    degree : int
-        Of all of them: 1 or 7.
-    places : ndarray of int, shape (n, 3)
-        First time, first acceleration, number of stretches.
-    times : ndarray
-        Ends of the stretches of all of them [s].
-    accelerations : ndarray
-        By motion, stretch, power and axis [m/s2].
-
-    Raises
-    ------
-    InvalidValueError
-        If a motion is of another degree.
+    Returns degree: of all of them: 1 or 7; places: first time, first acceleration, number of stretches (shape (n, 3));
+    times: ends of the stretches of all of them [s]; accelerations: by motion, stretch, power and axis [m/s2].
     """
     most = max(ground.coefficients.shape[2] for ground in grounds) - 1
     if most > 7:

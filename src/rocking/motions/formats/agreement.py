@@ -9,65 +9,20 @@ from rocking.motions.formats.source import Source
 
 
 def check_count(source: Source, stated: int, found: int) -> None:
-    """Refuse a file that holds another number of samples than its header states.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    stated, found : int
-        Numbers of samples.
-
-    Raises
-    ------
-    RecordError
-        If they differ.
-    """
+    """Refuse a file that holds another number of samples than its header states."""
     if stated != found:
         raise source.error(None, f"the header states {stated} samples, the file holds {found}")
 
 
 def check_peak(source: Source, stated: float, values: FloatArray, rounding: float, what: str = "peak") -> None:
-    """Refuse a file whose largest value is not the one that its header states.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    stated : float
-        Peak by the header; its sign is not compared.
-    values : ndarray
-        The samples, in the same unit.
-    rounding : float
-        Largest difference that rounding in the file explains.
-    what : str
-        What the header calls it.
-
-    Raises
-    ------
-    RecordError
-        If they differ by more.
-    """
+    """Refuse a file whose largest value is not the one that its header states."""
     found = float(np.abs(values).max())
     if not abs(abs(stated) - found) <= rounding:
         raise source.error(None, f"the header states a {what} of {abs(stated):g}, the data have {found:g}")
 
 
 def check_end(source: Source, first: int) -> None:
-    """Refuse anything but blank lines from some line to the end of the file.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-    first : int
-        Line from which on nothing may follow.
-
-    Raises
-    ------
-    RecordError
-        If something does; its line is named.
-    """
+    """Refuse anything but blank lines from some line to the end of the file."""
     for line in range(first, len(source.lines)):
         # Ctrl-Z padded files to whole blocks under CP/M and DOS
         if source.lines[line].strip(" \t\r\x1a"):
@@ -77,23 +32,7 @@ def check_end(source: Source, first: int) -> None:
 def check_peak_time(source: Source, stated: float, values: FloatArray, step: float, rounding: float) -> None:
     """Refuse a file whose largest value is not where its header states it.
 
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    stated : float
-        Time of the peak by the header, within one step [s].
-    values : ndarray
-        The samples, the first one at time zero.
-    step : float
-        Step between samples [s].
-    rounding : float
-        Largest difference between equal peaks that rounding in the file explains.
-
-    Raises
-    ------
-    RecordError
-        If the values around that time are all smaller than the largest.
+    stated: time of the peak by the header, within one step [s]; step: step between samples [s].
     """
     largest = np.abs(values)
     at = stated / step
@@ -106,23 +45,8 @@ def check_peak_time(source: Source, stated: float, values: FloatArray, step: flo
 def check_duration(source: Source, stated: float, count: int, step: float, rounding: float) -> None:
     """Refuse a file whose stated duration is not that of its samples.
 
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    stated : float
-        Duration by the header: of all steps, or from the first sample to the last [s].
-    count : int
-        Number of samples.
-    step : float
-        Step between samples [s].
-    rounding : float
-        Half a unit of the last digit of `stated` [s].
-
-    Raises
-    ------
-    RecordError
-        If it is neither of them to the rounding.
+    stated: duration by the header: of all steps, or from the first sample to the last [s]; step: step between samples
+    [s]; rounding: half a unit of the last digit of `stated` [s].
     """
     off = min(abs(stated - samples * step) for samples in (count - 1, count))
     if not off <= 1.001 * rounding + 1e-9:
@@ -134,18 +58,8 @@ def check_duration(source: Source, stated: float, count: int, step: float, round
 def half_digit(word: str) -> float:
     """Return the largest error that rounding can have left in a printed number: half a unit of its last digit.
 
-    Parameters
-    ----------
-    word : str
-        The number as printed.
+    Returns the error, with a millionth to spare for arithmetic in the last place.
 
-    Returns
-    -------
-    float
-        The error, with a millionth to spare for arithmetic in the last place.
-
-    Examples
-    --------
     >>> f"{half_digit('4.954'):.3g}", f"{half_digit('4.136E+1'):.3g}", f"{half_digit('-12'):.3g}"
     ('0.0005', '0.005', '0.5')
     """
@@ -154,23 +68,6 @@ def half_digit(word: str) -> float:
 
 
 def check_stated(source: Source, stated: float, found: float, rounding: float, what: str) -> None:
-    """Refuse a file whose header states another number than its data give; signs count.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    stated, found : float
-        The number by the header and by the data.
-    rounding : float
-        Largest difference that rounding in the file explains.
-    what : str
-        What it is.
-
-    Raises
-    ------
-    RecordError
-        If they differ by more.
-    """
+    """Refuse a file whose header states another number than its data give; signs count."""
     if not abs(stated - found) <= rounding:
         raise source.error(None, f"the header states a {what} of {stated:g}, the data have {found:g}")

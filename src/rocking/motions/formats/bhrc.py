@@ -38,15 +38,7 @@ class Bhrc(RecordFormat):
     def recognises(self, source: Source) -> bool:
         """Return whether the text of a BHRC component stands at the top.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if this format should read it.
+        Returns true if this format should read it.
         """
         if not source.is_text:
             return False
@@ -57,24 +49,7 @@ class Bhrc(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the components.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            If given, it must be g/10.
-        time_step : float, optional
-            If given, it must be the file's [s].
-
-        Returns
-        -------
-        Record
-            Up to three components: L, V and T.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged, at odds with its own header, or no Volume 1.
+        time_step: if given, it must be the file's [s]. Returns up to three components: L, V and T.
         """
         components: list[Component] = []
         line = 0
@@ -98,23 +73,7 @@ class Bhrc(RecordFormat):
         return Record(self.name, tuple(components), header, {key: text for key, text in metadata.items() if text})
 
     def write(self, record: Record) -> bytes:
-        """Return a Volume 1 file.
-
-        Parameters
-        ----------
-        record : Record
-            Up to three components named L, V and T.
-
-        Returns
-        -------
-        bytes
-            The content, to six digits.
-
-        Raises
-        ------
-        RecordError
-            If they have other names, or there are more than 99999 samples.
-        """
+        """Return a Volume 1 file."""
         rows = units_and_steps.in_unit(record, self.name, "g/10", 3)
         names = [part.name for part in record.components]
         if len(set(names)) != len(names) or not set(names) <= {"L", "V", "T"}:

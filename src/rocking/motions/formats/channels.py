@@ -14,18 +14,7 @@ LONGEST_LINE = 200
 
 
 def distinct_names(channels: Sequence[Channel]) -> tuple[Component, ...]:
-    """Return the components named by direction, or by channel number where directions repeat.
-
-    Parameters
-    ----------
-    channels : sequence of tuple
-        The channels.
-
-    Returns
-    -------
-    tuple of Component
-        Named.
-    """
+    """Return the components named by direction, or by channel number where directions repeat."""
     found = [re.search(r"CHAN\s*(\d+)\s*:\s*(.*?)\s*(?:DEG\b.*)?$", label, re.IGNORECASE) for _, label, _ in channels]
     numbers = [one[1] if one else str(place) for place, one in enumerate(found, 1)]
     names = directions = [one[2].strip() if one else "" for one in found]
@@ -39,18 +28,7 @@ def distinct_names(channels: Sequence[Channel]) -> tuple[Component, ...]:
 
 
 def names_in(texts: Sequence[str]) -> dict[str, str]:
-    """Return event and station from the text lines after the titles.
-
-    Parameters
-    ----------
-    texts : sequence of str
-        The event stands first, its date second, the station's number fourth, its name fifth.
-
-    Returns
-    -------
-    dict of str to str
-        What is not blank.
-    """
+    """Return event and station from the text lines after the titles."""
     station = re.search(r"STATION NO\.?\s*(\w+)", texts[3][:LONGEST_LINE], re.IGNORECASE)
     found = {
         "event": texts[0].strip(),

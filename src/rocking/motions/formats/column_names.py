@@ -23,44 +23,17 @@ _UNITS = ", ".join(ACCELERATION_UNITS)
 
 @dataclass(frozen=True, slots=True)
 class ColumnName:
-    """A column by what stands above it.
+    """A column by what stands above it."""
 
-    Parameters
-    ----------
-    place : int
-        Where it is, from 0.
-    text : str
-        As it stands.
-    name : str
-        Without a unit of ours.
-    unit : str, optional
-        A key of `rocking.conventions.ACCELERATION_UNITS`, where that stands in brackets.
-    behind : str
-        What else stands in the brackets, in small letters and without exponents' marks.
-    """
-
-    place: int
-    text: str
-    name: str
-    unit: str | None = None
-    behind: str = ""
+    place: int  # where it is, from 0
+    text: str  # as it stands
+    name: str  # without a unit of ours
+    unit: str | None = None  # A key of `rocking.conventions.ACCELERATION_UNITS`, where that stands in brackets
+    behind: str = ""  # what else stands in the brackets, in small letters and without exponents' marks
 
     @classmethod
     def of(cls, place: int, text: str) -> "ColumnName":
-        """Read what stands above a column.
-
-        Parameters
-        ----------
-        place : int
-            Where it is, from 0.
-        text : str
-            What stands there.
-
-        Returns
-        -------
-        ColumnName
-            Name and unit.
-        """
+        """Read what stands above a column."""
         found = _BRACKETS.fullmatch(text)
         if found is None:
             return cls(place, text, text)
@@ -93,43 +66,15 @@ class ColumnName:
 
 @dataclass(frozen=True, slots=True)
 class NamedColumns:
-    """Which of the named columns is what.
-
-    Parameters
-    ----------
-    time : ColumnName or None
-        The times.
-    accelerations : tuple of ColumnName
-        The accelerations.
-    left_out : tuple of str
-        What is neither.
-    """
+    """Which of the named columns is what."""
 
     time: ColumnName | None
     accelerations: tuple[ColumnName, ...]
-    left_out: tuple[str, ...]
+    left_out: tuple[str, ...]  # what is neither
 
     @classmethod
     def of(cls, source: Source, texts: tuple[str, ...]) -> "NamedColumns":
-        """Tell columns apart by their names.
-
-        Parameters
-        ----------
-        source : Source
-            The file, for errors.
-        texts : tuple of str
-            What stands above them.
-
-        Returns
-        -------
-        NamedColumns
-            What each is.
-
-        Raises
-        ------
-        RecordError
-            If that is not clear; it names the columns and says what to change.
-        """
+        """Tell columns apart by their names."""
         named = tuple(ColumnName.of(place, text) for place, text in enumerate(texts))
         _check_names(source, named)
         times = [one for one in named if one.is_time]
@@ -153,27 +98,7 @@ class NamedColumns:
         return cls(times[0] if times else None, found, left_out)
 
     def with_unit(self, source: Source, asked: str | None) -> "NamedColumns":
-        """Return the same with a unit for every acceleration.
-
-        Parameters
-        ----------
-        source : Source
-            The file, for errors.
-        asked : str, optional
-            Unit by the user, for the columns that state none.
-
-        Returns
-        -------
-        NamedColumns
-            Its accelerations have units.
-
-        Raises
-        ------
-        InvalidValueError
-            If the user's word is no unit of acceleration.
-        RecordError
-            If a column states no unit and the user says none, or one states another than the user.
-        """
+        """Return the same with a unit for every acceleration."""
         silent = [one for one in self.accelerations if one.unit is None]
         if silent and asked is None and len(silent) < len(self.accelerations):
             raise source.error(None, f"{_silent(silent)}; say units= one of {_UNITS}")

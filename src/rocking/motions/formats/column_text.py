@@ -28,41 +28,16 @@ _OTHER_FORMAT = re.compile(r"sample\s*rate|sampling|record\s*length|npts|ndata",
 
 @dataclass(frozen=True)
 class ColumnText:
-    """The cells of a file of columns, none of them read as a number yet.
+    """The cells of a file of columns, none of them read as a number yet."""
 
-    Parameters
-    ----------
-    names : tuple of str or None
-        What the columns are called, with their units; None if the file begins with numbers.
-    heading : str
-        The line of the names; empty if there is none.
-    rows : list of (int, list of str)
-        Index of each line of numbers, and its cells.
-    separator : str
-        ``;``, a tab, ``,``, a blank for white space, or nothing if blanks and commas both part.
-    """
-
-    names: tuple[str, ...] | None
-    heading: str
-    rows: list[tuple[int, list[str]]]
-    separator: str
+    names: tuple[str, ...] | None  # what the columns are called, with their units; None if the file begins with numbers
+    heading: str  # the line of the names; empty if there is none
+    rows: list[tuple[int, list[str]]]  # index of each line of numbers, and its cells
+    separator: str  # ``;``, a tab, ``,``, a blank for white space, or nothing if blanks and commas both part
 
     @classmethod
     def of(cls, source: Source, most: int | None = None) -> "ColumnText":
-        """Part a file into cells.
-
-        Parameters
-        ----------
-        source : Source
-            The file.
-        most : int, optional
-            Lines that are looked at; all of them if not given.
-
-        Returns
-        -------
-        ColumnText
-            The cells.
-        """
+        """Part a file into cells."""
         lines = _lines(source, None if most is None else max(most, _FIRST_ROWS) + 1)
         if not lines:
             return cls(None, "", [], "")
@@ -77,18 +52,7 @@ class ColumnText:
 
 
 def readable(text: str) -> str:
-    """Return a line in the alphabet in which it was written: UTF-8 where it is that, Latin-1 otherwise.
-
-    Parameters
-    ----------
-    text : str
-        A line of a `Source`, whose bytes stand for characters.
-
-    Returns
-    -------
-    str
-        The line.
-    """
+    """Return a line in the alphabet in which it was written: UTF-8 where it is that, Latin-1 otherwise."""
     try:
         return text.encode("latin-1").decode("utf-8")
     except UnicodeError:
@@ -96,18 +60,7 @@ def readable(text: str) -> str:
 
 
 def states_sampling(text: str) -> bool:
-    """Return whether a line speaks of a sampling, as headers of other formats do.
-
-    Parameters
-    ----------
-    text : str
-        The line.
-
-    Returns
-    -------
-    bool
-        True if so.
-    """
+    """Return whether a line speaks of a sampling, as headers of other formats do."""
     return _OTHER_FORMAT.search(text[:200]) is not None
 
 

@@ -51,18 +51,7 @@ class Columns(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the first lines hold nothing but 1 to 4 numbers each, or names and as many numbers.
-
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if so.
-        """
+        """Return whether the first lines hold nothing but 1 to 4 numbers each, or names and as many numbers."""
         looked = _looked_at(source)
         if looked is None:
             return False
@@ -75,15 +64,7 @@ class Columns(RecordFormat):
     def refusal(self, source: Source) -> RecordError | None:
         """Return the error for a NaN or infinity on the first lines of what would be columns without it.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        RecordError or None
-            The error of `read` for the first such number; None if there is none, or anything else is wrong as well.
+        Returns the error of `read` for the first such number; None if there is none, or anything else is wrong as well.
         """
         looked = _looked_at(source)
         if looked is None:
@@ -102,26 +83,8 @@ class Columns(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, with a component for each column of accelerations.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            Unit of the accelerations; must be given where no name states it.
-        time_step : float, optional
-            Must be given where there is no column of times; refused where it contradicts one [s].
-
-        Returns
-        -------
-        Record
-            Components by their names; without names "acceleration", or "column 2", "column 3", "column 4" after the
-            times.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged, the times are unevenly spaced, it is not clear which column is what, or the unit or step
-            is missing.
+        time_step: must be given where there is no column of times; refused where it contradicts one [s]. Returns
+        components by their names; without names "acceleration", or "column 2", "column 3", "column 4" after the times.
         """
         if not source.is_text:
             raise source.error(None, "not a text file")
@@ -151,20 +114,7 @@ class Columns(RecordFormat):
     def write(self, record: Record) -> bytes:
         """Return the content of a file with a column of times and one to three of accelerations, to all digits.
 
-        Parameters
-        ----------
-        record : Record
-            One to three components of the same length and step, written in the unit of the first.
-
-        Returns
-        -------
-        bytes
-            The content; a comment names the unit, which readers must still be told.
-
-        Raises
-        ------
-        RecordError
-            If there are more components, or their lengths or steps differ.
+        Returns the content; a comment names the unit, which readers must still be told.
         """
         rows = in_unit(record, self.name, None, _MOST_COLUMNS - 1)
         step = record.components[0].time_step

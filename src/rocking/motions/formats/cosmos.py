@@ -47,41 +47,14 @@ class Cosmos(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the first line states the format and its number of text lines.
-
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if so.
-        """
+        """Return whether the first line states the format and its number of text lines."""
         return source.is_text and begins_channel(source, 0)
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, with a component for each channel.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            Refused unless it is the header's.
-        time_step : float, optional
-            Refused unless it is the header's [s].
-
-        Returns
-        -------
-        Record
-            Components named by their azimuth, or CHAN 1 where azimuths repeat.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged, at odds with its own header, or not acceleration.
+        time_step: refused unless it is the header's [s]. Returns components named by their azimuth, or CHAN 1 where
+        azimuths repeat.
         """
         first = 0
         channels: list[Channel] = []
@@ -98,23 +71,7 @@ class Cosmos(RecordFormat):
         return Record(self.name, distinct_names(channels), header, {k: v for k, v in metadata.items() if v})
 
     def write(self, record: Record) -> bytes:
-        """Return the content of a COSMOS file, in cm/sec2 with 5 decimals.
-
-        Parameters
-        ----------
-        record : Record
-            Up to 99 components.
-
-        Returns
-        -------
-        bytes
-            The content.
-
-        Raises
-        ------
-        RecordError
-            If there are more components or a number does not fit into its column.
-        """
+        """Return the content of a COSMOS file, in cm/sec2 with 5 decimals."""
         lines: list[str] = []
         for row, values in enumerate(in_unit(record, self.name, "cm/s2", 99)):
             lines += _lines(record, row, values.round(5))

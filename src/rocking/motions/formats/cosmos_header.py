@@ -26,53 +26,25 @@ _UNITS = {2: ("g", {"g"}), 4: ("cm/s2", {"cm/sec2", "cm/sec/sec", "cm/s2", "cm/s
 
 
 class DataLine(NamedTuple):
-    """What the line before the samples states.
+    """What the line before the samples states."""
 
-    Parameters
-    ----------
-    samples : int
-        Number of samples.
-    seconds : str
-        Duration as it is printed there [s].
-    unit : str
-        A key of `rocking.conventions.ACCELERATION_UNITS`.
-    code : int
-        Code of the unit.
-    per_line, width : int
-        Numbers on a line and characters of each.
-    """
-
-    samples: int
-    seconds: str
-    unit: str
-    code: int
-    per_line: int
+    samples: int  # number of samples
+    seconds: str  # duration as it is printed there [s]
+    unit: str  # A key of `rocking.conventions.ACCELERATION_UNITS`
+    code: int  # code of the unit
+    per_line: int  # per_line, width: numbers on a line and characters of each
     width: int
 
 
 class Header(NamedTuple):
-    """The header of one channel.
+    """The header of one channel."""
 
-    Parameters
-    ----------
-    lines : list of str
-        All its lines, as they stand.
-    texts : int
-        How many of them are text.
-    wholes, figures : ndarray
-        The whole numbers and the reals.
-    data : DataLine
-        The line before the samples.
-    first_sample : int
-        Line of the first sample.
-    """
-
-    lines: list[str]
-    texts: int
-    wholes: FloatArray
+    lines: list[str]  # all its lines, as they stand
+    texts: int  # how many of them are text
+    wholes: FloatArray  # wholes, figures: the whole numbers and the reals
     figures: FloatArray
-    data: DataLine
-    first_sample: int
+    data: DataLine  # the line before the samples
+    first_sample: int  # line of the first sample
 
     @property
     def channel(self) -> str:
@@ -86,43 +58,12 @@ class Header(NamedTuple):
 
 
 def begins_channel(source: Source, line: int) -> bool:
-    """Return whether a line states the format and the number of text lines.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-    line : int
-        Index of the line, which need not exist.
-
-    Returns
-    -------
-    bool
-        True if so.
-    """
+    """Return whether a line states the format and the number of text lines."""
     return line < len(source.lines) and _TITLE.fullmatch(source.lines[line][:200]) is not None
 
 
 def read_header(source: Source, first: int) -> Header:
-    """Return the header of the channel that begins at a line.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-    first : int
-        Its first line.
-
-    Returns
-    -------
-    Header
-        What it states.
-
-    Raises
-    ------
-    RecordError
-        If a part of it is missing, damaged, or not of acceleration.
-    """
+    """Return the header of the channel that begins at a line."""
     title = _TITLE.fullmatch(source.lines[first][:200])
     texts = whole(source, first, title[1], "number of text lines") if title else 0
     if not 12 <= texts <= _MOST_TEXT or first + texts + 1 >= len(source.lines):
@@ -137,20 +78,7 @@ def read_header(source: Source, first: int) -> Header:
 
 
 def known(value: float, unknown: float = UNKNOWN) -> float | None:
-    """Return a number of the header, or none where it is the one that means unknown.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-    unknown : float
-        What means unknown.
-
-    Returns
-    -------
-    float, optional
-        The number.
-    """
+    """Return a number of the header, or none where it is the one that means unknown."""
     return None if value == unknown else float(value)
 
 

@@ -39,18 +39,7 @@ class CsmipV1(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether it begins as an uncorrected accelerogram with whole numbers after 13 lines.
-
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if so.
-        """
+        """Return whether it begins as an uncorrected accelerogram with whole numbers after 13 lines."""
         if not source.is_text or not _TITLE.match(source.lines[0]) or len(source.lines) <= _TEXT_LINES:
             return False
         return re.fullmatch(r"[\s\d-]{5,80}", source.lines[_TEXT_LINES]) is not None
@@ -58,24 +47,8 @@ class CsmipV1(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, with a component for each channel.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            Refused unless it is the header's, or the header states none.
-        time_step : float, optional
-            Refused unless it is the file's [s].
-
-        Returns
-        -------
-        Record
-            Components named by their direction, or CHAN 1 where directions repeat.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged, at odds with its own header, or unevenly spaced.
+        time_step: refused unless it is the file's [s]. Returns components named by their direction, or CHAN 1 where
+        directions repeat.
         """
         first = 0
         channels: list[Channel] = []
@@ -87,23 +60,7 @@ class CsmipV1(RecordFormat):
         return Record(self.name, distinct_names(channels), header, names_in(channels[0][0][1:]))
 
     def write(self, record: Record) -> bytes:
-        """Return the content of a CSMIP V1 file, in g/10 with 3 decimals.
-
-        Parameters
-        ----------
-        record : Record
-            Up to 99 components.
-
-        Returns
-        -------
-        bytes
-            The content.
-
-        Raises
-        ------
-        RecordError
-            If there are more components or a number does not fit into its column.
-        """
+        """Return the content of a CSMIP V1 file, in g/10 with 3 decimals."""
         lines: list[str] = []
         for row, values in enumerate(in_unit(record, self.name, "g/10", 99)):
             lines += _lines(record, row, values.round(3))

@@ -41,18 +41,7 @@ class CsmipV2(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether it begins as a corrected accelerogram with blocks of acceleration.
-
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if so.
-        """
+        """Return whether it begins as a corrected accelerogram with blocks of acceleration."""
         if not source.is_text or not _TITLE.match(source.lines[0]):
             return False
         return any(_BLOCK.fullmatch(text) for text in source.lines[:100])
@@ -60,24 +49,8 @@ class CsmipV2(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, with a component for each channel.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            Refused unless it is cm/s2.
-        time_step : float, optional
-            Refused unless it is the header's [s].
-
-        Returns
-        -------
-        Record
-            Components named by their direction, such as 90 or UP, or CHAN 1 where directions repeat.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged or at odds with its own header.
+        time_step: refused unless it is the header's [s]. Returns components named by their direction, such as 90 or UP,
+        or CHAN 1 where directions repeat.
         """
         unit = acceleration_unit(source, "cm/s2", units)
         first = 0
@@ -92,20 +65,7 @@ class CsmipV2(RecordFormat):
     def write(self, record: Record) -> bytes:
         """Return the content of a CSMIP V2 file, in cm/s2 with 3 decimals.
 
-        Parameters
-        ----------
-        record : Record
-            Up to 99 components.
-
-        Returns
-        -------
-        bytes
-            The content; velocity and displacement are integrated from rest.
-
-        Raises
-        ------
-        RecordError
-            If there are more components or a number does not fit into its column.
+        Returns the content; velocity and displacement are integrated from rest.
         """
         lines: list[str] = []
         for row, values in enumerate(in_unit(record, self.name, "cm/s2", 99)):

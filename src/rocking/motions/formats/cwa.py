@@ -35,15 +35,7 @@ class Cwa(RecordFormat):
     def recognises(self, source: Source) -> bool:
         """Return whether the file begins with the words of this header.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if this format should read it.
+        Returns true if this format should read it.
         """
         if not source.is_text:
             return False
@@ -54,24 +46,7 @@ class Cwa(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the three components.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            If given, it must be gal or cm/s2.
-        time_step : float, optional
-            If given, it must be the file's [s].
-
-        Returns
-        -------
-        Record
-            Components U, N and E.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged or at odds with its own header.
+        time_step: if given, it must be the file's [s].
         """
         first = next((k for k, line in enumerate(source.lines) if line.startswith("#Data:")), None)
         if first is None or not source.is_text:
@@ -104,23 +79,7 @@ class Cwa(RecordFormat):
         return Record(self.name, components, "\n".join(source.lines[: first + 1]), said)
 
     def write(self, record: Record) -> bytes:
-        """Return a file of three components.
-
-        Parameters
-        ----------
-        record : Record
-            Components U, N and E in any order, of equal length and step.
-
-        Returns
-        -------
-        bytes
-            The content, to 0.001 gal.
-
-        Raises
-        ------
-        RecordError
-            If there are others, or a number does not fit into its columns.
-        """
+        """Return a file of three components."""
         samples = units_and_steps.in_unit(record, self.name, "gal", 3)
         rows = dict(zip((part.name for part in record.components), samples, strict=True))
         steps = {part.time_step for part in record.components}

@@ -73,18 +73,7 @@ class Esm(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether the header has the keys of DYNA.
-
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if so.
-        """
+        """Return whether the header has the keys of DYNA."""
         if not source.is_text or not source.lines[0].startswith("EVENT_NAME:"):
             return False
         head = [text.partition(":")[0] for text in source.lines[:_MOST_KEYS]]
@@ -93,24 +82,7 @@ class Esm(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, of one component.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            Refused unless it is the header's.
-        time_step : float, optional
-            Refused unless it is the header's [s].
-
-        Returns
-        -------
-        Record
-            Component named by its stream, such as HNN.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged, at odds with its own header, or not acceleration.
+        time_step: refused unless it is the header's [s]. Returns component named by its stream, such as HNN.
         """
         keys = _header(source)
         _check_kind(source, keys)
@@ -129,23 +101,7 @@ class Esm(RecordFormat):
         return Record(self.name, (part,), "\n".join(source.lines[: len(keys)]), metadata)
 
     def write(self, record: Record) -> bytes:
-        """Return the content of an ESM file, in cm/s^2 with 6 decimals.
-
-        Parameters
-        ----------
-        record : Record
-            One component.
-
-        Returns
-        -------
-        bytes
-            The content.
-
-        Raises
-        ------
-        RecordError
-            If there is more than one component, or a sample is not finite.
-        """
+        """Return the content of an ESM file, in cm/s^2 with 6 decimals."""
         (values,) = in_unit(record, self.name, "cm/s2", 1)
         values = values.round(6)
         part = record.components[0]

@@ -27,18 +27,8 @@ _TROUBLE = {"missing", "error", "memory", "died"}
 class ForeignReader:
     """A reader in another process, which is kept for the next file.
 
-    Parameters
-    ----------
-    script : Path
-        File with the function ``answer`` of `foreign_worker.main`.
-    needs : str
-        Name of the library, for messages.
-    module : str
-        The name that it is imported by.
-    seconds : float
-        Time for one file [s].
-    memory : int
-        Memory for one file, beyond that of the loaded reader; kept on Linux alone [bytes].
+    seconds: time for one file [s]; memory: memory for one file, beyond that of the loaded reader; kept on Linux alone
+    [bytes].
     """
 
     def __init__(
@@ -52,29 +42,7 @@ class ForeignReader:
         atexit.register(self.close)
 
     def answer(self, source: Source, request: dict[str, Any], *files: bytes) -> tuple[dict[str, Any], list[Any]]:
-        """Return what the reader says of a file.
-
-        Parameters
-        ----------
-        source : Source
-            The file, for messages.
-        request : dict
-            What is asked.
-        *files : bytes
-            Contents.
-
-        Returns
-        -------
-        tuple of dict and list of ndarray
-            A description, and arrays.
-
-        Raises
-        ------
-        RecordError
-            If the reader refuses the file, crashes, takes too long or too much memory.
-        MissingExtraError
-            If the library is not installed.
-        """
+        """Return what the reader says of a file."""
         parts = [json.dumps(request).encode(), *files]
         while True:
             worker, fresh = self._taken()

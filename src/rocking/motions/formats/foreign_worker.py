@@ -24,15 +24,7 @@ FORKS = sys.platform == "linux"
 
 
 def send(channel: BinaryIO, parts: Sequence[bytes]) -> None:
-    """Write parts of a message.
-
-    Parameters
-    ----------
-    channel : file
-        Where to.
-    parts : sequence of bytes
-        What.
-    """
+    """Write parts of a message."""
     channel.write(struct.pack("<I", len(parts)))
     for part in parts:
         channel.write(struct.pack("<Q", len(part)))
@@ -41,23 +33,7 @@ def send(channel: BinaryIO, parts: Sequence[bytes]) -> None:
 
 
 def receive(channel: BinaryIO) -> list[bytes]:
-    """Read the parts of a message.
-
-    Parameters
-    ----------
-    channel : file
-        Where from.
-
-    Returns
-    -------
-    list of bytes
-        The parts.
-
-    Raises
-    ------
-    EOFError
-        If it ends before the message does.
-    """
+    """Read the parts of a message."""
 
     def exactly(count: int) -> bytes:
         found = channel.read(count)
@@ -123,15 +99,7 @@ def _limit(seconds: float, memory: int) -> None:
 def main(script: str, seconds: float, memory: int) -> None:
     """Answer messages until there are no more.
 
-    Parameters
-    ----------
-    script : str
-        File with a function ``answer(request, *files)``, which returns a description and arrays, and perhaps one
-        without arguments, ``prepare``, which loads what all files need.
-    seconds : float
-        Time for a file [s].
-    memory : int
-        Memory for a file, beyond that of the loaded reader [bytes].
+    seconds: time for a file [s]; memory: memory for a file, beyond that of the loaded reader [bytes].
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # what libraries print must not come between the messages

@@ -43,15 +43,7 @@ class GeonetV2A(RecordFormat):
     def recognises(self, source: Source) -> bool:
         """Return whether the text of a corrected GeoNet component stands at the top.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if this format should read it.
+        Returns true if this format should read it.
         """
         if not source.is_text:
             return False
@@ -62,24 +54,7 @@ class GeonetV2A(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the components.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            If given, it must be mm/s2.
-        time_step : float, optional
-            If given, it must be the file's [s].
-
-        Returns
-        -------
-        Record
-            Three components, named by their directions.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged or at odds with its own header.
+        time_step: if given, it must be the file's [s].
         """
         unit = units_and_steps.acceleration_unit(source, "mm/s2", units)
         components: list[Component] = []
@@ -101,23 +76,7 @@ class GeonetV2A(RecordFormat):
         return Record(self.name, tuple(components), header, {key: text for key, text in metadata.items() if text})
 
     def write(self, record: Record) -> bytes:
-        """Return a file of three components; velocity and displacement are sums of trapezia, as text only.
-
-        Parameters
-        ----------
-        record : Record
-            Three components of different names.
-
-        Returns
-        -------
-        bytes
-            The content, to 0.1 mm/s2.
-
-        Raises
-        ------
-        RecordError
-            If there are not three, or a number does not fit into its columns.
-        """
+        """Return a file of three components; velocity and displacement are sums of trapezia, as text only."""
         rows = units_and_steps.in_unit(record, self.name, "mm/s2", 3)
         names = [number_lines.one_line(part.name, 8).partition(" ")[0] or "?" for part in record.components]
         if len(rows) != 3 or len(set(names)) != 3:

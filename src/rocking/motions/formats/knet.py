@@ -58,15 +58,7 @@ class Knet(RecordFormat):
     def recognises(self, source: Source) -> bool:
         """Return whether most of the words of the K-NET header stand at the top.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if this format should read it.
+        Returns true if this format should read it.
         """
         if not source.is_text:
             return False
@@ -77,24 +69,7 @@ class Knet(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the accelerogram without its mean.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            If given, it must be gal or cm/s2.
-        time_step : float, optional
-            If given, it must be the file's [s].
-
-        Returns
-        -------
-        Record
-            One component.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged or at odds with its own header.
+        time_step: if given, it must be the file's [s].
         """
         said = _header(source)
         unit = units_and_steps.acceleration_unit(source, "gal", units)
@@ -120,23 +95,7 @@ class Knet(RecordFormat):
         return Record(self.name, (component,), "\n".join(source.lines[: len(_KEYS)]), metadata)
 
     def write(self, record: Record) -> bytes:
-        """Return a K-NET file with a scale factor that suits the record's peak.
-
-        Parameters
-        ----------
-        record : Record
-            One component without a mean, of a whole number of seconds at a whole number of samples a second.
-
-        Returns
-        -------
-        bytes
-            The content.
-
-        Raises
-        ------
-        RecordError
-            If the format cannot hold it.
-        """
+        """Return a K-NET file with a scale factor that suits the record's peak."""
         (given,) = units_and_steps.in_unit(record, self.name, "gal", 1)
         part = record.components[0]
         rate = round(1.0 / part.time_step)

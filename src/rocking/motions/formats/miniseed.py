@@ -49,20 +49,7 @@ class MiniSeed(RecordFormat):
     def with_response(cls, stationxml_path: str | Path) -> "MiniSeed":
         """Return a reader that divides counts by the overall sensitivity of their channel.
 
-        Parameters
-        ----------
-        stationxml_path : str or Path
-            StationXML file with the channels' responses.
-
-        Returns
-        -------
-        MiniSeed
-            The reader; its records are in m/s2.
-
-        Raises
-        ------
-        RecordError
-            If there is no such file.
+        Returns the reader; its records are in m/s2.
         """
         made = cls()
         made._stations = Source.of_path(Path(stationxml_path))
@@ -71,39 +58,14 @@ class MiniSeed(RecordFormat):
     def recognises(self, source: Source) -> bool:
         """Return whether a miniSEED record stands at the beginning.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if this format should read it.
+        Returns true if this format should read it.
         """
         return re.match(rb"\d{6}[DRQM][ \0]", source.content) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the channels.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            Unit of acceleration of a file of real numbers; not together with a StationXML file, which says m/s2.
-        time_step : float, optional
-            If given, it must be the file's [s].
-
-        Returns
-        -------
-        Record
-            One component a channel.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged, has gaps, or its samples are no accelerations for all that is known.
+        time_step: if given, it must be the file's [s].
         """
         if not self.recognises(source):
             raise source.error(None, "no miniSEED file of version 2")
@@ -119,23 +81,7 @@ class MiniSeed(RecordFormat):
         return Record(self.name, components, header, {key: text for key, text in metadata.items() if text})
 
     def write(self, record: Record) -> bytes:
-        """Return a miniSEED file of real numbers, in the unit of the first component, which the file cannot state.
-
-        Parameters
-        ----------
-        record : Record
-            Components whose names differ in their first three letters.
-
-        Returns
-        -------
-        bytes
-            The content, in double precision.
-
-        Raises
-        ------
-        RecordError
-            If two components would get the same channel code.
-        """
+        """Return a miniSEED file of real numbers, in the unit of the first component, which the file cannot state."""
         rows = units_and_steps.in_unit(record, self.name, None, 100)
         codes = [part.name[:3] for part in record.components]
         if len(set(codes)) != len(codes):

@@ -7,22 +7,7 @@ from rocking.errors import RecordError
 
 
 def in_columns(values: Sequence[float] | FloatArray, per_line: int, form: str) -> list[str]:
-    """Return lines of numbers, for writers.
-
-    Parameters
-    ----------
-    values : sequence of float
-        The numbers.
-    per_line : int
-        Numbers on a line.
-    form : str
-        Format of one number, such as ``"{:15.7E}"``.
-
-    Returns
-    -------
-    list of str
-        The lines.
-    """
+    """Return lines of numbers, for writers."""
     words = [form.format(value) for value in values]
     return ["".join(words[start : start + per_line]) for start in range(0, len(words), per_line)]
 
@@ -30,29 +15,6 @@ def in_columns(values: Sequence[float] | FloatArray, per_line: int, form: str) -
 def in_width(values: Sequence[float] | FloatArray, per_line: int, width: int, decimals: int) -> list[str]:
     """Return lines of numbers in columns of fixed width, for writers.
 
-    Parameters
-    ----------
-    values : sequence of float
-        The numbers.
-    per_line : int
-        Numbers on a line.
-    width : int
-        Characters of a number.
-    decimals : int
-        Digits after the point.
-
-    Returns
-    -------
-    list of str
-        The lines.
-
-    Raises
-    ------
-    RecordError
-        If a number needs more characters.
-
-    Examples
-    --------
     >>> in_width([1.0, -2.5, 3.0], 2, 6, 2)
     ['  1.00 -2.50', '  3.00']
     """
@@ -67,20 +29,8 @@ def in_width(values: Sequence[float] | FloatArray, per_line: int, width: int, de
 def one_line(text: object, width: int) -> str:
     r"""Return text that fits on one line of a header, for writers.
 
-    Parameters
-    ----------
-    text : object
-        What to write.
-    width : int
-        Largest number of characters.
+    Returns Latin-1 characters without line ends; others become question marks.
 
-    Returns
-    -------
-    str
-        Latin-1 characters without line ends; others become question marks.
-
-    Examples
-    --------
     >>> one_line("El Centro\r\n 1940", 12)
     'El Centro 19'
     """

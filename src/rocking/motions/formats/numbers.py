@@ -13,29 +13,7 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d{1,3})?")
 
 
 def number(source: Source, line: int, word: str, what: str = "number") -> float:
-    """Return one number.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    line : int
-        Index of the line.
-    word : str
-        The characters.
-    what : str
-        What it should be, for the error.
-
-    Returns
-    -------
-    float
-        Finite.
-
-    Raises
-    ------
-    RecordError
-        If the characters are not one finite decimal number.
-    """
+    """Return one number."""
     text = word.strip()
     if not _NUMBER.fullmatch(text):
         raise source.error(line, f"{what} expected, found {text[:40]!r}")
@@ -46,31 +24,7 @@ def number(source: Source, line: int, word: str, what: str = "number") -> float:
 
 
 def whole(source: Source, line: int, word: str, what: str, least: int = 0) -> int:
-    """Return one whole number.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    line : int
-        Index of the line.
-    word : str
-        The characters.
-    what : str
-        What it should be, for the error.
-    least : int
-        Smallest that makes sense.
-
-    Returns
-    -------
-    int
-        The number.
-
-    Raises
-    ------
-    RecordError
-        If the characters are not one whole number of at least `least`.
-    """
+    """Return one whole number."""
     text = word.strip()
     if not re.fullmatch(r"[+-]?\d{1,9}", text) or int(text) < least:
         raise source.error(line, f"{what} expected, found {text[:40]!r}")
@@ -80,24 +34,7 @@ def whole(source: Source, line: int, word: str, what: str, least: int = 0) -> in
 def free(source: Source, first: int, last: int, columns: int | None = None) -> FloatArray:
     """Return the numbers between blanks on some lines.
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    first, last : int
-        Lines from `first` up to but not including `last`; blank ones are passed over.
-    columns : int, optional
-        Numbers that every line must hold.
-
-    Returns
-    -------
-    ndarray
-        All of them in order, of shape (n,) or (lines, columns).
-
-    Raises
-    ------
-    RecordError
-        If a word is not a number or a line holds another count.
+    Returns all of them in order, of shape (n,) or (lines, columns).
     """
     rows: list[float] = []
     for line in range(first, last):
@@ -112,30 +49,7 @@ def free(source: Source, first: int, last: int, columns: int | None = None) -> F
 def fixed(source: Source, first: int, count: int, per_line: int, width: int) -> tuple[FloatArray, int]:
     """Return `count` numbers in columns of fixed width, which need no blank between them.
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    first : int
-        Line of the first number.
-    count : int
-        How many there must be.
-    per_line : int
-        Numbers on a full line.
-    width : int
-        Characters of a number.
-
-    Returns
-    -------
-    values : ndarray, shape (count,)
-        The numbers.
-    next_line : int
-        The line after them.
-
-    Raises
-    ------
-    RecordError
-        If a line is missing, too short, too long, or a column is not a number.
+    Returns values: the numbers (shape (count,)).
     """
     values: list[float] = []
     line = first
@@ -154,27 +68,8 @@ def fixed(source: Source, first: int, count: int, per_line: int, width: int) -> 
 def fortran_form(source: Source, line: int, word: str) -> tuple[int, int]:
     """Return how many numbers a line holds and how wide they are, by a Fortran format.
 
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    line : int
-        Index of the line that states it.
-    word : str
-        The format, such as ``(8F10.5)`` or ``10I8``.
+    Returns numbers on a full line and characters of each.
 
-    Returns
-    -------
-    per_line, width : int
-        Numbers on a full line and characters of each.
-
-    Raises
-    ------
-    RecordError
-        If it is no such format.
-
-    Examples
-    --------
     >>> fortran_form(Source("a.v1", b"x"), 0, "(8F10.5)")
     (8, 10)
     """

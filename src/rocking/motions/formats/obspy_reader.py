@@ -24,19 +24,7 @@ def prepare() -> None:
 def answer(request: dict[str, Any], content: bytes, stations: bytes | None = None) -> tuple[dict[str, Any], list[Any]]:
     """Return the traces of a file, each with the channels of a StationXML file that are its own.
 
-    Parameters
-    ----------
-    request : dict
-        ``format`` by ObsPy's name, and ``options`` of its reader.
-    content : bytes
-        The file.
-    stations : bytes, optional
-        A StationXML file.
-
-    Returns
-    -------
-    tuple of dict and list of ndarray
-        Descriptions of the traces, and their samples.
+    Returns descriptions of the traces, and their samples.
     """
     obspy = import_module("obspy")
     warnings.simplefilter("error")

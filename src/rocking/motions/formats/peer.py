@@ -36,18 +36,7 @@ class Peer(RecordFormat):
     )
 
     def recognises(self, source: Source) -> bool:
-        """Return whether titles, a line that states NPTS and DT and nothing else, and numbers follow one another.
-
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if so.
-        """
+        """Return whether titles, a line that states NPTS and DT and nothing else, and numbers follow one another."""
         line = _size_line(source) if source.is_text else None
         if not line or not (_OLD.fullmatch(source.lines[line]) or _keyed(source.lines[line])):
             return False
@@ -64,24 +53,8 @@ class Peer(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the record, of one component.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            Refused unless it is g, or the header does not speak of units at all.
-        time_step : float, optional
-            Refused unless it is the header's [s].
-
-        Returns
-        -------
-        Record
-            Component named by its azimuth or direction, or "acceleration".
-
-        Raises
-        ------
-        RecordError
-            If it is damaged, at odds with its own header, or not in g.
+        time_step: refused unless it is the header's [s]. Returns component named by its azimuth or direction, or
+        "acceleration".
         """
         line = _size_line(source) if source.is_text else None
         if line is None:
@@ -97,23 +70,7 @@ class Peer(RecordFormat):
         return Record(self.name, (Component(name, values, unit, step),), "\n".join(header), metadata)
 
     def write(self, record: Record) -> bytes:
-        """Return the content of a PEER file, in g with 8 digits.
-
-        Parameters
-        ----------
-        record : Record
-            One component.
-
-        Returns
-        -------
-        bytes
-            The content.
-
-        Raises
-        ------
-        RecordError
-            If there is more than one component, or a sample is not finite.
-        """
+        """Return the content of a PEER file, in g with 8 digits."""
         (values,) = in_unit(record, self.name, "g", 1)
         part = record.components[0]
         known = {"event": "unknown", "station": "unknown", **record.metadata}

@@ -40,23 +40,6 @@ def formats() -> dict[str, RecordFormat]:
 def format_named(name: str) -> RecordFormat:
     """Return one record format.
 
-    Parameters
-    ----------
-    name : str
-        Its name, such as ``"peer"``.
-
-    Returns
-    -------
-    RecordFormat
-        The format.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is none of that name; the error lists the names.
-
-    Examples
-    --------
     >>> format_named("peer").states_unit
     True
     """

@@ -42,39 +42,14 @@ class Sac(RecordFormat):
     def recognises(self, source: Source) -> bool:
         """Return whether the version and the logical fields of a SAC header stand at their places.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if this format should read it.
+        Returns true if this format should read it.
         """
         return _byte_order(source) is not None
 
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the time series.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            Unit of acceleration; needed.
-        time_step : float, optional
-            If given, it must be the file's [s].
-
-        Returns
-        -------
-        Record
-            One component.
-
-        Raises
-        ------
-        RecordError
-            If it is damaged, at odds with its own header, no acceleration, or its unit is missing.
+        time_step: if given, it must be the file's [s].
         """
         order = _byte_order(source)
         if order is None:
@@ -107,23 +82,7 @@ class Sac(RecordFormat):
         return Record(self.name, (Component(name, values, unit, step, stated),), trace.header, trace.about)
 
     def write(self, record: Record) -> bytes:
-        """Return a SAC file, in the unit of the component, which the file cannot state.
-
-        Parameters
-        ----------
-        record : Record
-            One component.
-
-        Returns
-        -------
-        bytes
-            The content, in single precision.
-
-        Raises
-        ------
-        RecordError
-            If there are several components, or a number is beyond single precision.
-        """
+        """Return a SAC file, in the unit of the component, which the file cannot state."""
         (values,) = units_and_steps.in_unit(record, self.name, None, 1)
         if np.abs(values).max() > 1e37:
             raise RecordError(f"SAC holds accelerations below 1e37, got {np.abs(values).max():g}; wrong unit?")
@@ -155,65 +114,24 @@ def _check_places(source: Source, order: str) -> None:
 
 @dataclass(frozen=True)
 class Trace:
-    """What ObsPy finds in a file.
+    """What ObsPy finds in a file."""
 
-    Parameters
-    ----------
-    id, text : str
-        Network, station, location and channel in one word, and all in a line.
-    step : float
-        Step between samples [s].
-    about : dict of str to str
-        Network, station, channel and time of the first sample.
-    sac : dict
-        Header of a SAC file.
-    header : str
-        The same as text.
-    channels : list of dict, optional
-        Rates and sensitivities of the channels of a StationXML file that are its own.
-    samples : ndarray
-        As they stand in the file.
-    """
-
-    id: str
+    id: str  # id, text: network, station, location and channel in one word, and all in a line
     text: str
-    step: float
-    about: dict[str, str]
-    sac: dict[str, Any]
-    header: str
+    step: float  # step between samples [s]
+    about: dict[str, str]  # network, station, channel and time of the first sample
+    sac: dict[str, Any]  # header of a SAC file
+    header: str  # the same as text
+    # rates and sensitivities of the channels of a StationXML file that are its own
     channels: list[dict[str, Any]] | None
-    samples: Any
+    samples: Any  # as they stand in the file
 
 
 _OBSPY = ForeignReader(Path(__file__).with_name("obspy_reader.py"), "ObsPy", "obspy")
 
 
 def read_traces(source: Source, form: str, stations: Source | None = None, **options: Any) -> list[Trace]:
-    """Return the traces that ObsPy finds in a file, in a process of its own.
-
-    Parameters
-    ----------
-    source : Source
-        The file.
-    form : str
-        ObsPy's name of the format.
-    stations : Source, optional
-        A StationXML file.
-    **options
-        More for ObsPy's reader.
-
-    Returns
-    -------
-    list of Trace
-        At least one.
-
-    Raises
-    ------
-    MissingExtraError
-        If ObsPy is not installed.
-    RecordError
-        If ObsPy refuses the file, crashes or hangs on it, warns of damage, or finds nothing.
-    """
+    """Return the traces that ObsPy finds in a file, in a process of its own."""
     if find_spec("obspy") is None:
         need_obspy(form)
     files = [source.content] if stations is None else [source.content, stations.content]
@@ -229,23 +147,7 @@ def read_traces(source: Source, form: str, stations: Source | None = None, **opt
 
 
 def need_obspy(form: str) -> Any:
-    """Return ObsPy.
-
-    Parameters
-    ----------
-    form : str
-        What it is needed for.
-
-    Returns
-    -------
-    module
-        ObsPy.
-
-    Raises
-    ------
-    MissingExtraError
-        If it is not installed.
-    """
+    """Return ObsPy."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -255,27 +157,7 @@ def need_obspy(form: str) -> Any:
 
 
 def trace_of(values: Any, part: Component, record: Record) -> Any:
-    """Return an ObsPy trace of a component, for writers.
-
-    Parameters
-    ----------
-    values : ndarray
-        Samples in the type that the file will hold.
-    part : Component
-        Its name becomes the channel if it has three letters.
-    record : Record
-        Its metadata name network and station.
-
-    Returns
-    -------
-    obspy.Trace
-        The trace.
-
-    Raises
-    ------
-    MissingExtraError
-        If ObsPy is not installed.
-    """
+    """Return an ObsPy trace of a component, for writers."""
     obspy = need_obspy("SAC and miniSEED")
     trace = obspy.Trace(data=values)
     trace.stats.delta = part.time_step

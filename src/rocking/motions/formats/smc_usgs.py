@@ -56,15 +56,7 @@ class SmcUsgs(RecordFormat):
     def recognises(self, source: Source) -> bool:
         """Return whether the lines of numbers stand where SMC has them, with this variant's mark of precision.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-
-        Returns
-        -------
-        bool
-            True if this format should read it.
+        Returns true if this format should read it.
         """
         if not source.is_text or not re.match(r" ?\d [A-Z]", source.lines[0]):
             return False
@@ -78,24 +70,7 @@ class SmcUsgs(RecordFormat):
     def read(self, source: Source, units: str | None = None, time_step: float | None = None) -> Record:
         """Return the accelerogram.
 
-        Parameters
-        ----------
-        source : Source
-            The file.
-        units : str, optional
-            If given, it must be cm/s2 or gal.
-        time_step : float, optional
-            If given, it must be the file's [s].
-
-        Returns
-        -------
-        Record
-            One component.
-
-        Raises
-        ------
-        RecordError
-            If it holds no evenly spaced accelerations, is damaged, or is at odds with its own header.
+        time_step: if given, it must be the file's [s].
         """
         if not self.recognises(source):
             raise source.error(
@@ -119,23 +94,7 @@ class SmcUsgs(RecordFormat):
         return Record(self.name, (component,), raw, _metadata(source, header))
 
     def write(self, record: Record) -> bytes:
-        """Return an SMC file.
-
-        Parameters
-        ----------
-        record : Record
-            One component; its samples are converted to cm/s2, and those below 1e-9 cm/s2 become zero.
-
-        Returns
-        -------
-        bytes
-            The content.
-
-        Raises
-        ------
-        RecordError
-            If there are several components, or a sample is 1e10 cm/s2 or more.
-        """
+        """Return an SMC file."""
         (given,) = units_and_steps.in_unit(record, self.name, "cm/s2", 1)
         component = record.components[0]
         words = [self._word(value) for value in given.tolist()]

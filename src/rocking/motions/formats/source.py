@@ -12,38 +12,14 @@ LARGEST_FILE = 256 * 1024 * 1024
 
 @dataclass(frozen=True)
 class Source:
-    """A file's name and content.
+    """A file's name and content."""
 
-    Parameters
-    ----------
-    name : str
-        Name for messages.
-    content : bytes
-        What is in it.
-    """
-
-    name: str
-    content: bytes
+    name: str  # name for messages
+    content: bytes  # what is in it
 
     @classmethod
     def of_path(cls, path: Path) -> "Source":
-        """Read a file, within limits.
-
-        Parameters
-        ----------
-        path : Path
-            The file.
-
-        Returns
-        -------
-        Source
-            Its content.
-
-        Raises
-        ------
-        RecordError
-            If it is missing, no plain file, empty or larger than 256 MiB.
-        """
+        """Read a file, within limits."""
         if not path.is_file():
             raise RecordError(f"{path}: {'not a plain file' if path.exists() else 'no such file'}")
         try:
@@ -69,18 +45,5 @@ class Source:
         return text.replace("\r\r\n", "\n").replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
     def error(self, line: int | None, cause: str) -> RecordError:
-        """Return the error for a line, to be raised.
-
-        Parameters
-        ----------
-        line : int, optional
-            Index of the line, from 0; shown from 1.
-        cause : str
-            What is wrong with it.
-
-        Returns
-        -------
-        RecordError
-            ``name, line 5: cause``.
-        """
+        """Return the error for a line, to be raised."""
         return RecordError(f"{self.name}{'' if line is None else f', line {line + 1}'}: {cause}")

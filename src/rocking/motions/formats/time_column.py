@@ -10,26 +10,7 @@ from rocking.motions.formats.units_and_steps import step_between_samples
 def step_of_times(source: Source, times: FloatArray, words: list[str], told: float | None) -> float:
     """Return the step of a column of times; the told one where it is the same to the digits of the column.
 
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    times : ndarray, shape (n,)
-        The times [s].
-    words : list of str
-        The same as they stand in the file.
-    told : float or None
-        What the user says of the step [s].
-
-    Returns
-    -------
-    float
-        The step [s].
-
-    Raises
-    ------
-    RecordError
-        If the times are not evenly spaced, or the user says otherwise.
+    times: the times [s]; told: what the user says of the step [s]. Returns the step [s].
     """
     digit = _last_digit(words)
     step = uniform_step(source, times, digit)
@@ -41,24 +22,8 @@ def step_of_times(source: Source, times: FloatArray, words: list[str], told: flo
 def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
     """Return the step of a time column that is uniform to the rounding of its digits.
 
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    times : ndarray, shape (n,)
-        Times as printed [s].
-    unit : float
-        One unit of the last printed digit [s].
-
-    Returns
-    -------
-    float
-        The step; the shortest decimal number that fits the column [s].
-
-    Raises
-    ------
-    RecordError
-        If there are fewer than two times, they are unevenly spaced, or they have too few digits to tell.
+    times: times as printed [s]; unit: one unit of the last printed digit [s]. Returns the step; the shortest decimal
+    number that fits the column [s].
     """
     if times.size < 2:
         raise source.error(None, f"at least 2 samples are needed, found {times.size}")

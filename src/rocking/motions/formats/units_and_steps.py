@@ -10,29 +10,7 @@ from rocking.motions.formats.source import Source
 
 
 def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> str:
-    """Return the unit of a file's accelerations: what it states, or what the user says where it states nothing.
-
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    stated : str, optional
-        Unit by the file.
-    asked : str, optional
-        Unit by the user.
-
-    Returns
-    -------
-    str
-        A key of `rocking.conventions.ACCELERATION_UNITS`.
-
-    Raises
-    ------
-    InvalidValueError
-        If the user's word is no unit of acceleration.
-    RecordError
-        If neither says, or both do and differ.
-    """
+    """Return the unit of a file's accelerations: what it states, or what the user says where it states nothing."""
     asked = None if asked is None else checks.one_of("units", asked, ACCELERATION_UNITS)
     if stated is None and asked is None:
         raise source.error(None, f"the file does not state its unit; say units= one of {', '.join(ACCELERATION_UNITS)}")
@@ -44,24 +22,7 @@ def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> 
 def step_between_samples(source: Source, stated: float | None, asked: float | None) -> float:
     """Return the step of a file: what it states, or what the user says where it states nothing.
 
-    Parameters
-    ----------
-    source : Source
-        The file, for the error.
-    stated : float, optional
-        Step by the file [s].
-    asked : float, optional
-        Step by the user [s].
-
-    Returns
-    -------
-    float
-        The step, between 1e-6 and 10 s [s].
-
-    Raises
-    ------
-    RecordError
-        If neither says, both do and differ, or it is outside that range.
+    stated: step by the file [s]; asked: step by the user [s]. Returns the step, between 1e-6 and 10 s [s].
     """
     step = stated if stated is not None else asked
     if step is None:
@@ -74,29 +35,7 @@ def step_between_samples(source: Source, stated: float | None, asked: float | No
 
 
 def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[FloatArray]:
-    """Return the samples of a record in the one unit that a format holds, for writers.
-
-    Parameters
-    ----------
-    record : Record
-        What to write.
-    title : str
-        Name of the format, for the error.
-    unit : str, optional
-        Unit of the format; that of the first component if it holds any.
-    most : int
-        Largest number of components it holds.
-
-    Returns
-    -------
-    list of ndarray
-        Samples of each component.
-
-    Raises
-    ------
-    RecordError
-        If there is no component, there are more, or one is not a row of at least 2 finite samples in a known unit.
-    """
+    """Return the samples of a record in the one unit that a format holds, for writers."""
     if not 1 <= len(record.components) <= most:
         raise RecordError(f"{title} holds 1 to {most} components a file, got {len(record.components)}")
     rows = []

@@ -85,6 +85,11 @@ class Distribution(ABC):
 class Uniform(Distribution):
     """Every value between the ends alike.
 
+    Parameters
+    ----------
+    low, high : float
+        The ends, in the unit of what is drawn.
+
     Examples
     --------
     >>> Uniform(2.0, 4.0).value_at(0.25), Uniform(2.0, 4.0).words()

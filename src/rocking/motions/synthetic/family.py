@@ -105,27 +105,7 @@ class Family:
 
 
 def whole(name: str, value: object, low: int = 0, high: int = 2**63 - 1) -> int:
-    """Return a whole number within its range.
-
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : int
-        What the user gave.
-    low, high : int
-        Ends of the range, themselves allowed.
-
-    Returns
-    -------
-    int
-        The number.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is anything else.
-    """
+    """Return a whole number within its range."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:
         raise InvalidValueError(f"{name} must be a whole number in [{low}, {high}], got {value!r:.60}")
     return int(value)

@@ -15,22 +15,9 @@ LEAST_CYCLES = 1e-6
 def transition(omega: float, damping: float, step: float) -> FloatArray:
     """Return what free vibration does to displacement and velocity over one step.
 
-    Parameters
-    ----------
-    omega : float
-        Undamped natural frequency [rad/s].
-    damping : float
-        Damping ratio, from 0 to 1; 1 is critical [-].
-    step : float
-        Duration of the step [s].
+    omega: undamped natural frequency [rad/s]; damping: damping ratio, from 0 to 1; 1 is critical [-]; step: duration of
+    the step [s]. Returns matrix that takes displacement and velocity to the end of the step.
 
-    Returns
-    -------
-    ndarray, shape (2, 2)
-        Matrix that takes displacement and velocity to the end of the step.
-
-    Examples
-    --------
     >>> transition(math.pi, 0.0, 1.0).round(12).tolist()
     [[-1.0, 0.0], [-0.0, -1.0]]
     """
@@ -49,19 +36,8 @@ def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> 
     The response of ``z'' + 2 w z' + w^2 z = a`` is a high pass of the motion: its velocity and displacement come back
     to zero (Rezaeian & Der Kiureghian 2008). It is exact at the samples for straight lines between them.
 
-    Parameters
-    ----------
-    acceleration : ndarray
-        Motion, from rest [m/s2].
-    time_step : float
-        Step between samples [s].
-    frequency : float
-        Natural frequency, the corner of the filter [Hz].
-
-    Returns
-    -------
-    ndarray
-        ``z''`` at the samples [m/s2].
+    acceleration: motion, from rest [m/s2]; time_step: step between samples [s]; frequency: natural frequency, the
+    corner of the filter [Hz]. Returns ``z''`` at the samples [m/s2].
     """
     low, high = LEAST_CYCLES / time_step, 0.5 / time_step
     w = 2.0 * math.pi * checks.within("corner frequency", frequency, low, high, unit="Hz", open_high=True)

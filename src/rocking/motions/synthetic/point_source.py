@@ -223,18 +223,9 @@ def point_source_motion(
 def window(place: FloatArray) -> FloatArray:
     """Return the exponential window of Saragoni and Hart, as Boore uses it.
 
-    Parameters
-    ----------
-    place : ndarray
-        Time over the length of the window [-].
+    place: time over the length of the window [-]. Returns zero before the start, 1 at the peak at 0.2, 0.05 at 1, and
+    falling beyond [-].
 
-    Returns
-    -------
-    ndarray
-        Zero before the start, 1 at the peak at 0.2, 0.05 at 1, and falling beyond [-].
-
-    Examples
-    --------
     >>> window(np.array([0.0, 0.2, 1.0])).round(12).tolist()
     [0.0, 1.0, 0.05]
     """

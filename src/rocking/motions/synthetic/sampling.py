@@ -24,22 +24,7 @@ def normals(seed: object, *shape: int) -> FloatArray:
 
     The last bit of one in 4000 of NumPy's is that of the C library's logarithm; rounding to 2e-10 takes it away.
 
-    Parameters
-    ----------
-    seed : int
-        The same seed gives the same bits on every processor [-].
-    *shape : int
-        How many.
-
-    Returns
-    -------
-    ndarray
-        Multiples of 2^-32.
-
-    Raises
-    ------
-    InvalidValueError
-        If the seed is not a whole number of at least zero.
+    seed: the same seed gives the same bits on every processor [-].
     """
     try:
         whole = -1 if isinstance(seed, bool) else operator.index(seed)  # type: ignore[arg-type]
@@ -57,22 +42,8 @@ def normals(seed: object, *shape: int) -> FloatArray:
 def times(time_step: float, duration: float) -> FloatArray:
     """Return the times of the samples, from zero to the duration.
 
-    Parameters
-    ----------
-    time_step : float
-        Step [s].
-    duration : float
-        Time of the last sample, rounded up to whole steps [s].
-
-    Returns
-    -------
-    ndarray
-        At least three times [s].
-
-    Raises
-    ------
-    InvalidValueError
-        If there would be fewer than three samples or more than ten million.
+    time_step: step [s]; duration: time of the last sample, rounded up to whole steps [s]. Returns at least three times
+    [s].
     """
     step = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
     ratio = checks.positive("duration", duration, "s") / step
@@ -86,18 +57,6 @@ def times(time_step: float, duration: float) -> FloatArray:
 def described(**parts: Any) -> dict[str, str]:
     """Return parameters as the metadata of a motion.
 
-    Parameters
-    ----------
-    **parts
-        Numbers, or dataclasses of these, whose fields are listed one by one.
-
-    Returns
-    -------
-    dict of str to str
-        Each number with all its digits.
-
-    Examples
-    --------
     >>> described(seed=3, time_step=0.01)
     {'seed': '3', 'time_step': '0.01'}
     """

@@ -14,17 +14,7 @@ _MOST_VERTICES = 2000
 def body_facts(body: Body, gravity: float) -> dict[str, Any]:
     """Return what is said of a body.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Returns
-    -------
-    dict
-        SI units, named in the keys.
+    gravity: acceleration of gravity [m/s2].
     """
     return {
         "kind": type(body).__name__,
@@ -42,19 +32,7 @@ def body_facts(body: Body, gravity: float) -> dict[str, Any]:
 def side_facts(body: Body, foot: Foot, gravity: float) -> dict[str, float]:
     """Return what one side of a body decides.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    foot : {"left", "right"}
-        The foot it stands on.
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Returns
-    -------
-    dict
-        SI units, named in the keys.
+    gravity: acceleration of gravity [m/s2].
     """
     side = body.side(foot, gravity)
     return {
@@ -69,17 +47,9 @@ def side_facts(body: Body, foot: Foot, gravity: float) -> dict[str, float]:
 def outline_facts(body: Body) -> dict[str, Any]:
     """Return what draws a body, in the user's coordinates.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-
-    Returns
-    -------
-    dict
-        ``outline``: polygons with holes [m] and density [kg/m3], rings of more than 2000 vertices thinned;
-        ``points``: x, y [m] and mass [kg] of mass points; ``centre``; ``base``: both feet; ``ground``: its height;
-        ``contact``: stretches of the base that touch [m].
+    Returns ``outline``: polygons with holes [m] and density [kg/m3], rings of more than 2000 vertices thinned;
+    ``points``: x, y [m] and mass [kg] of mass points; ``centre``; ``base``: both feet; ``ground``: its height;
+    ``contact``: stretches of the base that touch [m].
     """
     shift = body.origin_x
     points = np.column_stack([body.points, body.masses]).tolist() if isinstance(body, MassPoints) else []

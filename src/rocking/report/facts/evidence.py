@@ -15,11 +15,8 @@ _RATIOS = np.geomspace(0.8, 12.0, 40)
 def measured_facts() -> dict[str, Any]:
     """Return every independent published measurement.
 
-    Returns
-    -------
-    dict
-        ``source`` and ``points``: ``group``, ``label``, ``slenderness_ratio``, ``slenderness_angle_rad``,
-        ``coefficient``, and ``low`` and ``high`` that the printed digits leave open.
+    Returns ``source`` and ``points``: ``group``, ``label``, ``slenderness_ratio``, ``slenderness_angle_rad``,
+    ``coefficient``, and ``low`` and ``high`` that the printed digits leave open.
     """
     data = all_measurements()
     columns = {
@@ -39,10 +36,7 @@ def measured_facts() -> dict[str, Any]:
 def curves_facts() -> list[dict[str, Any]]:
     """Return the coefficient of homogeneous rectangles under every model.
 
-    Returns
-    -------
-    list of dict
-        ``model``, ``slenderness_ratio`` and ``coefficient`` [-].
+    Returns ``model``, ``slenderness_ratio`` and ``coefficient`` [-].
     """
     ratios = _RATIOS.tolist()
     return [

@@ -15,24 +15,12 @@ from rocking.restitution import IdentityCheck, RestitutionModel, energy_ledger, 
 
 @dataclass(frozen=True, slots=True)
 class ImpactAnswer:
-    """The tables of one body, one for each foot that was asked for.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    tables : dict
-        Foot to rows.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    identities : dict of str to tuple of IdentityCheck
-        Model to its checks; empty if not asked for.
-    """
+    """The tables of one body, one for each foot that was asked for."""
 
     body: Body
-    tables: dict[Foot, tuple[CoefficientRow, ...]]
-    gravity: float
-    identities: dict[str, tuple[IdentityCheck, ...]]
+    tables: dict[Foot, tuple[CoefficientRow, ...]]  # foot to rows
+    gravity: float  # acceleration of gravity [m/s2]
+    identities: dict[str, tuple[IdentityCheck, ...]]  # model to its checks; empty if not asked for
 
     @classmethod
     def of(
@@ -47,30 +35,7 @@ class ImpactAnswer:
     ) -> "ImpactAnswer":
         """Compute the tables.
 
-        Parameters
-        ----------
-        body : Body
-            The body.
-        models : list of RestitutionModel, optional
-            Models; all that need no value by hand if not given.
-        onto : {"left", "right", "both"}
-            Foot on which it lands.
-        eta : float
-            Interface factor [-].
-        gravity : float
-            Acceleration of gravity [m/s2].
-        identities : bool
-            Whether to try the identities of mechanics.
-
-        Returns
-        -------
-        ImpactAnswer
-            Everything that is printed.
-
-        Raises
-        ------
-        InvalidValueError
-            If `onto` or `gravity` is not allowed.
+        eta: interface factor [-]; gravity: acceleration of gravity [m/s2].
         """
         if onto not in (*FEET, "both"):
             raise InvalidValueError(f'onto must be "left", "right" or "both", got {onto!r}')
@@ -86,15 +51,7 @@ class ImpactAnswer:
 def impact_facts(answer: ImpactAnswer) -> dict[str, Any]:
     """Return everything as plain values.
 
-    Parameters
-    ----------
-    answer : ImpactAnswer
-        What `ImpactAnswer.of` computed.
-
-    Returns
-    -------
-    dict
-        SI units, named in the keys where a quantity has one.
+    Returns SI units, named in the keys where a quantity has one.
     """
     body = answer.body
     return {

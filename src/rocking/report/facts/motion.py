@@ -13,47 +13,18 @@ from rocking.plots.traces import Traces, fine_samples, traces
 
 @dataclass(frozen=True, slots=True)
 class MotionAnswer:
-    """One motion and what was measured on it.
-
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
-    samples : GroundMotion
-        Itself, or the pulse cut finely.
-    measures : dict of str to Measure
-        Intensity measures by short name.
-    spectrum : ResponseSpectrum
-        Response at the periods asked for.
-    """
+    """One motion and what was measured on it."""
 
     motion: GroundMotion | Pulse
-    samples: GroundMotion
-    measures: dict[str, Measure]
-    spectrum: ResponseSpectrum
+    samples: GroundMotion  # itself, or the pulse cut finely
+    measures: dict[str, Measure]  # intensity measures by short name
+    spectrum: ResponseSpectrum  # response at the periods asked for
 
     @classmethod
     def of(cls, motion: GroundMotion | Pulse, periods: Sequence[float], damping: float) -> "MotionAnswer":
         """Measure a motion.
 
-        Parameters
-        ----------
-        motion : GroundMotion or Pulse
-            The motion.
-        periods : sequence of float
-            Periods of the spectrum [s].
-        damping : float
-            Damping ratio of the spectrum, from 0 to below 1 [-].
-
-        Returns
-        -------
-        MotionAnswer
-            Everything that is printed.
-
-        Raises
-        ------
-        InvalidValueError
-            If the motion is zero throughout, or a period or the damping is outside its range.
+        periods: periods of the spectrum [s]; damping: damping ratio of the spectrum, from 0 to below 1 [-].
         """
         samples = fine_samples(motion)
         spectrum = response_spectrum(samples, list(periods), damping)
@@ -63,27 +34,7 @@ class MotionAnswer:
 def measures_of(
     motion: GroundMotion | Pulse, samples: GroundMotion, curves: Traces | None = None
 ) -> dict[str, Measure]:
-    """Return the intensity measures of a motion; those of a pulse that its formulas give come from these.
-
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
-    samples : GroundMotion
-        Itself, or the pulse cut finely.
-    curves : Traces, optional
-        Curves of the motion, if they are there already.
-
-    Returns
-    -------
-    dict of str to Measure
-        By short name.
-
-    Raises
-    ------
-    InvalidValueError
-        If the motion is zero throughout.
-    """
+    """Return the intensity measures of a motion; those of a pulse that its formulas give come from these."""
     measures = intensity_measures(samples)
     if not isinstance(motion, Pulse):
         return measures
@@ -96,19 +47,7 @@ def measures_of(
 def motion_facts(motion: GroundMotion | Pulse, samples: GroundMotion, measures: dict[str, Measure]) -> dict[str, Any]:
     """Return what a motion is and how strong, as plain values.
 
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
-    samples : GroundMotion
-        Itself, or the pulse cut finely.
-    measures : dict of str to Measure
-        Its intensity measures.
-
-    Returns
-    -------
-    dict
-        SI units, named in the keys where a quantity has one.
+    Returns SI units, named in the keys where a quantity has one.
     """
     record = isinstance(motion, GroundMotion)
     told = motion.metadata if isinstance(motion, GroundMotion) else {}
@@ -131,15 +70,7 @@ def motion_facts(motion: GroundMotion | Pulse, samples: GroundMotion, measures: 
 def spectrum_facts(spectrum: ResponseSpectrum) -> dict[str, Any]:
     """Return a response spectrum as plain values.
 
-    Parameters
-    ----------
-    spectrum : ResponseSpectrum
-        The spectrum.
-
-    Returns
-    -------
-    dict
-        SI units, named in the keys where a quantity has one.
+    Returns SI units, named in the keys where a quantity has one.
     """
     return {
         "damping_ratio": spectrum.damping,

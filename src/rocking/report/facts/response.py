@@ -33,19 +33,7 @@ from rocking.motions.motion import GroundMotion
 def response_facts(response: Response, friction: float, *, error_estimate: bool = True) -> dict[str, Any]:
     """Return everything that is said of a response.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    friction : float
-        Coefficient of friction between body and ground [-].
-    error_estimate : bool
-        Whether to compute the error estimate, which takes longer than the response.
-
-    Returns
-    -------
-    dict
-        With the keys above.
+    friction: coefficient of friction between body and ground [-].
     """
     facts = {
         "body": rocker_facts(response),
@@ -68,17 +56,7 @@ def response_facts(response: Response, friction: float, *, error_estimate: bool 
 def credibility_facts(response: Response, friction: float) -> dict[str, Any]:
     """Return what rocking without slip and flight takes.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-    friction : float
-        Coefficient of friction between body and ground [-].
-
-    Returns
-    -------
-    dict
-        ``friction``, ``least_vertical_force_N`` and ``warnings``.
+    friction: coefficient of friction between body and ground [-].
     """
     contact = response.contact
     return {
@@ -94,18 +72,7 @@ def credibility_facts(response: Response, friction: float) -> dict[str, Any]:
 
 
 def rocker_facts(response: Response) -> dict[str, Any]:
-    """Return the body as its equations of motion see it.
-
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    dict
-        Kind, mass and both sides.
-    """
+    """Return the body as its equations of motion see it."""
     body, rocker = response.body, response.rocker
     sides = {foot: rocker.right if foot == "right" else rocker.left for foot in FEET}
     return {
@@ -128,17 +95,7 @@ def rocker_facts(response: Response) -> dict[str, Any]:
 def moved_facts(motion: Motion | None, scale: float) -> dict[str, Any] | None:
     """Return what moved the ground.
 
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse, optional
-        The motion.
-    scale : float
-        Factor on it [-].
-
-    Returns
-    -------
-    dict, optional
-        None for free rocking.
+    scale: factor on it [-].
     """
     if motion is None:
         return None
@@ -155,15 +112,7 @@ def moved_facts(motion: Motion | None, scale: float) -> dict[str, Any] | None:
 def outcome_facts(response: Response) -> dict[str, Any]:
     """Return how a response ended.
 
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    dict
-        Outcome, its sentence, overturning, peak, and whether it still rocks.
+    Returns Outcome, its sentence, overturning, peak, and whether it still rocks.
     """
     run = response.trajectory
     return {
@@ -181,15 +130,7 @@ def outcome_facts(response: Response) -> dict[str, Any]:
 def still_rocking_facts(response: Response | PlanarResponse) -> dict[str, float | str] | None:
     """Return the last state of a body that does not yet rest.
 
-    Parameters
-    ----------
-    response : Response or PlanarResponse
-        The response.
-
-    Returns
-    -------
-    dict, optional
-        Time, rotation, angular velocity and a sentence; None if it rests or has overturned.
+    Returns Time, rotation, angular velocity and a sentence; None if it rests or has overturned.
     """
     if not response.still_rocking:
         return None
@@ -202,35 +143,13 @@ def still_rocking_facts(response: Response | PlanarResponse) -> dict[str, float 
 
 
 def impacts_facts(response: Response) -> list[dict[str, Any]]:
-    """Return the impacts of a response.
-
-    Parameters
-    ----------
-    response : Response
-        The response.
-
-    Returns
-    -------
-    list of dict
-        In order of time.
-    """
+    """Return the impacts of a response."""
     keys = ("time_s", "velocity_before_rad_s", "velocity_after_rad_s", "coefficient", "onto")
     return [dict(zip(keys, row, strict=True)) for row in response.impacts.tolist()]
 
 
 def other_facts(found: Response | str) -> dict[str, Any]:
-    """Return what another model says, in short.
-
-    Parameters
-    ----------
-    found : Response or str
-        Its response, or why it has none for this body.
-
-    Returns
-    -------
-    dict
-        ``error``, or outcome, ``impact_count`` and ``coefficients``.
-    """
+    """Return what another model says, in short."""
     if isinstance(found, str):
         return {"error": found}
     coefficients = coefficients_facts(found.rocker)
@@ -240,15 +159,7 @@ def other_facts(found: Response | str) -> dict[str, Any]:
 def coefficients_facts(rocker: Rocker) -> dict[str, float]:
     """Return the coefficients of restitution of a body.
 
-    Parameters
-    ----------
-    rocker : Rocker
-        The body as its equations of motion see it.
-
-    Returns
-    -------
-    dict
-        By the foot on which it lands [-].
+    Returns by the foot on which it lands [-].
     """
     return {"left": rocker.left.coefficient, "right": rocker.right.coefficient}
 
@@ -256,18 +167,6 @@ def coefficients_facts(rocker: Rocker) -> dict[str, float]:
 def finite(value: float) -> float | None:
     """Return a number, or None where it is infinite or does not exist.
 
-    Parameters
-    ----------
-    value : float
-        Any number.
-
-    Returns
-    -------
-    float, optional
-        The number.
-
-    Examples
-    --------
     >>> finite(1.5), finite(float("nan"))
     (1.5, None)
     """

@@ -21,20 +21,9 @@ _WORDS = {
 def stages_facts(body: Body, onto: Foot, angular_velocity: float = 1.0) -> dict[str, Any]:
     """Return the energy ledger of an impact with a field of velocities for each stage.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    onto : {"left", "right"}
-        The foot on which it lands.
-    angular_velocity : float
-        Angular velocity before the impact [rad/s].
-
-    Returns
-    -------
-    dict
-        ``velocity_before_rad_s``, ``velocity_after_rad_s``, ``points_m`` at which the fields are given, and
-        ``stages``: ``name``, ``words``, ``energy_J``, ``share`` and ``velocity_m_s`` at the points.
+    angular_velocity: angular velocity before the impact [rad/s]. Returns ``velocity_before_rad_s``,
+    ``velocity_after_rad_s``, ``points_m`` at which the fields are given, and ``stages``: ``name``, ``words``,
+    ``energy_J``, ``share`` and ``velocity_m_s`` at the points.
     """
     ledger = energy_ledger(body, onto=onto, angular_velocity=angular_velocity)
     points = _places(body)

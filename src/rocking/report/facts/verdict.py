@@ -11,33 +11,14 @@ _WORDS = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Out
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What the models say together.
+    """What the models say together."""
 
-    Parameters
-    ----------
-    decides : bool
-        Whether they end differently.
-    sentence : str
-        The same in words.
-    """
-
-    decides: bool
-    sentence: str
+    decides: bool  # whether they end differently
+    sentence: str  # the same in words
 
     @classmethod
     def of(cls, found: Mapping[str, Response]) -> "Verdict":
-        """Compare responses.
-
-        Parameters
-        ----------
-        found : mapping of str to Response
-            By model; none of them failed.
-
-        Returns
-        -------
-        Verdict
-            What they say together.
-        """
+        """Compare responses."""
         groups: dict[str, list[str]] = {}
         for name, one in found.items():
             groups.setdefault(_WORDS[one.outcome], []).append(name)

@@ -17,18 +17,8 @@ _EQUALS = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 def restitution_words(label: str) -> str:
     """Return what a restitution is called in a sentence, a table or a picture.
 
-    Parameters
-    ----------
-    label : str
-        Its label: a model with its parameters, a coefficient, or one coefficient for each foot.
+    Returns A model by its short name, a coefficient with its symbol; what is neither, as it is.
 
-    Returns
-    -------
-    str
-        A model by its short name, a coefficient with its symbol; what is neither, as it is.
-
-    Examples
-    --------
     >>> restitution_words("ked"), restitution_words("shifted-impulse:k=0.6").replace(chr(160), " ")
     ('KED', 'shifted impulse, k = 0.6')
     >>> restitution_words("0.9"), restitution_words("left 0.9, right 0.8")

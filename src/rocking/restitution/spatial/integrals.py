@@ -30,17 +30,7 @@ def line_moment(solid: Solid, edge: Edge) -> float:
 
     For extrusions along the line it is the exact integral of the polygon times the length.
 
-    Parameters
-    ----------
-    solid : Solid
-        The body.
-    edge : Edge
-        The line on the ground, in the body's frame [m].
-
-    Returns
-    -------
-    float
-        The integral [kg m2].
+    edge: the line on the ground, in the body's frame [m]. Returns the integral [kg m2].
     """
     return _line_moment(solid, *edge.point.tolist(), *edge.direction.tolist())
 
@@ -58,17 +48,7 @@ def _line_moment(solid: Solid, x: float, y: float, z: float, *direction: float) 
 def extruded_moment(part: Part, point: FloatArray, edge: FloatArray) -> float | None:
     """Return the exact integral of a part that is extruded along the line; None for any other.
 
-    Parameters
-    ----------
-    part : Part
-        The part, in the frame of the body.
-    point, edge : ndarray, shape (3,)
-        A point of the line [m], and the unit vector along it [-].
-
-    Returns
-    -------
-    float, optional
-        ``Int z^4/(t^2 + z^2) dm`` [kg m2].
+    point, edge: A point of the line [m], and the unit vector along it [-]. Returns ``Int z^4/(t^2 + z^2) dm`` [kg m2].
     """
     prism = part.shape
     if not isinstance(prism, Prism) or not np.abs(np.cross(part.rotation[:, 2], edge)).max() <= _ALONG:
@@ -93,15 +73,7 @@ def _line_moment_part(part: Part, point: FloatArray, edge: FloatArray) -> float:
 def distance_to(edge: FloatArray) -> Distance:
     """Return the function that measures distances to a line through the origin.
 
-    Parameters
-    ----------
-    edge : ndarray, shape (3,)
-        Unit vector along it [-].
-
-    Returns
-    -------
-    callable
-        Takes points (n, 3) and returns their distances [m].
+    edge: unit vector along it [-]. Returns takes points (n, 3) and returns their distances [m].
     """
     return lambda s: np.linalg.norm(np.cross(edge, s), axis=1)
 
@@ -109,15 +81,7 @@ def distance_to(edge: FloatArray) -> Distance:
 def norm(s: FloatArray) -> FloatArray:
     """Return the distances of points from the origin.
 
-    Parameters
-    ----------
-    s : ndarray, shape (n, 3)
-        Points [m].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Distances [m].
+    s: points [m]. Returns distances [m].
     """
     norms: FloatArray = np.linalg.norm(s, axis=1)
     return norms
@@ -126,21 +90,7 @@ def norm(s: FloatArray) -> FloatArray:
 def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Distance, Distance | None]) -> FloatArray:
     """Return ``Int f f^T dm`` over a part: the sum of ``f f^T (s . dA)/(k + 3)``, degree k entry by entry.
 
-    Parameters
-    ----------
-    part : Part
-        The part, in the frame of the body.
-    point : ndarray, shape (3,)
-        The point about which the features are homogeneous [m].
-    features : callable
-        Takes points (n, 3) relative to it; returns features (n, m) and their degrees (m,).
-    graded : tuple of callable and callable or None
-        Distance to where the integrand is singular, and what the integrand cannot exceed, by default 1.
-
-    Returns
-    -------
-    ndarray, shape (m, m)
-        The integrals.
+    point: the point about which the features are homogeneous [m].
     """
     distance, bound = graded
     shape, shift = part.shape, part.translation - point

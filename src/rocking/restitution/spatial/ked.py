@@ -123,17 +123,7 @@ def _is_plane(impact: RigidImpact, edge: Edge, size: float) -> bool:
 def stage_velocities(impact: RigidImpact, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the velocities of mass points before the impact, after stage 1 and after stage 2.
 
-    Parameters
-    ----------
-    impact : RigidImpact
-        The impact.
-    points : ndarray, shape (n, 3)
-        Points in the body's frame [m].
-
-    Returns
-    -------
-    before, level, left : ndarray, shape (n, 3)
-        Velocities [m/s].
+    points: points in the body's frame [m]. Returns velocities [m/s] (shape (n, 3)).
     """
     arms = points - impact.onto.point
     before = impact.velocities(arms)

@@ -177,15 +177,8 @@ def _about_line(solid: Solid, x: float, y: float, z: float, *direction: float) -
 def edge_frame(direction: FloatArray) -> FloatArray:
     """Return the axes of an edge: along it, level across it, and the third.
 
-    Parameters
-    ----------
-    direction : ndarray, shape (3,)
-        Unit vector along the edge, level in the frame of the body [-].
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Rows e, f = n x e and g = e x f [-].
+    direction: unit vector along the edge, level in the frame of the body [-]. Returns rows e, f = n x e and g = e x f
+    [-].
     """
     across = np.cross(_UP, direction)
     across /= math.sqrt(dot(across, across))

@@ -131,18 +131,8 @@ class RigidImpact(ABC):
 def skew(vector: FloatArray) -> FloatArray:
     """Return the matrix of a vector product from the left.
 
-    Parameters
-    ----------
-    vector : ndarray, shape (3,)
-        The vector.
+    Returns K with ``K s = vector x s``.
 
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        K with ``K s = vector x s``.
-
-    Examples
-    --------
     >>> applied(skew(np.array([0.0, 0.0, 2.0])), np.array([1.0, 0.0, 0.0])).tolist()
     [0.0, 2.0, 0.0]
     """
@@ -153,16 +143,7 @@ def skew(vector: FloatArray) -> FloatArray:
 def solved(inertia: FloatArray, momentum: FloatArray) -> FloatArray:
     """Return the angular velocity that has a given angular momentum.
 
-    Parameters
-    ----------
-    inertia : ndarray, shape (3, 3)
-        Inertia tensor about the fixed point [kg m2].
-    momentum : ndarray, shape (3,)
-        Angular momentum about it [kg m2/s].
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        Angular velocity [rad/s].
+    inertia: inertia tensor about the fixed point [kg m2]; momentum: angular momentum about it [kg m2/s]. Returns
+    angular velocity [rad/s].
     """
     return solution(inertia, momentum)

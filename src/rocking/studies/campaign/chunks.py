@@ -32,15 +32,7 @@ class Chunk(NamedTuple):
     def piece(self, first: int, last: int) -> "Chunk":
         """Return a piece of it, which is named by what it holds, too.
 
-        Parameters
-        ----------
-        first, last : int
-            Histories within it.
-
-        Returns
-        -------
-        Chunk
-            The piece; itself if that is all of it.
+        Returns the piece; itself if that is all of it.
         """
         if (first, last) == (self.first, self.last):
             return self
@@ -50,20 +42,7 @@ class Chunk(NamedTuple):
 
 
 def default_chunk(engine: str, together: int = 1) -> int:
-    """Return how many histories make a chunk, unless somebody wants another number.
-
-    Parameters
-    ----------
-    engine : str
-        The engine, as in a `Plan`.
-    together : int
-        Histories in a row that are not to be parted: of a motion that is made for them.
-
-    Returns
-    -------
-    int
-        Histories.
-    """
+    """Return how many histories make a chunk, unless somebody wants another number."""
     usual = DEFAULT_CHUNK if engine.startswith("fast") else REFERENCE_CHUNK
     return max(usual - usual % together, usual if together > usual else 1)
 
@@ -72,39 +51,17 @@ def default_chunk(engine: str, together: int = 1) -> int:
 class Plan:
     """What fixes the name of every chunk, and with it the bytes of its shard.
 
-    Parameters
-    ----------
-    key : str
-        Name of the histories.
-    count : int
-        Number of histories.
-    size : int
-        Histories of a chunk.
-    engine : str
-        The engine that computes all of them, with the last digits that it gives: "fast, 0123456789abcdef".
-    software : str
-        Version of this package.
-    format : int
-        Version of the files.
-
-    Raises
-    ------
-    InvalidValueError
-        If the numbers are not whole or out of range.
-
-    Examples
-    --------
     >>> plan = Plan("0" * 64, 100, 40, "fast", "1.0")
     >>> [plan.chunk(k)[1:3] for k in range(plan.chunks)]
     [(0, 40), (40, 80), (80, 100)]
     """
 
-    key: str
-    count: int
-    size: int
-    engine: str
-    software: str
-    format: int = FORMAT
+    key: str  # name of the histories
+    count: int  # number of histories
+    size: int  # histories of a chunk
+    engine: str  # the engine that computes all of them, with the last digits that it gives: "fast, 0123456789abcdef"
+    software: str  # version of this package
+    format: int = FORMAT  # version of the files
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -121,20 +78,7 @@ class Plan:
     def chunk(self, number: int) -> Chunk:
         """Return one of the chunks.
 
-        Parameters
-        ----------
-        number : int
-            From 0 to `chunks` - 1.
-
-        Returns
-        -------
-        Chunk
-            The chunk; its name is the SHA-256 of the plan without its size, and of the first and last history.
-
-        Raises
-        ------
-        InvalidValueError
-            If there is no such chunk.
+        Returns the chunk; its name is the SHA-256 of the plan without its size, and of the first and last history.
         """
         if not 0 <= number < self.chunks:
             raise InvalidValueError(f"chunk must be in [0, {self.chunks - 1}], got {number}")

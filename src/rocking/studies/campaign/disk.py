@@ -17,15 +17,7 @@ _TAKEN = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
 
 
 def write_new(path: Path, data: bytes) -> None:
-    """Write a file so that a power cut at any instant leaves all of it or nothing under its name.
-
-    Parameters
-    ----------
-    path : Path
-        Where.
-    data : bytes
-        What.
-    """
+    """Write a file so that a power cut at any instant leaves all of it or nothing under its name."""
     unfinished = path.with_name(f".{path.name}.{os.getpid()}-{secrets.token_hex(4)}{_UNFINISHED}")
     try:
         _write_through(unfinished, data)
@@ -38,13 +30,7 @@ def write_new(path: Path, data: bytes) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Make the names in a folder last; where a system cannot open folders, it keeps them by itself.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-    """
+    """Make the names in a folder last; where a system cannot open folders, it keeps them by itself."""
     if os.name == "nt":
         return
     handle = os.open(folder, os.O_RDONLY)
@@ -55,13 +41,7 @@ def sync_folder(folder: Path) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder, and those it is in, so that they last.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder; it may be there.
-    """
+    """Make a folder, and those it is in, so that they last."""
     fresh = [each for each in (folder, *folder.parents) if not each.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     for each in reversed(fresh or [folder]):  # also where it was there: who made it may have been killed before this
@@ -69,18 +49,7 @@ def make_folder(folder: Path) -> None:
 
 
 def remove_unfinished(folder: Path) -> int:
-    """Remove files that were being written when their process ended; call it while nobody writes.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Returns
-    -------
-    int
-        How many there were.
-    """
+    """Remove files that were being written when their process ended; call it while nobody writes."""
     found = list(folder.glob(f".*{_UNFINISHED}"))
     for path in found:
         path.unlink(missing_ok=True)
@@ -90,15 +59,7 @@ def remove_unfinished(folder: Path) -> int:
 def set_aside(path: Path) -> Path:
     """Give a damaged file another name, under which a user finds it; nothing is deleted.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    Path
-        Its new name: the old one with ``.damaged-1``, ``.damaged-2`` ... behind it.
+    Returns its new name: the old one with ``.damaged-1``, ``.damaged-2`` ... behind it.
     """
     number = 1
     while (aside := path.with_name(f"{path.name}.damaged-{number}")).exists():
@@ -114,35 +75,7 @@ def guarded(
     safe: Callable[[], str] = lambda: NOTHING_LOST,
     foreign: Callable[[BaseException], bool] = lambda _: False,
 ) -> Iterator[None]:
-    """Turn what disk and database say into one sentence that a user can act on.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    safe : callable
-        Returns a sentence that says what is finished.
-    foreign : callable
-        Whether an error is none of the campaign's, but of a function that a user gave; it stays what it is.
-
-    Yields
-    ------
-    None
-        While it watches.
-
-    Raises
-    ------
-    OSError
-        If it is foreign, or whoever is told of the progress has gone.
-    DatabaseError
-        If it is foreign.
-    CampaignStorageError
-        If the folder does not take what is written.
-    CampaignBusyError
-        If another process holds the ledger.
-    CampaignDamagedError
-        If the ledger is not what was written.
-    """
+    """Turn what disk and database say into one sentence that a user can act on."""
     try:
         yield
     except OSError as error:
@@ -161,20 +94,7 @@ def guarded(
 
 
 def ledger_damaged(folder: Path, why: str) -> str:
-    """Return what is said of a damaged ledger.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    why : str
-        What is wrong with it.
-
-    Returns
-    -------
-    str
-        A sentence with the way out.
-    """
+    """Return what is said of a damaged ledger."""
     return f"{folder}: ledger.sqlite is damaged ({why}); run the campaign again: its shards make it anew"
 
 

@@ -48,8 +48,6 @@ class Estimate:
 class Speed:
     """How much work is done in a second, since the first piece was finished.
 
-    Examples
-    --------
     >>> speed = Speed()
     >>> speed.look(1.0, 10.0), speed.look(3.0, 11.0), speed.look(13.0, 16.0)
     (0.0, 0.0, 2.0)
@@ -61,17 +59,8 @@ class Speed:
     def look(self, work: float, now: float) -> float:
         """Note the work of all pieces that are finished, right after one was.
 
-        Parameters
-        ----------
-        work : float
-            Of all workers together [s].
-        now : float
-            Instant of a clock that never goes back [s].
-
-        Returns
-        -------
-        float
-            Seconds of work in a second; 0 during the first seconds, when that says nothing [-].
+        work: of all workers together [s]; now: instant of a clock that never goes back [s]. Returns seconds of work in
+        a second; 0 during the first seconds, when that says nothing [-].
         """
         self._first = self._first or (work, now)
         spent = now - self._first[1]
@@ -81,13 +70,6 @@ class Speed:
 class Costs:
     """What histories have taken, in equal parts of all of them.
 
-    Parameters
-    ----------
-    count : int
-        Number of histories.
-
-    Examples
-    --------
     >>> costs = Costs(32)
     >>> costs.add(0, 16, 8.0)
     >>> costs.left() is None, costs.unseen().tolist()
@@ -105,12 +87,7 @@ class Costs:
     def add(self, first: Any, last: Any, seconds: Any = 0.0) -> None:
         """Note histories that are finished.
 
-        Parameters
-        ----------
-        first, last : array_like of int
-            From the first up to but not including the last, of one piece or of many.
-        seconds : array_like
-            What they took; 0 where that is not known [s].
+        seconds: what they took; 0 where that is not known [s].
         """
         share = self._overlap(first, last)
         seconds = np.broadcast_to(np.atleast_1d(seconds), len(share))
@@ -119,18 +96,7 @@ class Costs:
         self._spent += (share / share.sum(axis=1, keepdims=True) * seconds[:, None]).sum(axis=0)
 
     def shares(self, first: Any, last: Any) -> np.ndarray:
-        """Return how many histories of every part are among some.
-
-        Parameters
-        ----------
-        first, last : array_like of int
-            From the first up to but not including the last, of one piece or of many.
-
-        Returns
-        -------
-        ndarray of int
-            For every part.
-        """
+        """Return how many histories of every part are among some."""
         return np.asarray(self._overlap(first, last).sum(axis=0))
 
     def _overlap(self, first: Any, last: Any) -> np.ndarray:
@@ -138,22 +104,13 @@ class Costs:
         return np.asarray(np.clip(np.minimum(self.edges[1:], last) - np.maximum(self.edges[:-1], first), 0, None))
 
     def unseen(self) -> np.ndarray:
-        """Return the parts of which nothing was measured yet, and which are not finished.
-
-        Returns
-        -------
-        ndarray of int
-            Their numbers.
-        """
+        """Return the parts of which nothing was measured yet, and which are not finished."""
         return np.flatnonzero((self._missing > 0.0) & (self._seen == 0.0))
 
     def left(self) -> Estimate | None:
         """Return the time of one worker for what is missing.
 
-        Returns
-        -------
-        Estimate or None
-            None while a part that is not finished has not been measured.
+        Returns none while a part that is not finished has not been measured.
         """
         if self.unseen().size:
             return None

@@ -34,24 +34,12 @@ class Done(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """What workers need: it can be pickled.
+    """What workers need: it can be pickled."""
 
-    Parameters
-    ----------
-    histories : Histories
-        What to compute.
-    engine : str
-        The engine that all workers must have, with the last digits that it gives.
-    software : str
-        Version of this package that all workers must have.
-    folder : Path
-        Where the shards are.
-    """
-
-    histories: Histories
-    engine: str
-    software: str
-    folder: Path
+    histories: Histories  # what to compute
+    engine: str  # the engine that all workers must have, with the last digits that it gives
+    software: str  # version of this package that all workers must have
+    folder: Path  # where the shards are
     pace: Pace = field(init=False)
 
     def __post_init__(self) -> None:
@@ -60,13 +48,7 @@ class Job:
         object.__setattr__(self, "pace", Pace(self.engine, self.histories.together, made))
 
     def check(self) -> None:
-        """Refuse to compute what this campaign would not recognise as its own bits.
-
-        Raises
-        ------
-        CampaignWorkerError
-            If this worker has another version, engine, or engine of other last digits than the campaign.
-        """
+        """Refuse to compute what this campaign would not recognise as its own bits."""
         software = identity.software()
         if software != self.software:
             raise CampaignWorkerError(
@@ -85,19 +67,7 @@ class Job:
     def compute(self, chunk: Chunk, threads: int | None = 1, stop: Callable[[], bool] = lambda: False) -> bytes | None:
         """Return the shard of a chunk, or of as much of it from its start as takes a second.
 
-        Parameters
-        ----------
-        chunk : Chunk
-            Which.
-        threads : int, optional
-            Threads of the fast engine; as many as the processor has, if None.
-        stop : callable
-            Whether to stop; asked every 0.3 s or so, whatever the histories take.
-
-        Returns
-        -------
-        bytes or None
-            The shard, which says how far it goes; None if it was stopped.
+        Returns the shard, which says how far it goes; None if it was stopped.
         """
         results = empty_results(chunk.last - chunk.first)
         last = self.fill(results, chunk, threads, stop)
@@ -106,21 +76,7 @@ class Job:
     def fill(self, results: Arrays, chunk: Chunk, threads: int | None, stop: Callable[[], bool]) -> int | None:
         """Compute the results of a chunk, or of as much of it from its start as takes a second.
 
-        Parameters
-        ----------
-        results : dict of str to ndarray
-            The keys of `rocking.dynamics.engine.RESULTS`; written into.
-        chunk : Chunk
-            Which.
-        threads : int, optional
-            Threads of the fast engine; as many as the processor has, if None.
-        stop : callable
-            Whether to stop; asked every 0.3 s or so, whatever the histories take.
-
-        Returns
-        -------
-        int or None
-            How far it came: the first history that is not there; None if it was stopped.
+        Returns how far it came: the first history that is not there; None if it was stopped.
         """
         self.check()
         first, watch = chunk.first, Watch()
@@ -139,21 +95,7 @@ class Job:
     def keep(self, chunk: Chunk, data: bytes, seconds: float, worker: str = "") -> Done:
         """Write the shard of a chunk, or of a piece of it.
 
-        Parameters
-        ----------
-        chunk : Chunk
-            Which was to be computed.
-        data : bytes
-            The shard, as of `compute`.
-        seconds : float
-            What it took [s].
-        worker : str
-            Who computed it; this process, if not given.
-
-        Returns
-        -------
-        Done
-            For the ledger.
+        seconds: what it took [s].
         """
         done = chunk.piece(*shard.range_of(data))
         disk.write_new(path_of(self.folder, done), data)
@@ -161,20 +103,7 @@ class Job:
 
 
 def path_of(folder: Path, chunk: Chunk) -> Path:
-    """Return where the shard of a chunk is, or of a piece of one.
-
-    Parameters
-    ----------
-    folder : Path
-        Where the shards are; the pieces are beside it.
-    chunk : Chunk
-        Which.
-
-    Returns
-    -------
-    Path
-        It may not be there.
-    """
+    """Return where the shard of a chunk is, or of a piece of one."""
     return (folder.with_name(PIECES) if chunk.of else folder) / f"{chunk.name}{SUFFIX}"
 
 
@@ -210,43 +139,12 @@ class Executor(ABC):
 
 
 def cannot_be_sent(error: Exception) -> str:
-    """Return what is said of histories that cannot be pickled.
-
-    Parameters
-    ----------
-    error : Exception
-        What pickle says.
-
-    Returns
-    -------
-    str
-        A sentence.
-    """
+    """Return what is said of histories that cannot be pickled."""
     return f"the histories cannot be sent to a process: {error}; lambdas and local functions cannot, named ones can"
 
 
 def chosen(executor: "str | Executor", workers: int | None, start_method: str | None) -> Executor:
-    """Return the executor that was asked for.
-
-    Parameters
-    ----------
-    executor : {"serial", "processes"} or Executor
-        Name or object.
-    workers : int, optional
-        Threads, or processes.
-    start_method : {"spawn", "fork", "forkserver"}, optional
-        How processes start.
-
-    Returns
-    -------
-    Executor
-        The executor.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is none of that name, or the others do not go with it.
-    """
+    """Return the executor that was asked for."""
     given: object = executor
     if given != "processes" and start_method is not None:
         raise InvalidValueError(f'start_method={start_method!r} goes with executor="processes" only')
@@ -266,27 +164,7 @@ def chosen(executor: "str | Executor", workers: int | None, start_method: str | 
 
 
 def whole(name: str, value: object, high: int = 4096) -> int:
-    """Return a whole number of things of which there is at least one.
-
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    value : object
-        What the user gave.
-    high : int
-        The most.
-
-    Returns
-    -------
-    int
-        The number.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is none.
-    """
+    """Return a whole number of things of which there is at least one."""
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= high:
         raise InvalidValueError(f"{name} must be a whole number in [1, {high}], got {value!r:.60}")
     return value

@@ -24,33 +24,14 @@ _OF_REFERENCE = 4
 def engine_of(histories: Histories) -> str:
     """Return the engine that computes histories here, with the last digits that it gives.
 
-    Parameters
-    ----------
-    histories : Histories
-        What to compute.
-
-    Returns
-    -------
-    str
-        As in ``fast, 0123456789abcdef``: engines of the same words give the same bits, whatever the machine.
+    Returns as in ``fast, 0123456789abcdef``: engines of the same words give the same bits, whatever the machine.
     """
     chosen = engine.chosen(histories.engine, histories.law)
     return f"{chosen}, {_fingerprint(chosen, engine.instruction_set() if chosen == 'fast' else '')}"
 
 
 def kind_of(name: str) -> str:
-    """Return which engine it is, whatever its last digits.
-
-    Parameters
-    ----------
-    name : str
-        As from `engine_of`.
-
-    Returns
-    -------
-    str
-        "fast" or "reference".
-    """
+    """Return which engine it is, whatever its last digits."""
     return name.partition(", ")[0]
 
 

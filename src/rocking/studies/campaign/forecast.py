@@ -43,27 +43,7 @@ class Forecast:
 
 
 def forecast(status: Status, plan: Plan, histories: Histories) -> Forecast:
-    """Compute a sample of the histories, and compare the room on the disk with what is needed.
-
-    Parameters
-    ----------
-    status : Status
-        How far the campaign is.
-    plan : Plan
-        How it is cut.
-    histories : Histories
-        What it computes.
-
-    Returns
-    -------
-    Forecast
-        For what remains.
-
-    Raises
-    ------
-    CampaignStorageError
-        If the disk is too small.
-    """
+    """Compute a sample of the histories, and compare the room on the disk with what is needed."""
     left, chunks = status.histories - status.histories_done, status.chunks - status.chunks_done
     work = trial(histories).at(1.0 / left) if left else Estimate(0.0, 0.0, 0.0)
     needed = left * sum(np.dtype(kind).itemsize for kind in RESULTS.values()) + chunks * _BESIDE
@@ -80,15 +60,7 @@ def trial(histories: Histories) -> Estimate:
 
     A motion that has to be made is timed apart, and shared among all histories that it is for.
 
-    Parameters
-    ----------
-    histories : Histories
-        What to compute.
-
-    Returns
-    -------
-    Estimate
-        The mean of all histories, with twice its standard error.
+    Returns the mean of all histories, with twice its standard error.
     """
     count, made = histories.count, not histories.motions.in_memory
     start = time.perf_counter()

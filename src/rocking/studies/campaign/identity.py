@@ -22,34 +22,16 @@ _SHOWN = 5
 
 @dataclass(frozen=True)
 class Identity:
-    """Plan of a campaign, and what its histories are.
+    """Plan of a campaign, and what its histories are."""
 
-    Parameters
-    ----------
-    plan : Plan
-        How it is cut.
-    histories : dict
-        What they say of themselves.
-    """
-
-    plan: Plan
-    histories: dict[str, Any]
+    plan: Plan  # how it is cut
+    histories: dict[str, Any]  # what they say of themselves
 
     @classmethod
     def of(cls, histories: Histories, size: int | None = None) -> "Identity":
         """Return the identity of a new campaign.
 
-        Parameters
-        ----------
-        histories : Histories
-            What to compute.
-        size : int, optional
-            Histories of a chunk; what suits the engine, if not given.
-
-        Returns
-        -------
-        Identity
-            The same wherever it is made with this version of the package by an engine of the same last digits.
+        Returns the same wherever it is made with this version of the package by an engine of the same last digits.
         """
         chosen = engine_of(histories)
         pieces = usual_chunk(histories) if size is None else size
@@ -58,25 +40,7 @@ class Identity:
 
     @classmethod
     def read(cls, folder: Path) -> "Identity":
-        """Return the identity of a campaign on disk.
-
-        Parameters
-        ----------
-        folder : Path
-            The campaign.
-
-        Returns
-        -------
-        Identity
-            As it was written.
-
-        Raises
-        ------
-        CampaignMismatchError
-            If there is no campaign, or one of another version.
-        CampaignDamagedError
-            If the file has changed.
-        """
+        """Return the identity of a campaign on disk."""
         path = folder / NAME
         try:
             text = path.read_bytes()
@@ -94,31 +58,12 @@ class Identity:
             ) from error
 
     def write(self, folder: Path) -> None:
-        """Write it; a folder becomes a campaign by this.
-
-        Parameters
-        ----------
-        folder : Path
-            The campaign.
-        """
+        """Write it; a folder becomes a campaign by this."""
         content = {"plan": asdict(self.plan), "histories": self.histories}
         disk.write_new(folder / NAME, _encoded(content, _sum(content)))
 
     def refuse_other(self, folder: Path, histories: Histories) -> None:
-        """Refuse histories, or a version of this package, that the campaign was not created with.
-
-        Parameters
-        ----------
-        folder : Path
-            The campaign.
-        histories : Histories
-            What was given.
-
-        Raises
-        ------
-        CampaignMismatchError
-            If they differ, with what differs.
-        """
+        """Refuse histories, or a version of this package, that the campaign was not created with."""
         given = Identity.of(histories, self.plan.size)
         if given.plan.key != self.plan.key:
             differences = _differences(self.histories, given.histories, "")
@@ -140,28 +85,14 @@ class Identity:
 def usual_chunk(histories: Histories) -> int:
     """Return how many histories make a chunk, unless somebody wants another number.
 
-    Parameters
-    ----------
-    histories : Histories
-        What to compute.
-
-    Returns
-    -------
-    int
-        Histories; where motions are made for them, those of one motion are in one chunk.
+    Returns Histories; where motions are made for them, those of one motion are in one chunk.
     """
     together = 1 if histories.motions.in_memory else histories.together
     return default_chunk(engine.chosen(histories.engine, histories.law), together)
 
 
 def software() -> str:
-    """Return the version of this package.
-
-    Returns
-    -------
-    str
-        As in its metadata.
-    """
+    """Return the version of this package."""
     from rocking import __version__
 
     return str(__version__)

@@ -11,8 +11,6 @@ class Interruption:
 
     Outside of the main thread nothing is noted: signals never arrive there.
 
-    Examples
-    --------
     >>> with Interruption() as interruption:
     ...     interruption.asked()
     False
@@ -25,13 +23,7 @@ class Interruption:
         self._before: dict[signal.Signals, Any] = {}
 
     def asked(self) -> bool:
-        """Return whether to stop.
-
-        Returns
-        -------
-        bool
-            True since the first signal.
-        """
+        """Return whether to stop."""
         return self._asked
 
     def __enter__(self) -> "Interruption":

@@ -46,15 +46,7 @@ class Record(NamedTuple):
 
 
 class Ledger:
-    """The ledger of a campaign: what it has recorded outlives the process, the machine and a power cut.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    writable : bool
-        Whether to record; otherwise it may be read while another process records.
-    """
+    """The ledger of a campaign: what it has recorded outlives the process, the machine and a power cut."""
 
     def __init__(self, folder: Path, *, writable: bool = False) -> None:
         self._folder = folder
@@ -82,26 +74,14 @@ class Ledger:
             self._database.execute("COMMIT")
 
     def record(self, record: Record) -> None:
-        """Acknowledge a chunk, which takes the place of its pieces; on return this is on disk.
-
-        Parameters
-        ----------
-        record : Record
-            The chunk, whose shard is on disk already.
-        """
+        """Acknowledge a chunk, which takes the place of its pieces; on return this is on disk."""
         with self._database:
             self._database.execute("BEGIN")
             self._insert("chunks", record)
             self._database.execute("DELETE FROM pieces WHERE number = ?", (record.number,))
 
     def record_piece(self, record: Record) -> None:
-        """Acknowledge a piece of a chunk; on return this is on disk.
-
-        Parameters
-        ----------
-        record : Record
-            The piece, whose shard is on disk already.
-        """
+        """Acknowledge a piece of a chunk; on return this is on disk."""
         self._insert("pieces", record)
 
     def _insert(self, table: str, record: Record) -> None:
@@ -109,28 +89,12 @@ class Ledger:
         self._database.execute(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(row))})", row)
 
     def forget(self, name: str) -> None:
-        """Take a chunk or a piece back: its shard turned out to be damaged.
-
-        Parameters
-        ----------
-        name : str
-            The hash that it is named by.
-        """
+        """Take a chunk or a piece back: its shard turned out to be damaged."""
         for table in ("chunks", "pieces"):
             self._database.execute(f"DELETE FROM {table} WHERE name = ?", (name,))
 
     def note(self, what: str, number: int | None, detail: str) -> None:
-        """Write down what happened.
-
-        Parameters
-        ----------
-        what : str
-            A word: adopted, damaged, retried, rebuilt.
-        number : int or None
-            The chunk.
-        detail : str
-            A sentence.
-        """
+        """Write down what happened."""
         self._database.execute(
             "INSERT INTO events (happened, what, chunk, detail) VALUES (datetime('now'), ?, ?, ?)",
             (what, number, detail),
@@ -139,30 +103,14 @@ class Ledger:
     def records(self) -> Iterator[Record]:
         """Return the finished chunks, in order.
 
-        Returns
-        -------
-        iterator of Record
-            One after another; none that was changed behind the ledger's back.
-
-        Raises
-        ------
-        CampaignDamagedError
-            If a row is not what was recorded.
+        Returns one after another; none that was changed behind the ledger's back.
         """
         return self._records("SELECT * FROM chunks ORDER BY number")
 
     def pieces(self) -> Iterator[Record]:
         """Return the finished pieces of chunks that are not whole yet, in order.
 
-        Returns
-        -------
-        iterator of Record
-            One after another; none that was changed behind the ledger's back.
-
-        Raises
-        ------
-        CampaignDamagedError
-            If a row is not what was recorded.
+        Returns one after another; none that was changed behind the ledger's back.
         """
         return self._records("SELECT * FROM pieces ORDER BY first")
 
@@ -174,18 +122,7 @@ class Ledger:
             yield record
 
     def check(self, plan: Plan) -> None:
-        """Refuse a ledger that is damaged or of another campaign.
-
-        Parameters
-        ----------
-        plan : Plan
-            How the campaign is cut.
-
-        Raises
-        ------
-        CampaignDamagedError
-            If anything is wrong with it.
-        """
+        """Refuse a ledger that is damaged or of another campaign."""
         (found,) = self._database.execute("PRAGMA integrity_check(1)").fetchone()
         (version,) = self._database.execute("PRAGMA user_version").fetchone()
         if found != "ok" or version != FORMAT:
@@ -208,10 +145,7 @@ class Ledger:
     def finished(self) -> tuple[int, int]:
         """Return how much is finished.
 
-        Returns
-        -------
-        chunks, histories : int
-            Their numbers; of histories also those in pieces.
+        Returns their numbers; of histories also those in pieces.
         """
         asked = f"SELECT (SELECT count(*) FROM chunks), (SELECT coalesce(sum(last - first), 0) FROM {_ALL})"
         chunks, histories = self._database.execute(asked).fetchone()
@@ -220,32 +154,14 @@ class Ledger:
     def effort(self) -> tuple[float, int]:
         """Return what the finished chunks took.
 
-        Returns
-        -------
-        seconds : float
-            Time of all workers [s].
-        retries : int
-            Attempts beyond the first.
+        Returns seconds: time of all workers [s].
         """
         asked = "SELECT coalesce(sum(seconds), 0), coalesce(sum(attempts - 1), 0) FROM " + _ALL
         found = self._database.execute(asked).fetchone()
         return float(found[0]), int(found[1])
 
     def costs(self, count: int, since: str = "") -> Costs:
-        """Return what the histories have taken that are finished.
-
-        Parameters
-        ----------
-        count : int
-            Number of histories of the campaign.
-        since : str
-            Time before which what was finished says nothing of costs, as in a `Record`.
-
-        Returns
-        -------
-        Costs
-            By parts of the campaign.
-        """
+        """Return what the histories have taken that are finished."""
         found = Costs(count)
         asked = "SELECT first, last, CASE WHEN finished >= ? THEN seconds ELSE 0.0 END FROM " + _ALL
         rows = self._database.execute(asked, (since,)).fetchall()
@@ -254,18 +170,7 @@ class Ledger:
         return found
 
     def events(self, what: str) -> list[str]:
-        """Return what happened of a kind.
-
-        Parameters
-        ----------
-        what : str
-            The word.
-
-        Returns
-        -------
-        list of str
-            The sentences, the oldest first.
-        """
+        """Return what happened of a kind."""
         found = self._database.execute("SELECT detail FROM events WHERE what = ? ORDER BY id", (what,))
         return [str(detail) for (detail,) in found]
 

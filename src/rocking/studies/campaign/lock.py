@@ -15,13 +15,7 @@ _held: set[int] = set()
 
 
 class FolderLock:
-    """Held while a campaign runs; the system lets go of it when the process ends, however it ends.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    """
+    """Held while a campaign runs; the system lets go of it when the process ends, however it ends."""
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / NAME
@@ -53,15 +47,7 @@ class FolderLock:
 def holder(folder: Path) -> str | None:
     """Return who runs a campaign.
 
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-
-    Returns
-    -------
-    str or None
-        Process and machine; None if nobody does.
+    Returns process and machine; None if nobody does.
     """
     try:
         handle = os.open(folder / NAME, os.O_RDONLY)

@@ -15,17 +15,7 @@ _REST = 0.5
 
 
 class Pace:
-    """How many histories at a time take as long as nobody minds to wait, learned from one step to the next.
-
-    Parameters
-    ----------
-    engine : str
-        The engine that computes them.
-    together : int
-        Histories of one motion that stand in a row: steps end between motions, where they can.
-    made : bool
-        Whether motions are made for them, which may take long: then the first step takes one.
-    """
+    """How many histories at a time take as long as nobody minds to wait, learned from one step to the next."""
 
     def __init__(self, engine: str, together: int = 1, made: bool = False) -> None:
         self.least = _FIRST[kind_of(engine)]
@@ -36,18 +26,7 @@ class Pace:
         self.begun = False
 
     def until(self, first: int, last: int) -> int:
-        """Return where to stop: after equal steps, since short ones leave lanes idle.
-
-        Parameters
-        ----------
-        first, last : int
-            The histories that are left, at least one.
-
-        Returns
-        -------
-        int
-            At most `step` beyond the first.
-        """
+        """Return where to stop: after equal steps, since short ones leave lanes idle."""
         left = last - first
         end = first + -(-left // -(-left // self.step))
         between = end - end % self.together
@@ -56,12 +35,7 @@ class Pace:
     def took(self, count: int, seconds: float) -> None:
         """Learn from a step.
 
-        Parameters
-        ----------
-        count : int
-            Its histories.
-        seconds : float
-            What they took [s].
+        seconds: what they took [s].
         """
         if self._first is None:
             self._first = count, seconds
@@ -74,15 +48,7 @@ class Pace:
     def settled(self, seconds: float) -> float:
         """Return what a piece took without what its first step took beyond its histories: code, motions laid out.
 
-        Parameters
-        ----------
-        seconds : float
-            What it took [s].
-
-        Returns
-        -------
-        float
-            The rest; all of it where the first step was in an earlier piece [s].
+        seconds: what it took [s]. Returns the rest; all of it where the first step was in an earlier piece [s].
         """
         found, self._startup = self._startup, 0.0
         return seconds - found if found < seconds else seconds
@@ -97,15 +63,7 @@ class Watch:
     def over(self, done: int, left: int) -> bool:
         """Return whether to keep what is done, and leave the rest to whoever is free.
 
-        Parameters
-        ----------
-        done, left : int
-            Histories.
-
-        Returns
-        -------
-        bool
-            False as long as nothing is done.
+        Returns false as long as nothing is done.
         """
         spent = time.perf_counter() - self._start
         return spent > PIECE and done > 0 and left * spent > _REST * PIECE * done

@@ -29,20 +29,7 @@ Retried = Callable[[Chunk, str], None]
 
 
 class Processes(Executor):
-    """Computes the chunks on processes of this machine, one thread of the engine each.
-
-    Parameters
-    ----------
-    workers : int, optional
-        How many; as many as the processor has, if not given.
-    start_method : {"spawn", "fork", "forkserver"}
-        How they start: "spawn" works everywhere, "fork" is quick and shares the memory of the histories.
-
-    Raises
-    ------
-    InvalidValueError
-        If this system does not have the method.
-    """
+    """Computes the chunks on processes of this machine, one thread of the engine each."""
 
     def __init__(self, workers: int | None = None, start_method: str = "spawn") -> None:
         known = multiprocessing.get_all_start_methods()
@@ -54,21 +41,7 @@ class Processes(Executor):
     def run(self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Retried) -> Iterator[Done]:
         """Compute chunks.
 
-        Parameters
-        ----------
-        job : Job
-            What to compute.
-        chunks : iterator of Chunk
-            What remains to be done.
-        stop : callable
-            Whether to stop: chunks that are not done within a second are left.
-        retried : callable
-            Called with a chunk whose worker died.
-
-        Yields
-        ------
-        Done
-            In the order in which they finish.
+        Returns in the order in which they finish.
         """
         with closing(_Crew(self.at_once, self.start_method, job, retried)) as crew:
             deadline = None

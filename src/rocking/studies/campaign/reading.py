@@ -19,7 +19,15 @@ from rocking.studies.campaign.ledger import NAME, Ledger
 
 
 class Piece(NamedTuple):
-    """Results of some histories: from the first up to but not including the last."""
+    """Results of some histories.
+
+    Parameters
+    ----------
+    first, last : int
+        Their numbers: from the first up to but not including the last.
+    results : dict of str to ndarray
+        The keys of `rocking.dynamics.engine.RESULTS`.
+    """
 
     first: int
     last: int
@@ -27,27 +35,7 @@ class Piece(NamedTuple):
 
 
 def pieces(folder: Path, plan: Plan) -> Iterator[Piece]:
-    """Return the results of a finished campaign in the order of the histories, one chunk in memory at a time.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    plan : Plan
-        How it is cut.
-
-    Yields
-    ------
-    Piece
-        One chunk after another.
-
-    Raises
-    ------
-    CampaignIncompleteError
-        If it is not finished; before the first piece.
-    CampaignDamagedError
-        If a shard or the ledger is not what was written.
-    """
+    """Return the results of a finished campaign in the order of the histories, one chunk in memory at a time."""
     seals = _seals(folder, plan)
     if len(seals) < plan.chunks:
         raise CampaignIncompleteError(f"{folder}: {len(seals)} of {plan.chunks} chunks are finished; run the campaign")
@@ -59,24 +47,7 @@ def pieces(folder: Path, plan: Plan) -> Iterator[Piece]:
 def results(folder: Path, plan: Plan, names: Collection[str] = ()) -> Arrays:
     """Return results of all histories at once.
 
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    plan : Plan
-        How it is cut.
-    names : collection of str
-        Keys of `rocking.dynamics.engine.RESULTS` that are wanted; all of them if there is none.
-
-    Returns
-    -------
-    dict of str to ndarray
-        One entry a history: 83 bytes each of all keys.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such result.
+    Returns one entry a history: 83 bytes each of all keys.
     """
     for name in names:
         _check_name(name)
@@ -90,24 +61,7 @@ def results(folder: Path, plan: Plan, names: Collection[str] = ()) -> Arrays:
 def column(folder: Path, plan: Plan, name: str) -> Iterator[np.ndarray]:
     """Return one result of all histories, piece by piece.
 
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    plan : Plan
-        How it is cut.
-    name : str
-        A key of `rocking.dynamics.engine.RESULTS`.
-
-    Yields
-    ------
-    ndarray
-        Its values for one chunk after another.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such result.
+    Returns its values for one chunk after another.
     """
     _check_name(name)
     for piece in pieces(folder, plan):
@@ -122,15 +76,7 @@ def _check_name(name: str) -> None:
 def digest(found: Iterator[Piece]) -> str:
     """Return the hash of results: it does not depend on how they are cut.
 
-    Parameters
-    ----------
-    found : iterator of Piece
-        The results, in order.
-
-    Returns
-    -------
-    str
-        SHA-256, 64 hexadecimal digits, of names, types and the hashes of the columns.
+    Returns SHA-256, 64 hexadecimal digits, of names, types and the hashes of the columns.
     """
     columns = {name: hashlib.sha256() for name in RESULTS}
     for piece in found:
@@ -170,18 +116,7 @@ class Verification:
 
 
 def verified(folder: Path) -> Verification:
-    """Read every shard that the ledger has, and see that they hold all histories, and none of them twice.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign; another process may run it.
-
-    Returns
-    -------
-    Verification
-        What was found.
-    """
+    """Read every shard that the ledger has, and see that they hold all histories, and none of them twice."""
     with disk.guarded(folder):
         plan = Identity.read(folder).plan
         try:

@@ -19,45 +19,18 @@ from rocking.studies.campaign.ledger import NAME, Ledger, Record
 
 @dataclass
 class Found:
-    """What an earlier run has left.
+    """What an earlier run has left."""
 
-    Parameters
-    ----------
-    finished : ndarray of bool
-        For every chunk, whether it is.
-    adopted : int
-        Shards that the ledger did not know: the run ended between writing and recording them.
-    set_aside : list of str
-        Shards that were damaged or missing, and where the former are now.
-    pieces : dict of int to list of Chunk
-        By number of the chunk, the pieces of those that are not finished, in order.
-    """
-
-    finished: np.ndarray
-    adopted: int = 0
+    finished: np.ndarray  # for every chunk, whether it is
+    adopted: int = 0  # shards that the ledger did not know: the run ended between writing and recording them
+    # shards that were damaged or missing, and where the former are now
     set_aside: list[str] = field(default_factory=list)
+    # by number of the chunk, the pieces of those that are not finished, in order
     pieces: dict[int, list[Chunk]] = field(default_factory=dict)
 
 
 def recover(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[], bool] = lambda: False) -> Found:
-    """Check all shards, take back what the ledger has of damaged ones, adopt what it does not know.
-
-    Parameters
-    ----------
-    folder : Path
-        Where the shards are.
-    plan : Plan
-        How the campaign is cut.
-    ledger : Ledger
-        The ledger, already checked.
-    stop : callable
-        Whether to stop; chunks not looked at by then count as unfinished.
-
-    Returns
-    -------
-    Found
-        What there is.
-    """
+    """Check all shards, take back what the ledger has of damaged ones, adopt what it does not know."""
     for each in (folder, folder.with_name(PIECES)):
         disk.remove_unfinished(each)
     found = Found(np.zeros(plan.chunks, bool))
@@ -119,20 +92,7 @@ def _adopt_piece(path: Path, plan: Plan, ledger: Ledger, found: Found) -> bool:
 
 
 def set_aside_if_damaged(folder: Path, plan: Plan) -> list[str]:
-    """Set a ledger aside that cannot be believed: a new one adopts the shards, each of which bears its own seal.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign, locked.
-    plan : Plan
-        How it is cut.
-
-    Returns
-    -------
-    list of str
-        A sentence, if it was damaged.
-    """
+    """Set a ledger aside that cannot be believed: a new one adopts the shards, each of which bears its own seal."""
     try:
         with disk.guarded(folder), Ledger(folder, writable=True) as ledger:
             ledger.check(plan)
@@ -144,13 +104,7 @@ def set_aside_if_damaged(folder: Path, plan: Plan) -> list[str]:
 
 
 def now() -> str:
-    """Return the time.
-
-    Returns
-    -------
-    str
-        UTC, to the second.
-    """
+    """Return the time."""
     return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
 
 

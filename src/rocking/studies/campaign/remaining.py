@@ -19,23 +19,6 @@ class Remaining(Iterator[Chunk]):
     """Chunks, and pieces of chunks, that nobody has computed yet; each is handed out once, unless it is put back.
 
     They are taken from all parts of the campaign in turn: what was measured is like what will come.
-
-    Parameters
-    ----------
-    plan : Plan
-        How the campaign is cut.
-    numbers : ndarray of int
-        Numbers of the chunks that are not finished.
-    pieces : dict of int to list of Chunk
-        Pieces of them that are finished.
-    together : int
-        Histories of one motion that stand in a row: pieces end between motions, where they can.
-    costs : Costs
-        What was measured so far.
-    sharers, stop : callable
-        Returns how many workers there are, and whether to hand out nothing more.
-    seed : int, optional
-        Of the order; that of the histories in every part, if not given.
     """
 
     def __init__(
@@ -73,12 +56,7 @@ class Remaining(Iterator[Chunk]):
     def back(self, done: Chunk, seconds: float) -> None:
         """Take note of what was computed, and put the rest of its piece back.
 
-        Parameters
-        ----------
-        done : Chunk
-            What is finished.
-        seconds : float
-            What it took [s].
+        seconds: what it took [s].
         """
         self._rate = (done.last - done.first) / max(seconds, 1e-9)
         asked = self._out.pop(done.first, done)

@@ -31,33 +31,7 @@ def run(
     order_seed: int | None,
     progress: Callable[[Progress], object] | None,
 ) -> Summary:
-    """Compute what is missing of a campaign.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    identity : Identity
-        What it is.
-    histories : Histories
-        What to compute.
-    executor : Executor
-        Who computes.
-    order_seed : int, optional
-        Seed of the order of the chunks; that of the histories in every part of the campaign, if not given.
-    progress : callable, optional
-        Called with `Progress` after every chunk.
-
-    Returns
-    -------
-    Summary
-        What was done.
-
-    Raises
-    ------
-    CampaignInterrupted
-        If it was asked to stop.
-    """
+    """Compute what is missing of a campaign."""
     meter = Meter(folder, identity.plan, progress)
     with disk.guarded(folder, meter.sentence, meter.raised), FolderLock(folder), Interruption() as interruption:
         for name in (SHARDS, PIECES):

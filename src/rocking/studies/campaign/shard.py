@@ -20,17 +20,8 @@ _SEAL = 32
 def pack(chunk: Chunk, arrays: Arrays) -> bytes:
     """Return the bytes of a shard: no time, place or machine is in them, so whoever makes them makes the same.
 
-    Parameters
-    ----------
-    chunk : Chunk
-        What the arrays are results of.
-    arrays : dict of str to ndarray
-        The keys of `rocking.dynamics.engine.RESULTS`; what is beyond the chunk is left out.
-
-    Returns
-    -------
-    bytes
-        Magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all that.
+    Returns magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all
+    that.
     """
     count = chunk.last - chunk.first
     columns = [np.ascontiguousarray(arrays[name][:count], _little(kind)).data for name, kind in RESULTS.items()]
@@ -45,15 +36,7 @@ def pack(chunk: Chunk, arrays: Arrays) -> bytes:
 def seal(data: bytes) -> str:
     """Return the seal that a shard bears, without breaking it open.
 
-    Parameters
-    ----------
-    data : bytes
-        A shard.
-
-    Returns
-    -------
-    str
-        64 hexadecimal digits: SHA-256 of all that stands before.
+    Returns 64 hexadecimal digits: SHA-256 of all that stands before.
     """
     return data[-_SEAL:].hex()
 
@@ -61,20 +44,7 @@ def seal(data: bytes) -> str:
 def range_of(data: bytes) -> tuple[int, int]:
     """Return which histories a shard says that it holds.
 
-    Parameters
-    ----------
-    data : bytes
-        A shard.
-
-    Returns
-    -------
-    first, last : int
-        From the first up to but not including the last.
-
-    Raises
-    ------
-    CampaignDamagedError
-        If it does not say so.
+    Returns from the first up to but not including the last.
     """
     header = _read_header(data, _payload_at(data))
     found = header.get("first"), header.get("last")
@@ -84,27 +54,7 @@ def range_of(data: bytes) -> tuple[int, int]:
 
 
 def unpack(data: bytes, chunk: Chunk, sealed: str | None = None) -> Arrays:
-    """Return the results that a shard holds, if not a bit of it has changed.
-
-    Parameters
-    ----------
-    data : bytes
-        The shard.
-    chunk : Chunk
-        What it must be of.
-    sealed : str, optional
-        The seal that it was recorded with.
-
-    Returns
-    -------
-    dict of str to ndarray
-        The keys of `rocking.dynamics.engine.RESULTS`; read-only.
-
-    Raises
-    ------
-    CampaignDamagedError
-        If it was cut short, changed, or belongs elsewhere.
-    """
+    """Return the results that a shard holds, if not a bit of it has changed."""
     place = _payload_at(data)
     if hashlib.sha256(memoryview(data)[:-_SEAL]).digest() != data[-_SEAL:]:
         raise CampaignDamagedError(_where_broken(data, place))

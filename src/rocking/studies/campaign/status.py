@@ -127,17 +127,7 @@ class Summary:
 
 
 class Meter:
-    """Counts what is safe, and tells it.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign.
-    plan : Plan
-        How it is cut.
-    tell : callable, optional
-        Called with `Progress`.
-    """
+    """Counts what is safe, and tells it."""
 
     def __init__(self, folder: Path, plan: Plan, tell: Callable[[Progress], object] | None) -> None:
         self._folder, self._plan, self._tell = folder, plan, tell
@@ -152,15 +142,7 @@ class Meter:
         self.retries: list[str] = []
 
     def begin(self, chunks: int, there: Iterable[tuple[int, int]]) -> None:
-        """Note what is there before the first chunk of this run.
-
-        Parameters
-        ----------
-        chunks : int
-            How many.
-        there : iterable of tuple of int
-            First and last history of each, and of each piece.
-        """
+        """Note what is there before the first chunk of this run."""
         ends = np.array(list(there), np.int64).reshape(-1, 2)
         if ends.size:
             self.costs.add(ends[:, 0], ends[:, 1])
@@ -173,14 +155,7 @@ class Meter:
     def add(self, done: Chunk, seconds: float, *, whole: bool) -> None:
         """Note that one more chunk, or piece of one, is recorded.
 
-        Parameters
-        ----------
-        done : Chunk
-            Which.
-        seconds : float
-            What it took [s].
-        whole : bool
-            Whether a chunk is whole by this.
+        seconds: what it took [s].
         """
         if not self._work:
             self._begun = time.perf_counter() - seconds  # what it took to start says nothing about the rest
@@ -197,13 +172,7 @@ class Meter:
         return time.perf_counter() - self._start
 
     def sentence(self) -> str:
-        """Return what is safe, in words.
-
-        Returns
-        -------
-        str
-            Part of a sentence.
-        """
+        """Return what is safe, in words."""
         if not self.known:
             return disk.NOTHING_LOST
         total = self._plan.chunks
@@ -214,18 +183,7 @@ class Meter:
         return f"{share} are safe"
 
     def raised(self, error: BaseException) -> bool:
-        """Return whether an error is of the function that is told, and so not of the campaign.
-
-        Parameters
-        ----------
-        error : BaseException
-            What was raised.
-
-        Returns
-        -------
-        bool
-            True for that very error.
-        """
+        """Return whether an error is of the function that is told, and so not of the campaign."""
         return error is self._error
 
     def _say(self) -> None:

@@ -23,15 +23,7 @@ class Failure(NamedTuple):
 
 
 def serve(job: Job, connection: Connection) -> None:
-    """Compute chunks until told to end, or the campaign's process is gone.
-
-    Parameters
-    ----------
-    job : Job
-        What to compute.
-    connection : Connection
-        Where chunks come from and answers go to.
-    """
+    """Compute chunks until told to end, or the campaign's process is gone."""
     orphaned = _orphaned()
     # Ctrl-C goes to all processes of a terminal: the campaign's process decides what it means
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -44,22 +36,7 @@ def serve(job: Job, connection: Connection) -> None:
 
 
 def answer(job: Job, chunk: Chunk, stop: Callable[[], bool] = lambda: False) -> Done | Failure:
-    """Return what became of a chunk; nothing that goes wrong with it ends the worker.
-
-    Parameters
-    ----------
-    job : Job
-        What to compute.
-    chunk : Chunk
-        Which.
-    stop : callable
-        Whether to stop; asked several times a second.
-
-    Returns
-    -------
-    Done or Failure
-        The answer.
-    """
+    """Return what became of a chunk; nothing that goes wrong with it ends the worker."""
     start = time.perf_counter()
     try:
         data = job.compute(chunk, 1, stop)

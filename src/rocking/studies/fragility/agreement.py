@@ -37,51 +37,29 @@ _NONE = (math.nan, math.nan)
 
 @dataclass(frozen=True)
 class Agreement:
-    """Goodness of fit as plain numbers.
+    """Goodness of fit as plain numbers."""
 
-    Parameters
-    ----------
-    numbers : dict of str to tuple of float
-        Value and p-value of each of `STATISTICS`; NaN where there is none [-].
-    words : str
-        What the p-values rest on, or why there is none.
-    """
-
+    # value and p-value of each of `STATISTICS`; NaN where there is none [-]
     numbers: dict[str, tuple[float, float]] = field(default_factory=lambda: dict.fromkeys(STATISTICS, _NONE))
-    words: str = ""
+    words: str = ""  # what the p-values rest on, or why there is none
 
 
 @dataclass(frozen=True, eq=False)
 class Repeated:
-    """Intervals from the study repeated many times.
+    """Intervals from the study repeated many times."""
 
-    Parameters
-    ----------
-    median_95, dispersion_95 : tuple, optional
-        Ends of the 95 % intervals, None where one is open; None if there is no interval [as median, dispersion].
-    band : tuple of ndarray, optional
-        Lower and upper ends of the 95 % intervals of the probability at the levels; None if there is none [-].
-    words : str
-        How the study was repeated, or why there is none.
-    """
-
+    # median_95, dispersion_95: ends of the 95 % intervals, None where one is open; None if there is no interval [as
+    # median, dispersion]
     median_95: Ends | None = None
     dispersion_95: Ends | None = None
+    # lower and upper ends of the 95 % intervals of the probability at the levels; None if there is none [-]
     band: tuple[FloatArray, FloatArray] | None = None
-    words: str = ""
+    words: str = ""  # how the study was repeated, or why there is none
 
     def band_at(self, size: int) -> FloatArray:
         """Return the band, filled with NaN where there is none.
 
-        Parameters
-        ----------
-        size : int
-            Number of levels.
-
-        Returns
-        -------
-        ndarray, shape (2, levels)
-            Lower and upper ends [-].
+        Returns lower and upper ends [-].
         """
         return np.full((2, size), math.nan) if self.band is None else np.stack(self.band)
 
@@ -89,18 +67,8 @@ class Repeated:
 def ends_of(interval: Ends | None) -> tuple[float, float]:
     """Return an interval as numbers.
 
-    Parameters
-    ----------
-    interval : tuple of float, optional
-        Its ends.
+    Returns NaN where an end is open, or there is no interval.
 
-    Returns
-    -------
-    tuple of float
-        NaN where an end is open, or there is no interval.
-
-    Examples
-    --------
     >>> ends_of((0.5, None)), ends_of(None)
     ((0.5, nan), (nan, nan))
     """
@@ -111,18 +79,8 @@ def ends_of(interval: Ends | None) -> tuple[float, float]:
 def agreement_of(fit: "LognormalFit", seed: int = 0) -> Agreement:
     """Return how well a curve agrees with its outcomes, where the p-values cost little.
 
-    Parameters
-    ----------
-    fit : LognormalFit
-        A fit with a curve.
-    seed : int
-        Seed of the random numbers.
-
-    Returns
-    -------
-    Agreement
-        With 1000 data sets, fewer where there are many levels; without numbers where there are too many, or the data
-        sets cannot be refitted.
+    Returns with 1000 data sets, fewer where there are many levels; without numbers where there are too many, or the
+    data sets cannot be refitted.
     """
     levels = fit.counts.levels.size
     repetitions = min(REPETITIONS, MOST_DRAWN // levels)
@@ -141,21 +99,8 @@ def agreement_of(fit: "LognormalFit", seed: int = 0) -> Agreement:
 def repeated_of(fit: "LognormalFit", levels: FloatArray, repetitions: int, seed: int = 0) -> Repeated:
     """Return intervals of a curve from the bootstrap, as `LognormalFit.interval` and `LognormalFit.band` have them.
 
-    Parameters
-    ----------
-    fit : LognormalFit
-        A fit with a curve.
-    levels : ndarray
-        Levels of the band [unit of the measure].
-    repetitions : int
-        How many times the study is repeated.
-    seed : int
-        Seed of the random numbers.
-
-    Returns
-    -------
-    Repeated
-        Without numbers where the clusters are too few to be drawn again, or the levels are too many.
+    levels: levels of the band [unit of the measure]. Returns without numbers where the clusters are too few to be drawn
+    again, or the levels are too many.
     """
     held = repetitions * max(fit.counts.levels.size, levels.size)
     if held > MOST_REPEATED:

@@ -19,15 +19,7 @@ LEAST = 0.01
 def checked_least(least: float) -> float:
     """Return the rotation below which a history counts as barely lifted, if it is one.
 
-    Parameters
-    ----------
-    least : float
-        Rotation over alpha, from 0 to below 1 [-].
-
-    Returns
-    -------
-    float
-        The same [-].
+    least: rotation over alpha, from 0 to below 1 [-]. Returns the same [-].
     """
     return checks.within("least", least, 0.0, 1.0, open_high=True, hint="a rotation over alpha")
 
@@ -35,17 +27,7 @@ def checked_least(least: float) -> float:
 def clearly_lifted(responses: Responses, least: float) -> BoolArray:
     """Return which histories rocked, not barely, and stayed standing.
 
-    Parameters
-    ----------
-    responses : Responses
-        The outcomes.
-    least : float
-        Rotation over alpha below which a history counts as barely lifted [-].
-
-    Returns
-    -------
-    ndarray of bool
-        One entry a history.
+    least: rotation over alpha below which a history counts as barely lifted [-].
     """
     return np.asarray(responses.rocked & (responses.rotation >= least) & (responses.rotation > 0.0))
 
@@ -53,17 +35,7 @@ def clearly_lifted(responses: Responses, least: float) -> BoolArray:
 def barely_lifted(responses: Responses, least: float) -> int:
     """Return how many histories rocked barely.
 
-    Parameters
-    ----------
-    responses : Responses
-        The outcomes.
-    least : float
-        Rotation over alpha below which a history counts as barely lifted [-].
-
-    Returns
-    -------
-    int
-        Their number.
+    least: rotation over alpha below which a history counts as barely lifted [-].
     """
     return int(np.sum(responses.rocked & ~clearly_lifted(responses, least)))
 
@@ -73,14 +45,8 @@ class ClearShare:
 
     A lognormal curve where the outcomes fix one, else their share at all levels.
 
-    Parameters
-    ----------
-    levels : ndarray
-        Level of each history [unit of the measure].
-    responses : Responses
-        Their outcomes.
-    least : float
-        Rotation over alpha below which a history counts as barely lifted [-].
+    levels: level of each history [unit of the measure]; least: rotation over alpha below which a history counts as
+    barely lifted [-].
     """
 
     def __init__(self, levels: FloatArray, responses: Responses, least: float) -> None:
@@ -99,15 +65,8 @@ class ClearShare:
     def at(self, levels: FloatArray) -> FloatArray:
         """Return the share at levels of the measure.
 
-        Parameters
-        ----------
-        levels : ndarray
-            Levels [unit of the measure].
-
-        Returns
-        -------
-        ndarray
-            Probability that what rocked and stayed standing was clearly lifted [-].
+        levels: levels [unit of the measure]. Returns probability that what rocked and stayed standing was clearly
+        lifted [-].
         """
         if self.fit is None or not self.fit.exists:
             return np.full(np.shape(levels), self.share)

@@ -32,30 +32,8 @@ def resample(
 ) -> tuple[FloatArray, FloatArray]:
     """Return data sets that might have been found instead.
 
-    Parameters
-    ----------
-    counts : Counts
-        The data.
-    probability : ndarray
-        Probability of failure at each level, from the fitted curve [-].
-    kind : {"parametric", "cases", "clusters"}
-        New outcomes from the curve; single trials drawn again from the data; or whole clusters drawn again, which
-        keeps what the outcomes of one record have in common.
-    repetitions : int
-        How many data sets.
-    seed : int
-        Seed of the random numbers.
-
-    Returns
-    -------
-    tuple of ndarray
-        Failures and trials, one row a data set, one column a level [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If the kind is unknown, clusters were not named or are fewer than five distinct ones, or the repetitions are
-        not between 1 and ten millions.
+    probability: probability of failure at each level, from the fitted curve [-]. Returns failures and trials, one row a
+    data set, one column a level [-].
     """
     checks.within("repetitions", repetitions, 1, 10**7)
     random = np.random.default_rng(seed)
@@ -207,28 +185,7 @@ class BootstrapSample:
 def bootstrap(
     counts: Counts, original: Curves, scale: Scale, kind: Resampling, repetitions: int, seed: int
 ) -> BootstrapSample:
-    """Repeat a study many times and fit every repetition as the study itself was.
-
-    Parameters
-    ----------
-    counts : Counts
-        The data.
-    original : Curves
-        The curve of the study: one row.
-    scale : Scale
-        Scale of the coefficients.
-    kind : {"parametric", "cases", "clusters"}
-        How to draw the repetitions.
-    repetitions : int
-        How many.
-    seed : int
-        Seed of the random numbers.
-
-    Returns
-    -------
-    BootstrapSample
-        Their curves.
-    """
+    """Repeat a study many times and fit every repetition as the study itself was."""
     probability = curve_probability(original, scale, counts.levels)
     failures, trials = resample(counts, probability, kind, repetitions, seed)
     curves = find_curves(counts.levels, scale, failures, trials, penalised=bool(original.penalised[0]))
@@ -241,19 +198,7 @@ def bootstrap(
 def curve_probability(curves: Curves, scale: Scale, levels: FloatArray) -> FloatArray:
     """Return the probability of failure of the first curve.
 
-    Parameters
-    ----------
-    curves : Curves
-        Curves, of which the first counts.
-    scale : Scale
-        Scale of the coefficients.
-    levels : ndarray
-        Levels, > 0 [any unit].
-
-    Returns
-    -------
-    ndarray
-        Probabilities [-].
+    levels: levels, > 0 [any unit]. Returns probabilities [-].
     """
     from scipy.special import ndtr
 

@@ -166,31 +166,7 @@ class CapacitySample:
 
 
 def draw_capacities(counts: Counts, original: Curves, scale: Scale, repetitions: int, seed: int) -> CapacitySample:
-    """Return what repeats a study whose records have one capacity each.
-
-    Parameters
-    ----------
-    counts : Counts
-        The data.
-    original : Curves
-        The curve of the study: one row.
-    scale : Scale
-        Scale of its coefficients.
-    repetitions : int
-        How many times the study is repeated.
-    seed : int
-        Seed of the random numbers.
-
-    Returns
-    -------
-    CapacitySample
-        Finds the intervals.
-
-    Raises
-    ------
-    InvalidValueError
-        If not every record was tried once at every level, or the repetitions are not between 1 and a million.
-    """
+    """Return what repeats a study whose records have one capacity each."""
     checks.within("repetitions", repetitions, 1, 10**6)
     if not counts.tries_all_levels:
         raise InvalidValueError(

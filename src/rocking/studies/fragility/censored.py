@@ -16,40 +16,18 @@ _LOG_OF_ROOT = 0.5 * math.log(2.0 * math.pi)
 
 @dataclass(frozen=True)
 class CensoredFit:
-    """Median and dispersion of levels.
+    """Median and dispersion of levels."""
 
-    Parameters
-    ----------
-    median : float
-        Median [unit of the measure].
-    dispersion : float
-        Standard deviation of the natural logarithm [-].
-    crossings : int
-        Levels that are known.
-    censored : int
-        Levels that are known to lie above a limit.
-    method : str
-        How it was found, in words.
-    """
-
-    median: float
-    dispersion: float
-    crossings: int
-    censored: int
-    method: str
+    median: float  # median [unit of the measure]
+    dispersion: float  # standard deviation of the natural logarithm [-]
+    crossings: int  # levels that are known
+    censored: int  # levels that are known to lie above a limit
+    method: str  # how it was found, in words
 
     def probability(self, level: Any) -> FloatArray:
         """Return the share of levels below a level.
 
-        Parameters
-        ----------
-        level : array_like
-            Levels [unit of the measure].
-
-        Returns
-        -------
-        ndarray
-            Probabilities; a step if the dispersion is zero [-].
+        level: levels [unit of the measure]. Returns Probabilities; a step if the dispersion is zero [-].
         """
         from scipy.special import ndtr
 
@@ -57,36 +35,15 @@ class CensoredFit:
         return np.asarray(ndtr(logs / self.dispersion)) if self.dispersion else np.asarray(1.0 * (logs >= 0.0))
 
     def summary(self) -> dict[str, Any]:
-        """Return the numbers and the method.
-
-        Returns
-        -------
-        dict
-            Plain values.
-        """
+        """Return the numbers and the method."""
         return dict(vars(self))
 
 
 def fit_moments(levels: FloatArray) -> CensoredFit:
     """Return mean and standard deviation (n - 1) of the logarithms, of levels that are all known.
 
-    Parameters
-    ----------
-    levels : ndarray
-        At least two [unit of the measure].
+    levels: at least two [unit of the measure].
 
-    Returns
-    -------
-    CensoredFit
-        The fit.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are fewer than two.
-
-    Examples
-    --------
     >>> round(fit_moments(np.array([1.0, 4.0])).median, 12)
     2.0
     """
@@ -101,23 +58,9 @@ def fit_moments(levels: FloatArray) -> CensoredFit:
 def fit_censored(levels: FloatArray, censored: BoolArray) -> CensoredFit:
     """Return the lognormal fit of maximum likelihood to levels of which some only have a lower bound.
 
-    Parameters
-    ----------
-    levels : ndarray
-        The levels, or the bounds [unit of the measure].
-    censored : ndarray of bool
-        Which are bounds.
-
-    Returns
-    -------
-    CensoredFit
-        The fit. With 1 / sigma and mu / sigma as parameters the likelihood is concave (Olsen 1978, Econometrica
-        46:1211), so that a vanishing gradient proves the maximum; it is verified.
-
-    Raises
-    ------
-    InvalidValueError
-        If fewer than two levels are known, or no bound is above any of them and all are equal.
+    levels: the levels, or the bounds [unit of the measure]. Returns the fit. With 1 / sigma and mu / sigma as
+    parameters the likelihood is concave (Olsen 1978, Econometrica 46:1211), so that a vanishing gradient proves the
+    maximum; it is verified.
     """
     logs = np.log(checks.positive_array("levels", levels))
     known, bounds = logs[~censored], logs[censored]
@@ -136,17 +79,9 @@ def fit_censored(levels: FloatArray, censored: BoolArray) -> CensoredFit:
 def fit_crossings(crossings: FloatArray, highest: float) -> CensoredFit | None:
     """Return the lognormal distribution of crossings, of which infinite ones lie above the highest level.
 
-    Parameters
-    ----------
-    crossings : ndarray
-        Levels, infinite where there is none up to the highest [unit of the measure].
-    highest : float
-        Highest level that was tried [unit of the measure].
-
-    Returns
-    -------
-    CensoredFit or None
-        By moments if all are finite, else by maximum likelihood; None if the crossings tell no dispersion.
+    crossings: levels, infinite where there is none up to the highest [unit of the measure]; highest: highest level that
+    was tried [unit of the measure]. Returns by moments if all are finite, else by maximum likelihood; None if the
+    crossings tell no dispersion.
     """
     crossed = np.isfinite(crossings)
     if crossed.sum() < 2:

@@ -194,17 +194,7 @@ def compare_measures(
 def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:
     """Return the same histories against another measure.
 
-    Parameters
-    ----------
-    analysis : CloudAnalysis
-        The histories.
-    name : str or IntensityMeasure
-        The other measure.
-
-    Returns
-    -------
-    CloudAnalysis
-        Nothing is computed again but the measure and what is fitted to it.
+    Returns nothing is computed again but the measure and what is fitted to it.
     """
     subject = replace(analysis.subject, measure=measure(name))
     factor = float(np.asarray(analysis.histories.scales).ravel()[0])

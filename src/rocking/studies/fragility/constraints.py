@@ -23,50 +23,21 @@ class Constraint(ABC):
     def line(self, value: FloatArray) -> Line:
         """Return the curves that have the given values of the quantity.
 
-        Parameters
-        ----------
-        value : ndarray
-            The quantity, one a row [-].
-
-        Returns
-        -------
-        Line
-            The curves.
+        value: the quantity, one a row [-].
         """
 
     @abstractmethod
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
         """Return what the profile tends to as the quantity goes to the end of its range.
 
-        Parameters
-        ----------
-        model : Probit
-            The likelihood, one row that all share, or one row an end.
-        side : ndarray
-            1 for the upper end, -1 for the lower one.
-
-        Returns
-        -------
-        ndarray
-            Log likelihoods; minus infinity where it falls without end [-].
+        Returns log likelihoods; minus infinity where it falls without end [-].
         """
 
     def starts(self, model: Probit, value: FloatArray, free: FloatArray) -> FloatArray:
         """Return free coefficients to start from.
 
-        Parameters
-        ----------
-        model : Probit
-            The likelihood.
-        value : ndarray
-            The quantity, one a row [-].
-        free : ndarray
-            A good guess, one a row; it is enough where the likelihood is concave [-].
-
-        Returns
-        -------
-        ndarray
-            First axis the starts, second the rows, third of length one [-].
+        value: the quantity, one a row [-]; free: A good guess, one a row; it is enough where the likelihood is concave
+        [-]. Returns first axis the starts, second the rows, third of length one [-].
         """
         others = np.zeros((0, free.size)) if model.concave else self._others(model, value)
         return np.concatenate([free[None], others])[:, :, None]
@@ -75,45 +46,20 @@ class Constraint(ABC):
         return np.repeat(np.append(0.0, SLOPES)[:, None], value.size, axis=1)
 
     def rows(self, index: Any) -> Self:
-        """Return the constraint of some rows.
-
-        Parameters
-        ----------
-        index : array of int or bool
-            Which rows.
-
-        Returns
-        -------
-        Constraint
-            Those.
-        """
+        """Return the constraint of some rows."""
         return type(self)(*(value[index] for value in vars(self).values()))
 
 
 @dataclass(frozen=True, eq=False)
 class FractileConstraint(Constraint):
-    """The position u where the curve reaches given probabilities.
+    """The position u where the curve reaches given probabilities."""
 
-    Parameters
-    ----------
-    variate : ndarray
-        Standard normal variate of the probability, one a row [-].
-    """
-
-    variate: FloatArray
+    variate: FloatArray  # standard normal variate of the probability, one a row [-]
 
     def line(self, value: FloatArray) -> Line:
         """Return the curves through the probability at given positions.
 
-        Parameters
-        ----------
-        value : ndarray
-            Positions u [-].
-
-        Returns
-        -------
-        Line
-            The curves.
+        value: positions u [-].
         """
         none, one = np.zeros_like(value), np.ones_like(value)
         return Line(_pair(self.variate, none), _pair(-value, one), _pair(none, none), _pair(-one, none))
@@ -121,17 +67,7 @@ class FractileConstraint(Constraint):
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
         """Return the likelihood of the likeliest flat line that stays below (above) the probability.
 
-        Parameters
-        ----------
-        model : Probit
-            The likelihood, one row that all share, or one row an end.
-        side : ndarray
-            1 for the upper end, -1 for the lower one.
-
-        Returns
-        -------
-        ndarray
-            Log likelihoods [-].
+        Returns log likelihoods [-].
         """
         flat = flat_line(model)[0]
         height = np.where(side > 0.0, np.minimum(flat, self.variate), np.maximum(flat, self.variate))
@@ -140,28 +76,14 @@ class FractileConstraint(Constraint):
 
 @dataclass(frozen=True, eq=False)
 class ProbabilityConstraint(Constraint):
-    """The variate a + b u of the probability at given positions.
+    """The variate a + b u of the probability at given positions."""
 
-    Parameters
-    ----------
-    position : ndarray
-        u, one a row [-].
-    """
-
-    position: FloatArray
+    position: FloatArray  # u, one a row [-]
 
     def line(self, value: FloatArray) -> Line:
         """Return the curves with given variates at the positions.
 
-        Parameters
-        ----------
-        value : ndarray
-            Standard normal variates [-].
-
-        Returns
-        -------
-        Line
-            The curves.
+        value: standard normal variates [-].
         """
         none, one = np.zeros_like(value), np.ones_like(value)
         return Line(_pair(value, none), _pair(-self.position, one), _pair(one, none), _pair(none, none))
@@ -169,17 +91,7 @@ class ProbabilityConstraint(Constraint):
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
         """Return minus infinity: no probability that tends to 0 or 1 survives overlapping data.
 
-        Parameters
-        ----------
-        model : Probit
-            The likelihood, one row that all share, or one row an end.
-        side : ndarray
-            1 for the upper end, -1 for the lower one.
-
-        Returns
-        -------
-        ndarray
-            Log likelihoods [-].
+        Returns log likelihoods [-].
         """
         return np.full_like(side, -np.inf)
 
@@ -193,15 +105,7 @@ class SlopeConstraint(Constraint):
     def line(self, value: FloatArray) -> Line:
         """Return the curves with given slopes.
 
-        Parameters
-        ----------
-        value : ndarray
-            Logarithms of b [-].
-
-        Returns
-        -------
-        Line
-            The curves.
+        value: logarithms of b [-].
         """
         none, one, slope = np.zeros_like(value), np.ones_like(value), np.exp(value)
         return Line(_pair(none, slope), _pair(one, none), _pair(none, slope), _pair(none, none))
@@ -212,17 +116,7 @@ class SlopeConstraint(Constraint):
     def limit(self, model: Probit, side: FloatArray) -> FloatArray:
         """Return the likelihood of the likeliest flat line; a step is refused without end.
 
-        Parameters
-        ----------
-        model : Probit
-            The likelihood, one row that all share, or one row an end.
-        side : ndarray
-            1 for the upper end, -1 for the lower one.
-
-        Returns
-        -------
-        ndarray
-            Log likelihoods [-].
+        Returns log likelihoods [-].
         """
         return np.where(side > 0.0, -np.inf, flat_line(model)[1])
 

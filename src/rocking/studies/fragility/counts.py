@@ -255,15 +255,7 @@ def _none_above(name: str, part: FloatArray, whole: FloatArray, of: str = "trial
 def check_spread(levels: FloatArray) -> None:
     """Refuse levels that differ by rounding only.
 
-    Parameters
-    ----------
-    levels : ndarray
-        Distinct levels, ascending [any unit].
-
-    Raises
-    ------
-    InvalidValueError
-        If the last is within 1e-9 of the first.
+    levels: distinct levels, ascending [any unit].
     """
     if levels.size > 1 and levels[-1] <= levels[0] * (1.0 + NARROWEST):
         raise InvalidValueError(

@@ -53,21 +53,12 @@ class OverturningInterval:
 
 @dataclass(frozen=True)
 class Brackets:
-    """Pairs of levels between which the outcome of a motion changes.
+    """Pairs of levels between which the outcome of a motion changes."""
 
-    Parameters
-    ----------
-    motion : ndarray of int
-        Number of the motion.
-    low, high : ndarray
-        The levels [unit of the measure].
-    before, after : ndarray of int
-        Side that the body overturns to at either level: 1 right, -1 left, 0 if it stays standing.
-    """
-
-    motion: IntArray
-    low: FloatArray
+    motion: IntArray  # number of the motion
+    low: FloatArray  # low, high: the levels [unit of the measure]
     high: FloatArray
+    # before, after: side that the body overturns to at either level: 1 right, -1 left, 0 if it stays standing
     before: IntArray
     after: IntArray
 
@@ -86,33 +77,11 @@ class Brackets:
         return int(self.motion.size)
 
     def chosen(self, which: Any) -> "Brackets":
-        """Return some of them.
-
-        Parameters
-        ----------
-        which : ndarray of bool or int
-            Which.
-
-        Returns
-        -------
-        Brackets
-            Those, in this order.
-        """
+        """Return some of them."""
         return Brackets(*(values[which] for values in vars(self).values()))
 
     def joined(self, other: "Brackets") -> "Brackets":
-        """Return these and others.
-
-        Parameters
-        ----------
-        other : Brackets
-            The others.
-
-        Returns
-        -------
-        Brackets
-            All, by motion and level.
-        """
+        """Return these and others."""
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)
         both = Brackets(*(np.concatenate(pair) for pair in pairs))
         return both.chosen(np.lexsort((both.low, both.motion)))
@@ -121,19 +90,8 @@ class Brackets:
 def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> Brackets:
     """Return the pairs of neighbouring levels between which the outcome changes.
 
-    Parameters
-    ----------
-    motion : ndarray of int, shape (rows,)
-        Number of the motion of each row.
-    levels : ndarray, shape (rows, levels)
-        Levels, increasing along each row [unit of the measure].
-    sides : ndarray of int, shape (rows, levels)
-        Sides overturned to, 0 if none.
-
-    Returns
-    -------
-    Brackets
-        By row and level; also those between overturning to one side and to the other.
+    levels: levels, increasing along each row [unit of the measure]. Returns by row and level; also those between
+    overturning to one side and to the other.
     """
     row, place = np.nonzero(sides[:, 1:] != sides[:, :-1])
     return Brackets(motion[row], levels[row, place], levels[row, place + 1], sides[row, place], sides[row, place + 1])
@@ -144,22 +102,11 @@ def refined(brackets: Brackets, outcomes: Outcomes, tolerance: float) -> Bracket
 
     Levels that overturn to the right and levels that overturn to the left are both open sets, so that between two of
     them there is one that leaves the body standing: it is searched for, and splits the bracket. The first round keeps
-    every change of outcome that it finds; later ones the lowest in each bracket, so that a fractal boundary cannot
-    make their number explode. A bracket within which a history fails stays as it is.
+    every change of outcome that it finds; later ones the lowest in each bracket, so that a fractal boundary cannot make
+    their number explode. A bracket within which a history fails stays as it is.
 
-    Parameters
-    ----------
-    brackets : Brackets
-        The brackets.
-    outcomes : callable
-        Outcomes of motions at levels.
-    tolerance : float
-        Width over level to which they are narrowed [-].
-
-    Returns
-    -------
-    Brackets
-        By motion and level; where the body stays standing in less than the tolerance, sides may still meet.
+    tolerance: width over level to which they are narrowed [-]. Returns by motion and level; where the body stays
+    standing in less than the tolerance, sides may still meet.
     """
     done = brackets.chosen(slice(0, 0))
     first = True
@@ -204,18 +151,7 @@ def _lowest(pieces: Brackets, parents: Brackets) -> Brackets:
 
 
 def intervals_of(brackets: Brackets) -> list[OverturningInterval]:
-    """Return the intervals of levels that overturn, from where they start and stop.
-
-    Parameters
-    ----------
-    brackets : Brackets
-        By motion and level; a motion's starts and stops alternate.
-
-    Returns
-    -------
-    list of OverturningInterval
-        By motion and level.
-    """
+    """Return the intervals of levels that overturn, from where they start and stop."""
     brackets = brackets.chosen(brackets.starts | brackets.stops)
     found = []
     middle, width = 0.5 * (brackets.low + brackets.high), brackets.high - brackets.low
@@ -230,17 +166,8 @@ def intervals_of(brackets: Brackets) -> list[OverturningInterval]:
 def survivals_of(intervals: Sequence[OverturningInterval], highest: float) -> list[tuple[int, float, float]]:
     """Return the levels above an overturning one between which the body stays standing.
 
-    Parameters
-    ----------
-    intervals : sequence of OverturningInterval
-        By motion and level.
-    highest : float
-        Highest level that was tried [unit of the measure].
-
-    Returns
-    -------
-    list of tuple
-        Number of the motion, and both ends [unit of the measure].
+    highest: highest level that was tried [unit of the measure]. Returns number of the motion, and both ends [unit of
+    the measure].
     """
     found = []
     for one, after in pairwise([*intervals, None]):
@@ -255,19 +182,7 @@ def overturning_intervals(
 ) -> list[OverturningInterval]:
     """Return all intervals of levels in which motions overturn a body, searched between the levels of stripes.
 
-    Parameters
-    ----------
-    stripes : StripeAnalysis
-        Outcomes at levels; a motion with a failed history is left out.
-    tolerance : float
-        Width over level to which the boundaries are searched [-].
-    threads : int, optional
-        Threads of the fast engine.
-
-    Returns
-    -------
-    list of OverturningInterval
-        By motion and level.
+    tolerance: width over level to which the boundaries are searched [-].
     """
     subject, responses = stripes.subject, stripes.responses
     motion = np.flatnonzero(responses.good.all(axis=1))

@@ -247,17 +247,7 @@ def model_of(
 def curve_of(state: str, fit: "LognormalFit") -> FragilityCurve | None:
     """Return a fit as a curve.
 
-    Parameters
-    ----------
-    state : str
-        Name of the state.
-    fit : LognormalFit
-        The fit.
-
-    Returns
-    -------
-    FragilityCurve or None
-        None if the fit has no finite median and dispersion above zero.
+    Returns none if the fit has no finite median and dispersion above zero.
     """
     median, dispersion = fit.median, fit.dispersion
     if median is None or dispersion is None or not 0.0 < median < math.inf or not 0.0 < dispersion < math.inf:
@@ -274,23 +264,7 @@ def with_evidence(
 ) -> FragilityCurve:
     """Return a curve with its goodness of fit, and with intervals from the bootstrap where they are asked for.
 
-    Parameters
-    ----------
-    curve : FragilityCurve
-        The curve.
-    fit : LognormalFit
-        Where it comes from.
-    levels : ndarray
-        Levels of the band [unit of the measure].
-    bootstrap : int
-        Repetitions of the study; none, if 0.
-    seed : int
-        Seed of all random numbers.
-
-    Returns
-    -------
-    FragilityCurve
-        The same curve.
+    levels: levels of the band [unit of the measure].
     """
     repeated = repeated_of(fit, levels, bootstrap, seed) if bootstrap else None
     return replace(curve, agreement=agreement_of(fit, seed), repeated=repeated)

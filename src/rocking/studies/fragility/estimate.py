@@ -14,31 +14,14 @@ from rocking.studies.fragility.separation import Separation, classify
 
 @dataclass(frozen=True)
 class Scale:
-    """From logarithms of levels to numbers near one: u = (ln level - center) / spread.
+    """From logarithms of levels to numbers near one: u = (ln level - center) / spread."""
 
-    Parameters
-    ----------
-    center, spread : float
-        Mean and standard deviation of the logarithms over the trials [-].
-    """
-
-    center: float
+    center: float  # center, spread: mean and standard deviation of the logarithms over the trials [-]
     spread: float
 
     @classmethod
     def of(cls, counts: Counts) -> "Scale":
-        """Return the scale of some data.
-
-        Parameters
-        ----------
-        counts : Counts
-            The data, of two levels or more.
-
-        Returns
-        -------
-        Scale
-            Its scale.
-        """
+        """Return the scale of some data."""
         logarithm = np.log(counts.levels)
         center = float(np.average(logarithm, weights=counts.trials))
         return cls(center, float(np.sqrt(np.average((logarithm - center) ** 2, weights=counts.trials))))
@@ -46,60 +29,28 @@ class Scale:
     def position(self, levels: FloatArray) -> FloatArray:
         """Return u.
 
-        Parameters
-        ----------
-        levels : ndarray
-            Levels, > 0 [any unit].
-
-        Returns
-        -------
-        ndarray
-            Their positions [-].
+        levels: levels, > 0 [any unit]. Returns their positions [-].
         """
         return (np.log(levels) - self.center) / self.spread
 
     def log_level(self, position: FloatArray) -> FloatArray:
         """Return the logarithms of levels.
 
-        Parameters
-        ----------
-        position : ndarray
-            u [-].
-
-        Returns
-        -------
-        ndarray
-            ln level [-].
+        position: u [-]. Returns ln level [-].
         """
         return self.center + self.spread * position
 
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """Curves Phi(a + b u) found in many data sets of the same levels.
+    """Curves Phi(a + b u) found in many data sets of the same levels."""
 
-    Parameters
-    ----------
-    theta : ndarray
-        Rows of a and b; NaN where there is no rising curve [-].
-    curvature : ndarray
-        Observed information of each [-].
-    value : ndarray
-        Log likelihood of each, penalised where that was maximised [-].
-    found : ndarray of bool
-        Whether a rising curve was found and proven to be a maximum.
-    penalised : ndarray of bool
-        Whether the penalised likelihood was maximised.
-    separation : ndarray of int
-        `Separation.number` of each data set.
-    """
-
-    theta: FloatArray
-    curvature: FloatArray
-    value: FloatArray
-    found: BoolArray
-    penalised: BoolArray
-    separation: IntArray
+    theta: FloatArray  # rows of a and b; NaN where there is no rising curve [-]
+    curvature: FloatArray  # observed information of each [-]
+    value: FloatArray  # log likelihood of each, penalised where that was maximised [-]
+    found: BoolArray  # whether a rising curve was found and proven to be a maximum
+    penalised: BoolArray  # whether the penalised likelihood was maximised
+    separation: IntArray  # `Separation.number` of each data set
 
 
 def find_curves(
@@ -107,21 +58,7 @@ def find_curves(
 ) -> Curves:
     """Return the likeliest curves of many data sets; of those with a step, the penalised one.
 
-    Parameters
-    ----------
-    levels : ndarray
-        Distinct levels, ascending [any unit].
-    scale : Scale
-        Scale of the coefficients.
-    failures, trials : ndarray
-        One row a data set, one column a level [-].
-    penalised : bool
-        Maximise the penalised likelihood in all of them.
-
-    Returns
-    -------
-    Curves
-        One row a data set.
+    levels: distinct levels, ascending [any unit]; failures, trials: one row a data set, one column a level [-].
     """
     kinds = classify(levels, failures, trials)
     step = np.isin(kinds, [kind.number for kind in Separation if kind.step])
@@ -151,19 +88,7 @@ def _pieces(rows: IntArray, width: int) -> list[IntArray]:
 def log_fractile(theta: FloatArray, scale: Scale, variate: float | FloatArray) -> FloatArray:
     """Return the logarithm of the level where curves reach a probability.
 
-    Parameters
-    ----------
-    theta : ndarray
-        Rows of a and b [-].
-    scale : Scale
-        Scale of the coefficients.
-    variate : float or ndarray
-        Standard normal variate of the probability [-].
-
-    Returns
-    -------
-    ndarray
-        ln level [-].
+    theta: rows of a and b [-]; variate: standard normal variate of the probability [-]. Returns ln level [-].
     """
     return scale.log_level((variate - theta[:, 0]) / theta[:, 1])
 
@@ -171,17 +96,7 @@ def log_fractile(theta: FloatArray, scale: Scale, variate: float | FloatArray) -
 def log_dispersion(theta: FloatArray, scale: Scale) -> FloatArray:
     """Return the logarithm of the dispersion of curves.
 
-    Parameters
-    ----------
-    theta : ndarray
-        Rows of a and b, b > 0 [-].
-    scale : Scale
-        Scale of the coefficients.
-
-    Returns
-    -------
-    ndarray
-        ln beta [-].
+    theta: rows of a and b, b > 0 [-]. Returns ln beta [-].
     """
     return np.log(scale.spread / theta[:, 1])
 
@@ -189,21 +104,8 @@ def log_dispersion(theta: FloatArray, scale: Scale) -> FloatArray:
 def standard_errors(theta: FloatArray, curvature: FloatArray, scale: Scale, variate: float | None) -> FloatArray:
     """Return the standard errors of a logarithmic fractile or of the logarithmic dispersion.
 
-    Parameters
-    ----------
-    theta : ndarray
-        Rows of a and b [-].
-    curvature : ndarray
-        Their observed information [-].
-    scale : Scale
-        Scale of the coefficients.
-    variate : float, optional
-        Standard normal variate of the fractile; the dispersion without [-].
-
-    Returns
-    -------
-    ndarray
-        Standard errors [-].
+    theta: rows of a and b [-]; curvature: their observed information [-]; variate: standard normal variate of the
+    fractile; the dispersion without [-]. Returns standard errors [-].
     """
     a, b = theta[:, 0], theta[:, 1]
     if variate is None:
@@ -216,17 +118,8 @@ def standard_errors(theta: FloatArray, curvature: FloatArray, scale: Scale, vari
 def quadratic_error(slope: FloatArray, curvature: FloatArray) -> FloatArray:
     """Return the standard errors of functions of the coefficients (delta method).
 
-    Parameters
-    ----------
-    slope : ndarray
-        Rows of derivatives with respect to a and b [-].
-    curvature : ndarray
-        Observed information, one matrix a row [-].
-
-    Returns
-    -------
-    ndarray
-        Standard errors [-].
+    slope: rows of derivatives with respect to a and b [-]; curvature: observed information, one matrix a row [-].
+    Returns standard errors [-].
     """
     h = curvature
     determinant = h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2

@@ -170,23 +170,7 @@ def to_netcdf(model: FragilityModel, path: Destination) -> Path:
 
 
 def checked_path(path: Any) -> Path:
-    """Return a path that a file can be written to.
-
-    Parameters
-    ----------
-    path : str or path
-        The file.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no path, a folder, or in a folder that does not exist.
-    """
+    """Return a path that a file can be written to."""
     if not isinstance(path, (str, os.PathLike)):
         raise InvalidValueError(f"path must be the path of a file, got {path!r:.60}")
     target = Path(path)

@@ -14,22 +14,7 @@ def fits_of(
 ) -> dict[str, LognormalFit]:
     """Return the lognormal curve of each state.
 
-    Parameters
-    ----------
-    subject : Subject
-        The body, the motions and the measure.
-    states : sequence of LimitState
-        The states; rocking is left out where a level decides it.
-    levels : ndarray
-        Level of the measure of each history [its unit].
-    responses : Responses
-        Their outcomes, of the same shape; motions come first, and the histories of one motion are a cluster, together
-        with those of other motions that are the same sample by sample.
-
-    Returns
-    -------
-    dict of str to LognormalFit
-        By name of the state.
+    levels: level of the measure of each history [its unit].
     """
     wanted = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
     reached = [responses.exceed(state) == 1.0 for state in wanted]

@@ -13,17 +13,10 @@ from rocking.studies.fragility.estimate import Curves, Scale, find_curves
 
 
 class Statistic(NamedTuple):
-    """A measure of disagreement.
+    """A measure of disagreement."""
 
-    Parameters
-    ----------
-    value : float
-        The measure; zero for perfect agreement [-].
-    p_value : float
-        Share of data sets drawn from the curve, refitted, that disagree as much: small where the curve is wrong [-].
-    """
-
-    value: float
+    value: float  # the measure; zero for perfect agreement [-]
+    # share of data sets drawn from the curve, refitted, that disagree as much: small where the curve is wrong [-]
     p_value: float
 
 
@@ -79,33 +72,7 @@ class Goodness:
 
 
 def goodness_of(counts: Counts, curves: Curves, scale: Scale, groups: int, repetitions: int, seed: int) -> Goodness:
-    """Return how well a curve agrees with the outcomes.
-
-    Parameters
-    ----------
-    counts : Counts
-        The outcomes.
-    curves : Curves
-        The curve: one row.
-    scale : Scale
-        Scale of the coefficients.
-    groups : int
-        Most groups of neighbouring levels.
-    repetitions : int
-        Number of data sets drawn from the curve and refitted.
-    seed : int
-        Seed of the random numbers.
-
-    Returns
-    -------
-    Goodness
-        Statistics with their p-values.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are fewer than 2 groups or 20 repetitions, or too few repetitions can be refitted.
-    """
+    """Return how well a curve agrees with the outcomes."""
     if groups < 2 or repetitions < 20:
         raise InvalidValueError(f"groups must be >= 2 and repetitions >= 20, got {groups} and {repetitions}")
     from scipy.special import ndtr
@@ -141,20 +108,9 @@ def goodness_of(counts: Counts, curves: Curves, scale: Scale, groups: int, repet
 def group_of(trials: FloatArray, groups: int) -> IntArray:
     """Return the group of each level, so that groups of neighbours hold about equally many trials.
 
-    Parameters
-    ----------
-    trials : ndarray
-        Trials at each level [-].
-    groups : int
-        Most groups.
+    trials: trials at each level [-]. Returns numbers that never fall from a level to the next; each level has its own
+    where there are no more than groups.
 
-    Returns
-    -------
-    ndarray
-        Numbers that never fall from a level to the next; each level has its own where there are no more than groups.
-
-    Examples
-    --------
     >>> group_of(np.ones(6), 3)
     array([0, 0, 1, 1, 2, 2])
     """

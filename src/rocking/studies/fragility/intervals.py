@@ -37,21 +37,11 @@ SIDES = np.array([-1.0, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class Intervals:
-    """One fitted curve and the likelihood it is the maximum of.
+    """One fitted curve and the likelihood it is the maximum of."""
 
-    Parameters
-    ----------
-    counts : Counts
-        The outcomes.
-    scale : Scale
-        Scale of the coefficients.
-    curves : Curves
-        The curve: one row.
-    """
-
-    counts: Counts
-    scale: Scale
-    curves: Curves
+    counts: Counts  # the outcomes
+    scale: Scale  # scale of the coefficients
+    curves: Curves  # the curve: one row
 
     @cached_property
     def model(self) -> Probit:
@@ -93,20 +83,7 @@ class Intervals:
     def fractile(self, probability: float) -> float:
         """Return the level at which a probability of failure is reached.
 
-        Parameters
-        ----------
-        probability : float
-            Between 0 and 1, both excluded [-].
-
-        Returns
-        -------
-        float
-            The level [unit of the levels].
-
-        Raises
-        ------
-        InvalidValueError
-            If the level is beyond what a float64 holds.
+        probability: between 0 and 1, both excluded [-]. Returns the level [unit of the levels].
         """
         level = float(_exp(log_fractile(self.curves.theta, self.scale, _variate(probability)))[0])
         if not 0.0 < level < np.inf:
@@ -118,15 +95,7 @@ class Intervals:
     def probability(self, im: Any) -> FloatArray:
         """Return the probability of failure.
 
-        Parameters
-        ----------
-        im : array_like
-            Levels of the intensity measure, >= 0 [unit of the levels].
-
-        Returns
-        -------
-        ndarray
-            Probabilities, of the same shape [-].
+        im: levels of the intensity measure, >= 0 [unit of the levels]. Returns Probabilities, of the same shape [-].
         """
         given, some = _levels(im)
         result = np.zeros_like(given)
@@ -142,21 +111,8 @@ class Intervals:
     ) -> tuple[float, float]:
         """Return a confidence interval.
 
-        Parameters
-        ----------
-        parameter : {"median", "dispersion"} or float
-            A number is the probability of a fractile [-].
-        level : float
-            Confidence level [-].
-        method : {"profile", "bootstrap", "wald"}
-            How.
-        sample : BootstrapSample or CapacitySample, optional
-            Needed by the bootstrap.
-
-        Returns
-        -------
-        tuple of float
-            Both ends [unit of the levels, or - for the dispersion]; 0 or infinite where open.
+        parameter: A number is the probability of a fractile [-]; level: confidence level [-]. Returns both ends [unit
+        of the levels, or - for the dispersion]; 0 or infinite where open.
         """
         quantile, variate = _quantile(level, method), _parameter(parameter)
         if sample is not None:
@@ -190,21 +146,8 @@ class Intervals:
     ) -> tuple[FloatArray, FloatArray]:
         """Return pointwise confidence intervals of the probability of failure.
 
-        Parameters
-        ----------
-        im : array_like
-            Levels of the intensity measure, >= 0 [unit of the levels].
-        level : float
-            Confidence level [-].
-        method : {"profile", "bootstrap", "wald"}
-            How.
-        sample : BootstrapSample or CapacitySample, optional
-            Needed by the bootstrap.
-
-        Returns
-        -------
-        tuple of ndarray
-            Lower and upper ends, of the shape of `im` [-].
+        im: levels of the intensity measure, >= 0 [unit of the levels]; level: confidence level [-]. Returns lower and
+        upper ends, of the shape of `im` [-].
         """
         from scipy.special import ndtr
 

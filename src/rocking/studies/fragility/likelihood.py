@@ -16,22 +16,15 @@ WIDEST = 1 << 16
 
 
 class Tails(NamedTuple):
-    """The normal distribution at one place, seen from both sides: failing below it, surviving above it.
+    """The normal distribution at one place, seen from both sides: failing below it, surviving above it."""
 
-    Parameters
-    ----------
-    log_failure, log_survival : ndarray
-        ln Phi(eta) and ln Phi(-eta) [-].
-    failure_rate, survival_rate : ndarray
-        phi(eta) / Phi(eta) and phi(eta) / Phi(-eta): slopes of the two logarithms, up to sign [-].
-    failure_bend, survival_bend : ndarray
-        Minus the second derivatives of the two logarithms, between 0 and 1 [-].
-    """
-
-    log_failure: FloatArray
+    log_failure: FloatArray  # log_failure, log_survival: ln Phi(eta) and ln Phi(-eta) [-]
     log_survival: FloatArray
+    # failure_rate, survival_rate: phi(eta) / Phi(eta) and phi(eta) / Phi(-eta): slopes of the two logarithms, up to
+    # sign [-]
     failure_rate: FloatArray
     survival_rate: FloatArray
+    # failure_bend, survival_bend: minus the second derivatives of the two logarithms, between 0 and 1 [-]
     failure_bend: FloatArray
     survival_bend: FloatArray
 
@@ -39,18 +32,9 @@ class Tails(NamedTuple):
 def tails(eta: FloatArray) -> Tails:
     """Return logarithms, slopes and curvatures of both tails of the normal distribution.
 
-    Parameters
-    ----------
-    eta : ndarray
-        Standard normal variate [-].
+    eta: standard normal variate [-]. Returns relative errors near 1e-15, and near 1e-11 in the curvature of the far
+    tail.
 
-    Returns
-    -------
-    Tails
-        Relative errors near 1e-15, and near 1e-11 in the curvature of the far tail.
-
-    Examples
-    --------
     >>> float(tails(np.array(-1e4)).log_failure)
     -50000010.12927891
     """
@@ -74,21 +58,11 @@ def tails(eta: FloatArray) -> Tails:
 
 
 class Derivatives(NamedTuple):
-    """A function of a few coefficients, and its first and second derivatives, one row a data set.
+    """A function of a few coefficients, and its first and second derivatives, one row a data set."""
 
-    Parameters
-    ----------
-    value : ndarray
-        The function [-].
-    gradient : ndarray
-        Its gradient; the last axis is the coefficient [-].
-    curvature : ndarray
-        Minus its Hessian; positive definite where the function is strictly concave [-].
-    """
-
-    value: FloatArray
-    gradient: FloatArray
-    curvature: FloatArray
+    value: FloatArray  # the function [-]
+    gradient: FloatArray  # its gradient; the last axis is the coefficient [-]
+    curvature: FloatArray  # minus its Hessian; positive definite where the function is strictly concave [-]
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,63 +71,30 @@ class Probit:
 
     It is concave in (a, b), strictly so once two levels hold data: a stationary point is the one maximum. The binomial
     coefficients are left out, so that pooling equal levels changes nothing.
-
-    Parameters
-    ----------
-    position : ndarray
-        u, the logarithms of the levels in a scale near one; one row, or one row a data set [-].
-    failures, survivals : ndarray
-        Trials that failed and survived at each level; one row, or one row a data set [-].
     """
 
-    position: FloatArray
+    position: FloatArray  # u, the logarithms of the levels in a scale near one; one row, or one row a data set [-]
+    # failures, survivals: trials that failed and survived at each level; one row, or one row a data set [-]
     failures: FloatArray
     survivals: FloatArray
     concave: ClassVar[bool] = True
 
     def rows(self, index: Any) -> Self:
-        """Return the same likelihood of some of the data sets.
-
-        Parameters
-        ----------
-        index : array of int or bool
-            Which data sets; a field that all share stays shared.
-
-        Returns
-        -------
-        Probit
-            The likelihood of those.
-        """
+        """Return the same likelihood of some of the data sets."""
         fields = (self.position, self.failures, self.survivals)
         return type(self)(*(field if field.shape[0] == 1 else field[index] for field in fields))
 
     def eta(self, theta: FloatArray) -> FloatArray:
         """Return a + b u.
 
-        Parameters
-        ----------
-        theta : ndarray
-            Rows of a and b [-].
-
-        Returns
-        -------
-        ndarray
-            Rows of standard normal variates [-].
+        theta: rows of a and b [-]. Returns rows of standard normal variates [-].
         """
         return theta[:, :1] + theta[:, 1:2] * self.position
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
         """Return the log likelihood with its gradient and minus its Hessian, the observed information.
 
-        Parameters
-        ----------
-        theta : ndarray
-            Rows of a and b [-].
-
-        Returns
-        -------
-        Derivatives
-            One row a data set.
+        theta: rows of a and b [-].
         """
         if self.position.shape[1] > WIDEST:
             parts = [part.derivatives(theta) for part in self._columns()]
@@ -175,15 +116,7 @@ class Probit:
     def information(self, theta: FloatArray) -> FloatArray:
         """Return the expected (Fisher) information.
 
-        Parameters
-        ----------
-        theta : ndarray
-            Rows of a and b [-].
-
-        Returns
-        -------
-        ndarray
-            One matrix a row [-].
+        theta: rows of a and b [-]. Returns one matrix a row [-].
         """
         at = tails(self.eta(theta))
         weight = (self.failures + self.survivals) * at.failure_rate * at.survival_rate

@@ -73,25 +73,7 @@ def _check_method(method: str) -> None:
 
 
 def fit_counts(counts: Counts, method: Method = "auto") -> LognormalFit:
-    """Fit a lognormal fragility curve to outcomes that are counted already, or say why there is none.
-
-    Parameters
-    ----------
-    counts : Counts
-        The outcomes.
-    method : {"auto", "maximum-likelihood", "penalised"}
-        As for `fit_lognormal`.
-
-    Returns
-    -------
-    LognormalFit
-        The fit.
-
-    Raises
-    ------
-    InvalidValueError
-        As of `fit_lognormal`.
-    """
+    """Fit a lognormal fragility curve to outcomes that are counted already, or say why there is none."""
     _check_method(method)
     separation = separation_of(counts)
     if method == "maximum-likelihood" and separation is not Separation.OVERLAP:

@@ -27,76 +27,31 @@ class Objective(Protocol):
     def derivatives(self, theta: FloatArray) -> Derivatives:
         """Return the values and derivatives.
 
-        Parameters
-        ----------
-        theta : ndarray
-            Rows of coefficients [-].
-
-        Returns
-        -------
-        Derivatives
-            One row a function.
+        theta: rows of coefficients [-].
         """
 
     def rows(self, index: Any) -> Self:
-        """Return some of the functions.
-
-        Parameters
-        ----------
-        index : array of int or bool
-            Which ones.
-
-        Returns
-        -------
-        Objective
-            Those.
-        """
+        """Return some of the functions."""
 
 
 @dataclass(frozen=True, eq=False)
 class Maximum:
-    """Where many functions are largest.
+    """Where many functions are largest."""
 
-    Parameters
-    ----------
-    theta : ndarray
-        Rows of coefficients [-].
-    value : ndarray
-        The functions there [-].
-    curvature : ndarray
-        Minus their Hessians there [-].
-    decrement : ndarray
-        Gradient times Newton step: the squared distance to the maximum in standard errors [-].
-    proven : ndarray
-        Whether the decrement is below 1e-18 and the curvature positive definite there.
-    """
-
-    theta: FloatArray
-    value: FloatArray
-    curvature: FloatArray
-    decrement: FloatArray
-    proven: BoolArray
+    theta: FloatArray  # rows of coefficients [-]
+    value: FloatArray  # the functions there [-]
+    curvature: FloatArray  # minus their Hessians there [-]
+    decrement: FloatArray  # gradient times Newton step: the squared distance to the maximum in standard errors [-]
+    proven: BoolArray  # whether the decrement is below 1e-18 and the curvature positive definite there
 
 
 def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> Maximum:
     """Return the maxima of many functions, each of which must have one.
 
-    Of a function that grows without end the steps get lost far out, where gradient and curvature vanish alike: that
-    the maximum exists must be known beforehand.
+    Of a function that grows without end the steps get lost far out, where gradient and curvature vanish alike: that the
+    maximum exists must be known beforehand.
 
-    Parameters
-    ----------
-    objective : Objective
-        The functions.
-    start : ndarray
-        Rows of coefficients to start from [-].
-    steps : int
-        Most Newton steps; a row that has not arrived by then is not `proven`.
-
-    Returns
-    -------
-    Maximum
-        One row a function.
+    start: rows of coefficients to start from [-].
     """
     theta = np.array(start, dtype=np.float64)
     count, order = theta.shape
@@ -126,17 +81,7 @@ def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> 
 def maximise_from(objective: Objective, starts: FloatArray) -> Maximum:
     """Return the largest of the maxima reached from several starts, for functions that may have more than one.
 
-    Parameters
-    ----------
-    objective : Objective
-        The functions.
-    starts : ndarray
-        Coefficients to start from: first axis the starts, second the functions [-].
-
-    Returns
-    -------
-    Maximum
-        One row a function.
+    starts: coefficients to start from: first axis the starts, second the functions [-].
     """
     several, count, order = starts.shape
     rows = objective.rows(np.tile(np.arange(count), several))
@@ -157,18 +102,7 @@ def _newton_step(gradient: FloatArray, curvature: FloatArray) -> tuple[FloatArra
 
 
 def positive_definite(matrix: FloatArray) -> BoolArray:
-    """Return which of many small symmetric matrices are positive definite beyond rounding.
-
-    Parameters
-    ----------
-    matrix : ndarray
-        Matrices of any one size; the first axis counts them.
-
-    Returns
-    -------
-    ndarray of bool
-        One a matrix.
-    """
+    """Return which of many small symmetric matrices are positive definite beyond rounding."""
     diagonal = np.diagonal(matrix, axis1=1, axis2=2)
     finite: BoolArray = np.isfinite(matrix).all(axis=(1, 2)) & np.all(diagonal > 0.0, axis=1)
     if matrix.shape[1] <= 2:

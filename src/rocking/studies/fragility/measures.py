@@ -19,21 +19,12 @@ from rocking.studies.motion_set import MotionSet
 
 @dataclass(frozen=True)
 class RockingScale:
-    """What of a body some measures are divided by.
+    """What of a body some measures are divided by."""
 
-    Parameters
-    ----------
-    threshold : float
-        Ground acceleration that lifts it: g tan(alpha), or g alpha of the slender-linear equations [m/s2].
-    frequency_parameter : float
-        p of the side that lifts first [rad/s].
-    gravity : float
-        Acceleration of gravity [m/s2].
-    """
-
+    # Ground acceleration that lifts it: g tan(alpha), or g alpha of the slender-linear equations [m/s2]
     threshold: float
-    frequency_parameter: float
-    gravity: float
+    frequency_parameter: float  # p of the side that lifts first [rad/s]
+    gravity: float  # acceleration of gravity [m/s2]
 
 
 @dataclass(frozen=True)
@@ -222,18 +213,8 @@ def measure(given: Any) -> IntensityMeasure:
 def spectral_period(name: str) -> tuple[float, float] | None:
     """Return period and damping of a spectral measure by its name.
 
-    Parameters
-    ----------
-    name : str
-        Such as ``sa(0.5)`` or ``sa(0.5,0.02)``.
+    Returns period [s] and damping ratio [-]; None if the name is of another kind.
 
-    Returns
-    -------
-    tuple of float or None
-        Period [s] and damping ratio [-]; None if the name is of another kind.
-
-    Examples
-    --------
     >>> spectral_period("sa(0.5)")
     (0.5, 0.05)
     """

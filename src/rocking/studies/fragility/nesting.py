@@ -19,38 +19,19 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class Excess:
-    """Where the curve of a worse state lies highest above that of a lesser one.
+    """Where the curve of a worse state lies highest above that of a lesser one."""
 
-    Parameters
-    ----------
-    lesser, worse : str
-        Names of the states.
-    level : float
-        Where [unit of the measure].
-    size : float
-        By how much [-].
-    """
-
-    lesser: str
+    lesser: str  # lesser, worse: names of the states
     worse: str
-    level: float
-    size: float
+    level: float  # where [unit of the measure]
+    size: float  # by how much [-]
 
 
 def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
     """Return where neighbouring curves are most out of order.
 
-    Parameters
-    ----------
-    model : FragilityModel
-        Curves from the least to the worst state.
-    lowest, highest : float
-        Levels between which they are compared, >= 0 [unit of the measure].
-
-    Returns
-    -------
-    Excess or None
-        None if no curve is above the one before it.
+    lowest, highest: levels between which they are compared, >= 0 [unit of the measure]. Returns none if no curve is
+    above the one before it.
     """
     found = None
     for lesser, worse in zip(model.curves[:-1], model.curves[1:], strict=True):
@@ -67,24 +48,8 @@ def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Exce
 def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
     """Return curves that may be written: no worse state is likelier than a lesser one.
 
-    Parameters
-    ----------
-    model : FragilityModel
-        The curves.
-    crossing : {"refuse", "common-dispersion"}
-        What to do if curves cross: refuse them, or fit all states again with one dispersion.
-    highest : float, optional
-        Largest level that readers of the file take; `FragilityModel.highest`, if not given [unit of the measure].
-
-    Returns
-    -------
-    FragilityModel
-        The model itself if its curves do not cross, or the one with common dispersion if that was asked for.
-
-    Raises
-    ------
-    InvalidValueError
-        If they cross by more than 1e-6 and `crossing` is "refuse", or there is no common dispersion.
+    highest: largest level that readers of the file take; `FragilityModel.highest`, if not given [unit of the measure].
+    Returns the model itself if its curves do not cross, or the one with common dispersion if that was asked for.
     """
     check_crossing(crossing)
     if crossing == "common-dispersion":
@@ -100,18 +65,7 @@ def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float 
 
 
 def check_crossing(crossing: Any) -> None:
-    """Refuse what is no way to treat curves that cross.
-
-    Parameters
-    ----------
-    crossing : {"refuse", "common-dispersion"}
-        The way.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is another.
-    """
+    """Refuse what is no way to treat curves that cross."""
     if crossing not in CROSSING:
         raise InvalidValueError(f"crossing must be one of {', '.join(CROSSING)}, got {crossing!r:.60}")
 
@@ -119,20 +73,7 @@ def check_crossing(crossing: Any) -> None:
 def with_common_dispersion(model: FragilityModel) -> FragilityModel:
     """Return the model with all states fitted again with one dispersion, from its counts.
 
-    Parameters
-    ----------
-    model : FragilityModel
-        Curves with the counts of all their states.
-
-    Returns
-    -------
-    FragilityModel
-        The same states with other medians and one dispersion; each curve says so in method and verdict.
-
-    Raises
-    ------
-    InvalidValueError
-        If counts are missing, or there is no common dispersion.
+    Returns the same states with other medians and one dispersion; each curve says so in method and verdict.
     """
     missing = [curve.state for curve in model.curves if curve.state not in model.reached]
     if missing:

@@ -103,25 +103,8 @@ def to_nrml(
 def intensity_type(measure: str) -> tuple[str, float]:
     """Return what OpenQuake calls a measure, and the factor from SI to its unit.
 
-    Parameters
-    ----------
-    measure : str
-        Name of the measure.
+    Returns factor: one SI unit in the unit there: g, cm/s, cm, m/s or g s.
 
-    Returns
-    -------
-    name : str
-        Such as ``PGA`` or ``SA(0.5)``.
-    factor : float
-        One SI unit in the unit there: g, cm/s, cm, m/s or g s.
-
-    Raises
-    ------
-    InvalidValueError
-        If it has no name for it.
-
-    Examples
-    --------
     >>> intensity_type("pgv")
     ('PGV', 100.0)
     """
@@ -138,25 +121,9 @@ def intensity_type(measure: str) -> tuple[str, float]:
 def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float]:
     """Return mean and standard deviation of a lognormal variable.
 
-    Parameters
-    ----------
-    median : float
-        Its median [any unit].
-    dispersion : float
-        Standard deviation of its natural logarithm [-].
+    median: its median [any unit]; dispersion: standard deviation of its natural logarithm [-]. Returns of the variable
+    [the same unit].
 
-    Returns
-    -------
-    mean, deviation : float
-        Of the variable [the same unit].
-
-    Raises
-    ------
-    InvalidValueError
-        If they are too large for a number.
-
-    Examples
-    --------
     >>> mean, deviation = moments_of_lognormal(1.0, 0.5)
     >>> round(mean, 6), round(deviation, 6)
     (1.133148, 0.603901)

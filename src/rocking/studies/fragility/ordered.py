@@ -170,18 +170,8 @@ def _probability(level: FloatArray, curve: Curve) -> FloatArray:
 def difference_extremes(first: Curve, second: Curve) -> FloatArray:
     """Return where the difference of two lognormal curves is extreme: there their densities are equal.
 
-    Parameters
-    ----------
-    first, second : tuple of float
-        Median [any unit] and dispersion [-] of each.
+    first, second: median [any unit] and dispersion [-] of each. Returns ln level, of none, one or two places [-].
 
-    Returns
-    -------
-    ndarray
-        ln level, of none, one or two places [-].
-
-    Examples
-    --------
     >>> difference_extremes((1.0, 0.5), (1.0, 0.25)).round(4).tolist()
     [-0.3399, 0.3399]
     """

@@ -19,46 +19,19 @@ Curve = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class OrderedProbit:
-    """Log likelihood of states with falling thresholds a1 > a2 > ... and one slope b, concave in all (Pratt 1981).
+    """Log likelihood of states with falling thresholds a1 > a2 > ... and one slope b, concave in all (Pratt 1981)."""
 
-    Parameters
-    ----------
-    position : ndarray
-        Positions of the levels [-].
-    ended : ndarray
-        How many trials ended in each state at each level, the harmless one first; one row a state [-].
-    """
-
-    position: FloatArray
-    ended: FloatArray
+    position: FloatArray  # positions of the levels [-]
+    ended: FloatArray  # how many trials ended in each state at each level, the harmless one first; one row a state [-]
 
     def rows(self, index: Any) -> Self:
-        """Return itself: it is one function.
-
-        Parameters
-        ----------
-        index : array of int or bool
-            Not used.
-
-        Returns
-        -------
-        OrderedProbit
-            Itself.
-        """
+        """Return itself: it is one function."""
         return self
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
         """Return the value and derivatives.
 
-        Parameters
-        ----------
-        theta : ndarray
-            One row: the thresholds, and the slope [-].
-
-        Returns
-        -------
-        Derivatives
-            One row.
+        theta: one row: the thresholds, and the slope [-].
         """
         thresholds, slope = theta[0, :-1], theta[0, -1]
         if np.any(np.diff(thresholds) >= 0.0):
@@ -96,24 +69,9 @@ class OrderedProbit:
 def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> list[Curve]:
     """Return the curves of nested states with one dispersion for all.
 
-    Parameters
-    ----------
-    levels : ndarray
-        Distinct levels, ascending [any unit].
-    reached : ndarray
-        How many trials reached each state or a worse one at each level, from the least state to the worst [-].
-    trials : ndarray
-        All trials at each level [-].
-
-    Returns
-    -------
-    list of tuple of float
-        Median [unit of the levels] and dispersion [-] of each state.
-
-    Raises
-    ------
-    InvalidValueError
-        If a state does not overlap with what is below it, two states are the same, or no maximum can be proven.
+    levels: distinct levels, ascending [any unit]; reached: how many trials reached each state or a worse one at each
+    level, from the least state to the worst [-]; trials: all trials at each level [-]. Returns median [unit of the
+    levels] and dispersion [-] of each state.
     """
     fits = [fit_lognormal(levels, counts, trials) for counts in reached]
     same = any(np.array_equal(one, other) for one, other in pairwise(reached))

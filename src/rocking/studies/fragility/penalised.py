@@ -24,15 +24,7 @@ PLACES = 9
 def places(position: FloatArray) -> FloatArray:
     """Return positions, spread evenly over the levels and the gaps between, where a curve may reach one half.
 
-    Parameters
-    ----------
-    position : ndarray
-        u, ascending [-].
-
-    Returns
-    -------
-    ndarray
-        Positions [-].
+    position: u, ascending [-]. Returns positions [-].
     """
     known = np.sort(np.concatenate([position, 0.5 * (position[1:] + position[:-1])]))
     return known[np.linspace(0, known.size - 1, PLACES).round().astype(np.int64)]
@@ -41,15 +33,7 @@ def places(position: FloatArray) -> FloatArray:
 def starts(position: FloatArray) -> FloatArray:
     """Return coefficients to start from, since the penalised likelihood may have more than one maximum.
 
-    Parameters
-    ----------
-    position : ndarray
-        u, ascending [-].
-
-    Returns
-    -------
-    ndarray
-        Rows of a and b [-].
+    position: u, ascending [-]. Returns rows of a and b [-].
     """
     place, slope = (part.ravel() for part in np.meshgrid(places(position), SLOPES))
     return np.stack([-slope * place, slope], axis=1)
@@ -60,13 +44,6 @@ class PenalisedProbit(Probit):
     """Log likelihood plus half the logarithm of the determinant of the Fisher information, one row a data set.
 
     It need not be concave: a maximum that is found is proven to be a local one, the largest from all `starts`.
-
-    Parameters
-    ----------
-    position : ndarray
-        u, the logarithms of the levels in a scale near one; one row, or one row a data set [-].
-    failures, survivals : ndarray
-        Trials that failed and survived at each level; one row, or one row a data set [-].
     """
 
     concave: ClassVar[bool] = False
@@ -74,15 +51,7 @@ class PenalisedProbit(Probit):
     def derivatives(self, theta: FloatArray) -> Derivatives:
         """Return the penalised log likelihood with its gradient and minus its Hessian.
 
-        Parameters
-        ----------
-        theta : ndarray
-            Rows of a and b [-].
-
-        Returns
-        -------
-        Derivatives
-            One row a data set; minus infinity where the information vanishes.
+        theta: rows of a and b [-]. Returns one row a data set; minus infinity where the information vanishes.
         """
         eta = self.eta(theta)
         at = tails(eta)

@@ -16,21 +16,8 @@ def pooled(levels: FloatArray, good: BoolArray, reached: Sequence[BoolArray], cl
     Motions at the same levels with the same outcomes are one row and a number, so that ten million histories take no
     more room than the outcomes they can have.
 
-    Parameters
-    ----------
-    levels : ndarray
-        Level of each history, > 0; the first axis is the motion [unit of the measure].
-    good : ndarray of bool
-        Which histories could be computed; the others count nowhere.
-    reached : sequence of ndarray of bool
-        Which of them reached each state.
-    cluster : ndarray of int
-        Number of each motion's cluster, below the number of motions.
-
-    Returns
-    -------
-    list of Counts
-        One a state; by cluster where one has more than one history.
+    levels: level of each history, > 0; the first axis is the motion [unit of the measure]. Returns one a state; by
+    cluster where one has more than one history.
     """
     size = np.bincount(cluster, good.reshape(cluster.size, -1).sum(axis=1))
     if good.any() and size.max() <= 1.0:

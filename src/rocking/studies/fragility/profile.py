@@ -23,59 +23,23 @@ ROOT = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """What to descend from, and how far.
+    """What to descend from, and how far."""
 
-    Parameters
-    ----------
-    model : Probit
-        The likelihood, penalised or not; one row that all ends share, or one row an end.
-    value : ndarray
-        Its maxima, one or as many [-].
-    theta : ndarray
-        Rows of a and b there [-].
-    quantile : float
-        Root of the chi-square quantile: 1.96 for 95 % [-].
-    """
-
-    model: Probit
-    value: FloatArray
-    theta: FloatArray
-    quantile: float
+    model: Probit  # the likelihood, penalised or not; one row that all ends share, or one row an end
+    value: FloatArray  # its maxima, one or as many [-]
+    theta: FloatArray  # rows of a and b there [-]
+    quantile: float  # root of the chi-square quantile: 1.96 for 95 % [-]
 
     def rows(self, index: IntArray) -> "Profile":
-        """Return what some of the ends descend from.
-
-        Parameters
-        ----------
-        index : ndarray of int
-            Which ends.
-
-        Returns
-        -------
-        Profile
-            That of those.
-        """
+        """Return what some of the ends descend from."""
         value, theta = (part if part.shape[0] == 1 else part[index] for part in (self.value, self.theta))
         return Profile(self.model.rows(index), value, theta, self.quantile)
 
     def ends(self, constraint: Constraint, start: FloatArray, error: FloatArray, side: FloatArray) -> FloatArray:
         """Return where the profile has fallen by the quantile, one end a row.
 
-        Parameters
-        ----------
-        constraint : Constraint
-            What is held fixed, one a row.
-        start : ndarray
-            Its value at the maximum [-].
-        error : ndarray
-            Its standard error, for the first step [-].
-        side : ndarray
-            1 for upper ends, -1 for lower ones.
-
-        Returns
-        -------
-        ndarray
-            The ends; infinite where the profile never falls that far.
+        start: its value at the maximum [-]; error: its standard error, for the first step [-]. Returns the ends;
+        infinite where the profile never falls that far.
         """
         result = side * np.inf
         closed = np.flatnonzero(self._root(constraint.limit(self.model, side)) > self.quantile)

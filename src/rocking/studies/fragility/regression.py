@@ -12,28 +12,14 @@ from rocking.errors import InvalidValueError
 
 @dataclass(frozen=True, eq=False)
 class Regression:
-    """A line y = intercept + slope x by least squares.
+    """A line y = intercept + slope x by least squares."""
 
-    Parameters
-    ----------
-    intercept, slope : float
-        The line.
-    scatter : float
-        Standard deviation of the residuals, with n - 2 degrees of freedom.
-    slope_error : float
-        Standard error of the slope.
-    determination : float
-        R squared: the share of the variance of y that the line explains.
-    residuals : ndarray
-        What is left of each y.
-    """
-
-    intercept: float
+    intercept: float  # intercept, slope: the line
     slope: float
-    scatter: float
-    slope_error: float
-    determination: float
-    residuals: FloatArray
+    scatter: float  # standard deviation of the residuals, with n - 2 degrees of freedom
+    slope_error: float  # standard error of the slope
+    determination: float  # R squared: the share of the variance of y that the line explains
+    residuals: FloatArray  # what is left of each y
 
     @property
     def count(self) -> int:
@@ -41,34 +27,13 @@ class Regression:
         return int(self.residuals.size)
 
     def at(self, x: Any) -> FloatArray:
-        """Return the line.
-
-        Parameters
-        ----------
-        x : array_like
-            Where.
-
-        Returns
-        -------
-        ndarray
-            Its height there.
-        """
+        """Return the line."""
         return np.asarray(self.intercept + self.slope * np.asarray(x, dtype=np.float64))
 
     def probability_above(self, y: float, x: Any) -> FloatArray:
         """Return the probability that a new point is above a height, for normal residuals.
 
-        Parameters
-        ----------
-        y : float
-            The height.
-        x : array_like
-            Where.
-
-        Returns
-        -------
-        ndarray
-            The probability, without the uncertainty of the line itself [-].
+        Returns the probability, without the uncertainty of the line itself [-].
         """
         from scipy.special import ndtr
 
@@ -87,13 +52,7 @@ class Regression:
         return float(2.0 * stdtr(self.count - 2, -abs(self.slope) / self.slope_error))
 
     def summary(self) -> dict[str, Any]:
-        """Return the line as plain values.
-
-        Returns
-        -------
-        dict
-            Numbers.
-        """
+        """Return the line as plain values."""
         names = ("intercept", "slope", "scatter", "slope_error", "determination", "p_value", "count")
         return {name: getattr(self, name) for name in names}
 
@@ -101,23 +60,6 @@ class Regression:
 def regression(x: FloatArray, y: FloatArray) -> Regression:
     """Return the line of least squares.
 
-    Parameters
-    ----------
-    x, y : ndarray
-        The points.
-
-    Returns
-    -------
-    Regression
-        The line.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are fewer than three points, they are not finite, or all have the same x.
-
-    Examples
-    --------
     >>> line = regression(np.array([0.0, 1.0, 2.0]), np.array([1.0, 3.0, 5.0]))
     >>> line.slope, line.intercept, line.scatter
     (2.0, 1.0, 0.0)

@@ -22,21 +22,7 @@ def with_cluster_errors(counts: Counts, scale: Scale, curves: Curves, drawn: Flo
     The covariance is H^-1 M H^-1, with the information H and the sum M of the squared scores of whole clusters (Liang &
     Zeger 1986, Biometrika 73:13): that of the likelihood, H^-1, holds for independent outcomes only.
 
-    Parameters
-    ----------
-    counts : Counts
-        The outcomes by cluster.
-    scale : Scale
-        Scale of the coefficients.
-    curves : Curves
-        Curves of data sets made of these clusters.
-    drawn : ndarray
-        How often each distinct cluster is in each data set, one row a data set [-].
-
-    Returns
-    -------
-    Curves
-        The same with another curvature.
+    drawn: how often each distinct cluster is in each data set, one row a data set [-].
     """
     curvature = np.full_like(curves.curvature, np.nan)
     good = np.flatnonzero(curves.found)

@@ -13,15 +13,7 @@ SAMPLES_PER_PERIOD = 4000
 def sampled(motion: Motion) -> GroundMotion:
     """Return a motion as a record: a pulse is sampled so finely that its measures are right to 1e-6.
 
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion.
-
-    Returns
-    -------
-    GroundMotion
-        The motion itself, or the samples of the pulse [m/s2], the largest raised to its peak.
+    Returns the motion itself, or the samples of the pulse [m/s2], the largest raised to its peak.
     """
     if not isinstance(motion, Pulse):
         return motion

@@ -44,17 +44,8 @@ FLATNESS = 1e-13
 def classify(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> IntArray:
     """Return how failures and survivals lie along the levels, of many data sets at once.
 
-    Parameters
-    ----------
-    levels : ndarray
-        Distinct levels, ascending [any unit].
-    failures, trials : ndarray
-        One row a data set, one column a level; a level may have no trials [-].
-
-    Returns
-    -------
-    ndarray of int
-        `Separation.number` of each data set.
+    levels: distinct levels, ascending [any unit]; failures, trials: one row a data set, one column a level; a level may
+    have no trials [-].
     """
     failed, survived = failures > 0.0, trials > failures
     last = levels.size - 1
@@ -79,18 +70,6 @@ def classify(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> In
 def separation_of(counts: Counts) -> Separation:
     """Return how failures and survivals of one data set lie along the levels.
 
-    Parameters
-    ----------
-    counts : Counts
-        The data.
-
-    Returns
-    -------
-    Separation
-        One of the kinds.
-
-    Examples
-    --------
     >>> from rocking.studies.fragility.counts import count_outcomes
     >>> separation_of(count_outcomes([0.1, 0.2, 0.3, 0.4], [0, 0, 1, 1])).name
     'COMPLETE'
@@ -101,18 +80,8 @@ def separation_of(counts: Counts) -> Separation:
 def median_interval(counts: Counts, separation: Separation) -> tuple[float | None, float | None]:
     """Return the largest level survived and the smallest failed, where no single median is likeliest.
 
-    Parameters
-    ----------
-    counts : Counts
-        The data.
-    separation : Separation
-        How they lie.
-
-    Returns
-    -------
-    tuple of (float or None)
-        The two levels; None where the data bound nothing on that side. After quasi-complete separation both are the
-        level where the outcomes are mixed, which is where the likelihood's limit lies and not a certainty.
+    Returns the two levels; None where the data bound nothing on that side. After quasi-complete separation both are the
+    level where the outcomes are mixed, which is where the likelihood's limit lies and not a certainty.
     """
     survived, failed = counts.levels[counts.survivals > 0.0], counts.levels[counts.failures > 0.0]
     if separation is Separation.NONE_FAILED:

@@ -64,47 +64,20 @@ def limit_states(levels: Sequence[float] = (0.5,)) -> tuple[LimitState, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """What the states are read from: the results of some histories, of any shape.
+    """What the states are read from: the results of some histories, of any shape."""
 
-    Parameters
-    ----------
-    outcome : ndarray of int
-        Codes of `Outcome`.
-    rotation : ndarray
-        Largest rotation over the alpha of its side; infinite if overturned, NaN if the history failed [-].
-    sides : ndarray of int8
-        Side overturned to: 1 right, -1 left, 0 if it did not.
-    lost : ndarray, optional
-        1 where the ground would have to pull, as of `lost_contact`; None where it is not known [-].
-    """
-
-    outcome: np.ndarray
+    outcome: np.ndarray  # codes of `Outcome`
+    # largest rotation over the alpha of its side; infinite if overturned, NaN if the history failed [-]
     rotation: FloatArray
-    sides: np.ndarray
+    sides: np.ndarray  # side overturned to: 1 right, -1 left, 0 if it did not
+    # 1 where the ground would have to pull, as of `lost_contact`; None where it is not known [-]
     lost: FloatArray | None = None
 
     @classmethod
     def of(cls, arrays: Arrays, rocker: Any, shape: tuple[int, ...]) -> "Responses":
         """Return the responses of one body from results.
 
-        Parameters
-        ----------
-        arrays : dict of str to ndarray
-            Results of `Histories.run`; of the keys of `RESULTS`, outcome and peak_rotation count.
-        rocker : Rocker
-            The body.
-        shape : tuple of int
-            Shape that the histories have.
-
-        Returns
-        -------
-        Responses
-            Of that shape.
-
-        Raises
-        ------
-        InvalidValueError
-            If the results are not of as many histories.
+        Returns of that shape.
         """
         missing = {"outcome", "peak_rotation"} - set(arrays)
         sizes = {np.size(arrays[name]) for name in ("outcome", "peak_rotation") if name in arrays}
@@ -146,15 +119,7 @@ class Responses:
     def exceed(self, state: LimitState) -> FloatArray:
         """Return which histories reached a limit state; no result is neither.
 
-        Parameters
-        ----------
-        state : LimitState
-            The state.
-
-        Returns
-        -------
-        ndarray
-            1 for those that did, 0 for those that did not, NaN for those without a result [-].
+        Returns 1 for those that did, 0 for those that did not, NaN for those without a result [-].
         """
         if state.level == 0.0:
             return of_results(self.outcome, self.rocked | (self.overturned == 1.0))
@@ -164,18 +129,7 @@ class Responses:
             return of_results(self.outcome, self.rotation > state.level)
 
     def labelled(self, dimensions: Any) -> dict[str, Any]:
-        """Return outcome and rotation as variables of a labelled dataset.
-
-        Parameters
-        ----------
-        dimensions : str or tuple of str
-            Names of the dimensions.
-
-        Returns
-        -------
-        dict
-            Dimensions, values and attributes by name.
-        """
+        """Return outcome and rotation as variables of a labelled dataset."""
         told = "largest rotation over alpha; infinite if overturned, NaN if the history failed"
         codes = ", ".join(f"{one.code} {one.value}" for one in Outcome)
         made: dict[str, Any] = {
@@ -190,10 +144,7 @@ class Responses:
     def counts(self) -> dict[Outcome, int]:
         """Return how many histories ended in which way.
 
-        Returns
-        -------
-        dict of Outcome to int
-            Not lifted, rocked and stayed standing, overturned; those without a result are in none.
+        Returns not lifted, rocked and stayed standing, overturned; those without a result are in none.
         """
         outcomes = Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED
         return {outcome: int((self.outcome == outcome.code).sum()) for outcome in outcomes}

@@ -28,49 +28,19 @@ Progress = Callable[[int], None] | None
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A body with its restitution, a set of motions, and the measure of their intensity.
+    """A body with its restitution, a set of motions, and the measure of their intensity."""
 
-    Parameters
-    ----------
-    rocker : Rocker
-        The body as the equations see it.
-    motions : MotionSet
-        The motions.
-    measure : IntensityMeasure
-        The measure.
-    settings : Settings
-        How to integrate.
-    engine : {"auto", "fast", "reference"}
-        Which engine.
-    """
-
-    rocker: Rocker
+    rocker: Rocker  # the body as the equations see it
     motions: MotionSet
     measure: IntensityMeasure
-    settings: Settings
-    engine: str = "auto"
+    settings: Settings  # how to integrate
+    engine: str = "auto"  # which engine
 
     @classmethod
     def of(cls, body: Body, motions: Motions, restitution: Any, measure_name: Any, options: dict[str, Any]) -> Self:
         """Return the subject of an analysis.
 
-        Parameters
-        ----------
-        body : Body
-            The body.
-        motions : GroundMotion or Pulse, a sequence of them, or MotionSet
-            All records or all pulses.
-        restitution : as for `simulate`
-            Model or its name, number, pair by side, or law.
-        measure_name : str or IntensityMeasure
-            The measure.
-        options : dict
-            ``gravity`` [m/s2], ``engine`` and other fields of `Settings`.
-
-        Returns
-        -------
-        Subject
-            The subject.
+        options: ``gravity`` [m/s2], ``engine`` and other fields of `Settings`.
         """
         rest = dict(options)
         engine = rest.pop("engine", "auto")
@@ -152,15 +122,7 @@ class Subject:
     def product(self, factors: FloatArray) -> Product:
         """Return the histories of every motion with factors.
 
-        Parameters
-        ----------
-        factors : ndarray, shape (factors,) or (motions, factors)
-            Factors on the motions [-].
-
-        Returns
-        -------
-        Product
-            The motion changes slowest.
+        factors: factors on the motions [-].
         """
         sides = {name: np.array([[value]]) for name, value in self._sides.items()}
         return Product(self.motions, sides, factors, law=self.rocker.law, settings=self.settings, engine=self.engine)
@@ -168,17 +130,7 @@ class Subject:
     def table(self, motion: np.ndarray, factors: FloatArray) -> Table:
         """Return histories given one by one.
 
-        Parameters
-        ----------
-        motion : ndarray of int
-            Number of each history's motion.
-        factors : ndarray
-            Factor on it [-].
-
-        Returns
-        -------
-        Table
-            The histories.
+        factors: factor on it [-].
         """
         values = {name: np.array([value]) for name, value in self._sides.items()}
         return Table(
@@ -187,13 +139,7 @@ class Subject:
         )  # fmt: skip
 
     def about(self) -> dict[str, Any]:
-        """Return what was asked about, as plain values for the attributes of a file.
-
-        Returns
-        -------
-        dict
-            Numbers and words.
-        """
+        """Return what was asked about, as plain values for the attributes of a file."""
         from rocking import __version__
 
         sides = {f"body_{name}": value for name, value in self._sides.items()}
@@ -211,24 +157,7 @@ class Subject:
 def checked_levels(name: str, given: Any, unit: str) -> FloatArray:
     """Return levels of a measure if they are above zero and increase.
 
-    Parameters
-    ----------
-    name : str
-        Name that the error shows.
-    given : array_like
-        The levels [unit of the measure].
-    unit : str
-        Unit that the error shows.
-
-    Returns
-    -------
-    ndarray
-        The levels.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is none, one is not finite or not above zero, or they do not increase.
+    given: the levels [unit of the measure].
     """
     levels = np.atleast_1d(checks.positive_array(name, given, unit)).copy()
     if levels.ndim != 1 or not levels.size or np.any(np.diff(levels) <= 0.0):
@@ -237,27 +166,7 @@ def checked_levels(name: str, given: Any, unit: str) -> FloatArray:
 
 
 def results_of(histories: Histories, *, threads: int | None = None, progress: Progress = None) -> Arrays:
-    """Return the results of all histories, computed piece by piece.
-
-    Parameters
-    ----------
-    histories : Histories
-        The histories.
-    threads : int, optional
-        Threads of the fast engine; the results do not depend on them.
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-
-    Returns
-    -------
-    dict of str to ndarray
-        The keys of `rocking.dynamics.engine.RESULTS`.
-
-    Raises
-    ------
-    InvalidValueError
-        If progress is no function.
-    """
+    """Return the results of all histories, computed piece by piece."""
     check_progress(progress)
     results = empty_results(histories.count)
     for first in range(0, histories.count, PIECE):
@@ -270,17 +179,6 @@ def results_of(histories: Histories, *, threads: int | None = None, progress: Pr
 
 
 def check_progress(progress: Any) -> None:
-    """Refuse what cannot be told how far the work is.
-
-    Parameters
-    ----------
-    progress : callable, optional
-        What is called with a number.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no function.
-    """
+    """Refuse what cannot be told how far the work is."""
     if progress is not None and not callable(progress):
         raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")

@@ -21,54 +21,23 @@ Cell = str | int | float
 
 @dataclass(frozen=True)
 class CellTable:
-    """A table of cells.
+    """A table of cells."""
 
-    Parameters
-    ----------
-    title : str
-        What it shows.
-    header : tuple of str
-        Names of the columns, with units in brackets.
-    rows : tuple of tuple
-        Words and finite numbers; an empty word where there is no number.
-    """
-
-    title: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
+    title: str  # what it shows
+    header: tuple[str, ...]  # names of the columns, with units in brackets
+    rows: tuple[tuple[Cell, ...], ...]  # words and finite numbers; an empty word where there is no number
 
     def safe(self) -> list[list[Cell]]:
-        """Return header and rows with all words made harmless to spreadsheets.
-
-        Returns
-        -------
-        list of list
-            The header first.
-        """
+        """Return header and rows with all words made harmless to spreadsheets."""
         return [[safe_cell(cell) for cell in row] for row in (self.header, *self.rows)]
 
 
 def safe_cell(cell: Cell) -> Cell:
     """Return a cell that no spreadsheet takes for a formula.
 
-    Parameters
-    ----------
-    cell : str, int or float
-        The cell.
+    Returns A word that starts with ``=``, ``+``, ``-``, ``@``, a tab or a line break gets an apostrophe before it;
+    control characters are taken out; numbers stay.
 
-    Returns
-    -------
-    str, int or float
-        A word that starts with ``=``, ``+``, ``-``, ``@``, a tab or a line break gets an apostrophe before it; control
-        characters are taken out; numbers stay.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is a number that is not finite.
-
-    Examples
-    --------
     >>> safe_cell("=1+1"), safe_cell(-1.5)
     ("'=1+1", -1.5)
     """
@@ -81,28 +50,7 @@ def safe_cell(cell: Cell) -> Cell:
 
 
 def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossing = "refuse") -> CellTable:
-    """Return one of the tables of a model.
-
-    Parameters
-    ----------
-    model : FragilityModel
-        The curves.
-    which : {"parameters", "points", "fema-p58"}
-        Median and dispersion of each state; observed and fitted probabilities at each level; or what FEMA P-58 asks
-        for, a row a damage state.
-    crossing : {"refuse", "common-dispersion"}
-        What to do with curves that cross, in the table of FEMA P-58.
-
-    Returns
-    -------
-    CellTable
-        The table.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such table, or curves cross in one that forbids it.
-    """
+    """Return one of the tables of a model."""
     made = {"parameters": _parameters, "points": _points}
     given: object = which
     if not isinstance(given, str) or which not in TABLES:
@@ -244,20 +192,9 @@ def fema_p58_table(
 def with_added_dispersion(dispersion: float, *others: float) -> float:
     """Return the dispersion with others added, as the root of the sum of squares.
 
-    Parameters
-    ----------
-    dispersion : float
-        Dispersion from record to record [-].
-    *others : float
-        Of modelling, of construction, and so on [-].
+    dispersion: dispersion from record to record [-]; *others: of modelling, of construction, and so on [-]. Returns
+    total dispersion [-].
 
-    Returns
-    -------
-    float
-        Total dispersion [-].
-
-    Examples
-    --------
     >>> round(with_added_dispersion(0.3, 0.4), 12)
     0.5
     """

@@ -13,22 +13,14 @@ from rocking.studies.fragility.subject import Subject
 class UpliftCheck:
     """Whether the histories rocked exactly where rocking is known beforehand.
 
-    A body with equal sides under horizontal motions rocks if and only if PGA exceeds g tan(alpha): that is no matter
-    of probability, and no curve is fitted to it.
-
-    Parameters
-    ----------
-    threshold : float, optional
-        Level of the measure that lifts the body [unit of the measure]; None if no level of this measure decides.
-    checked : int
-        Histories that were compared; those within 1e-9 of the threshold are not.
-    contradictions : int
-        Histories that rocked below it or did not above it.
+    A body with equal sides under horizontal motions rocks if and only if PGA exceeds g tan(alpha): that is no matter of
+    probability, and no curve is fitted to it.
     """
 
+    # level of the measure that lifts the body [unit of the measure]; None if no level of this measure decides
     threshold: float | None
-    checked: int
-    contradictions: int
+    checked: int  # histories that were compared; those within 1e-9 of the threshold are not
+    contradictions: int  # histories that rocked below it or did not above it
 
     @property
     def verdict(self) -> str:
@@ -44,19 +36,7 @@ class UpliftCheck:
 def uplift_check(subject: Subject, levels: FloatArray, responses: Responses) -> UpliftCheck:
     """Compare which histories rocked with the threshold of uplift.
 
-    Parameters
-    ----------
-    subject : Subject
-        The body, the motions and the measure.
-    levels : ndarray
-        Level of the measure of each history [its unit].
-    responses : Responses
-        Their outcomes, of the same shape.
-
-    Returns
-    -------
-    UpliftCheck
-        The comparison.
+    levels: level of the measure of each history [its unit].
     """
     threshold = subject.uplift_threshold
     if threshold is None:

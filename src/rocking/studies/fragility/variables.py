@@ -16,19 +16,7 @@ _BOTH = ("state", "end")
 def variables_of(curves: "Sequence[FragilityCurve]", levels: int, unit: str) -> dict[str, Any]:
     """Return what is known of curves beside their parameters, over state.
 
-    Parameters
-    ----------
-    curves : sequence of FragilityCurve
-        The curves.
-    levels : int
-        Number of levels of the bands.
-    unit : str
-        Unit of the medians, ``1`` if they have none.
-
-    Returns
-    -------
-    dict
-        Dimensions, values and attributes by name; numbers are missing (NaN) where there is none or an end is open.
+    Returns Dimensions, values and attributes by name; numbers are missing (NaN) where there is none or an end is open.
     """
     told = "95 % interval, missing where it is open, or there is none"
     found: dict[str, Any] = {}

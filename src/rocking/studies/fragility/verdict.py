@@ -10,20 +10,9 @@ LEVEL = 0.95
 def bound_without_failure(trials: float, level: float = LEVEL) -> float:
     """Return the largest probability of failure that trials without any failure leave possible.
 
-    Parameters
-    ----------
-    trials : float
-        Number of trials, none of which failed [-].
-    level : float
-        Confidence level [-].
+    trials: number of trials, none of which failed [-]; level: confidence level [-]. Returns One-sided Clopper-Pearson
+    bound, near 3 / trials for 95 % [-].
 
-    Returns
-    -------
-    float
-        One-sided Clopper-Pearson bound, near 3 / trials for 95 % [-].
-
-    Examples
-    --------
     >>> round(bound_without_failure(40), 4)
     0.0722
     """
@@ -33,22 +22,9 @@ def bound_without_failure(trials: float, level: float = LEVEL) -> float:
 def verdict_of(counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None) -> str:
     """Return what the outcomes allow to be said.
 
-    Parameters
-    ----------
-    counts : Counts
-        The data.
-    separation : Separation
-        How they lie.
-    curve : tuple of float, optional
-        Median [unit of the levels] and dispersion [-], where a curve was fitted.
-    rise : float, optional
-        Likelihood ratio of the curve against a line that does not depend on the level, as a chi-square of one degree
-        of freedom; None for a penalised fit [-].
-
-    Returns
-    -------
-    str
-        One or two sentences, followed by what the likelihood does not know.
+    curve: median [unit of the levels] and dispersion [-], where a curve was fitted; rise: likelihood ratio of the curve
+    against a line that does not depend on the level, as a chi-square of one degree of freedom; None for a penalised fit
+    [-]. Returns one or two sentences, followed by what the likelihood does not know.
     """
     parts = [_finding(counts, separation, curve, penalised=rise is None)]
     if rise is not None and rise < 3.841:

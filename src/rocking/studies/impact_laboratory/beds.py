@@ -17,45 +17,21 @@ from rocking.errors import InvalidValueError
 
 @dataclass(frozen=True)
 class Laboratory:
-    """A homogeneous block on a bed of Kelvin-Voigt points: the setting from which a study starts.
+    """A homogeneous block on a bed of Kelvin-Voigt points: the setting from which a study starts."""
 
-    Parameters
-    ----------
-    slenderness : float
-        h/b [-].
-    width : float
-        Width of the base [m].
-    density : float
-        Density of the block [kg/m3].
-    points : int
-        Contact points.
-    frequency : float
-        sqrt(k / m) / (2 pi) of the whole bed [Hz]; not used where `modulus_over_thickness` is given.
-    damping : float
-        Damping ratio zeta of the whole bed [-].
-    modulus_over_thickness : float, optional
-        Elastic modulus of the layer over its thickness, per metre of depth of the block [Pa/m].
-    release : float
-        Rotation from which the block falls, over its slenderness angle [-].
-    friction : BaseFriction
-        By default the base cannot slide.
-    profile : tuple of float
-        Heights of the points over the base line, none for a flat base [m].
-    tolerance : float
-        Relative error of a step [-].
-    """
-
-    slenderness: float = 2.0
-    width: float = 0.2
-    density: float = 2400.0
-    points: int = 41
+    slenderness: float = 2.0  # h/b [-]
+    width: float = 0.2  # width of the base [m]
+    density: float = 2400.0  # density of the block [kg/m3]
+    points: int = 41  # contact points
+    # sqrt(k / m) / (2 pi) of the whole bed [Hz]; not used where `modulus_over_thickness` is given
     frequency: float = 400.0
-    damping: float = 1.0
+    damping: float = 1.0  # damping ratio zeta of the whole bed [-]
+    # elastic modulus of the layer over its thickness, per metre of depth of the block [Pa/m]
     modulus_over_thickness: float | None = None
-    release: float = 0.5
-    friction: BaseFriction = field(default_factory=Sticking)
-    profile: tuple[float, ...] = ()
-    tolerance: float = 1e-9
+    release: float = 0.5  # rotation from which the block falls, over its slenderness angle [-]
+    friction: BaseFriction = field(default_factory=Sticking)  # by default the base cannot slide
+    profile: tuple[float, ...] = ()  # heights of the points over the base line, none for a flat base [m]
+    tolerance: float = 1e-9  # relative error of a step [-]
 
     def __post_init__(self) -> None:
         checks.within("release", self.release, 0.0, 1.0, open_low=True, open_high=True)
@@ -66,18 +42,7 @@ class Laboratory:
             raise InvalidValueError(f"profile must have {self.points} heights, one a point, got {len(self.profile)}")
 
     def but(self, **changes: Any) -> "Laboratory":
-        """Return the same laboratory with something changed.
-
-        Parameters
-        ----------
-        **changes
-            Fields and their new values.
-
-        Returns
-        -------
-        Laboratory
-            The laboratory.
-        """
+        """Return the same laboratory with something changed."""
         return replace(self, **changes)
 
     @property
@@ -107,36 +72,13 @@ class Laboratory:
 def hardness_of(setup: Setup) -> float:
     """Return the dimensionless landing speed of the new foot, v sqrt(k / m) / g.
 
-    Parameters
-    ----------
-    setup : Setup
-        An impact.
-
-    Returns
-    -------
-    float
-        Hardness, as the model `contact-bed` takes it [-].
+    Returns Hardness, as the model `contact-bed` takes it [-].
     """
     return setup.start.speed * math.sqrt(setup.law.stiffness / setup.rigid.mass) / setup.rigid.gravity
 
 
 def measured(laboratories: Iterable[Laboratory], *, threads: int = 1) -> tuple[Sequence[Setup], BedImpacts]:
-    """Resolve the impacts of laboratories.
-
-    Parameters
-    ----------
-    laboratories : iterable of Laboratory
-        One impact each.
-    threads : int
-        Threads of the fast engine.
-
-    Returns
-    -------
-    setups : sequence of Setup
-        The impacts.
-    impacts : BedImpacts
-        Their results.
-    """
+    """Resolve the impacts of laboratories."""
     setups = [each.setup for each in laboratories]
     return setups, bed_impacts(setups, threads=threads)
 
@@ -144,16 +86,6 @@ def measured(laboratories: Iterable[Laboratory], *, threads: int = 1) -> tuple[S
 def coefficients(laboratories: Iterable[Laboratory], *, threads: int = 1) -> FloatArray:
     """Return the coefficients of restitution of laboratories.
 
-    Parameters
-    ----------
-    laboratories : iterable of Laboratory
-        One impact each.
-    threads : int
-        Threads of the fast engine.
-
-    Returns
-    -------
-    ndarray
-        theta_dot_after / theta_dot_before; NaN where an impact failed [-].
+    Returns theta_dot_after / theta_dot_before; NaN where an impact failed [-].
     """
     return measured(laboratories, threads=threads)[1].coefficient

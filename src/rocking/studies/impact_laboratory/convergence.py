@@ -15,27 +15,13 @@ from rocking.studies.impact_laboratory.beds import Laboratory, coefficients
 
 @dataclass(frozen=True, eq=False)
 class Convergence:
-    """A sequence of coefficients and the orders that it shows.
+    """A sequence of coefficients and the orders that it shows."""
 
-    Parameters
-    ----------
-    at : ndarray
-        Contact intervals, or tolerances [-].
-    coefficient : ndarray
-        r there [-].
-    error : ndarray
-        Distance from the limit [-].
-    order : ndarray
-        Between neighbours: power of the spacing with which the error falls [-].
-    limit : float
-        r it tends to: extrapolated, or of the finest step [-].
-    """
-
-    at: FloatArray
-    coefficient: FloatArray
-    error: FloatArray
-    order: FloatArray
-    limit: float
+    at: FloatArray  # contact intervals, or tolerances [-]
+    coefficient: FloatArray  # r there [-]
+    error: FloatArray  # distance from the limit [-]
+    order: FloatArray  # between neighbours: power of the spacing with which the error falls [-]
+    limit: float  # r it tends to: extrapolated, or of the finest step [-]
 
 
 def points_convergence(
@@ -45,27 +31,10 @@ def points_convergence(
 
     Dashpots without springs absorb an impact in one contact: no hop hides the order.
 
-    Parameters
-    ----------
-    counts : sequence of int
-        Contact points, three of them or more, each with twice the intervals of the one before [-].
-    slenderness : float
-        h/b of the block [-].
-    limit : float, optional
-        The exact r; by default extrapolated from the last two with order 2 [-].
+    counts: contact points, three of them or more, each with twice the intervals of the one before [-]; slenderness: h/b
+    of the block [-]; limit: the exact r; by default extrapolated from the last two with order 2 [-]. Returns the order
+    is near 2 for half shares at the ends.
 
-    Returns
-    -------
-    Convergence
-        The order is near 2 for half shares at the ends.
-
-    Raises
-    ------
-    InvalidValueError
-        If the intervals do not double.
-
-    Examples
-    --------
     >>> points_convergence((21, 41, 81)).order.round(0).tolist()
     [2.0, 2.0]
     """
@@ -84,17 +53,7 @@ def points_convergence(
 def step_convergence(tolerances: Any = (1e-4, 1e-5, 1e-6, 1e-7), laboratory: Laboratory | None = None) -> Convergence:
     """Return the convergence of r with the tolerance of a step.
 
-    Parameters
-    ----------
-    tolerances : array_like
-        Falling, above 1e-11 [-].
-    laboratory : Laboratory, optional
-        The impact.
-
-    Returns
-    -------
-    Convergence
-        Against a tolerance of 1e-12; the order is a power of the tolerance.
+    tolerances: falling, above 1e-11 [-]. Returns against a tolerance of 1e-12; the order is a power of the tolerance.
     """
     row = np.atleast_1d(checks.positive_array("tolerances", tolerances))
     start = laboratory or Laboratory()

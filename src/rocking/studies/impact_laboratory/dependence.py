@@ -22,20 +22,8 @@ Change = Callable[[Laboratory, float], Laboratory]
 def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against slenderness.
 
-    Parameters
-    ----------
-    values : array_like
-        h/b [-].
-    laboratory : Laboratory, optional
-        What stays as it is.
+    values: h/b [-].
 
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`.
-
-    Examples
-    --------
     >>> slenderness_study([2.0, 4.0]).coefficient.round(2).values.tolist()
     [0.84, 0.96]
     """
@@ -45,22 +33,7 @@ def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> Labo
 def points_study(values: Sequence[int], laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the number of contact points.
 
-    Parameters
-    ----------
-    values : sequence of int
-        Contact points, two or more [-].
-    laboratory : Laboratory, optional
-        What stays as it is.
-
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`.
-
-    Raises
-    ------
-    InvalidValueError
-        If one of them is no whole number of at least 2.
+    values: contact points, two or more [-].
     """
     return study("points", "1", values, lambda lab, x: lab.but(points=whole("points", x, 2)), laboratory)
 
@@ -68,17 +41,7 @@ def points_study(values: Sequence[int], laboratory: Laboratory | None = None) ->
 def damping_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the damping ratio of the bed.
 
-    Parameters
-    ----------
-    values : array_like
-        zeta [-].
-    laboratory : Laboratory, optional
-        What stays as it is.
-
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`.
+    values: zeta [-].
     """
     return study("damping", "1", values, lambda lab, x: lab.but(damping=x), laboratory)
 
@@ -86,17 +49,7 @@ def damping_study(values: Any, laboratory: Laboratory | None = None) -> Laborato
 def modulus_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the modulus of the layer over its thickness.
 
-    Parameters
-    ----------
-    values : array_like
-        E / t [Pa/m].
-    laboratory : Laboratory, optional
-        What stays as it is.
-
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`.
+    values: E / t [Pa/m].
     """
     return study("modulus_over_thickness", "Pa/m", values, lambda lab, x: lab.but(modulus_over_thickness=x), laboratory)
 
@@ -104,17 +57,7 @@ def modulus_study(values: Any, laboratory: Laboratory | None = None) -> Laborato
 def friction_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the coefficient of friction of the base.
 
-    Parameters
-    ----------
-    values : array_like
-        mu [-].
-    laboratory : Laboratory, optional
-        What stays as it is.
-
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`.
+    values: mu [-].
     """
     return study("friction", "1", values, lambda lab, x: lab.but(friction=Coulomb(x)), laboratory)
 
@@ -122,17 +65,7 @@ def friction_study(values: Any, laboratory: Laboratory | None = None) -> Laborat
 def mass_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the density of the block on a layer of given stiffness: mass alone, the size stays.
 
-    Parameters
-    ----------
-    values : array_like
-        Densities [kg/m3].
-    laboratory : Laboratory, optional
-        What stays as it is; without a layer of its own one of 1e9 Pa/m is taken.
-
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`.
+    values: densities [kg/m3].
     """
     return study("density", "kg/m3", values, lambda lab, x: lab.but(density=x), layered(laboratory))
 
@@ -140,17 +73,7 @@ def mass_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryS
 def size_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the width of blocks of one shape and density on one layer.
 
-    Parameters
-    ----------
-    values : array_like
-        Widths [m].
-    laboratory : Laboratory, optional
-        What stays as it is; without a layer of its own one of 1e9 Pa/m is taken.
-
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`.
+    values: widths [m].
     """
     return study("width", "m", values, lambda lab, x: lab.but(width=x), layered(laboratory))
 
@@ -158,17 +81,7 @@ def size_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryS
 def velocity_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r against the rotation of release, and so against the landing velocity.
 
-    Parameters
-    ----------
-    values : array_like
-        Rotations over the slenderness angle, in (0, 1) [-].
-    laboratory : Laboratory, optional
-        What stays as it is.
-
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`, `landing_velocity` among the results.
+    values: rotations over the slenderness angle, in (0, 1) [-].
     """
     return study("release", "1", values, lambda lab, x: lab.but(release=x), laboratory)
 
@@ -178,29 +91,8 @@ def study(
 ) -> LaboratoryStudy:
     """Return what emerges as one thing about the bed or the block changes.
 
-    Parameters
-    ----------
-    name, unit : str
-        What changes.
-    values : array_like
-        Its values, one row, in the unit.
-    change : callable
-        Takes a `Laboratory` and a value, returns the laboratory with that value.
-    laboratory : Laboratory, optional
-        What stays as it is.
-    threads : int
-        Threads of the fast engine.
-
-    Returns
-    -------
-    LaboratoryStudy
-        Over `name`: coefficient, coefficient_by_energy, hardness [-], landing_velocity [rad/s], peak_force [N],
-        bed_loss and friction_loss [J], contacts, audit [-]; NaN where an impact failed.
-
-    Raises
-    ------
-    InvalidValueError
-        If the values are no row of finite numbers.
+    Returns over `name`: coefficient, coefficient_by_energy, hardness [-], landing_velocity [rad/s], peak_force [N],
+    bed_loss and friction_loss [J], contacts, audit [-]; NaN where an impact failed.
     """
     xarray = extra("xarray", "the impact laboratory")
     row = np.atleast_1d(checks.real_array(name, values))
@@ -230,27 +122,8 @@ def study(
 def whole(name: str, value: Any, least: int) -> int:
     """Return a number that counts something.
 
-    Parameters
-    ----------
-    name : str
-        What the error calls it.
-    value : Any
-        What was given.
-    least : int
-        The smallest that is allowed [-].
+    least: the smallest that is allowed [-].
 
-    Returns
-    -------
-    int
-        The number.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no whole number, or below the least.
-
-    Examples
-    --------
     >>> whole("points", 41.0, 2)
     41
     """
@@ -263,17 +136,6 @@ def whole(name: str, value: Any, least: int) -> int:
 
 
 def layered(laboratory: Laboratory | None) -> Laboratory:
-    """Return a laboratory whose bed is a layer.
-
-    Parameters
-    ----------
-    laboratory : Laboratory, optional
-        Without a layer of its own one of 1e9 Pa/m is taken.
-
-    Returns
-    -------
-    Laboratory
-        The laboratory.
-    """
+    """Return a laboratory whose bed is a layer."""
     start = laboratory or Laboratory()
     return start if start.modulus_over_thickness is not None else start.but(modulus_over_thickness=1e9)

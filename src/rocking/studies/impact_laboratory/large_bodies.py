@@ -20,22 +20,9 @@ def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laborat
     On a flat base of one layer r does not depend on the size at all (`size_study`): neither does KED. What can change
     with size is a length that does not grow: here a hollow of fixed height under the base.
 
-    Parameters
-    ----------
-    widths : array_like
-        Widths of the base [m].
-    hollow : float
-        Height of the hollow [m].
-    laboratory : Laboratory, optional
-        What stays as it is; without a layer of its own one of 1e9 Pa/m is taken.
+    widths: widths of the base [m]; hollow: height of the hollow [m]. Returns over `width`: flat, hollow, ked and
+    hollow_minus_ked [-].
 
-    Returns
-    -------
-    LaboratoryStudy
-        Over `width`: flat, hollow, ked and hollow_minus_ked [-].
-
-    Examples
-    --------
     >>> found = large_bodies_study([0.1, 1.0, 10.0])
     >>> bool((found.hollow.diff("width") > 0.0).all())
     True
@@ -51,19 +38,7 @@ def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laborat
 def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> dict[str, FloatArray]:
     """Return the numbers of `large_bodies_study`, which need no labelled arrays.
 
-    Parameters
-    ----------
-    widths : array_like
-        Widths of the base [m].
-    hollow : float
-        Height of the hollow [m].
-    laboratory : Laboratory, optional
-        What stays as it is; without a layer of its own one of 1e9 Pa/m is taken.
-
-    Returns
-    -------
-    dict of str to ndarray
-        flat, hollow and ked, over the widths [-].
+    widths: widths of the base [m]; hollow: height of the hollow [m]. Returns flat, hollow and ked, over the widths [-].
     """
     start, row = layered(laboratory), np.atleast_1d(checks.positive_array("width", widths, "m"))
     beds = {"flat": start.but(profile=()), "hollow": start.but(profile=profile("concave", hollow, start.points))}

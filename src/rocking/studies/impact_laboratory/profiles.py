@@ -17,30 +17,10 @@ SHAPES: tuple[Shape, ...] = ("convex", "concave", "tilted", "random")
 def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tuple[float, ...]:
     """Return heights of contact points over the base line.
 
-    Parameters
-    ----------
-    shape : {"convex", "concave", "tilted", "random"}
-        A parabola that bulges down in the middle, one that is hollow there, a slope with the new foot up, or
-        independent uniform heights in [0, amplitude] from the seed.
-    amplitude : float
-        Difference between the highest and the lowest point, or its bound [m].
-    points : int
-        Number of points, two or more.
-    seed : int
-        For "random", zero or above.
+    shape: A parabola that bulges down in the middle, one that is hollow there, a slope with the new foot up, or
+    independent uniform heights in [0, amplitude] from the seed; amplitude: difference between the highest and the
+    lowest point, or its bound [m]. Returns heights [m].
 
-    Returns
-    -------
-    tuple of float
-        Heights [m].
-
-    Raises
-    ------
-    InvalidValueError
-        If the shape is unknown, the amplitude negative, or points or seed are no such whole numbers.
-
-    Examples
-    --------
     >>> profile("concave", 0.001, 3)
     (0.0, 0.001, 0.0)
     """
@@ -65,21 +45,7 @@ def profile_study(
 ) -> LaboratoryStudy:
     """Return r against the unevenness of the base.
 
-    Parameters
-    ----------
-    shape : {"convex", "concave", "tilted", "random"}
-        As in `profile`.
-    amplitudes : array_like
-        Heights of the unevenness [m].
-    laboratory : Laboratory, optional
-        What stays as it is.
-    seed : int
-        For "random".
-
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`, over `amplitude`.
+    amplitudes: heights of the unevenness [m].
     """
 
     def uneven(start: Laboratory, amplitude: float) -> Laboratory:
@@ -92,19 +58,7 @@ def profile_study(
 def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
     """Return r of bases with random unevenness.
 
-    Parameters
-    ----------
-    amplitude : float
-        Bound of the heights [m].
-    seeds : array_like of int
-        One base a seed.
-    laboratory : Laboratory, optional
-        What stays as it is.
-
-    Returns
-    -------
-    LaboratoryStudy
-        As `study`, over `seed`.
+    amplitude: bound of the heights [m].
     """
 
     def rough(start: Laboratory, seed: float) -> Laboratory:

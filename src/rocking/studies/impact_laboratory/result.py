@@ -36,13 +36,6 @@ class LaboratoryStudy:
 
     Every attribute and index of the dataset is one of the study.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Results over one dimension, with units; its attributes say what was computed from what.
-
-    Examples
-    --------
     >>> from rocking.studies.impact_laboratory.dependence import slenderness_study
     >>> found = slenderness_study([2.0, 4.0])
     >>> found.to_dataframe()["coefficient [-]"].round(2).tolist()
@@ -79,76 +72,27 @@ class LaboratoryStudy:
     def to_dataframe(self) -> "pd.DataFrame":
         """Return the study as a table.
 
-        Returns
-        -------
-        pandas.DataFrame
-            A row a value; columns such as ``peak_force [N]``; the provenance in its `attrs`.
+        Returns A row a value; columns such as ``peak_force [N]``; the provenance in its `attrs`.
         """
         frame = export.to_dataframe(self.exported)
         frame.attrs.update(self.dataset.attrs)
         return frame
 
     def to_csv(self, path: "str | Path") -> "Path":
-        """Write the study as comma-separated values, all digits kept; headings as in `to_dataframe`.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
+        """Write the study as comma-separated values, all digits kept; headings as in `to_dataframe`."""
         return export.to_csv(self.exported, path)
 
     def to_netcdf(self, path: "str | Path") -> "Path":
-        """Write the study as netCDF 4, with units and provenance, which xarray and MATLAB open.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
+        """Write the study as netCDF 4, with units and provenance, which xarray and MATLAB open."""
         return export.dataset_to_netcdf(self.dataset, path)
 
 
 def about(name: str, unit: str) -> dict[str, str]:
-    """Return unit and meaning of a result.
-
-    Parameters
-    ----------
-    name, unit : str
-        Its name and unit.
-
-    Returns
-    -------
-    dict
-        As xarray and netCDF name them.
-    """
+    """Return unit and meaning of a result."""
     return Quantity(np.zeros(0), unit, _WORDS.get(name, "")).attributes
 
 
 def provenance(study: str, laboratory: object) -> dict[str, str]:
-    """Return what a study was computed from, and with what.
-
-    Parameters
-    ----------
-    study : str
-        What was varied.
-    laboratory : Laboratory
-        What stayed as it was.
-
-    Returns
-    -------
-    dict of str
-        Attributes of its dataset.
-    """
+    """Return what a study was computed from, and with what."""
     engine = "contact bed, fast" if fast.available() else "contact bed, reference"
     return {"software": export.software(), "engine": engine, "study": study, "laboratory": repr(laboratory)}

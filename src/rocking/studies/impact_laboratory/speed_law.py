@@ -23,28 +23,9 @@ def bed_speed_law(
 
     A speed stands for a hardness, v sqrt(k/m) / g with v = 2 w theta_dot; beyond the table r keeps its last value.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    frequency : float
-        sqrt(k / m) / (2 pi) of the whole bed [Hz].
-    points : int
-        Contact points, as `ContactBedModel` takes them [-].
-    damping : float
-        Damping ratio [-].
-    onto : {"left", "right"}
-        The foot on which the body lands; for an asymmetric body r differs between the two.
-    gravity : float
-        Acceleration of gravity [m/s2].
+    frequency: sqrt(k / m) / (2 pi) of the whole bed [Hz]; points: contact points, as `ContactBedModel` takes them [-];
+    damping: damping ratio [-]; gravity: acceleration of gravity [m/s2].
 
-    Returns
-    -------
-    SpeedRestitution
-        The law.
-
-    Examples
-    --------
     >>> from rocking import Block
     >>> law = bed_speed_law(Block(width=0.2, height=0.4), 400.0)
     >>> round(law.factor(2.0, 0, 0), 2), law.factor(0.5, 0, 0) > law.factor(4.0, 0, 0)

@@ -12,17 +12,7 @@ from rocking.restitution.bed_table import POINTS, STEP, BedTable, nodes
 def impulse_position(coefficient: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
     """Return where an impulse acts that gives a coefficient, from angular momentum about its position.
 
-    Parameters
-    ----------
-    coefficient : ndarray
-        theta_dot_after / theta_dot_before [-].
-    flatness, offset : ndarray
-        Of the bodies [-].
-
-    Returns
-    -------
-    ndarray
-        kappa [-].
+    coefficient: theta_dot_after / theta_dot_before [-]; flatness, offset: of the bodies [-]. Returns kappa [-].
     """
     gyration = 1.0 / flatness - 1.0
     arm = gyration * (1.0 - coefficient) / (1.0 + offset + coefficient * (1.0 - offset))
@@ -32,19 +22,7 @@ def impulse_position(coefficient: FloatArray, flatness: FloatArray, offset: Floa
 def resolved(cases: FloatArray, points: int, *, threads: int = 1) -> FloatArray:
     """Return coefficients of restitution resolved in time.
 
-    Parameters
-    ----------
-    cases : ndarray, shape (n, 4)
-        Flatness, offset, damping, hardness [-].
-    points : int
-        Contact points.
-    threads : int
-        Threads of the fast engine.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        theta_dot_after / theta_dot_before, by the next peak [-].
+    cases: flatness, offset, damping, hardness [-]. Returns theta_dot_after / theta_dot_before, by the next peak [-].
     """
     impacts = [
         ScaledImpact(flatness, offset, points, damping, hardness)
@@ -54,20 +32,7 @@ def resolved(cases: FloatArray, points: int, *, threads: int = 1) -> FloatArray:
 
 
 def tabulated(*, threads: int = 1, progress: Callable[[int], None] | None = None) -> BedTable:
-    """Compute the table of the model `contact-bed`; takes minutes.
-
-    Parameters
-    ----------
-    threads : int
-        Threads of the fast engine; the bits do not depend on them.
-    progress : callable, optional
-        Called with the number of impacts done since the last call.
-
-    Returns
-    -------
-    BedTable
-        The table.
-    """
+    """Compute the table of the model `contact-bed`; takes minutes."""
     axes = nodes()
     shape = tuple(axis.size for axis in axes)
     cases = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
@@ -83,15 +48,7 @@ def tabulated(*, threads: int = 1, progress: Callable[[int], None] | None = None
 def stored(table: BedTable) -> np.ndarray[tuple[int, ...], np.dtype[np.int16]]:
     """Return the positions as they are shipped.
 
-    Parameters
-    ----------
-    table : BedTable
-        The table.
-
-    Returns
-    -------
-    ndarray of int16
-        Whole multiples of `bed_table.STEP`, to be written with `numpy.save`.
+    Returns whole multiples of `bed_table.STEP`, to be written with `numpy.save`.
     """
     return np.asarray(np.rint(np.clip(table.positions, -3.9, 3.9) / STEP).astype(np.int16))
 

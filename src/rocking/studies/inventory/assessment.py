@@ -105,32 +105,8 @@ def assessment_plan(
 ) -> tuple[Product, Callable[[Arrays], Assessment], tuple[InventoryObject, ...]]:
     """Return the histories of an assessment, and what makes it of their results: for campaigns.
 
-    Parameters
-    ----------
-    inventory : Inventory or sequence of InventoryObject
-        The objects.
-    hazard : Hazard
-        The motions.
-    restitution : str, RestitutionModel, float or mapping
-        Model of impact.
-    thresholds : Thresholds, optional
-        What the lights mean.
-    gravity : float
-        Acceleration of gravity [m/s2].
-
-    Returns
-    -------
-    histories : Product
-        Over motion, object and direction, one scale, and the two models of impact.
-    finish : callable
-        Takes the outcome and the peak_rotation of all histories; returns what `assess` does.
-    objects : tuple of InventoryObject
-        Those that are computed.
-
-    Raises
-    ------
-    InvalidValueError
-        If no object can be assessed.
+    gravity: acceleration of gravity [m/s2]. Returns histories: over motion, object and direction, one scale, and the
+    two models of impact; finish: takes the outcome and the peak_rotation of all histories; returns what `assess` does.
     """
     asked = _Asked.of(inventory, hazard, restitution, thresholds, gravity)
     bodies = asked.bodies(asked.inventory.objects)

@@ -31,47 +31,18 @@ _TELLING = frozenset({
 
 @dataclass(frozen=True)
 class Column:
-    """What a column holds.
+    """What a column holds."""
 
-    Parameters
-    ----------
-    fields : tuple of str
-        Fields of `InventoryObject` that it gives: a base without a direction gives both.
-    factor : float
-        What turns its numbers into SI units.
-    title : str
-        Its name in the file.
-    """
-
-    fields: tuple[str, ...]
-    factor: float
-    title: str
+    fields: tuple[str, ...]  # fields of `InventoryObject` that it gives: a base without a direction gives both
+    factor: float  # what turns its numbers into SI units
+    title: str  # its name in the file
 
 
 def columns_of(titles: Sequence[str], source: str) -> tuple[list[Column | None], tuple[str, ...]]:
     """Return what the columns of a file hold.
 
-    Parameters
-    ----------
-    titles : sequence of str
-        Names of the columns.
-    source : str
-        Name of the file, for errors.
+    Returns columns: none for one that is not read; ignored: names of those that are not read.
 
-    Returns
-    -------
-    columns : list of Column or None
-        None for one that is not read.
-    ignored : tuple of str
-        Names of those that are not read.
-
-    Raises
-    ------
-    InvalidValueError
-        If a field is given twice, a measure has no unit, or an unknown name looks like a measure.
-
-    Examples
-    --------
     >>> columns, ignored = columns_of(["name", "base_cm", "room"], "list.csv")
     >>> columns[1].fields, ignored
     (('base_width', 'base_depth'), ('room',))
@@ -88,15 +59,7 @@ def columns_of(titles: Sequence[str], source: str) -> tuple[list[Column | None],
 def has_required(titles: Sequence[str]) -> bool:
     """Return whether names are those of an inventory.
 
-    Parameters
-    ----------
-    titles : sequence of str
-        Names of the columns.
-
-    Returns
-    -------
-    bool
-        Whether none that is needed is missing; units are not looked at.
+    Returns whether none that is needed is missing; units are not looked at.
     """
     stems = {_split(title)[0] for title in titles}
     return all(each in stems for each in REQUIRED)

@@ -122,18 +122,8 @@ class Thresholds:
 def percent(share: float) -> str:
     """Return a share in percent, unrounded: a threshold of 0.5 % is not one of 0 %, nor 99.999 % all.
 
-    Parameters
-    ----------
-    share : float
-        The share [-].
+    share: the share [-]. Returns as many digits as it has, at most ten.
 
-    Returns
-    -------
-    str
-        As many digits as it has, at most ten.
-
-    Examples
-    --------
     >>> percent(0.005), percent(0.95), percent(0.07)
     ('0.5%', '95%', '7%')
     """

@@ -15,18 +15,9 @@ class DecimalMark:
     """What separates the decimals in a table, found in all of its numbers together.
 
     ``12,5`` can only be a decimal comma; ``1,234`` could be a thousand, and so could ``1.234``. Either is taken only
-    where the same mark stands for decimals elsewhere in the table and the other does not. Where commas part the
-    fields, decimals have points, and ``1.234`` is taken unless a decimal comma contradicts it.
+    where the same mark stands for decimals elsewhere in the table and the other does not. Where commas part the fields,
+    decimals have points, and ``1.234`` is taken unless a decimal comma contradicts it.
 
-    Parameters
-    ----------
-    cells : iterable of str
-        Every cell that should be a number; others among them say nothing.
-    comma_delimited : bool
-        Whether commas part the fields of the table.
-
-    Examples
-    --------
     >>> mark = DecimalMark(["12,5", "1,234", "7"])
     >>> mark.number("width_cm", "1,234")
     1.234
@@ -43,22 +34,7 @@ class DecimalMark:
     def number(self, name: str, cell: str) -> float:
         """Return the number in a cell.
 
-        Parameters
-        ----------
-        name : str
-            Name of the column, for the error.
-        cell : str
-            What stands in the cell.
-
-        Returns
-        -------
-        float
-            The number, in the unit of the column.
-
-        Raises
-        ------
-        InvalidValueError
-            If it is no number, or could be two.
+        Returns the number, in the unit of the column.
         """
         text = cell.strip()
         match = _NUMBER.fullmatch(text)

@@ -21,16 +21,8 @@ HEADER = (
 def rows(assessment: Assessment) -> list[list[str | float | int]]:
     """Return the table, the worst object first and rows without a verdict at the end.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        The assessment.
-
-    Returns
-    -------
-    list of list
-        One row an object, in the order of `HEADER`; text that a spreadsheet would take for a formula has an
-        apostrophe before it.
+    Returns one row an object, in the order of `HEADER`; text that a spreadsheet would take for a formula has an
+    apostrophe before it.
     """
     lines: list[list[str | float | int]] = []
     for rank, verdict in enumerate(assessment.verdicts, start=1):
@@ -53,15 +45,7 @@ def rows(assessment: Assessment) -> list[list[str | float | int]]:
 def as_csv(assessment: Assessment) -> str:
     """Return the table as CSV.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        The assessment.
-
-    Returns
-    -------
-    str
-        Commas, points before decimals, one line an object; a last line if columns of the list were not read.
+    Returns Commas, points before decimals, one line an object; a last line if columns of the list were not read.
     """
     text = io.StringIO(newline="")
     writer = csv.writer(text)
@@ -80,15 +64,7 @@ def as_csv(assessment: Assessment) -> str:
 def as_plain(assessment: Assessment) -> dict[str, Any]:
     """Return everything as plain values, for JSON.
 
-    Parameters
-    ----------
-    assessment : Assessment
-        The assessment.
-
-    Returns
-    -------
-    dict
-        SI units, named in the keys; text as it was typed.
+    Returns SI units, named in the keys; text as it was typed.
     """
     hazard, limits = assessment.hazard, assessment.thresholds
     low, high = hazard.velocity()
@@ -119,18 +95,8 @@ def as_plain(assessment: Assessment) -> dict[str, Any]:
 def safe(text: str) -> str:
     """Return text that no spreadsheet takes for a formula.
 
-    Parameters
-    ----------
-    text : str
-        Anything that a user typed.
+    Returns the text, with an apostrophe before it if it begins as a formula does.
 
-    Returns
-    -------
-    str
-        The text, with an apostrophe before it if it begins as a formula does.
-
-    Examples
-    --------
     >>> safe("=1+1"), safe("vase")
     ("'=1+1", 'vase')
     """

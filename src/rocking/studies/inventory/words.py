@@ -26,20 +26,7 @@ LIMITS = (
 
 
 def sentence(verdict: Verdict, assessment: Assessment) -> str:
-    """Return what an object does.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        The object.
-    assessment : Assessment
-        What it is part of.
-
-    Returns
-    -------
-    str
-        One sentence.
-    """
+    """Return what an object does."""
     hazard = assessment.hazard
     still = f"Stays still up to {_in_g(verdict.uplift_acceleration)}"
     if hazard.vertical:
@@ -55,20 +42,7 @@ def sentence(verdict: Verdict, assessment: Assessment) -> str:
 
 
 def advice(verdict: Verdict, assessment: Assessment) -> str:
-    """Return what to do about an object.
-
-    Parameters
-    ----------
-    verdict : Verdict
-        The object.
-    assessment : Assessment
-        What it is part of.
-
-    Returns
-    -------
-    str
-        One sentence or two.
-    """
+    """Return what to do about an object."""
     if verdict.light is Light.GREEN:
         return "Nothing to do for rocking; check that it cannot slide off."
     how = f"Secure it, lower its centre of mass, or widen its base: {_base(verdict, assessment)}."
@@ -80,17 +54,7 @@ def advice(verdict: Verdict, assessment: Assessment) -> str:
 def model_note(verdict: Verdict, assessment: Assessment) -> str:
     """Return whether the model of impact decides.
 
-    Parameters
-    ----------
-    verdict : Verdict
-        The object.
-    assessment : Assessment
-        What it is part of.
-
-    Returns
-    -------
-    str
-        One sentence, empty if both models show the same light.
+    Returns one sentence, empty if both models show the same light.
     """
     if not verdict.model_decides:
         return ""
@@ -102,15 +66,7 @@ def model_note(verdict: Verdict, assessment: Assessment) -> str:
 def rotation_words(value: float | None) -> str:
     """Return a peak rotation in words.
 
-    Parameters
-    ----------
-    value : float or None
-        Over the slenderness angle, None if the object overturns [-].
-
-    Returns
-    -------
-    str
-        Two decimals, or that it overturns.
+    value: over the slenderness angle, None if the object overturns [-].
     """
     return "overturns" if value is None else f"{value:.2f}"
 
@@ -118,20 +74,8 @@ def rotation_words(value: float | None) -> str:
 def rounded_down(value: float, digits: int) -> str:
     """Return a limit that stays true in print.
 
-    Parameters
-    ----------
-    value : float
-        The limit, in any unit.
-    digits : int
-        Decimals [-].
+    digits: decimals [-]. Returns the largest number of so many decimals that is not above it, but for rounding.
 
-    Returns
-    -------
-    str
-        The largest number of so many decimals that is not above it, but for rounding.
-
-    Examples
-    --------
     >>> rounded_down(0.1299, 2), rounded_down(0.3, 2)
     ('0.12', '0.30')
     """

@@ -10,22 +10,12 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table.
+    """A column of a table."""
 
-    Parameters
-    ----------
-    values : ndarray
-        Numbers or words; NaN where there is nothing.
-    unit, words : str
-        Unit and meaning.
-    variable : str, optional
-        Its name in netCDF files, where it differs.
-    """
-
-    values: np.ndarray
-    unit: str = "1"
+    values: np.ndarray  # numbers or words; NaN where there is nothing
+    unit: str = "1"  # unit, words: unit and meaning
     words: str = ""
-    variable: str | None = None
+    variable: str | None = None  # its name in netCDF files, where it differs
 
     @property
     def is_words(self) -> bool:
@@ -35,18 +25,10 @@ class Column:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table.
+    """A table."""
 
-    Parameters
-    ----------
-    dim : str
-        Dimension of its rows in netCDF files.
-    columns : mapping of str to Column
-        The columns by name, all of one length.
-    """
-
-    dim: str
-    columns: Mapping[str, Column]
+    dim: str  # dimension of its rows in netCDF files
+    columns: Mapping[str, Column]  # the columns by name, all of one length
 
     @property
     def rows(self) -> int:
@@ -56,46 +38,22 @@ class Sheet:
     def header(self) -> list[str]:
         """Return the names of the columns with their units.
 
-        Returns
-        -------
-        list of str
-            As ``name [unit]``; without unit where there is none.
+        Returns as ``name [unit]``; without unit where there is none.
         """
         return [name if each.unit == "1" else f"{name} [{each.unit}]" for name, each in self.columns.items()]
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What an adaptive study has found.
+    """What an adaptive study has found."""
 
-    Parameters
-    ----------
-    value : Any
-        What the Python call returns.
-    sheets : mapping of str to Sheet
-        The same as tables, by what `export` calls them.
-    attributes : dict
-        What more is to be said of it, as plain values.
-    """
-
-    value: Any
-    sheets: Mapping[str, Sheet]
-    attributes: dict[str, Any] = field(default_factory=dict)
+    value: Any  # what the Python call returns
+    sheets: Mapping[str, Sheet]  # the same as tables, by what `export` calls them
+    attributes: dict[str, Any] = field(default_factory=dict)  # what more is to be said of it, as plain values
 
 
 def words_of(values: list[str]) -> np.ndarray:
-    """Return words as an array.
-
-    Parameters
-    ----------
-    values : list of str
-        The words.
-
-    Returns
-    -------
-    ndarray
-        Of objects.
-    """
+    """Return words as an array."""
     made = np.empty(len(values), dtype=object)
     made[:] = values
     return made
@@ -104,20 +62,6 @@ def words_of(values: list[str]) -> np.ndarray:
 def variable_of(name: str, taken: Mapping[str, Column]) -> str:
     """Return a name that MATLAB and netCDF take, and no other column has.
 
-    Parameters
-    ----------
-    name : str
-        Name of the column.
-    taken : mapping of str to Column
-        Other columns, with the names that they have there.
-
-    Returns
-    -------
-    str
-        Letters, digits and underscores.
-
-    Examples
-    --------
     >>> variable_of("overturned: median ratio", {})
     'overturned_median_ratio'
     """

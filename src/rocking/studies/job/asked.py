@@ -22,57 +22,26 @@ Compute = Callable[[Histories], Arrays]
 
 @dataclass(frozen=True, eq=False)
 class Asked(Table):
-    """Histories given one by one, the draws of each under a number of its own.
+    """Histories given one by one, the draws of each under a number of its own."""
 
-    Parameters
-    ----------
-    number : ndarray of int
-        Number of each history for random coefficients.
-    """
-
-    number: IntArray
+    number: IntArray  # number of each history for random coefficients
 
     def rows(self, first: int, last: int) -> Rows:
-        """Return some of the rows.
-
-        Parameters
-        ----------
-        first, last : int
-            Numbers: from the first up to but not including the last.
-
-        Returns
-        -------
-        Rows
-            The rows.
-        """
+        """Return some of the rows."""
         rows = super().rows(first, last)
         return Rows(rows.values, rows.motion, self.number[first:last])
 
     def content(self) -> dict[str, Any]:
-        """Return the hashes of the arrays.
-
-        Returns
-        -------
-        dict
-            By name.
-        """
+        """Return the hashes of the arrays."""
         return super().content() | {"number": hash_of(np.asarray(self.number, dtype=np.int64))}
 
 
 @dataclass(frozen=True)
 class AskedBatch(Batch):
-    """A batch whose histories somebody else computes, round by round.
-
-    Parameters
-    ----------
-    motion_set : MotionSet
-        The motions.
-    compute : callable
-        Computes a round.
-    """
+    """A batch whose histories somebody else computes, round by round."""
 
     motion_set: MotionSet = field(kw_only=True)
-    compute: Compute = field(kw_only=True)
+    compute: Compute = field(kw_only=True)  # computes a round
 
     def run(
         self,
@@ -83,21 +52,8 @@ class AskedBatch(Batch):
     ) -> tuple[Arrays, dict[str, int]]:
         """Return the results of many histories.
 
-        Parameters
-        ----------
-        count : int
-            How many.
-        rows : callable
-            Returns the rows from a first up to but not including a last one.
-        progress, threads : optional
-            Not used: whoever computes tells and decides.
-
-        Returns
-        -------
-        results : dict of str to ndarray
-            One array for each key of `rocking.dynamics.engine.RESULTS`; NaN of what a round does not keep.
-        work : dict of str to int
-            Empty: nobody counts the steps of all rounds.
+        Returns results: one array for each key of `rocking.dynamics.engine.RESULTS`; NaN of what a round does not keep;
+        work: Empty: nobody counts the steps of all rounds.
         """
         if not count:
             return super().run(0, rows)
@@ -111,31 +67,15 @@ class AskedBatch(Batch):
 
 @dataclass(frozen=True)
 class AskedQuestion(Question):
-    """A question whose histories somebody else computes: the studies that take questions do not notice.
+    """A question whose histories somebody else computes: the studies that take questions do not notice."""
 
-    Parameters
-    ----------
-    compute : callable
-        Computes a round.
-    """
-
-    compute: Compute = field(kw_only=True)
+    compute: Compute = field(kw_only=True)  # computes a round
 
     @classmethod
     def of(cls, question: Question, compute: Compute) -> "AskedQuestion":
         """Return a question, asked of somebody else.
 
-        Parameters
-        ----------
-        question : Question
-            The question.
-        compute : callable
-            Computes a round.
-
-        Returns
-        -------
-        AskedQuestion
-            The same body, motion, restitution and settings.
+        Returns the same body, motion, restitution and settings.
         """
         told = {name: getattr(question, name) for name in question.__dataclass_fields__}
         return cls(**told, compute=compute)
@@ -158,23 +98,7 @@ class _FirstRoundError(Exception):
 
 
 def first_round(search: Callable[[Compute], Any]) -> Histories:
-    """Return the histories that a study asks for first; nothing is computed.
-
-    Parameters
-    ----------
-    search : callable
-        The study: takes what computes a round.
-
-    Returns
-    -------
-    Histories
-        The first round.
-
-    Raises
-    ------
-    InvalidValueError
-        If the study asks for none.
-    """
+    """Return the histories that a study asks for first; nothing is computed."""
 
     def stop(histories: Histories) -> Arrays:
         raise _FirstRoundError(histories)

@@ -26,15 +26,7 @@ _KEPT = ("outcome", "peak_ratio")
 def comparable(folder: JobFolder) -> bool:
     """Return whether a campaign has several restitutions that can be compared.
 
-    Parameters
-    ----------
-    folder : JobFolder
-        The campaign.
-
-    Returns
-    -------
-    bool
-        Whether `comparison` has something to say of it.
+    Returns whether `comparison` has something to say of it.
     """
     study = folder.job.study
     return len(folder.job.parts.choices) > 1 and study.search is None and study.assess is None
@@ -70,21 +62,7 @@ def comparison(folder: JobFolder) -> Sensitivity:
 
 
 def comparison_sheet(found: Sensitivity, what: str) -> Sheet:
-    """Return a table of a comparison.
-
-    Parameters
-    ----------
-    found : Sensitivity
-        The comparison.
-    what : {"flips", "differences"}
-        ``flips``: a row for every choice, with the verdicts that it changes and how its curves move; ``differences``:
-        a row for every choice but the first and every history or cell.
-
-    Returns
-    -------
-    Sheet
-        The table.
-    """
+    """Return a table of a comparison."""
     return _flips(found) if what == "flips" else _differences(found)
 
 

@@ -152,15 +152,7 @@ def export(
 def provenance_of(folder: JobFolder) -> dict[str, Any]:
     """Return where the results of a finished campaign come from.
 
-    Parameters
-    ----------
-    folder : JobFolder
-        The campaign.
-
-    Returns
-    -------
-    dict
-        That of the job; of an adaptive study also ``rounds`` and ``all_histories``.
+    Returns that of the job; of an adaptive study also ``rounds`` and ``all_histories``.
     """
     if folder.job.study.search is None or (told := finished_rounds(folder.path)) is None:
         return folder.job.provenance
@@ -170,17 +162,7 @@ def provenance_of(folder: JobFolder) -> dict[str, Any]:
 def write_provenance(provenance: dict[str, Any], beside: Path) -> Path:
     """Write where a file comes from into another beside it.
 
-    Parameters
-    ----------
-    provenance : dict
-        Plain values.
-    beside : Path
-        The file that has no room for it.
-
-    Returns
-    -------
-    Path
-        The same name with ``.provenance.json`` behind it.
+    Returns the same name with ``.provenance.json`` behind it.
     """
     path = beside.with_name(f"{beside.name}.provenance.json")
     disk.write_new(path, (json.dumps(provenance, indent=1, sort_keys=True) + "\n").encode())

@@ -17,18 +17,7 @@ READ = ("outcome", "peak_rotation", "least_force")
 
 
 def refuse_unfinished(folder: JobFolder) -> None:
-    """Refuse a campaign that is not finished.
-
-    Parameters
-    ----------
-    folder : JobFolder
-        The campaign.
-
-    Raises
-    ------
-    CampaignIncompleteError
-        If there is something left to do.
-    """
+    """Refuse a campaign that is not finished."""
     path = folder.path
     if folder.job.study.search is None:
         status = folder.campaign.status(verify=False)

@@ -28,21 +28,7 @@ def fragility_model(
 ) -> "FragilityModel":
     """Return the fragility curves of a finished campaign, ready for export.
 
-    Parameters
-    ----------
-    folder : JobFolder
-        The campaign.
-    restitution : str, optional
-        Label of the restitution; the only one if not given.
-    crossing : {"refuse", "common-dispersion"}, optional
-        What to do with curves that cross; what the job says if not given.
-    bootstrap : int, optional
-        Repetitions of the study for intervals and bands, none if 0; what the job says if not given.
-
-    Returns
-    -------
-    FragilityModel
-        Curves with goodness of fit; all random numbers have the seed of the campaign.
+    Returns curves with goodness of fit; all random numbers have the seed of the campaign.
     """
     from rocking.studies.fragility.curves import model_of
 
@@ -59,19 +45,7 @@ def fragility_model(
 
 
 def write_fragility(model: "FragilityModel", path: Path, what: str, provenance: dict[str, Any]) -> None:
-    """Write fragility curves into a file.
-
-    Parameters
-    ----------
-    model : FragilityModel
-        The curves.
-    path : Path
-        The file; the end of its name says the format.
-    what : str
-        A key of `ANALYSES`.
-    provenance : dict
-        Where they come from, for the formats that have room for it.
-    """
+    """Write fragility curves into a file."""
     from rocking.studies.fragility import export as files
     from rocking.studies.fragility.nrml import to_nrml
 

@@ -13,54 +13,22 @@ _SPECIAL = "*?["
 
 @dataclass(frozen=True)
 class InputFile:
-    """A file that a job names.
+    """A file that a job names."""
 
-    Parameters
-    ----------
-    path : str
-        As the job names it, or as its pattern finds it: relative to the folder of the job file.
-    sha256 : str
-        Hash of its bytes, 64 hexadecimal digits.
-    size : int
-        Its length [bytes].
-    """
-
-    path: str
-    sha256: str
-    size: int
+    path: str  # as the job names it, or as its pattern finds it: relative to the folder of the job file
+    sha256: str  # hash of its bytes, 64 hexadecimal digits
+    size: int  # its length [bytes]
 
 
 @dataclass
 class Inputs:
-    """The files that a job names, hashed when they are asked for.
+    """The files that a job names, hashed when they are asked for."""
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of the job file.
-    """
-
-    folder: Path
+    folder: Path  # folder of the job file
     files: dict[str, InputFile] = field(default_factory=dict)
 
     def file(self, name: str) -> Path:
-        """Return the path of a file, and note its hash.
-
-        Parameters
-        ----------
-        name : str
-            Relative to the folder of the job file.
-
-        Returns
-        -------
-        Path
-            Where it is.
-
-        Raises
-        ------
-        InvalidValueError
-            If there is no such file.
-        """
+        """Return the path of a file, and note its hash."""
         path = self.folder / name
         try:
             with path.open("rb") as stream:
@@ -77,20 +45,8 @@ class Inputs:
     def named(self, pattern: str) -> list[str]:
         """Return the names of the files that a pattern finds, in the order of the alphabet.
 
-        Parameters
-        ----------
-        pattern : str
-            Name of a file, or with ``*``, ``?``, ``[...]`` and ``**`` for those of several.
-
-        Returns
-        -------
-        list of str
-            Relative to the folder of the job file.
-
-        Raises
-        ------
-        InvalidValueError
-            If it finds none.
+        pattern: name of a file, or with ``*``, ``?``, ``[...]`` and ``**`` for those of several. Returns relative to
+        the folder of the job file.
         """
         if not any(mark in pattern for mark in _SPECIAL) or (self.folder / pattern).exists():
             return [pattern]
@@ -109,29 +65,12 @@ class Inputs:
         return path.relative_to(self.folder).as_posix()
 
     def told(self) -> list[dict[str, Any]]:
-        """Return the files as plain values, in the order of their names.
-
-        Returns
-        -------
-        list of dict
-            path, sha256 and bytes of each.
-        """
+        """Return the files as plain values, in the order of their names."""
         return [{"path": f.path, "sha256": f.sha256, "bytes": f.size} for _, f in sorted(self.files.items())]
 
 
 def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> None:
-    """Refuse files that are not what they were when the campaign began.
-
-    Parameters
-    ----------
-    before, now : list of dict
-        As `Inputs.told` returned them.
-
-    Raises
-    ------
-    InvalidValueError
-        Naming the first file that changed, came or went.
-    """
+    """Refuse files that are not what they were when the campaign began."""
     was, found = ({item["path"]: item for item in items} for items in (before, now))
     advice = "restore it, or begin a new campaign in another folder"
     for path, item in was.items():

@@ -18,20 +18,7 @@ _WORD = 80
 
 
 def to_matlab(results: Results, path: Path) -> None:
-    """Write results as a structure ``campaign``; the last dimension of the study is the last one there.
-
-    Parameters
-    ----------
-    results : Results
-        What to write: all of it is in memory then.
-    path : Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If MATLAB's format does not take arrays of that size.
-    """
+    """Write results as a structure ``campaign``; the last dimension of the study is the last one there."""
     from scipy.io import savemat
 
     study = results.study
@@ -56,22 +43,7 @@ def to_matlab(results: Results, path: Path) -> None:
 
 
 def sheet_to_matlab(sheet: Sheet, path: Path, attributes: Mapping[str, Any]) -> None:
-    """Write a table as a structure ``table`` of columns, with their units and meanings.
-
-    Parameters
-    ----------
-    sheet : Sheet
-        The table; names that MATLAB does not take as they are need a ``variable``.
-    path : Path
-        The file.
-    attributes : mapping
-        Where it comes from; ``provenance`` is written.
-
-    Raises
-    ------
-    InvalidValueError
-        If MATLAB's format does not take tables of that size.
-    """
+    """Write a table as a structure ``table`` of columns, with their units and meanings."""
     from scipy.io import savemat
 
     # a word is a matrix of its own there

@@ -21,20 +21,7 @@ _LOGARITHM = "ln "
 
 
 def check_told(document: "Document", motions: MotionSet) -> None:
-    """Refuse measures and columns that there are not; of the motions only the first is asked.
-
-    Parameters
-    ----------
-    document : Document
-        Tables of a cloud job.
-    motions : MotionSet
-        The motions.
-
-    Raises
-    ------
-    InvalidValueError
-        If a measure is unknown or named twice, or the first motion has no such column.
-    """
+    """Refuse measures and columns that there are not; of the motions only the first is asked."""
     measures_of(document)
     if document.export is not None and document.export.columns:
         columns_of(document, MotionList(motions[0]))
@@ -43,20 +30,7 @@ def check_told(document: "Document", motions: MotionSet) -> None:
 def measures_of(document: "Document") -> list[str]:
     """Return the measures that a job compares.
 
-    Parameters
-    ----------
-    document : Document
-        Tables of a cloud job.
-
-    Returns
-    -------
-    list of str
-        Those of ``[export] measures``; else the usual ones, and that of the job.
-
-    Raises
-    ------
-    InvalidValueError
-        If one is unknown, or named twice.
+    Returns those of ``[export] measures``; else the usual ones, and that of the job.
     """
     told = None if document.export is None else document.export.measures
     own = "pga" if document.fragility is None else document.fragility.measure
@@ -71,23 +45,8 @@ def measures_of(document: "Document") -> list[str]:
 def columns_of(document: "Document", motions: MotionSet) -> dict[str, FloatArray]:
     """Return what is known of the motions beside their measures.
 
-    Parameters
-    ----------
-    document : Document
-        Tables of a cloud job.
-    motions : MotionSet
-        The motions.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Numbers in the metadata of the motions, by ``[export] columns``, or those of `USUAL_COLUMNS` that there are; a
-        name that begins with ``ln`` is the logarithm of what follows.
-
-    Raises
-    ------
-    InvalidValueError
-        If the job names a column that a motion does not have as a finite number, or has no logarithm.
+    Returns numbers in the metadata of the motions, by ``[export] columns``, or those of `USUAL_COLUMNS` that there are;
+    a name that begins with ``ln`` is the logarithm of what follows.
     """
     told = None if document.export is None else document.export.columns
     wanted = USUAL_COLUMNS if told is None else told

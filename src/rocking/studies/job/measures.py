@@ -103,16 +103,8 @@ class _Told:
 def measures_sheet(found: MeasureComparison) -> Sheet:
     """Return a ranking as a table.
 
-    Parameters
-    ----------
-    found : MeasureComparison
-        The ranking.
-
-    Returns
-    -------
-    Sheet
-        A row a measure, the most efficient first; a column ``p(name)`` for each column of the metadata. The unit of
-        what has none is 1.
+    Returns A row a measure, the most efficient first; a column ``p(name)`` for each column of the metadata. The unit of
+    what has none is 1.
     """
     rows = [row | {"unit": "1" if row["unit"] == "-" else row["unit"]} for row in found.rows()]
     columns: dict[str, Column] = {}
@@ -127,14 +119,7 @@ def measures_sheet(found: MeasureComparison) -> Sheet:
 def told_of(found: MeasureComparison) -> dict[str, Any]:
     """Return what is to be said of a ranking beside its rows.
 
-    Parameters
-    ----------
-    found : MeasureComparison
-        The ranking.
-
-    Returns
-    -------
-    dict
-        Measures that were left out with the reasons, and the rotation below which a history counts as barely lifted.
+    Returns measures that were left out with the reasons, and the rotation below which a history counts as barely
+    lifted.
     """
     return {"measures_left_out": dict(found.left_out), "least_rotation_over_alpha": found.least}

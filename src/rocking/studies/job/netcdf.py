@@ -21,15 +21,7 @@ _MARGIN = 150_000
 
 
 def to_netcdf(results: Results, path: Path) -> None:
-    """Write results as netCDF, which xarray and MATLAB open.
-
-    Parameters
-    ----------
-    results : Results
-        What to write.
-    path : Path
-        The file.
-    """
+    """Write results as netCDF, which xarray and MATLAB open."""
     h5py: Any = extra("h5py", "netCDF")
     study = results.study
     room = study.histories.count * sum(np.dtype(kind).itemsize for kind, _, _ in VARIABLES.values())
@@ -57,26 +49,7 @@ def to_netcdf(results: Results, path: Path) -> None:
 def netcdf_file(path: Path, mode: str, room: int) -> Iterator[Any]:
     """Open a netCDF file, if the disk has room for it, that is closed whatever happens.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    mode : {"w", "a"}
-        Whether it is made, or added to.
-    room : int
-        What will be written into it, at least [bytes].
-
-    Yields
-    ------
-    File
-        Of h5netcdf.
-
-    Raises
-    ------
-    OSError
-        With one sentence of the system where HDF5 says many lines, if the disk takes no more.
-    RuntimeError
-        If it is about something else.
+    room: what will be written into it, at least [bytes].
     """
     h5netcdf: Any = extra("h5netcdf", "netCDF")
     # asked before: HDF5 that cannot write tries again when the process ends, and may crash it
@@ -97,15 +70,7 @@ def netcdf_file(path: Path, mode: str, room: int) -> Iterator[Any]:
 def room_of(values: np.ndarray) -> int:
     """Return the room that some values take in a file.
 
-    Parameters
-    ----------
-    values : ndarray
-        Numbers or words.
-
-    Returns
-    -------
-    int
-        At least [bytes].
+    Returns at least [bytes].
     """
     return int(values.nbytes if values.dtype.kind in "iufb" else 16 * values.size)
 
@@ -126,20 +91,7 @@ def _coordinate(file: Any, name: str, coordinate: Coordinate, words: Any) -> Non
 
 
 def attributes_of(provenance: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
-    """Return provenance as attributes of a file: the main facts each by itself, and all of it as JSON.
-
-    Parameters
-    ----------
-    provenance : dict
-        Plain values.
-    more : dict
-        What the study says of itself.
-
-    Returns
-    -------
-    dict
-        Numbers and words.
-    """
+    """Return provenance as attributes of a file: the main facts each by itself, and all of it as JSON."""
     main = {name: provenance[name] for name in ("software", "campaign", "kind", "engine", "histories_key")}
     plain = {name: int(v) if isinstance(v, bool) else v for name, v in more.items() if v is not None}
     return {**main, **plain, "provenance": json.dumps(provenance, sort_keys=True)}

@@ -32,47 +32,18 @@ _OUTSIDE = ("units", "name", "note")
 
 @dataclass(frozen=True)
 class Parts:
-    """What the histories of a job are made of.
+    """What the histories of a job are made of."""
 
-    Parameters
-    ----------
-    document : Document
-        The tables of the job.
-    bodies : list of Body
-        The bodies; none for spectra.
-    motions : MotionSet
-        The motions.
-    choices : dict of str to Any
-        Restitutions by label.
-    settings : Settings
-        How to integrate.
-    inputs : Inputs
-        The files that were read.
-    """
-
-    document: "Document"
-    bodies: list[Body]
+    document: "Document"  # the tables of the job
+    bodies: list[Body]  # the bodies; none for spectra
     motions: MotionSet
-    choices: dict[str, Any]
-    settings: Settings
-    inputs: Inputs
+    choices: dict[str, Any]  # restitutions by label
+    settings: Settings  # how to integrate
+    inputs: Inputs  # the files that were read
 
     @classmethod
     def of(cls, document: "Document", folder: Path) -> "Parts":
-        """Return the parts that tables describe.
-
-        Parameters
-        ----------
-        document : Document
-            The tables.
-        folder : Path
-            Folder of the job file, where the files are that it names.
-
-        Returns
-        -------
-        Parts
-            All files are read.
-        """
+        """Return the parts that tables describe."""
         inputs = Inputs(folder)
         with located("settings"):
             told = document.settings.model_dump(exclude={"engine"}, exclude_none=True)
@@ -108,27 +79,7 @@ def _bodies(tables: list[dict[str, Any]], inputs: Inputs) -> list[Body]:
 
 
 def body_of(table: dict[str, Any], inputs: Inputs | None) -> Body:
-    """Return the body that a table describes.
-
-    Parameters
-    ----------
-    table : dict
-        Tables of a body file, the short form of a block (width, height), or ``file`` alone.
-    inputs : Inputs, optional
-        Takes note of the files; without it, a table cannot name files.
-
-    Returns
-    -------
-    Body
-        The body.
-
-    Raises
-    ------
-    InvalidValueError
-        If the table does not describe a body.
-    MissingExtraError
-        If it names a drawing, and what reads it is not installed.
-    """
+    """Return the body that a table describes."""
     if "file" in table:
         return _body_in_file(table, inputs)
     if {"width", "height"} & set(table):
@@ -191,22 +142,7 @@ def _as_toml(value: Any) -> str:
 def motions_of(tables: "list[MotionTable]", inputs: Inputs) -> MotionSet:
     """Return the motions that tables describe.
 
-    Parameters
-    ----------
-    tables : list of MotionTable
-        The tables.
-    inputs : Inputs
-        Takes note of the files.
-
-    Returns
-    -------
-    MotionSet
-        A `SyntheticSet` where there is one family and nothing else; otherwise a `MotionList`.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are records and pulses, or a motion cannot be made.
+    Returns A `SyntheticSet` where there is one family and nothing else; otherwise a `MotionList`.
     """
     sets: list[list[Motion] | SyntheticSet] = []
     for k, table in enumerate(tables):

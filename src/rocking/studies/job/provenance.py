@@ -19,15 +19,7 @@ if TYPE_CHECKING:
 def provenance(job: "Job") -> dict[str, Any]:
     """Return where the results of a job come from; no time and no folder is in it.
 
-    Parameters
-    ----------
-    job : Job
-        The job.
-
-    Returns
-    -------
-    dict
-        Plain values: the same for the same job, files, version and machine.
+    Returns plain values: the same for the same job, files, version and machine.
     """
     histories, document = job.study.histories, job.document
     return {

@@ -26,25 +26,7 @@ _PLAIN = {
 
 @contextmanager
 def located(where: str) -> Iterator[None]:
-    """Turn what is refused inside into an error that says where in the job file its cause stands.
-
-    Parameters
-    ----------
-    where : str
-        File, or path of a key.
-
-    Yields
-    ------
-    None
-        While it watches.
-
-    Raises
-    ------
-    InvalidValueError
-        With the key before the sentence.
-    MissingExtraError
-        As it comes: it is not the job's fault.
-    """
+    """Turn what is refused inside into an error that says where in the job file its cause stands."""
     try:
         yield
     except MissingExtraError:
@@ -54,23 +36,7 @@ def located(where: str) -> Iterator[None]:
 
 
 def read_text(path: Path) -> str:
-    """Return the text of a job file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    str
-        Its text.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is none, or it is not UTF-8 text.
-    """
+    """Return the text of a job file."""
     try:
         if path.is_dir():
             raise InvalidValueError(f"{path} is a folder; give a job file, or take status, resume and export for it")
@@ -90,23 +56,6 @@ def read_text(path: Path) -> str:
 def document_of(text: str) -> "Document":
     r"""Return what a job file says.
 
-    Parameters
-    ----------
-    text : str
-        TOML.
-
-    Returns
-    -------
-    Document
-        Its tables, checked for themselves.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is not TOML, a key is unknown or missing, or a value is not of the kind or in the range of its key.
-
-    Examples
-    --------
     >>> document_of('[campaign]\nname = "a"\nkind = "stripe"')
     Traceback (most recent call last):
     rocking.errors.InvalidValueError: campaign.kind must be one of 'overturning-map', ... got 'stripe'; did you mean
@@ -118,25 +67,7 @@ def document_of(text: str) -> "Document":
 
 
 def validated(kind: "type[_Kind]", text: str) -> "_Kind":
-    """Return the tables of a text, checked for themselves.
-
-    Parameters
-    ----------
-    kind : type
-        What the tables are.
-    text : str
-        TOML.
-
-    Returns
-    -------
-    JobTable
-        Of that kind.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is not TOML, a key is unknown or missing, or a value is not of the kind or in the range of its key.
-    """
+    """Return the tables of a text, checked for themselves."""
     from pydantic import ValidationError
 
     from rocking.bodies.formats.words import sentence

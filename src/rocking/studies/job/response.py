@@ -27,40 +27,17 @@ __all__ = ["ResponseJob", "ResponseQuestion", "is_response", "made_motion", "que
 
 @dataclass(frozen=True)
 class ResponseJob:
-    """A file that describes one response, read with all files that it names.
+    """A file that describes one response, read with all files that it names."""
 
-    Parameters
-    ----------
-    document : Document
-        Its tables.
-    question : ResponseQuestion
-        Body, motion, restitutions and settings.
-    inputs : Inputs
-        The files that were read, with their hashes.
-    """
-
-    document: "Document"
-    question: ResponseQuestion
-    inputs: Inputs
+    document: "Document"  # its tables
+    question: ResponseQuestion  # body, motion, restitutions and settings
+    inputs: Inputs  # the files that were read, with their hashes
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> "ResponseJob":
         """Read a file.
 
-        Parameters
-        ----------
-        path : path
-            TOML with the tables [response], [body], [motion], [restitution] and [settings].
-
-        Returns
-        -------
-        ResponseJob
-            Ready to be answered.
-
-        Raises
-        ------
-        InvalidValueError
-            With file and key, if something in it cannot be used.
+        path: TOML with the tables [response], [body], [motion], [restitution] and [settings].
         """
         where = Path(path)
         with located(str(where)):
@@ -70,25 +47,6 @@ class ResponseJob:
     def of_text(cls, text: str, folder: str | os.PathLike[str]) -> "ResponseJob":
         r"""Read the text of such a file.
 
-        Parameters
-        ----------
-        text : str
-            TOML.
-        folder : path
-            Where the files are that it names.
-
-        Returns
-        -------
-        ResponseJob
-            Ready to be answered.
-
-        Raises
-        ------
-        InvalidValueError
-            With the key, if something in it cannot be used.
-
-        Examples
-        --------
         >>> text = '[response]\nfree = 0.5\n[body]\nunits = "m"\nwidth = 1\nheight = 4'
         >>> job = ResponseJob.of_text(text, ".")
         >>> job.question.free, list(job.question.choices)
@@ -112,21 +70,7 @@ def question_from(
 ) -> ResponseQuestion:
     """Return the question that tables ask about a body and a motion that have been made.
 
-    Parameters
-    ----------
-    tables : ResponseTables
-        Restitution, response and settings.
-    body : Body
-        The body.
-    motion : GroundMotion or Pulse, optional
-        The motion, not scaled.
-    scale : float, optional
-        Factor on the motion; what the tables say of their motion if not given [-].
-
-    Returns
-    -------
-    ResponseQuestion
-        The question.
+    scale: factor on the motion; what the tables say of their motion if not given [-].
     """
     with located("settings"):
         told = tables.settings.model_dump(exclude={"engine"}, exclude_none=True)
@@ -147,20 +91,7 @@ def question_from(
 def made_motion(table: "OneMotionTable") -> Motion:
     """Return a motion that needs no file: a pulse, or one of a synthetic family.
 
-    Parameters
-    ----------
-    table : OneMotionTable
-        The table.
-
-    Returns
-    -------
-    GroundMotion or Pulse
-        Not scaled by `scale`; scaled to `pga` or `pgv`.
-
-    Raises
-    ------
-    InvalidValueError
-        If the table asks for a record, or a number is not allowed.
+    Returns not scaled by `scale`; scaled to `pga` or `pgv`.
     """
     if table.pulse is not None:
         return pulse(table.pulse)
@@ -176,15 +107,7 @@ def made_motion(table: "OneMotionTable") -> Motion:
 def is_response(path: Path) -> bool:
     """Return whether a file describes a response rather than a body: it has a table [response].
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-
-    Returns
-    -------
-    bool
-        False for everything that cannot be read as TOML; never raises.
+    Returns false for everything that cannot be read as TOML; never raises.
     """
     if path.suffix.lower() != ".toml":
         return False

@@ -15,41 +15,17 @@ from rocking.errors import InvalidValueError, PureRockingWarning
 
 @dataclass(frozen=True, slots=True)
 class ResponseQuestion:
-    """Everything that a response depends on.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    motion : GroundMotion or Pulse, optional
-        The motion, not scaled; None for free rocking.
-    choices : dict of str to Any
-        Restitutions by label, as `simulate` takes them.
-    settings : Settings
-        How to integrate.
-    engine : {"auto", "fast", "reference"}
-        Which engine.
-    friction : float
-        Coefficient of friction between body and ground [-].
-    free : float, optional
-        First rotation over the slenderness angle of the side it leans to, for free rocking [-].
-    scale : float
-        Factor on the motion [-].
-
-    Raises
-    ------
-    InvalidValueError
-        If there is a motion and a first rotation or neither, or a number is not allowed.
-    """
+    """Everything that a response depends on."""
 
     body: Body
-    motion: Motion | None
+    motion: Motion | None  # the motion, not scaled; None for free rocking
+    # restitutions by label, as `simulate` takes them
     choices: dict[str, Any] = field(default_factory=lambda: {"ked": "ked"})
-    settings: Settings = field(default_factory=Settings)
-    engine: str = "auto"
-    friction: float = DEFAULT_FRICTION
-    free: float | None = None
-    scale: float = 1.0
+    settings: Settings = field(default_factory=Settings)  # how to integrate
+    engine: str = "auto"  # which engine
+    friction: float = DEFAULT_FRICTION  # coefficient of friction between body and ground [-]
+    free: float | None = None  # first rotation over the slenderness angle of the side it leans to, for free rocking [-]
+    scale: float = 1.0  # factor on the motion [-]
 
     def __post_init__(self) -> None:
         """Check what the engines do not check."""
@@ -68,18 +44,7 @@ class ResponseQuestion:
         return self.free * side.slenderness_angle
 
     def answered_with(self, restitution: Any) -> Response:
-        """Return the response with one restitution.
-
-        Parameters
-        ----------
-        restitution : str, RestitutionModel, float, mapping or ImpactLaw
-            As `simulate` takes it.
-
-        Returns
-        -------
-        Response
-            The response.
-        """
+        """Return the response with one restitution."""
         how = {**vars(self.settings), "engine": self.engine}
         with warnings.catch_warnings():  # whoever shows the response shows its doubts
             warnings.simplefilter("ignore", PureRockingWarning)

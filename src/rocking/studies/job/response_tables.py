@@ -78,17 +78,7 @@ class ResponseTables(JobTable):
 def check_start(moved: bool, free: float | None) -> None:
     """Refuse a document that has neither or both of a motion and a first rotation.
 
-    Parameters
-    ----------
-    moved : bool
-        Whether there is a motion.
-    free : float, optional
-        First rotation over the slenderness angle [-].
-
-    Raises
-    ------
-    PydanticCustomError
-        If there are both or none.
+    free: first rotation over the slenderness angle [-].
     """
     words = ""
     if moved and free is not None:

@@ -25,26 +25,7 @@ def choices_of(
 ) -> dict[str, Any]:
     """Return the restitutions that a table describes.
 
-    Parameters
-    ----------
-    table : RestitutionTable
-        The table.
-    seed : int
-        Seed of draws, where the table gives none.
-    bodies : sequence of Body
-        The bodies of the job; a posterior is of one.
-    inputs : Inputs, optional
-        Takes note of the files of models, as in ``mine.py:Mine``; without it, models are asked for by name only.
-
-    Returns
-    -------
-    dict of str to Any
-        Models, coefficients, pairs by side or laws, as `simulate` takes them, by label.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such model, or two choices are the same.
+    Returns Models, coefficients, pairs by side or laws, as `simulate` takes them, by label.
     """
     with located("restitution"):
         words = [*([table.model] if table.model else []), *(table.models or [])]

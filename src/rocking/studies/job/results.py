@@ -16,24 +16,12 @@ PIECE = 1 << 16
 
 @dataclass(frozen=True)
 class Results:
-    """Results of a finished campaign.
+    """Results of a finished campaign."""
 
-    Parameters
-    ----------
-    study : Study
-        What they are over.
-    campaign : Campaign
-        Where they are.
-    provenance : dict
-        Where they come from.
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-    """
-
-    study: Study
-    campaign: Campaign
-    provenance: dict[str, Any]
-    progress: Callable[[int], None] | None = None
+    study: Study  # what they are over
+    campaign: Campaign  # where they are
+    provenance: dict[str, Any]  # where they come from
+    progress: Callable[[int], None] | None = None  # called with the number of histories done since the last call
 
     @property
     def attributes(self) -> dict[str, Any]:
@@ -45,10 +33,7 @@ class Results:
     def pieces(self) -> Iterator[tuple[int, int, Arrays]]:
         """Return the results in the order of the histories.
 
-        Yields
-        ------
-        tuple
-            First history, last one (not included), and what is known of them: the keys of `VARIABLES`.
+        Returns first history, last one (not included), and what is known of them: the keys of `VARIABLES`.
         """
         for piece in self.campaign.pieces():
             for first in range(piece.first, piece.last, PIECE):
@@ -61,15 +46,7 @@ class Results:
     def coordinates(self, first: int, last: int) -> Iterator[tuple[str, Coordinate, np.ndarray]]:
         """Return what is known of where some histories are, for tables with a row a history.
 
-        Parameters
-        ----------
-        first, last : int
-            Numbers of histories.
-
-        Yields
-        ------
-        tuple
-            Name, coordinate, and the place of each history in its flat values.
+        Returns Name, coordinate, and the place of each history in its flat values.
         """
         places = self.study.places(first, last)
         for name, coordinate in self.study.coordinates.items():

@@ -18,17 +18,7 @@ FINISHED = "finished.json"
 def round_folder(folder: Path, number: int) -> Path:
     """Return the folder of a round.
 
-    Parameters
-    ----------
-    folder : Path
-        The campaign of the job.
-    number : int
-        Number of the round, from 0.
-
-    Returns
-    -------
-    Path
-        The folder; it may not be there yet.
+    Returns the folder; it may not be there yet.
     """
     return folder / f"round-{number:03}"
 
@@ -36,18 +26,6 @@ def round_folder(folder: Path, number: int) -> Path:
 def resume(folder: Path) -> str:
     """Return the command that goes on with a campaign.
 
-    Parameters
-    ----------
-    folder : Path
-        The campaign of the job.
-
-    Returns
-    -------
-    str
-        As it is typed.
-
-    Examples
-    --------
     >>> resume(Path("my study"))
     "rocking campaign resume 'my study'"
     """
@@ -56,25 +34,7 @@ def resume(folder: Path) -> str:
 
 @contextmanager
 def way_out(folder: Path, number: int) -> Iterator[None]:
-    """Say of a damaged round what its user can do: rounds are not campaigns that anybody began.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign of the job.
-    number : int
-        Number of the round, from 0.
-
-    Yields
-    ------
-    None
-        While it watches.
-
-    Raises
-    ------
-    CampaignDamagedError
-        If the round is damaged, with the way out.
-    """
+    """Say of a damaged round what its user can do: rounds are not campaigns that anybody began."""
     try:
         yield
     except CampaignDamagedError as error:
@@ -89,21 +49,8 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
 def status_of_rounds(folder: Path, *, verify: bool = True) -> tuple[Status | None, int, bool]:
     """Return how far the rounds are that have begun; how many will follow is not known before they do.
 
-    Parameters
-    ----------
-    folder : Path
-        The campaign of the job.
-    verify : bool
-        Whether to read all results: what is damaged does not count.
-
-    Returns
-    -------
-    status : Status or None
-        Of all rounds that have begun; None if none has.
-    begun : int
-        How many.
-    finished : bool
-        Whether the last one was asked for, and all are complete.
+    Returns status: of all rounds that have begun; None if none has; finished: whether the last one was asked for, and
+    all are complete.
     """
     found: list[Status] = []
     while (round_folder(folder, len(found)) / NAME).exists():
@@ -124,18 +71,7 @@ def status_of_rounds(folder: Path, *, verify: bool = True) -> tuple[Status | Non
 
 
 def verified_rounds(folder: Path) -> list[Verification]:
-    """Read everything that the rounds have that have begun.
-
-    Parameters
-    ----------
-    folder : Path
-        The campaign of the job.
-
-    Returns
-    -------
-    list of Verification
-        Of each.
-    """
+    """Read everything that the rounds have that have begun."""
     found: list[Verification] = []
     while ((path := round_folder(folder, len(found))) / NAME).exists():
         with way_out(folder, len(found)):
@@ -146,20 +82,7 @@ def verified_rounds(folder: Path) -> list[Verification]:
 def finished_rounds(folder: Path) -> dict[str, int] | None:
     """Return what was noted when the last round was through.
 
-    Parameters
-    ----------
-    folder : Path
-        The campaign of the job.
-
-    Returns
-    -------
-    dict or None
-        rounds and histories; None if nothing was noted yet.
-
-    Raises
-    ------
-    CampaignDamagedError
-        If the note is not what was written.
+    Returns rounds and histories; None if nothing was noted yet.
     """
     try:
         told = json.loads((folder / FINISHED).read_bytes())

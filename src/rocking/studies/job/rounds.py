@@ -39,51 +39,18 @@ Search = Callable[[Compute], Answer]
 
 @dataclass
 class Rounds:
-    """The rounds that a study asks for, one after another.
+    """The rounds that a study asks for, one after another."""
 
-    Parameters
-    ----------
-    folder : Path
-        The campaign of the job.
-    chunk : int, optional
-        Histories of a chunk.
-    advance : callable, optional
-        Computes what is missing of a round; without it nothing is computed.
-    asked_to_stop : callable
-        Whether to stop before the next round.
-    """
-
-    folder: Path
-    chunk: int | None = None
+    folder: Path  # the campaign of the job
+    chunk: int | None = None  # histories of a chunk
+    # computes what is missing of a round; without it nothing is computed
     advance: Callable[[Campaign], object] | None = None
-    asked_to_stop: Callable[[], bool] = lambda: False
+    asked_to_stop: Callable[[], bool] = lambda: False  # whether to stop before the next round
     number: int = field(default=0, init=False)
     histories: int = field(default=0, init=False)
 
     def compute(self, histories: Histories) -> Arrays:
-        """Return the results of the next round; as they were, if it was computed before.
-
-        Parameters
-        ----------
-        histories : Histories
-            The round.
-
-        Returns
-        -------
-        dict of str to ndarray
-            The keys `NEEDED`.
-
-        Raises
-        ------
-        CampaignIncompleteError
-            If it is not there and shall not be computed.
-        CampaignMismatchError
-            If another one is there: the job, the seed or an earlier round is not what it was.
-        CampaignDamagedError
-            If it is damaged and shall not be computed again.
-        CampaignInterrupted
-            If it was asked to stop.
-        """
+        """Return the results of the next round; as they were, if it was computed before."""
         path = round_folder(self.folder, self.number)
         if self.asked_to_stop():
             raise CampaignInterrupted(_stopped(self.folder, self.number))
@@ -130,49 +97,14 @@ def _of_the_job(folder: Path, number: int) -> Iterator[None]:
 
 
 def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
-    """Return a campaign, begun where it is not.
-
-    Parameters
-    ----------
-    path : Path
-        Its folder.
-    histories : Histories
-        What it computes.
-    chunk : int, optional
-        Histories of a chunk.
-
-    Returns
-    -------
-    Campaign
-        With all that is finished.
-    """
+    """Return a campaign, begun where it is not."""
     if (path / NAME).exists():
         return Campaign.open(path, histories)
     return Campaign.create(path, histories, chunk)
 
 
 def replayed(search: Search, folder: Path) -> Answer:
-    """Return what a finished study has found, from its rounds on disk; nothing is computed.
-
-    Parameters
-    ----------
-    search : callable
-        The study.
-    folder : Path
-        The campaign of the job.
-
-    Returns
-    -------
-    Answer
-        The tables.
-
-    Raises
-    ------
-    CampaignIncompleteError
-        If it is not finished.
-    CampaignDamagedError
-        If there are other rounds than those that were finished.
-    """
+    """Return what a finished study has found, from its rounds on disk; nothing is computed."""
     told = finished_rounds(folder)
     if told is None:
         raise CampaignIncompleteError(f"{folder}: not finished; go on with: {resume(folder)}")
@@ -233,27 +165,7 @@ def run_rounds(
 ) -> Summary:  # fmt: skip
     """Compute what is missing of all rounds; those that are finished are read.
 
-    Parameters
-    ----------
-    search : callable
-        The study.
-    folder : Path
-        The campaign of the job.
-    chunk : int, optional
-        Histories of a chunk.
-    executor : {"serial", "processes"} or Executor
-        Who computes; rounds of one chunk are computed by this process.
-    workers : int, optional
-        Threads or processes.
-    progress : callable, optional
-        Called with a `Progress` of the round at its start and after each of its chunks.
-    **options
-        As `Campaign.run` takes them.
-
-    Returns
-    -------
-    Summary
-        What was done in the rounds that were not finished before.
+    Returns what was done in the rounds that were not finished before.
     """
     _check(executor, workers, search, options.get("start_method"))
     run = _Run(executor, workers, progress, **{"order_seed": None, **options})

@@ -19,15 +19,7 @@ MOST_ROWS_OF_EXCEL = 1_048_575
 
 
 def to_parquet(results: Results, path: Path) -> None:
-    """Write results as Parquet, a group of rows a chunk; units are in the metadata of the columns.
-
-    Parameters
-    ----------
-    results : Results
-        What to write.
-    path : Path
-        The file.
-    """
+    """Write results as Parquet, a group of rows a chunk; units are in the metadata of the columns."""
     pa: Any = extra("pyarrow", "Parquet")
     parquet: Any = extra("pyarrow.parquet", "Parquet")
     fields = []
@@ -58,15 +50,7 @@ def _arrow(pa: Any, coordinate: Coordinate, at: np.ndarray) -> Any:
 
 
 def to_csv(results: Results, path: Path) -> None:
-    """Write results as comma-separated values, all digits kept; units stand in the header.
-
-    Parameters
-    ----------
-    results : Results
-        What to write. Where it comes from is written beside it, into a file whose name ends in ``.provenance.json``.
-    path : Path
-        The file.
-    """
+    """Write results as comma-separated values, all digits kept; units stand in the header."""
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(_header(results))
@@ -75,20 +59,7 @@ def to_csv(results: Results, path: Path) -> None:
 
 
 def to_excel(results: Results, path: Path) -> None:
-    """Write results as a workbook: one sheet of histories, one that says where they come from.
-
-    Parameters
-    ----------
-    results : Results
-        What to write.
-    path : Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If a sheet has not that many rows.
-    """
+    """Write results as a workbook: one sheet of histories, one that says where they come from."""
     count = results.study.histories.count
     if count > MOST_ROWS_OF_EXCEL:
         raise InvalidValueError(

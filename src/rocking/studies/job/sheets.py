@@ -22,17 +22,7 @@ Attributes = Mapping[str, Any]
 
 
 def sheet_to_csv(sheet: Sheet, path: Path, attributes: Attributes) -> None:
-    """Write a table as comma-separated values, all digits kept; what is no finite number is left empty.
-
-    Parameters
-    ----------
-    sheet : Sheet
-        The table.
-    path : Path
-        The file.
-    attributes : mapping
-        Not used: where it comes from is written beside it.
-    """
+    """Write a table as comma-separated values, all digits kept; what is no finite number is left empty."""
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(sheet.header())
@@ -40,17 +30,7 @@ def sheet_to_csv(sheet: Sheet, path: Path, attributes: Attributes) -> None:
 
 
 def sheet_to_parquet(sheet: Sheet, path: Path, attributes: Attributes) -> None:
-    """Write a table as Parquet; units are in the metadata of the columns.
-
-    Parameters
-    ----------
-    sheet : Sheet
-        The table.
-    path : Path
-        The file.
-    attributes : mapping
-        Where it comes from.
-    """
+    """Write a table as Parquet; units are in the metadata of the columns."""
     pa: Any = extra("pyarrow", "Parquet")
     parquet: Any = extra("pyarrow.parquet", "Parquet")
     arrays = [
@@ -67,22 +47,7 @@ def sheet_to_parquet(sheet: Sheet, path: Path, attributes: Attributes) -> None:
 
 
 def sheet_to_excel(sheet: Sheet, path: Path, attributes: Attributes) -> None:
-    """Write a table as a workbook: one sheet of rows, one that says where they come from.
-
-    Parameters
-    ----------
-    sheet : Sheet
-        The table.
-    path : Path
-        The file.
-    attributes : mapping
-        Where it comes from.
-
-    Raises
-    ------
-    InvalidValueError
-        If a sheet has not that many rows.
-    """
+    """Write a table as a workbook: one sheet of rows, one that says where they come from."""
     if sheet.rows > MOST_ROWS_OF_EXCEL:
         raise InvalidValueError(
             f"a sheet of Excel has {MOST_ROWS_OF_EXCEL} rows, these are {sheet.rows}; take .parquet or .csv"
@@ -108,17 +73,7 @@ SHEET_FORMATS: dict[str, Callable[[Sheet, Path, Attributes], None]] = {
 
 
 def sheets_to_netcdf(sheets: Mapping[str, Sheet], path: Path, attributes: Attributes) -> None:
-    """Write tables as variables of a netCDF file, which is made or, where it is there, added to.
-
-    Parameters
-    ----------
-    sheets : mapping of str to Sheet
-        The tables; each has a dimension of its own.
-    path : Path
-        The file.
-    attributes : mapping
-        Where they come from.
-    """
+    """Write tables as variables of a netCDF file, which is made or, where it is there, added to."""
     h5py: Any = extra("h5py", "netCDF")
     room = sum(room_of(each.values) for sheet in sheets.values() for each in sheet.columns.values())
     with netcdf_file(path, "a", room) as file:

@@ -35,21 +35,11 @@ Block = tuple[tuple[slice, ...], slice]
 
 @dataclass(frozen=True)
 class Coordinate:
-    """Something that is known along one or more dimensions of a study.
+    """Something that is known along one or more dimensions of a study."""
 
-    Parameters
-    ----------
-    dims : tuple of str
-        The dimensions.
-    values : ndarray
-        The values: numbers, or words.
-    unit, words : str
-        Unit and meaning.
-    """
-
-    dims: tuple[str, ...]
-    values: np.ndarray
-    unit: str = "1"
+    dims: tuple[str, ...]  # the dimensions
+    values: np.ndarray  # the values: numbers, or words
+    unit: str = "1"  # unit, words: unit and meaning
     words: str = ""
 
     @property
@@ -60,41 +50,20 @@ class Coordinate:
 
 @dataclass(frozen=True)
 class Study:
-    """Histories over dimensions.
+    """Histories over dimensions."""
 
-    Parameters
-    ----------
-    histories : Histories
-        What is computed; the last dimension changes fastest.
-    dims : dict of str to int
-        Length of every dimension, in order.
-    coordinates : dict of str to Coordinate
-        What is known along the dimensions.
-    attributes : dict
-        What the study is, as plain values.
-    finish : callable, optional
-        Takes the results of all histories and returns the fragility analysis of each restitution by label.
-    rescale : callable, optional
-        Takes first and last number of histories and their results, and changes those whose unit is not yet the user's.
-    search : callable, optional
-        Of an adaptive study: takes what computes a round of histories, asks for one round after another, and returns
-        what it has found. The histories of the study are then those of the first round.
-    assess : callable, optional
-        Takes outcome and peak_rotation of all histories and returns the assessment of an inventory.
-
-    Raises
-    ------
-    InvalidValueError
-        If the dimensions do not fit the histories.
-    """
-
-    histories: Histories
-    dims: dict[str, int]
-    coordinates: dict[str, Coordinate]
-    attributes: dict[str, Any] = field(default_factory=dict)
+    histories: Histories  # what is computed; the last dimension changes fastest
+    dims: dict[str, int]  # length of every dimension, in order
+    coordinates: dict[str, Coordinate]  # what is known along the dimensions
+    attributes: dict[str, Any] = field(default_factory=dict)  # what the study is, as plain values
+    # takes the results of all histories and returns the fragility analysis of each restitution by label
     finish: Callable[[Arrays], dict[str, Any]] | None = None
+    # takes first and last number of histories and their results, and changes those whose unit is not yet the user's
     rescale: Callable[[int, int, Arrays], Arrays] | None = None
+    # of an adaptive study: takes what computes a round of histories, asks for one round after another, and returns what
+    # it has found. The histories of the study are then those of the first round
     search: Callable[[Compute], Answer] | None = None
+    # takes outcome and peak_rotation of all histories and returns the assessment of an inventory
     assess: Callable[[Arrays], Any] | None = None
 
     def __post_init__(self) -> None:
@@ -108,20 +77,7 @@ class Study:
         return tuple(self.dims.values())
 
     def derived(self, first: int, last: int, results: Arrays) -> Arrays:
-        """Return the results of some histories as users know them, with what follows from them.
-
-        Parameters
-        ----------
-        first, last : int
-            Numbers of histories.
-        results : dict of str to ndarray
-            The keys of `rocking.dynamics.engine.RESULTS`.
-
-        Returns
-        -------
-        dict of str to ndarray
-            The keys of `VARIABLES`.
-        """
+        """Return the results of some histories as users know them, with what follows from them."""
         found = results if self.rescale is None else self.rescale(first, last, dict(results))
         sides = self.histories.rows(first, last).values
         ratio = peak_ratio(found["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
@@ -129,18 +85,7 @@ class Study:
         return {name: whole[name] for name in VARIABLES}
 
     def places(self, first: int, last: int) -> dict[str, np.ndarray]:
-        """Return where some histories are along every dimension.
-
-        Parameters
-        ----------
-        first, last : int
-            Numbers of histories.
-
-        Returns
-        -------
-        dict of str to ndarray of int
-            By dimension.
-        """
+        """Return where some histories are along every dimension."""
         found = np.unravel_index(np.arange(first, last, dtype=np.int64), self.shape)
         return dict(zip(self.dims, found, strict=True))
 
@@ -148,20 +93,8 @@ class Study:
 def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
     """Return the rectangular blocks of an array that some of its entries, numbered row by row, fill.
 
-    Parameters
-    ----------
-    first, last : int
-        Numbers of entries: from the first up to but not including the last.
-    shape : tuple of int
-        Shape of the array.
+    Returns where a block is in the array, and where its entries are among those from first to last.
 
-    Yields
-    ------
-    tuple
-        Where a block is in the array, and where its entries are among those from first to last.
-
-    Examples
-    --------
     >>> for place, part in blocks(1, 8, (3, 3)):
     ...     print([(p.start, p.stop) for p in place], part.start, part.stop)
     [(0, 1), (1, 3)] 0 2

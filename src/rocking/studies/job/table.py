@@ -15,18 +15,7 @@ Words = Annotated[str, Field(min_length=1, max_length=200)]
 
 
 def refused(words: str) -> PydanticCustomError:
-    """Return an error whose words are a sentence already.
-
-    Parameters
-    ----------
-    words : str
-        The sentence.
-
-    Returns
-    -------
-    PydanticCustomError
-        To be raised by a validator.
-    """
+    """Return an error whose words are a sentence already."""
     return PydanticCustomError("contradiction", "{words}", {"words": words})
 
 
@@ -46,23 +35,7 @@ class JobTable(BaseModel):
         return given
 
     def chosen(self, *names: str) -> str:
-        """Return which one of several keys is there.
-
-        Parameters
-        ----------
-        *names : str
-            The keys, of which one is needed.
-
-        Returns
-        -------
-        str
-            The key.
-
-        Raises
-        ------
-        PydanticCustomError
-            If none is there, or more than one.
-        """
+        """Return which one of several keys is there."""
         found = [name for name in names if getattr(self, name) is not None]
         if len(found) != 1:
             words = f"exactly one of {', '.join(names)} is needed, got {' and '.join(found) or 'none'}"
@@ -94,13 +67,7 @@ class Values(JobTable):
         return self
 
     def numbers(self) -> FloatArray:
-        """Return the numbers.
-
-        Returns
-        -------
-        ndarray
-            In the unit of the key.
-        """
+        """Return the numbers."""
         if self.values is not None:
             return np.array(self.values, dtype=np.float64)
         start, stop, count = self.start or 0.0, self.stop or 0.0, self.count or 1  # all are there: checked above
@@ -118,15 +85,7 @@ def _in_table(given: Any) -> Any:
 def in_list(given: Any) -> Any:
     """Return a single table or word as a list of one.
 
-    Parameters
-    ----------
-    given : Any
-        What stands in the file.
-
-    Returns
-    -------
-    Any
-        The list; everything else as it is.
+    Returns the list; everything else as it is.
     """
     return [given] if isinstance(given, (dict, str)) else given
 

@@ -9,13 +9,7 @@ from rocking.dynamics.export import extra
 
 
 def new_book() -> Any:
-    """Return an empty workbook whose rows are not kept in memory.
-
-    Returns
-    -------
-    Workbook
-        Of openpyxl.
-    """
+    """Return an empty workbook whose rows are not kept in memory."""
     openpyxl: Any = extra("openpyxl", "Excel")
     return openpyxl.Workbook(write_only=True)
 
@@ -24,18 +18,6 @@ def save_book(book: Any, path: Path) -> None:
     """Write a workbook.
 
     It is packed in memory: an archive that a full disk cuts off cannot be closed, and complains when it is forgotten.
-
-    Parameters
-    ----------
-    book : Workbook
-        As of `new_book`, filled.
-    path : Path
-        The file.
-
-    Raises
-    ------
-    OSError
-        If the disk does not take it.
     """
     whole = BytesIO()
     try:

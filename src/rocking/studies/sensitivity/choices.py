@@ -14,23 +14,8 @@ from rocking.restitution import RestitutionModel, model
 def named_choices(restitutions: Any) -> dict[str, Any]:
     """Return choices of restitution by name.
 
-    Parameters
-    ----------
-    restitutions : sequence, or mapping of str to choice
-        Models or their names, coefficients [-], pairs by side, laws of impact; names are made for a sequence.
+    restitutions: models or their names, coefficients [-], pairs by side, laws of impact; names are made for a sequence.
 
-    Returns
-    -------
-    dict of str to choice
-        At least two.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are fewer than two, one is no restitution, or two would have the same name.
-
-    Examples
-    --------
     >>> named_choices(["housner", 0.9, {"left": 0.8, "right": 0.9}])
     {'housner': 'housner', '0.9': 0.9, 'left 0.8, right 0.9': {'left': 0.8, 'right': 0.9}}
     """
@@ -54,23 +39,7 @@ def named_choices(restitutions: Any) -> dict[str, Any]:
 
 
 def label_of(choice: Any) -> str:
-    """Return the name of a choice of restitution.
-
-    Parameters
-    ----------
-    choice : str, RestitutionModel, float, mapping or ImpactLaw
-        The choice.
-
-    Returns
-    -------
-    str
-        For titles and tables.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no restitution.
-    """
+    """Return the name of a choice of restitution."""
     if isinstance(choice, (str, RestitutionModel)):
         return model(choice).label
     if isinstance(choice, DrawnRestitution):

@@ -87,18 +87,8 @@ class CurveChange:
 def signed(share: float) -> str:
     """Return a share in percent with its sign.
 
-    Parameters
-    ----------
-    share : float
-        The share [-].
+    share: the share [-].
 
-    Returns
-    -------
-    str
-        With its sign of percent.
-
-    Examples
-    --------
     >>> signed(0.14), signed(-0.02)
     ('+14 %', '-2 %')
     """
@@ -122,28 +112,8 @@ def curve_change(
 
     Both curves of a repetition are fitted to the same motions, so that what the motions have in common cancels.
 
-    Parameters
-    ----------
-    curves : pair of (median, dispersion)
-        The two curves: medians in the unit of the levels, dispersions [-].
-    levels : array_like, shape (levels,)
-        Intensities [unit of the intensity measure].
-    first, second : array_like of bool, shape (motions, levels)
-        Whether each motion at each level reaches the state; a history that failed belongs in neither.
-    repetitions : int
-        Sets of motions to draw; 0 for none.
-    seed : int
-        Seed of the draws.
-
-    Returns
-    -------
-    CurveChange
-        Ratio of the medians, difference of the dispersions, largest distance.
-
-    Raises
-    ------
-    InvalidValueError
-        If the arrays do not fit one another, or a value is outside its range.
+    curves: the two curves: medians in the unit of the levels, dispersions [-]; levels: intensities [unit of the
+    intensity measure]. Returns ratio of the medians, difference of the dispersions, largest distance.
     """
     at = checks.positive_array("levels", levels)
     if at.ndim != 1 or at.size < 2 or np.any(np.diff(at) <= 0.0):
@@ -174,22 +144,8 @@ def _moved(log_median: FloatArray, dispersion: FloatArray) -> tuple[FloatArray, 
 def curve_distance(log_median: FloatArray, dispersion: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the largest vertical distance between pairs of lognormal curves, and where it is.
 
-    Parameters
-    ----------
-    log_median : ndarray, shape (2, ...)
-        Logarithms of the medians.
-    dispersion : ndarray, shape (2, ...)
-        Dispersions [-].
+    dispersion: dispersions [-]. Returns distance: largest difference of the probabilities, without its sign [-].
 
-    Returns
-    -------
-    distance : ndarray
-        Largest difference of the probabilities, without its sign [-].
-    where : ndarray
-        Logarithm of the intensity there.
-
-    Examples
-    --------
     >>> distance, where = curve_distance(np.array([0.0, 1.0]), np.array([0.5, 0.5]))
     >>> round(float(distance), 6), float(where)
     (0.682689, 0.5)
@@ -213,17 +169,8 @@ def curve_distance(log_median: FloatArray, dispersion: FloatArray) -> tuple[Floa
 def fits(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> FloatArray:
     """Return lognormal curves of many sets of stripes at once, as `fit_lognormal` finds them.
 
-    Parameters
-    ----------
-    levels : ndarray, shape (levels,)
-        Intensities, ascending [unit of the intensity measure].
-    failures, trials : ndarray, shape (sets, levels)
-        Counts.
-
-    Returns
-    -------
-    ndarray, shape (2, sets)
-        Logarithm of the median, and dispersion [-]; NaN where there is no curve.
+    levels: intensities, ascending [unit of the intensity measure]. Returns logarithm of the median, and dispersion [-];
+    NaN where there is no curve.
     """
     x = np.log(levels)
     scale = Scale(float(x.mean()), float(x.std()))

@@ -65,28 +65,6 @@ class Flips:
 def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = False) -> Flips:
     """Return how many verdicts differ between two results, with a 95 % interval of their share where there is one.
 
-    Parameters
-    ----------
-    first, second : array_like of int
-        Codes of `Outcome`.
-    motions : array_like of int, optional
-        Number of each history's motion: histories of one motion are alike, so the interval counts motions. With
-        fewer than two of them nothing was sampled but what is drawn.
-    drawn : bool
-        Whether each history has draws of its own, such as of a random restitution.
-
-    Returns
-    -------
-    Flips
-        The counts.
-
-    Raises
-    ------
-    InvalidValueError
-        If the arrays do not fit one another, or no history has a verdict in both.
-
-    Examples
-    --------
     >>> found = flips_of([1, 2, 2, 2], [1, 1, 2, 2])
     >>> found.count, found.gained, found.share, found.low
     (1, 0, 0.25, nan)
@@ -109,20 +87,7 @@ def flips_of(first: Any, second: Any, motions: Any = None, *, drawn: bool = Fals
 def flip_map(first: Any, second: Any) -> np.ndarray:
     """Return where the verdict differs.
 
-    Parameters
-    ----------
-    first, second : array_like of int
-        Codes of `Outcome`, of one shape.
-
-    Returns
-    -------
-    ndarray of int8
-        0 the same verdict, 1 overturned in the second only, -1 in the first only, 2 no verdict in one of them.
-
-    Raises
-    ------
-    InvalidValueError
-        If these are no codes, or of different shapes.
+    Returns 0 the same verdict, 1 overturned in the second only, -1 in the first only, 2 no verdict in one of them.
     """
     a, b = _codes(first), _codes(second)
     if a.shape != b.shape:
@@ -135,22 +100,8 @@ def flip_map(first: Any, second: Any) -> np.ndarray:
 def share_interval(share: float, size: float, level: float = LEVEL) -> tuple[float, float]:
     """Return the exact binomial interval of a share (Clopper & Pearson 1934), for a number of trials not always whole.
 
-    Parameters
-    ----------
-    share : float
-        Share observed [-].
-    size : float
-        Independent trials, or the effective number of them.
-    level : float
-        Confidence [-].
+    share: share observed [-]; level: confidence [-]. Returns ends [-].
 
-    Returns
-    -------
-    low, high : float
-        Ends [-].
-
-    Examples
-    --------
     >>> low, high = share_interval(0.0, 100)
     >>> low, round(high, 6) == round(1 - 0.025 ** (1 / 100), 6)
     (0.0, True)
@@ -166,23 +117,8 @@ def share_interval(share: float, size: float, level: float = LEVEL) -> tuple[flo
 def difference_of(first: "xr.Dataset", second: "xr.Dataset", name: str) -> "xr.DataArray":
     """Return how a value moves from one result to another, where the history stood in both.
 
-    Parameters
-    ----------
-    first, second : xarray.Dataset
-        Results with an outcome.
-    name : str
-        Variable; "verdict" for the map of flips.
-
-    Returns
-    -------
-    xarray.DataArray
-        Second less first, of peak rotations their sizes; missing (NaN) where either overturned or failed: its peak is
-        then no rotation of rocking.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is no such variable.
+    Returns second less first, of peak rotations their sizes; missing (NaN) where either overturned or failed: its peak
+    is then no rotation of rocking.
     """
     if name == "verdict":
         flag = "-1 overturned in the baseline only, 0 same verdict, 1 overturned only here, 2 one of the two failed"

@@ -27,65 +27,19 @@ class Posterior(Protocol):
     def sample(self, count: int, seed: int, onto: Foot | None = None) -> FloatArray:
         """Return coefficients drawn from it.
 
-        Parameters
-        ----------
-        count : int
-            How many.
-        seed : int
-            Seed of the draws.
-        onto : {"left", "right"}, optional
-            The foot on which the body lands, if not that of the distribution.
-
-        Returns
-        -------
-        ndarray
-            Coefficients [-].
+        Returns coefficients [-].
         """
 
     def per_history(self, seed: int) -> SampledRestitution:
-        """Return the law that draws once for every history.
-
-        Parameters
-        ----------
-        seed : int
-            Seed of the draws.
-
-        Returns
-        -------
-        SampledRestitution
-            The law.
-        """
+        """Return the law that draws once for every history."""
 
     def per_impact(self, seed: int) -> RandomRestitution:
-        """Return the law that draws at every impact.
-
-        Parameters
-        ----------
-        seed : int
-            Seed of the draws.
-
-        Returns
-        -------
-        RandomRestitution
-            The law.
-        """
+        """Return the law that draws at every impact."""
 
 
 def posterior(body: Body) -> Posterior:
     """Return what all measurements say about the coefficient of restitution of a body.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-
-    Returns
-    -------
-    Posterior
-        What `rocking.evidence.restitution_distribution` returns.
-
-    Examples
-    --------
     >>> from rocking.bodies import Block
     >>> found = posterior(Block(width=0.5, height=2.0))
     >>> bool(0.85 < found.sample(1000, seed=1).mean() < 0.95)

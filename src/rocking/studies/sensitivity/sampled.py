@@ -115,10 +115,18 @@ class SampledHistories(Histories):
 
     Parameters
     ----------
+    motions : MotionSet
+        Those of the base.
     base : Histories
         The histories; with r = 1 on both sides the draw is the coefficient itself.
     draw : SampledRestitution
         The distribution; what it multiplies is in the rows of the base.
+    law : ImpactLaw, optional
+        How the coefficient changes from impact to impact.
+    settings : Settings, optional
+        How to integrate.
+    engine : {"auto", "fast", "reference"}
+        Which engine.
     """
 
     base: Histories
@@ -193,15 +201,7 @@ class SampledHistories(Histories):
 def sampled(histories: Histories) -> Histories:
     """Return histories that the fast engine can take, where their law is a draw for every history.
 
-    Parameters
-    ----------
-    histories : Histories
-        Any.
-
-    Returns
-    -------
-    Histories
-        `SampledHistories` if the law is a `SampledRestitution`; otherwise the same.
+    Returns `SampledHistories` if the law is a `SampledRestitution`; otherwise the same.
     """
     return SampledHistories.of(histories, histories.law) if isinstance(histories.law, SampledRestitution) else histories
 
@@ -209,27 +209,8 @@ def sampled(histories: Histories) -> Histories:
 def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
     """Return numbers in [0, 1) that depend on seed, history and impact: `rocking.dynamics.impact_law.uniform`, of many.
 
-    Parameters
-    ----------
-    seed : int
-        Seed.
-    numbers : array_like of int
-        Numbers of histories.
-    impact : int
-        Number of the impact.
+    Returns the numbers, to the last bit those of `uniform`.
 
-    Returns
-    -------
-    ndarray
-        The numbers, to the last bit those of `uniform`.
-
-    Raises
-    ------
-    InvalidValueError
-        If the numbers are not whole numbers of 64 bits.
-
-    Examples
-    --------
     >>> from rocking.dynamics.impact_law import uniform
     >>> bool(uniforms(7, [123])[0] == uniform(7, 123, 0))
     True

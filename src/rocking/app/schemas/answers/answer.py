@@ -16,40 +16,12 @@ class Answer(BaseModel):
 
 
 def answered(shape: Any, words: str, status: int = 200) -> dict[int | str, dict[str, Any]]:
-    """Return what an endpoint declares of an answer in JSON.
-
-    Parameters
-    ----------
-    shape : type
-        Its shape.
-    words : str
-        What it is.
-    status : int
-        Its status.
-
-    Returns
-    -------
-    dict
-        For ``responses=`` of an endpoint.
-    """
+    """Return what an endpoint declares of an answer in JSON."""
     return {status: {"model": shape, "description": words}}
 
 
 def answered_with_file(words: str, *media_types: str) -> dict[int | str, dict[str, Any]]:
-    """Return what an endpoint declares of a file that it answers with.
-
-    Parameters
-    ----------
-    words : str
-        What it is.
-    *media_types : str
-        Its types; the end of the address decides which.
-
-    Returns
-    -------
-    dict
-        For ``responses=`` of an endpoint.
-    """
+    """Return what an endpoint declares of a file that it answers with."""
     name = {"schema": {"type": "string"}, "description": "attachment, with a harmless name of the file"}
     return {
         200: {

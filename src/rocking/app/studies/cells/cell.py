@@ -31,21 +31,9 @@ _STORED = {
 def cell_of(study: OpenStudy, place: Place, points: int = POINTS) -> dict[str, Any]:
     """Return the history behind a point of a picture.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-    place : Place
-        The history.
-    points : int
-        Over how many dots its curves are drawn.
-
-    Returns
-    -------
-    dict
-        ``stored``: what the study has of it, to the last digit; ``inputs``: what to ask for the same history, null
-        where inputs cannot say it; ``answer``: the response, null where there is none; ``difference_rad``: of the
-        peak rotations of both, which take other steps to the same accuracy; ``note``: a sentence on what is missing.
+    Returns ``stored``: what the study has of it, to the last digit; ``inputs``: what to ask for the same history, null
+    where inputs cannot say it; ``answer``: the response, null where there is none; ``difference_rad``: of the peak
+    rotations of both, which take other steps to the same accuracy; ``note``: a sentence on what is missing.
     """
     told: dict[str, Any] = {"stored": stored(study, place), "inputs": None, "answer": None, "difference_rad": None}
     try:
@@ -70,17 +58,7 @@ def cell_of(study: OpenStudy, place: Place, points: int = POINTS) -> dict[str, A
 def stored(study: OpenStudy, place: Place) -> dict[str, Any]:
     """Return what a study has of a history.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-    place : Place
-        The history.
-
-    Returns
-    -------
-    dict
-        Number, outcome, mode, meaning, impacts, peaks and time of overturning, as they were computed.
+    Returns Number, outcome, mode, meaning, impacts, peaks and time of overturning, as they were computed.
     """
     history = study.history(place.number)
     found = {key: plain(history[name]) for name, key in _STORED.items()}

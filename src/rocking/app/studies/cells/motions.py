@@ -25,39 +25,17 @@ _CLOSE = 1e-12
 
 @dataclass(frozen=True)
 class ChosenMotion:
-    """One motion of a study.
+    """One motion of a study."""
 
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion, without the factor of its table.
-    told : dict, optional
-        How inputs name it; None where they cannot.
-    scale : float
-        The factor of its table [-].
-    """
-
-    motion: Motion
-    told: dict[str, Any] | None
-    scale: float
+    motion: Motion  # the motion, without the factor of its table
+    told: dict[str, Any] | None  # how inputs name it; None where they cannot
+    scale: float  # the factor of its table [-]
 
     @classmethod
     def of(cls, study: OpenStudy, number: int, stretch: float) -> "ChosenMotion":
         """Return a motion of a study.
 
-        Parameters
-        ----------
-        study : OpenStudy
-            The study.
-        number : int
-            Number of the motion.
-        stretch : float
-            Factor on its time [-].
-
-        Returns
-        -------
-        ChosenMotion
-            The motion, stretched.
+        stretch: factor on its time [-].
         """
         table, place = _found(study, number)
         if table.pulse is not None:
@@ -90,25 +68,9 @@ class ChosenMotion:
 def stretched_words(words: str, stretch: float) -> str:
     """Return a pulse whose time is stretched while its acceleration stays, in words.
 
-    Parameters
-    ----------
-    words : str
-        The pulse.
-    stretch : float
-        Factor on its time [-].
+    stretch: factor on its time [-]. Returns the words of the stretched pulse; the same words where nothing is
+    stretched.
 
-    Returns
-    -------
-    str
-        The words of the stretched pulse; the same words where nothing is stretched.
-
-    Raises
-    ------
-    ArithmeticError
-        If these words cannot say it: no pulse of this package.
-
-    Examples
-    --------
     >>> stretched_words("sine:amplitude=3,period=0.5", 2.0)
     'sine:amplitude=3,period=1.0'
     """

@@ -20,45 +20,15 @@ _ACROSS = {
 
 @dataclass(frozen=True)
 class Place:
-    """A history of a study.
-
-    Parameters
-    ----------
-    number : int
-        Its number.
-    index : dict of str to int
-        Its place along every axis of the study, and along ``motion`` also where there is only one.
-    restitution : int
-        Number of the restitution among those that are compared.
-    """
+    """A history of a study."""
 
     number: int
-    index: dict[str, int]
-    restitution: int
+    index: dict[str, int]  # its place along every axis of the study, and along ``motion`` also where there is only one
+    restitution: int  # number of the restitution among those that are compared
 
     @classmethod
     def of(cls, study: OpenStudy, x: int, y: int, restitution: int = 0, motion: int = 0) -> "Place":
-        """Return the history at a point of a picture.
-
-        Parameters
-        ----------
-        study : OpenStudy
-            The study.
-        x, y : int
-            Numbers of the values along the axes of the picture.
-        restitution, motion : int
-            Numbers of the restitution and, where it is not an axis, the motion.
-
-        Returns
-        -------
-        Place
-            The history.
-
-        Raises
-        ------
-        NotFound
-            If there is no such point.
-        """
+        """Return the history at a point of a picture."""
         dims, choices = study.job.job.study.dims, len(study.job.job.parts.choices)
         across = across_of(study)
         index = {"motion": motion} | {across[0]: x, across[1]: y}
@@ -75,15 +45,7 @@ class Place:
 def across_of(study: OpenStudy) -> tuple[str, str]:
     """Return the dimensions that a picture of a study has along x and y.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-
-    Returns
-    -------
-    x, y : str
-        Names of dimensions; empty where the picture has only one.
+    Returns names of dimensions; empty where the picture has only one.
     """
     kind = str(study.job.job.document.campaign.kind)
     if kind in _ACROSS:

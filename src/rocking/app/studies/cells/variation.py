@@ -19,55 +19,19 @@ from rocking.studies.question import Question
 
 @dataclass(frozen=True)
 class Variation:
-    """What a history is made of.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    table : dict
-        The same, as inputs tell it.
-    label : str
-        The restitution in words.
-    restitution : Any
-        The same, as `simulate` takes it.
-    choice : dict, optional
-        The same, as inputs tell it; None where they cannot.
-    scale : float
-        Factor on the motion as the study has it [-].
-    stretch : float
-        Factor on its time [-].
-    """
+    """What a history is made of."""
 
     body: Body
-    table: dict[str, Any]
-    label: str
-    restitution: Any
-    choice: dict[str, Any] | None
-    scale: float
-    stretch: float = 1.0
+    table: dict[str, Any]  # the same, as inputs tell it
+    label: str  # the restitution in words
+    restitution: Any  # the same, as `simulate` takes it
+    choice: dict[str, Any] | None  # the same, as inputs tell it; None where they cannot
+    scale: float  # factor on the motion as the study has it [-]
+    stretch: float = 1.0  # factor on its time [-]
 
     @classmethod
     def of(cls, study: OpenStudy, place: Place) -> "Variation":
-        """Return what a history is made of.
-
-        Parameters
-        ----------
-        study : OpenStudy
-            The study.
-        place : Place
-            The history.
-
-        Returns
-        -------
-        Variation
-            Its parts.
-
-        Raises
-        ------
-        InvalidValueError
-            If there is no such body.
-        """
+        """Return what a history is made of."""
         job = study.job.job
         label, restitution, choice = _choice(study, place)
         rows = job.study.histories.rows(place.number, place.number + 1)
@@ -112,15 +76,7 @@ def _on_map(made: Variation, study: OpenStudy, place: Place) -> Variation:
 def body_table(body: Body) -> dict[str, Any]:
     """Return a body as inputs tell it.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-
-    Returns
-    -------
-    dict
-        In m and kg/m3; the same to the last bit, but for sections that were scaled.
+    Returns in m and kg/m3; the same to the last bit, but for sections that were scaled.
     """
     told = tomllib.loads(body_to_toml(body))
     return {"units": told["units"], **told["block"]} if "block" in told else told
@@ -146,15 +102,7 @@ def _choice(study: OpenStudy, place: Place) -> tuple[str, Any, dict[str, Any] | 
 def valid(variation: Variation) -> bool:
     """Return whether a history could be computed at all.
 
-    Parameters
-    ----------
-    variation : Variation
-        Its parts.
-
-    Returns
-    -------
-    bool
-        False where the coefficient would create energy.
+    Returns false where the coefficient would create energy.
     """
     value = variation.restitution
     return not isinstance(value, float) or bool(np.isfinite(value))

@@ -27,15 +27,7 @@ _BY_KIND: dict[str, Callable[[OpenStudy], dict[str, Any]]] = {
 def result_of(study: OpenStudy) -> dict[str, Any]:
     """Return the result of a finished study.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-
-    Returns
-    -------
-    dict
-        Plain values and arrays, with None where there is no number.
+    Returns plain values and arrays, with None where there is no number.
     """
     document = study.job.job.document
     kind = str(document.campaign.kind)

@@ -16,17 +16,9 @@ _WIDE = 0.01
 def fragility_result(study: OpenStudy) -> dict[str, Any]:
     """Return a fragility analysis.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-
-    Returns
-    -------
-    dict
-        ``measure`` (name, unit, words), ``motions``, ``definition``, ``uplift``; ``analyses``: for every restitution
-        levels, trials, states, ``points`` (by state: x, reached, trials, share, low, high), ``fits`` (by state),
-        ``curves`` (by state: x, probability, low, high) and sentences.
+    Returns ``measure`` (name, unit, words), ``motions``, ``definition``, ``uplift``; ``analyses``: for every
+    restitution levels, trials, states, ``points`` (by state: x, reached, trials, share, low, high), ``fits`` (by
+    state), ``curves`` (by state: x, probability, low, high) and sentences.
     """
     analyses = study.analyses
     first = next(iter(analyses.values()))

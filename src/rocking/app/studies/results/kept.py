@@ -12,18 +12,7 @@ NAME = f"result-{__version__}.json"
 
 
 def kept_result(folder: StudyFolder) -> bytes | None:
-    """Return the result that was kept.
-
-    Parameters
-    ----------
-    folder : StudyFolder
-        The study.
-
-    Returns
-    -------
-    bytes, optional
-        JSON; None where nothing was kept.
-    """
+    """Return the result that was kept."""
     try:
         return (folder.path / NAME).read_bytes()
     except OSError:
@@ -31,18 +20,7 @@ def kept_result(folder: StudyFolder) -> bytes | None:
 
 
 def keep_result(study: OpenStudy) -> bytes:
-    """Make the result of a finished study, and keep it.
-
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-
-    Returns
-    -------
-    bytes
-        JSON.
-    """
+    """Make the result of a finished study, and keep it."""
     data = bytes(JsonAnswer(result_of(study)).body)
     disk.write_new(study.folder.path / NAME, data)
     return data

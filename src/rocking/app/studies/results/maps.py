@@ -14,18 +14,10 @@ from rocking.studies.contours import chains, edge_numbers, segments
 def map_result(study: OpenStudy) -> dict[str, Any]:
     """Return an overturning map.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-
-    Returns
-    -------
-    dict
-        ``x`` and ``y`` (name, values, unit, words); ``outcome``, ``mode``, ``peak`` (over alpha) and ``impacts`` by
-        restitution, then rows along y; ``mode_words``; ``shares`` and ``contours`` (polylines between what overturns
-        and what does not) by restitution; ``body`` and ``motion`` in words; ``tables`` of a refined map: all points
-        (refined) and the vertices of the polylines (boundary).
+    Returns ``x`` and ``y`` (name, values, unit, words); ``outcome``, ``mode``, ``peak`` (over alpha) and ``impacts`` by
+    restitution, then rows along y; ``mode_words``; ``shares`` and ``contours`` (polylines between what overturns and
+    what does not) by restitution; ``body`` and ``motion`` in words; ``tables`` of a refined map: all points (refined)
+    and the vertices of the polylines (boundary).
     """
     y, x = (coordinate(study, name) for name in study.axes)
     modes = by_restitution(study, "mode")
@@ -52,22 +44,8 @@ def contours_of(
 ) -> list[list[list[float]]]:
     """Return the lines that part a region of a grid from the rest.
 
-    Parameters
-    ----------
-    inside : ndarray of bool, shape (y, x)
-        Which points are in the region.
-    x, y : ndarray
-        Coordinates of the points.
-    known : ndarray of bool, shape (y, x), optional
-        Which points have a result; no line runs beside one that has none.
+    Returns polylines of x and y, halfway between the points that they part; closed ones end where they begin.
 
-    Returns
-    -------
-    list of list of list of float
-        Polylines of x and y, halfway between the points that they part; closed ones end where they begin.
-
-    Examples
-    --------
     >>> inside = np.array([[False, False, False], [False, True, False], [False, False, False]])
     >>> (ring,) = contours_of(inside, np.arange(3.0), np.arange(3.0))
     >>> ring[0] == ring[-1], sorted(ring[1:])

@@ -13,15 +13,7 @@ MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "
 def plain(values: Any) -> Any:
     """Return an array as lists.
 
-    Parameters
-    ----------
-    values : array_like
-        Numbers.
-
-    Returns
-    -------
-    list or number
-        None where there is no finite number.
+    Returns none where there is no finite number.
     """
     array = np.asarray(values)
     if array.dtype.kind != "f" or np.isfinite(array).all():
@@ -32,18 +24,6 @@ def plain(values: Any) -> Any:
 def meaning(mode: int) -> str:
     """Return a way to end in words.
 
-    Parameters
-    ----------
-    mode : int
-        -3 failed, -2 not lifted, -1 survived, n >= 0 overturned after n impacts.
-
-    Returns
-    -------
-    str
-        Words.
-
-    Examples
-    --------
     >>> meaning(-1), meaning(1)
     ('rocks, stays standing', 'overturns after 1 impact')
     """
@@ -53,15 +33,7 @@ def meaning(mode: int) -> str:
 def shares(modes: np.ndarray) -> list[dict[str, Any]]:
     """Return how many histories end in which way.
 
-    Parameters
-    ----------
-    modes : ndarray of int
-        One entry a history.
-
-    Returns
-    -------
-    list of dict
-        mode, meaning, count and share [-], by mode.
+    Returns mode, meaning, count and share [-], by mode.
     """
     found, counts = np.unique(modes, return_counts=True)
     return [
@@ -71,20 +43,7 @@ def shares(modes: np.ndarray) -> list[dict[str, Any]]:
 
 
 def coordinate(study: OpenStudy, name: str) -> dict[str, Any]:
-    """Return what is known of a dimension of a study.
-
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-    name : str
-        The dimension.
-
-    Returns
-    -------
-    dict
-        name, values, unit and words.
-    """
+    """Return what is known of a dimension of a study."""
     found = study.job.job.study.coordinates[name]
     return {"name": name, "values": plain(found.values), "unit": found.unit, "words": found.words}
 
@@ -92,17 +51,7 @@ def coordinate(study: OpenStudy, name: str) -> dict[str, Any]:
 def by_restitution(study: OpenStudy, name: str) -> np.ndarray:
     """Return a result with the restitution as its first dimension.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-    name : str
-        A key of `rocking.studies.job.study.VARIABLES`.
-
-    Returns
-    -------
-    ndarray
-        Also where the study has only one restitution.
+    Returns also where the study has only one restitution.
     """
     values, dims = study.results[name], list(study.job.job.study.dims)
     several = len(study.axes) < len(dims)

@@ -13,17 +13,9 @@ _LARGEST = 20_000
 def product_result(study: OpenStudy) -> dict[str, Any]:
     """Return the counts of plain histories.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-
-    Returns
-    -------
-    dict
-        ``motions``, ``bodies``, ``scales``, ``slenderness_angles``; ``shares`` by restitution; ``cells``: for every
-        restitution, body and scale how many motions lift and overturn, and the median of the peak rotation over alpha
-        of those that do not overturn; ``mode`` and ``peak`` of every history where there are at most 20,000.
+    Returns ``motions``, ``bodies``, ``scales``, ``slenderness_angles``; ``shares`` by restitution; ``cells``: for every
+    restitution, body and scale how many motions lift and overturn, and the median of the peak rotation over alpha of
+    those that do not overturn; ``mode`` and ``peak`` of every history where there are at most 20,000.
     """
     modes, peaks = by_restitution(study, "mode"), by_restitution(study, "peak_ratio")
     known = modes != -3

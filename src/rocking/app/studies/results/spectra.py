@@ -11,17 +11,9 @@ from rocking.app.studies.results.plain import by_restitution, coordinate, plain,
 def spectrum_result(study: OpenStudy) -> dict[str, Any]:
     """Return rocking spectra.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-
-    Returns
-    -------
-    dict
-        ``x`` (the periods 2 pi / p), ``angles``, ``motions``, ``semi_diagonals``; ``curves``: for every restitution
-        and slenderness angle the median of the peak rotation over alpha, its 16 % and 84 % over the motions (null
-        where that many overturn), the share that overturns, the coefficient of restitution; ``shares``.
+    Returns ``x`` (the periods 2 pi / p), ``angles``, ``motions``, ``semi_diagonals``; ``curves``: for every restitution
+    and slenderness angle the median of the peak rotation over alpha, its 16 % and 84 % over the motions (null where
+    that many overturn), the share that overturns, the coefficient of restitution; ``shares``.
     """
     from rocking.plots.rocking_spectrum import fractiles
 

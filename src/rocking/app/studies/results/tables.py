@@ -9,15 +9,7 @@ from rocking.app.studies.results.plain import coordinate, plain
 def minimum_result(study: OpenStudy) -> dict[str, Any]:
     """Return minimum overturning accelerations.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-
-    Returns
-    -------
-    dict
-        ``motions``, ``bodies``, and the ``tables`` of crossings and minima.
+    Returns ``motions``, ``bodies``, and the ``tables`` of crossings and minima.
     """
     return {
         "motions": coordinate(study, "motion"),
@@ -29,15 +21,7 @@ def minimum_result(study: OpenStudy) -> dict[str, Any]:
 def tables_of(study: OpenStudy) -> dict[str, Any]:
     """Return the tables of an adaptive study.
 
-    Parameters
-    ----------
-    study : OpenStudy
-        The study.
-
-    Returns
-    -------
-    dict
-        By name: a list of columns, each with name, unit, words and values.
+    Returns by name: a list of columns, each with name, unit, words and values.
     """
     return {
         name: [

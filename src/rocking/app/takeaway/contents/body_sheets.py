@@ -18,21 +18,7 @@ _UNITS = {"m_s2": "m/s2", "rad_s": "rad/s", "rad": "rad", "kg_m2": "kg m2", "kg"
 def body_sheet(body: Body, gravity: float, name: str, about: dict[str, str]) -> Sheet:
     """Return what a body is.
 
-    Parameters
-    ----------
-    body : Body
-        The body.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    name : str
-        What the user calls it.
-    about : dict of str to str
-        Provenance.
-
-    Returns
-    -------
-    Sheet
-        One quantity a row.
+    gravity: acceleration of gravity [m/s2].
     """
     facts = _facts(body, gravity)
     columns = [
@@ -46,20 +32,7 @@ def body_sheet(body: Body, gravity: float, name: str, about: dict[str, str]) -> 
 
 
 def coefficient_sheet(answer: ImpactAnswer, about: dict[str, str]) -> Sheet:
-    """Return the coefficients of a body under every model.
-
-    Parameters
-    ----------
-    answer : ImpactAnswer
-        Tables by foot.
-    about : dict of str to str
-        Provenance.
-
-    Returns
-    -------
-    Sheet
-        One model and foot a row.
-    """
+    """Return the coefficients of a body under every model."""
     rows = [(foot, row) for foot, table in answer.tables.items() for row in table]
     plain: Sequence[CoefficientRow] = [row for _, row in rows]
     columns = [

@@ -17,20 +17,7 @@ _LONGEST, _SHORTEST, _COUNT = 10.0, 0.03, 100
 
 
 def motion_sheet(motion: Motion, about: dict[str, str]) -> Sheet:
-    """Return time, acceleration, velocity and displacement; those of a pulse as its formulas give them.
-
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion, scaled.
-    about : dict of str to str
-        Provenance.
-
-    Returns
-    -------
-    Sheet
-        One sample a row.
-    """
+    """Return time, acceleration, velocity and displacement; those of a pulse as its formulas give them."""
     if isinstance(motion, GroundMotion):
         curves = {"acceleration": motion.acceleration, "velocity": ground_velocity(motion)}
         curves |= {"displacement": ground_displacement(motion)}
@@ -47,20 +34,7 @@ def motion_sheet(motion: Motion, about: dict[str, str]) -> Sheet:
 
 
 def measures_sheet(motion: Motion, about: dict[str, str]) -> Sheet:
-    """Return the intensity measures of a motion.
-
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion, scaled.
-    about : dict of str to str
-        Provenance.
-
-    Returns
-    -------
-    Sheet
-        One measure a row.
-    """
+    """Return the intensity measures of a motion."""
     found = measures_of(motion, fine_samples(motion))
     columns = [
         Column.of("motion", "", [motion.name] * len(found)),
@@ -73,20 +47,7 @@ def measures_sheet(motion: Motion, about: dict[str, str]) -> Sheet:
 
 
 def spectrum_sheet(motion: Motion, about: dict[str, str]) -> Sheet:
-    """Return the response spectrum of a motion for 5 % damping.
-
-    Parameters
-    ----------
-    motion : GroundMotion or Pulse
-        The motion, scaled.
-    about : dict of str to str
-        Provenance.
-
-    Returns
-    -------
-    Sheet
-        One period a row.
-    """
+    """Return the response spectrum of a motion for 5 % damping."""
     samples = fine_samples(motion)
     # the periods of the picture on the screen
     shortest = max(_SHORTEST, SHORTEST_PERIOD * samples.time_step)

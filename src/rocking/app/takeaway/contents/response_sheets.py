@@ -23,39 +23,14 @@ _UNITS = {
 
 
 def response_sheet(response: Response, name: str, about: dict[str, str]) -> Sheet:
-    """Return the samples of a response.
-
-    Parameters
-    ----------
-    response : Response
-        The response.
-    name : str
-        Name of the sheet.
-    about : dict of str to str
-        Provenance.
-
-    Returns
-    -------
-    Sheet
-        The columns of `Response.to_csv`.
-    """
+    """Return the samples of a response."""
     return Sheet(name, [Column.of(key, _UNITS[key], values) for key, values in columns(response).items()], about)
 
 
 def impacts_sheet(responses: Mapping[str, Response], about: dict[str, str]) -> Sheet:
     """Return the impacts of every response.
 
-    Parameters
-    ----------
-    responses : mapping of str to Response
-        By label of the restitution.
-    about : dict of str to str
-        Provenance.
-
-    Returns
-    -------
-    Sheet
-        One impact a row; none if there is no impact.
+    Returns one impact a row; none if there is no impact.
     """
     rows = [
         (label, number, *row)
@@ -71,20 +46,7 @@ def impacts_sheet(responses: Mapping[str, Response], about: dict[str, str]) -> S
 
 
 def outcomes_sheet(responses: Mapping[str, Response], about: dict[str, str]) -> Sheet:
-    """Return how every response ended.
-
-    Parameters
-    ----------
-    responses : mapping of str to Response
-        By label of the restitution.
-    about : dict of str to str
-        Provenance.
-
-    Returns
-    -------
-    Sheet
-        One restitution a row.
-    """
+    """Return how every response ended."""
     found = [outcome_facts(response) for response in responses.values()]
     rockers = [response.rocker for response in responses.values()]
     made = [

@@ -11,18 +11,7 @@ MARK = "\ufeff"
 
 
 def csv_of(sheet: Sheet) -> bytes:
-    """Return a table as CSV after RFC 4180, in UTF-8, units in the first line, every digit kept.
-
-    Parameters
-    ----------
-    sheet : Sheet
-        The table.
-
-    Returns
-    -------
-    bytes
-        The file.
-    """
+    """Return a table as CSV after RFC 4180, in UTF-8, units in the first line, every digit kept."""
     stream = io.StringIO(newline="")
     # words are quoted also where they need not: a semicolon parts nothing then, whatever Excel takes for the separator
     writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC)

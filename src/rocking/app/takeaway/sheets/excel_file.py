@@ -20,23 +20,7 @@ _WIDEST = 60
 
 
 def excel_of(sheets: Sequence[Sheet]) -> bytes:
-    """Return tables as a workbook, one sheet each.
-
-    Parameters
-    ----------
-    sheets : sequence of Sheet
-        The tables, at least one.
-
-    Returns
-    -------
-    bytes
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If a table has more rows than a sheet holds, or there are too many cells.
-    """
+    """Return tables as a workbook, one sheet each."""
     longest = max(sheet.count for sheet in sheets)
     if longest > MOST_ROWS:
         raise InvalidValueError(f"a sheet of Excel holds {MOST_ROWS} rows, the table has {longest}: take csv or mat")

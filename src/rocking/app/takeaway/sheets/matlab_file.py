@@ -12,18 +12,7 @@ from rocking.app.takeaway.sheets.sheet import Column, Sheet
 
 
 def matlab_of(sheets: Sequence[Sheet]) -> bytes:
-    """Return tables as a MATLAB file (version 5): one structure ``rocking`` with columns, units and provenance.
-
-    Parameters
-    ----------
-    sheets : sequence of Sheet
-        The tables; with several, each is a structure of its own inside.
-
-    Returns
-    -------
-    bytes
-        The file.
-    """
+    """Return tables as a MATLAB file (version 5): one structure ``rocking`` with columns, units and provenance."""
     from scipy.io import savemat
 
     first = sheets[0]

@@ -11,18 +11,7 @@ from rocking.dynamics.export import extra
 
 
 def netcdf_of(sheet: Sheet) -> bytes:
-    """Return a table as netCDF 4: one variable a column over ``row``, with units.
-
-    Parameters
-    ----------
-    sheet : Sheet
-        The table.
-
-    Returns
-    -------
-    bytes
-        The file.
-    """
+    """Return a table as netCDF 4: one variable a column over ``row``, with units."""
     xarray = extra("xarray", "netCDF")
     for module in ("h5py", "h5netcdf"):
         extra(module, "netCDF")

@@ -12,39 +12,17 @@ Cell = float | int | bool | str | None
 
 @dataclass(frozen=True)
 class Column:
-    """One column.
+    """One column."""
 
-    Parameters
-    ----------
-    name : str
-        Name with underscores, which programs can use.
-    unit : str
-        Unit; empty for words, ``-`` for numbers without one.
-    values : sequence
-        Numbers, or words, or None where there is nothing.
-    """
-
-    name: str
-    unit: str
-    values: Sequence[Cell]
+    name: str  # name with underscores, which programs can use
+    unit: str  # unit; empty for words, ``-`` for numbers without one
+    values: Sequence[Cell]  # numbers, or words, or None where there is nothing
 
     @classmethod
     def of(cls, name: str, unit: str, values: "Iterable[Cell] | np.ndarray") -> "Column":
         """Return a column from anything that holds values.
 
-        Parameters
-        ----------
-        name : str
-            Its name.
-        unit : str
-            Its unit.
-        values : iterable or ndarray
-            Its values.
-
-        Returns
-        -------
-        Column
-            With plain values; None in place of what is not finite.
+        Returns with plain values; None in place of what is not finite.
         """
         plain = values.tolist() if isinstance(values, np.ndarray) else list(values)
         return cls(name, unit, [None if isinstance(one, float) and not math.isfinite(one) else one for one in plain])
@@ -72,21 +50,11 @@ class Column:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table.
+    """A table."""
 
-    Parameters
-    ----------
-    name : str
-        What it is called; letters, digits, spaces and dashes.
-    columns : sequence of Column
-        All of one length.
-    about : dict of str to str
-        What it belongs to.
-    """
-
-    name: str
-    columns: Sequence[Column]
-    about: dict[str, str] = field(default_factory=dict)
+    name: str  # what it is called; letters, digits, spaces and dashes
+    columns: Sequence[Column]  # all of one length
+    about: dict[str, str] = field(default_factory=dict)  # what it belongs to
 
     @property
     def count(self) -> int:

@@ -19,25 +19,7 @@ MEDIA_TYPES = {
 
 
 def written(sheets: Sequence[Sheet], kind: str) -> bytes:
-    """Return tables as a file.
-
-    Parameters
-    ----------
-    sheets : sequence of Sheet
-        The tables, at least one; csv and nc hold the first one.
-    kind : str
-        Format, a key of `MEDIA_TYPES`.
-
-    Returns
-    -------
-    bytes
-        The file.
-
-    Raises
-    ------
-    NotFound
-        If there is no such format.
-    """
+    """Return tables as a file."""
     if kind == "csv":
         return csv_of(sheets[0])
     if kind == "nc":

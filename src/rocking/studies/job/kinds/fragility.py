@@ -27,20 +27,7 @@ Finish = Callable[[Arrays], Any]
 def fragility_study(parts: Parts) -> Study:
     """Return the study of a fragility analysis, of one body.
 
-    Parameters
-    ----------
-    parts : Parts
-        What the job puts together.
-
-    Returns
-    -------
-    Study
-        Over motion and level (a cloud: over motion), and the restitution where there are several.
-
-    Raises
-    ------
-    InvalidValueError
-        If levels, states or the measure do not fit.
+    Returns over motion and level (a cloud: over motion), and the restitution where there are several.
     """
     table = parts.document.fragility or FragilityTable()
     with located("fragility"):

@@ -14,23 +14,7 @@ from rocking.studies.sensitivity.sampled import sampled
 
 
 def product_study(parts: Parts) -> Study:
-    """Return the study of every motion with every body, scale and restitution.
-
-    Parameters
-    ----------
-    parts : Parts
-        What the job puts together.
-
-    Returns
-    -------
-    Study
-        Over motion, body, scale and restitution.
-
-    Raises
-    ------
-    InvalidValueError
-        If a scale is out of range.
-    """
+    """Return the study of every motion with every body, scale and restitution."""
     scales = (parts.document.histories or HistoriesTable()).scales.numbers()
     bad = np.flatnonzero(np.abs(scales) > 1e6)
     if bad.size:

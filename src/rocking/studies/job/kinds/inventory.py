@@ -17,20 +17,7 @@ from rocking.studies.record_set import SyntheticSet
 def inventory_study(parts: Parts) -> Study:
     """Return the study of an inventory.
 
-    Parameters
-    ----------
-    parts : Parts
-        What the job puts together.
-
-    Returns
-    -------
-    Study
-        Over motion, object, direction and the model of impact: the one asked for and the one beside it.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are several restitutions, or no object can be assessed.
+    Returns over motion, object, direction and the model of impact: the one asked for and the one beside it.
     """
     table = parts.document.inventory
     assert table is not None  # the document refuses to be without

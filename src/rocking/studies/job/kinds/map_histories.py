@@ -24,29 +24,13 @@ class MapHistories(Histories):
 
     The engine runs with the motion as it is, and bodies that are quicker instead of a motion that is slower; `rescaled`
     turns the times of the results into those of the map.
-
-    Parameters
-    ----------
-    planes : tuple of Plane
-        The same axes, each with another restitution.
     """
 
-    planes: tuple[Plane, ...]
+    planes: tuple[Plane, ...]  # the same axes, each with another restitution
 
     @classmethod
     def of(cls, planes: list[Plane]) -> "MapHistories":
-        """Return the histories of a map.
-
-        Parameters
-        ----------
-        planes : list of Plane
-            The same axes, each with another restitution.
-
-        Returns
-        -------
-        MapHistories
-            None is computed yet.
-        """
+        """Return the histories of a map."""
         question = planes[0].question
         made = cls(
             MotionList([question.motion]), tuple(planes),
@@ -70,15 +54,7 @@ class MapHistories(Histories):
     def rows(self, first: int, last: int) -> Rows:
         """Return some of the rows, as the engine takes them.
 
-        Parameters
-        ----------
-        first, last : int
-            Numbers: from the first up to but not including the last.
-
-        Returns
-        -------
-        Rows
-            The rows; NaN where there is no such body.
+        Returns the rows; NaN where there is no such body.
         """
         numbers = np.arange(first, last, dtype=np.int64)
         values, stretch = self._values(numbers)
@@ -88,30 +64,14 @@ class MapHistories(Histories):
     def rescaled(self, first: int, last: int, results: Arrays) -> Arrays:
         """Return results in the times of the map.
 
-        Parameters
-        ----------
-        first, last : int
-            Numbers of histories.
-        results : dict of str to ndarray
-            As the engine returned them.
-
-        Returns
-        -------
-        dict of str to ndarray
-            Times [s] and velocities [rad/s] of the stretched motions.
+        Returns times [s] and velocities [rad/s] of the stretched motions.
         """
         _, stretch = self._values(np.arange(first, last, dtype=np.int64))
         found = {name: results[name] * stretch for name in _TIMES}
         return {**results, **found, "peak_velocity": results["peak_velocity"] / stretch}
 
     def content(self) -> dict[str, Any]:
-        """Return axes, body, restitution, and the hash of rows spread over the map.
-
-        Returns
-        -------
-        dict
-            By name.
-        """
+        """Return axes, body, restitution, and the hash of rows spread over the map."""
         plane = self.planes[0]
         probes = [self._values(self._probes(k)) for k in range(len(self.planes))]
         tables = [np.stack([*(values[n] for n in sorted(values)), stretch]) for values, stretch in probes]

@@ -26,46 +26,20 @@ from rocking.studies.sensitivity.sampled import sampled
 
 @dataclass(frozen=True)
 class MinimumSearch:
-    """A search for crossings that somebody else computes, round by round.
+    """A search for crossings that somebody else computes, round by round."""
 
-    Parameters
-    ----------
-    cases : Cases
-        Every motion with every restitution and body; the body changes fastest.
-    effort : Effort
-        How closely to look.
-    motions : MotionList
-        The motions.
-    shape : tuple of int
-        Numbers of motions, restitutions and bodies.
-    law : ImpactLaw
-        How the coefficient changes from impact to impact.
-    options : dict
-        settings and engine, as `Histories` takes them.
-    names : dict of str to list
-        What the motions and the restitutions are called.
-    """
-
-    cases: Cases
-    effort: Effort
+    cases: Cases  # every motion with every restitution and body; the body changes fastest
+    effort: Effort  # how closely to look
     motions: MotionList
-    shape: tuple[int, int, int]
-    law: ImpactLaw
-    options: dict[str, Any]
-    names: dict[str, list[str]]
+    shape: tuple[int, int, int]  # numbers of motions, restitutions and bodies
+    law: ImpactLaw  # how the coefficient changes from impact to impact
+    options: dict[str, Any]  # settings and engine, as `Histories` takes them
+    names: dict[str, list[str]]  # what the motions and the restitutions are called
 
     def __call__(self, compute: Compute) -> Answer:
         """Return all crossings.
 
-        Parameters
-        ----------
-        compute : callable
-            Computes a round.
-
-        Returns
-        -------
-        Answer
-            A tuple of `Crossings`, None where no history could be computed, and tables of them.
+        Returns A tuple of `Crossings`, None where no history could be computed, and tables of them.
         """
         motion, _, body = np.unravel_index(np.arange(self.cases.uplift.size), self.shape)
 
@@ -86,15 +60,7 @@ class MinimumSearch:
 def minimum_study(parts: Parts) -> Study:
     """Return the study of minimum overturning accelerations.
 
-    Parameters
-    ----------
-    parts : Parts
-        What the job puts together.
-
-    Returns
-    -------
-    Study
-        Of the first samples, over motion, restitution, body and point; its search asks for the others.
+    Returns of the first samples, over motion, restitution, body and point; its search asks for the others.
     """
     table = parts.document.minimum or MinimumTable()
     motions, settings = _held(parts), parts.settings

@@ -40,23 +40,7 @@ def sheets_of(
 ) -> dict[str, Sheet]:  # fmt: skip
     """Return crossings as tables.
 
-    Parameters
-    ----------
-    found : sequence of Crossings or None
-        One for each motion, restitution and body; the body changes fastest.
-    cases : Cases
-        What was asked.
-    effort : Effort
-        How closely it was looked for.
-    shape : tuple of int
-        Numbers of motions, restitutions and bodies.
-    names : mapping of str to list of str
-        What the motions and the restitutions are called.
-
-    Returns
-    -------
-    dict of str to Sheet
-        ``minima``, a row for each case; ``crossings``, a row for each crossing.
+    Returns ``minima``, a row for each case; ``crossings``, a row for each crossing.
     """
     rows = [_row(each, cases, effort, k) for k, each in enumerate(found)]
     facts = {

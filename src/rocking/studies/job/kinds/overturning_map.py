@@ -21,20 +21,7 @@ from rocking.studies.sensitivity.sampled import sampled
 def map_study(parts: Parts) -> Study:
     """Return the study of an overturning map.
 
-    Parameters
-    ----------
-    parts : Parts
-        What the job puts together: one body, one motion, one or more restitutions.
-
-    Returns
-    -------
-    Study
-        Over y and x, and the restitution before them where there are several.
-
-    Raises
-    ------
-    InvalidValueError
-        If there is more than one motion, or the axes do not fit the body, the motion or each other.
+    Returns over y and x, and the restitution before them where there are several.
     """
     table = parts.document.map
     assert table is not None  # the document refuses to be without

@@ -26,52 +26,17 @@ MOST_POINTS = 10_000_000
 
 @dataclass(frozen=True)
 class MapSearch:
-    """A refined map that somebody else computes, round by round: the map, its levels, and the bisections of its edges.
+    """A refined map that somebody else computes, round by round: the map, its levels, the bisections of its edges."""
 
-    Parameters
-    ----------
-    study : Study
-        The map before refinement: the first round.
-    plane : Plane
-        The question and its axes.
-    levels : int
-        Levels of refinement.
-    by : {"verdict", "mode"}
-        What is outlined.
-    tolerance : float
-        Width of the last brackets over the coordinate [-].
-    """
-
-    study: Study
-    plane: Plane
-    levels: int
-    by: str
-    tolerance: float
+    study: Study  # the map before refinement: the first round
+    plane: Plane  # the question and its axes
+    levels: int  # levels of refinement
+    by: str  # what is outlined
+    tolerance: float  # width of the last brackets over the coordinate [-]
 
     @classmethod
     def of(cls, study: Study, planes: list[Plane], table: MapTable) -> "MapSearch":
-        """Return the search that a job asks for, checked.
-
-        Parameters
-        ----------
-        study : Study
-            The map before refinement.
-        planes : list of Plane
-            The axes, with each restitution.
-        table : MapTable
-            What the job says; with levels of refinement.
-
-        Returns
-        -------
-        MapSearch
-            The search.
-
-        Raises
-        ------
-        InvalidValueError
-            If there are several restitutions, an axis has one value, the restitution is drawn at random, or there
-            are too many points.
-        """
+        """Return the search that a job asks for, checked."""
         assert table.refine is not None  # asked before
         if len(planes) > 1:
             raise InvalidValueError(
@@ -91,15 +56,7 @@ class MapSearch:
     def __call__(self, compute: Compute) -> Answer:
         """Return the points and the polylines.
 
-        Parameters
-        ----------
-        compute : callable
-            Computes a round.
-
-        Returns
-        -------
-        Answer
-            A pair of `Refined` and a list of `Polyline`, and tables of them.
+        Returns A pair of `Refined` and a list of `Polyline`, and tables of them.
         """
         modes, peaks = self._base(compute(self.study.histories))
         plane = Plane(AskedQuestion.of(self.plane.question, compute), self.plane.x, self.plane.y)

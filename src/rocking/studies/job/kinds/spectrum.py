@@ -25,20 +25,7 @@ _LONGEST = 1e100
 def spectrum_study(parts: Parts) -> Study:
     """Return the study of rocking spectra.
 
-    Parameters
-    ----------
-    parts : Parts
-        What the job puts together.
-
-    Returns
-    -------
-    Study
-        Over motion, slenderness angle and period, and the restitution where there are several.
-
-    Raises
-    ------
-    InvalidValueError
-        If an angle or a period is outside its range.
+    Returns over motion, slenderness angle and period, and the restitution where there are several.
     """
     table = parts.document.spectrum
     assert table is not None  # the document refuses to be without
@@ -77,19 +64,8 @@ def spectrum_study(parts: Parts) -> Study:
 def sides_of_choices(bodies: Sequence[Body], parts: Parts) -> tuple[dict[str, FloatArray], ImpactLaw]:
     """Return the sides of bodies with every restitution.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        The bodies.
-    parts : Parts
-        What the job puts together.
-
-    Returns
-    -------
-    sides : dict of str to ndarray, shape (bodies, choices)
-        As `Product` takes them.
-    law : ImpactLaw
-        How the coefficient changes from impact to impact.
+    Returns sides: as `Product` takes them (shape (bodies, choices)); law: how the coefficient changes from impact to
+    impact.
     """
     gravity = parts.settings.gravity
     rockers = [[Rocker.of_body(body, choice, gravity) for body in bodies] for choice in parts.choices.values()]

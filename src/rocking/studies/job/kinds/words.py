@@ -10,58 +10,17 @@ from rocking.studies.motion_set import MotionList, MotionSet
 
 
 def along(dim: str, values: Any, unit: str = "1", words: str = "") -> Coordinate:
-    """Return numbers along a dimension.
-
-    Parameters
-    ----------
-    dim : str
-        The dimension.
-    values : array_like
-        The numbers, in their unit.
-    unit, words : str
-        Unit and meaning.
-
-    Returns
-    -------
-    Coordinate
-        The coordinate.
-    """
+    """Return numbers along a dimension."""
     return Coordinate((dim,), np.asarray(values), unit, words)
 
 
 def of_words(dim: str, values: Iterable[str], words: str) -> Coordinate:
-    """Return words along a dimension.
-
-    Parameters
-    ----------
-    dim : str
-        The dimension.
-    values : iterable of str
-        The words.
-    words : str
-        What they are.
-
-    Returns
-    -------
-    Coordinate
-        The coordinate.
-    """
+    """Return words along a dimension."""
     return Coordinate((dim,), np.array(list(values), dtype=object), "1", words)
 
 
 def of_motions(motions: MotionSet) -> Coordinate:
-    """Return what the motions are called: by name, or by number where each is made from a seed when it is needed.
-
-    Parameters
-    ----------
-    motions : MotionSet
-        The motions.
-
-    Returns
-    -------
-    Coordinate
-        Along ``motion``.
-    """
+    """Return what the motions are called: by name, or by number where each is made from a seed when it is needed."""
     if isinstance(motions, MotionList):
         return of_words("motion", (motions[k].name for k in range(len(motions))), "name of the motion")
     return along("motion", np.arange(len(motions)), "1", "number of the motion in its set")
