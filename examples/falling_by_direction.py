@@ -6,8 +6,8 @@ import numpy as np
 
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box, ellipsoid, frustum, revolution
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial_batch import simulate_spatial_batch
+from rocking.outcome import Outcome
 from rocking.plots import write
 from rocking.plots.falling import falling_picture
 

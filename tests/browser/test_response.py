@@ -16,10 +16,10 @@ from playwright.sync_api import expect
 from rocking.bodies import Block, Region, Section
 from rocking.bodies.shapes import trapezoid
 from rocking.dynamics.histories import free_rocking, simulate
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import pulse
+from rocking.outcome import Outcome
 
 PHONE = {"width": 360, "height": 740}
 BODY = {"units": "m", "width": 0.5, "height": 2.0}

@@ -106,11 +106,7 @@ def of_file(name: str, content: bytes) -> Any:  # noqa: PLR0911 - one a format
     if kind == "mat":
         from scipy.io import loadmat
 
-        return {
-            key: tree(value if value.dtype.kind in "biuf" else repr(value.tolist()))
-            for key, value in loadmat(BytesIO(content), squeeze_me=True).items()
-            if isinstance(value, np.ndarray)
-        }
+        return tree({k: v for k, v in loadmat(BytesIO(content), simplify_cells=True).items() if k[0] != "_"})
     if kind == "xlsx":
         from openpyxl import load_workbook
 
@@ -180,9 +176,22 @@ def same(one: Any, other: Any, tolerance: float = 0.0) -> bool:  # noqa: PLR0911
     return type(one) is type(other) and bool(one == other)
 
 
+def by_heading(value: Any) -> Any:
+    """Return a tree whose tables are columns by heading: their order may change."""
+    if isinstance(value, dict):
+        return {key: by_heading(one) for key, one in value.items()}
+    if not isinstance(value, list):
+        return value
+    head = value[0] if value and isinstance(value[0], list) else []
+    named = len(head) > 1 and all(isinstance(cell, str) and cell for cell in head) and len(set(head)) == len(head)
+    if named and all(isinstance(row, list) and len(row) == len(head) for row in value):
+        return dict(zip(head, map(list, zip(*value[1:], strict=True)), strict=False))
+    return [by_heading(one) for one in value]
+
+
 def differences(kept: Any, now: Any, tolerance: float = 0.0) -> list[str]:
     """Say every place where two trees differ."""
-    before, after = dict(leaves(kept)), dict(leaves(now))
+    before, after = dict(leaves(by_heading(kept))), dict(leaves(by_heading(now)))
     said = [f"gone: {where} (was {_short(before[where])})" for where in before if where not in after]
     said += [f"new: {where} = {_short(after[where])}" for where in after if where not in before]
     return said + [

@@ -18,7 +18,7 @@ from scipy.integrate import cumulative_trapezoid, solve_ivp
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import equations
-from rocking.dynamics.outcome import Outcome
+from rocking.outcome import Outcome
 
 ENGINES = ("fast", "reference")
 G = conventions.g

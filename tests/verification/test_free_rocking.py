@@ -18,12 +18,12 @@ from scipy.special import elliprf
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.run import run
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome
 
 BLOCKS = 1000 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 60
 IMPACTS = 20

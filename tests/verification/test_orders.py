@@ -16,7 +16,6 @@ from scipy.optimize import brentq
 from rocking import conventions
 from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.impact_law import ConstantRestitution
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.reference import Reference
 from rocking.dynamics.rocker import Rocker, RockingSide
 from rocking.dynamics.run import run
@@ -24,6 +23,7 @@ from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome
 
 RIGHT, LEFT = RockingSide(0.3, 1.0, 1.0, 0.9), RockingSide(0.24, 0.95, 1.1, 0.92)
 # p h where one term of the error rules and rounding does not

@@ -8,7 +8,6 @@ import pytest
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
 from rocking.dynamics.histories import simulate
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.planar import (
     Regime,
     Start,
@@ -20,6 +19,7 @@ from rocking.dynamics.planar import (
 )
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine
+from rocking.outcome import Outcome, Status
 
 G = 9.80665
 SLENDER = Block(width=1.0, height=4.0)

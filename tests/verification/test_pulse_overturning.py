@@ -16,9 +16,9 @@ from scipy.optimize import brentq
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind
+from rocking.outcome import Outcome
 
 ENGINES = ("fast", "reference")
 ALPHA, P = 0.15, 1.7

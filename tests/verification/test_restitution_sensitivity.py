@@ -12,8 +12,8 @@ from scipy import optimize, stats
 
 import rocking as rk
 from rocking.dynamics import Rocker
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.settings import Settings
+from rocking.outcome import Outcome
 from rocking.studies.histories import Table
 from rocking.studies.motion_set import MotionList
 from rocking.studies.sensitivity import (

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import SpatialBody, attitude, flow, free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial_batch import SpatialBatchSettings, SpatialStart, engine, simulate_spatial_batch
 from rocking.dynamics.spatial_batch.course import course_of
+from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
 

@@ -13,7 +13,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import (
     Contact,
     SpatialBody,
@@ -23,6 +22,7 @@ from rocking.dynamics.spatial import (
 )
 from rocking.dynamics.spatial.impact import law_of
 from rocking.dynamics.spatial.selection import State, of_impact
+from rocking.outcome import Outcome, Status
 
 TIMES = 10 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1
 G = 9.81

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import SpatialBody, reference, simulate_spatial
 from rocking.dynamics.spatial_batch import engine, simulate_spatial_batch
+from rocking.outcome import Outcome, Status
 
 STEP, LENGTH = 0.02, 8.0
 LAWS = ["housner-3d", "horizontal-momentum-3d", 0.9]

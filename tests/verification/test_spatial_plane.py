@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import (
     Contact,
     SpatialBody,
@@ -18,6 +17,7 @@ from rocking.dynamics.spatial import (
 )
 from rocking.dynamics.spatial.impact import law_of
 from rocking.dynamics.spatial.selection import State, of_impact
+from rocking.outcome import Outcome
 
 G = 9.81
 UP = np.array([0.0, 0.0, 1.0])

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import SpatialBody, attitude, events, free_rocking_spatial, release, simulate_spatial
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.events import Step
@@ -19,6 +18,7 @@ from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.rolling import RollingFlow
 from rocking.dynamics.spatial_batch import engine, simulate_spatial_batch
 from rocking.dynamics.spatial_batch.course import course_of
+from rocking.outcome import Outcome, Status
 
 STEP, LENGTH, G = 0.02, 8.0, 9.81
 LAWS = ["housner-3d", "horizontal-momentum-3d", 0.9, 0.98]

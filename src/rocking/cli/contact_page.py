@@ -7,9 +7,9 @@ from typing import Any
 from rocking.cli.shared_options import in_unit
 from rocking.cli.simulate_question import Question, restitution_from
 from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.planar import PlanarResponse, Regime, Start, simulate_with_contact
 from rocking.errors import RockingError
+from rocking.outcome import Outcome
 from rocking.report.facts.response import finite, moved_facts, still_rocking_facts
 
 _FIRST = 12

@@ -12,9 +12,9 @@ from rocking.cli.simulate_output import Files
 from rocking.cli.solid_options import refuse, solid_from
 from rocking.cli.spatial_motion import components
 from rocking.conventions import g
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import SpatialResponse, simulate_spatial
 from rocking.errors import InvalidValueError, RockingError
+from rocking.outcome import Outcome
 
 DEFAULT = "housner-3d"
 """Restitution of a body in space if none is asked for: the plastic impact without slip."""

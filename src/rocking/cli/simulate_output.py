@@ -8,10 +8,10 @@ from typing import Any
 
 from rocking.cli.simulate_question import Question, restitution_from
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.evidence.coefficient_table import default_models
+from rocking.outcome import Outcome
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,9 @@ from rocking.cli.body_options import body_words
 from rocking.cli.shared_options import in_unit
 from rocking.cli.simulate_output import Answer
 from rocking.conventions import given_or_assumed
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.motions.pulse import Pulse
+from rocking.outcome import Outcome
 from rocking.report.facts.verdict import Verdict
 
 _FIRST = 10

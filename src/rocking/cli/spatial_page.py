@@ -7,8 +7,8 @@ from typing import Any
 from rocking.bodies.formats import SolidFile
 from rocking.cli.solid_cor_output import show_body
 from rocking.cli.solid_impact import base_facts, body_facts
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import SpatialResponse
+from rocking.outcome import Outcome
 from rocking.report.facts.response import finite
 
 _FIRST = 12

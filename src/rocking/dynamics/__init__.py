@@ -3,10 +3,10 @@
 from rocking.dynamics.histories import free_rocking, simulate
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
 from rocking.dynamics.many import simulate_many
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.response import Response
 from rocking.dynamics.rocker import Rocker, RockingSide
 from rocking.dynamics.settings import Settings
+from rocking.outcome import Outcome, Status
 
 __all__ = [
     "ConstantRestitution",

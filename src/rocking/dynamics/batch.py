@@ -11,11 +11,11 @@ import numpy as np
 from rocking.conventions import FEET, FloatArray
 from rocking.dynamics import engine as fast_engine
 from rocking.dynamics.impact_law import ConstantRestitution, DrawnRestitution, ImpactLaw
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.rocker import Rocker, RockingSide
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome, Status
 
 PIECE = 1 << 16
 """Histories that are handed to the engine at a time: memory beside the results does not grow with their number."""

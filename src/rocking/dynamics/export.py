@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.dynamics.exported import Exported, Quantity
+from rocking.dynamics.exported import Column, Exported
 from rocking.dynamics.samples import columns, provenance
 from rocking.errors import InvalidValueError, MissingExtraError, how_to_install
 
@@ -135,7 +135,7 @@ def target_of(path: "str | Path") -> "Path":
     return target
 
 
-def _for_matlab(one: Quantity) -> np.ndarray:
+def _for_matlab(one: Column) -> np.ndarray:
     """Numbers as MATLAB's own double; words as a column of cells."""
     if one.values.dtype.kind in "US":
         return one.values.astype(object)

@@ -5,32 +5,39 @@ from typing import Any
 
 import numpy as np
 
+from rocking.quantities import QUANTITIES, Quantity, attributes
+
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Quantity:
-    """Values of one kind with their unit and meaning.
+class Column:
+    """Values of one kind, and what they are.
 
-    >>> Quantity(np.zeros(2), "rad", "rotation").attributes
-    {'units': 'rad', 'long_name': 'rotation'}
+    >>> Column.of("rotation", np.zeros(2)).attributes
+    {'units': 'rad', 'long_name': 'rotation theta, positive clockwise'}
     """
 
-    values: np.ndarray  # numbers, or words; shape (n,)
-    unit: str = ""  # unit, "1" for numbers without one; empty for words
-    words: str = ""  # what it is; empty where the name says it
+    values: np.ndarray  # numbers, or words
+    unit: str = ""  # "1" for numbers without one; empty for words
+    attributes: dict[str, Any] = field(default_factory=dict)  # as xarray and netCDF name them
 
-    @property
-    def attributes(self) -> dict[str, str]:
-        """Unit and meaning, as xarray and netCDF name them."""
-        return {key: value for key, value in (("units", self.unit), ("long_name", self.words)) if value}
+    @classmethod
+    def of(cls, name: str, values: np.ndarray) -> "Column":
+        """Return values of what has an entry in `rocking.quantities`."""
+        return cls(values, QUANTITIES[name].unit, attributes(name))
+
+    @classmethod
+    def said(cls, values: np.ndarray, unit: str, meaning: str) -> "Column":
+        """Return values that are known here alone."""
+        return cls(values, unit, Quantity("", unit, meaning).attributes)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Exported:
     """Everything that the files of one response hold."""
 
-    samples: dict[str, Quantity]  # by name, all of one length, ``time`` among them
-    # by what one row is (``impact``, ``interval``): name to `Quantity`
-    tables: dict[str, dict[str, Quantity]] = field(default_factory=dict)
+    samples: dict[str, Column]  # by name, all of one length, ``time`` among them
+    # by what one row is (``impact``, ``interval``): name to `Column`
+    tables: dict[str, dict[str, Column]] = field(default_factory=dict)
     # what was computed from what: numbers, words, and lists of numbers
     provenance: dict[str, Any] = field(default_factory=dict)
 

@@ -3,11 +3,11 @@
 import numpy as np
 
 from rocking.dynamics import engine
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import Event, EventKind, Trajectory
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome, Status
 
 _OUTCOMES, _STATUSES, _KINDS = list(Outcome), list(Status), {kind.value: kind for kind in EventKind}
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import series, shifted, slope, value
 from rocking.dynamics.trajectory import Trajectory
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome
 
 LONG = 0.1
 """An interval is long if p times its length is above this [-]; below, the curve between its ends holds to 1e-11."""

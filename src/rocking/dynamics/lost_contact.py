@@ -5,14 +5,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, percent
-from rocking.dynamics.outcome import Outcome, of_results, overturned
-
-FORCES: dict[str, tuple[str, str]] = {
-    "least_force": ("1", "smallest normal force of the ground while rocking, over the weight; below 0 it would pull"),
-    "friction_demand": ("1", "largest horizontal over normal force while rocking; infinite where contact is lost"),
-    "lost_contact": ("1", "1 where the ground would have to pull, so that the verdict assumes contact; NaN no result"),
-}
-"""Unit and meaning of what is known of the forces of the ground: at samples, uplifts, impacts and overturning."""
+from rocking.outcome import Outcome, of_results, overturned
 
 
 def lost_contact(results: Any) -> FloatArray:

@@ -6,43 +6,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking import checks, conventions, plausibility
+from rocking import checks, conventions, plausibility, quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
-from rocking.dynamics.lost_contact import FORCES, contact_words, flags
-from rocking.dynamics.outcome import OVERTURNED, STILL_ROCKING, Outcome, Status, overturned
+from rocking.dynamics.lost_contact import contact_words, flags
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import SHORTEST_STEP
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
+from rocking.outcome import overturned
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.dynamics.batch import Rows
-
-_UNITS = {
-    "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
-    "status": ("1", ", ".join(f"{s.code} {s.value}" for s in Status)),
-    "overturned": OVERTURNED,
-    "side": ("1", "side to which it overturned: 1 right, -1 left"),
-    "peak_rotation": ("rad", "rotation of largest size; a quarter turn if it overturned"),
-    "peak_time": ("s", "time of the peak rotation; the end of the motion if it comes later"),
-    "peak_velocity": ("rad/s", "largest angular velocity at samples and impacts, the first after the motion included"),
-    "overturning_time": ("s", "when the centre passed over the foot for good; the end of the motion if it is later"),
-    "first_uplift": ("s", "first uplift"),
-    "truncation": ("rad", "sum of what the series of the steps leave out; no measure of accuracy"),
-    **FORCES,
-    "twin_change": ("rad", "change of the size of the peak rotation if every step is halved"),
-    "twin_flips": ("1", "1 where only one of history and twin overturns, 0 not, NaN where one has no result"),
-    "impacts": ("1", "number of impacts during the motion"),
-    "uplifts": ("1", "number of uplifts from rest"),
-    "still_rocking": STILL_ROCKING,
-}
 
 
 def simulate_many(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -131,10 +112,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
         results |= _twin(results, halved.run(count, _pieces(rockers, scales, shape))[0])
     dims = ("body", "motion", "scale", "restitution")
     results |= flags(results)
-    data = {
-        name: (dims, values.reshape(shape), {"units": _UNITS[name][0], "long_name": _UNITS[name][1]})
-        for name, values in results.items()
-    }
+    data = {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()}
     from rocking import __version__
 
     first = [row[0].right for row in rockers]

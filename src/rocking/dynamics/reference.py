@@ -12,7 +12,6 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics import equations
 from rocking.dynamics.ground import Ground, Push
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.resting import NOTHING, comes_to_rest
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
@@ -20,6 +19,7 @@ from rocking.dynamics.taylor import first_fall, last_fall, series, shifted, slop
 from rocking.dynamics.trajectory import Event, EventKind, Trajectory
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome, Status
 
 _ORDER = 30
 _WHOLE = 1.0 - 1e-13

@@ -11,7 +11,6 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import Assumed, FloatArray, given_or_assumed
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
@@ -19,6 +18,7 @@ from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome, Status
 
 if TYPE_CHECKING:
     from rocking.dynamics.contact import Contact

@@ -5,25 +5,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.exported import Exported, Quantity, told
+from rocking.dynamics.exported import Column, Exported, told
 
 if TYPE_CHECKING:
     from rocking.dynamics.response import Response
 
-_COLUMNS = (
-    ("time", "s", "time"),
-    ("rotation", "rad", "rotation theta, positive clockwise"),
-    ("angular_velocity", "rad/s", "angular velocity"),
-    ("ground_acceleration", "m/s2", "horizontal acceleration of the ground"),
-    ("vertical_ground_acceleration", "m/s2", "vertical acceleration of the ground, upwards"),
-    ("kinetic_energy", "J", "kinetic energy"),
-    ("potential_energy", "J", "potential energy above rest"),
-    ("work_of_ground", "J", "work done by the ground since the start"),
-    ("energy_lost", "J", "energy lost at impacts since the start"),
-    ("horizontal_force", "N", "force of the ground on the body, to the right"),
-    ("vertical_force", "N", "force of the ground on the body, upwards"),
-)
-_IMPACT_UNITS = {"time": "s", "velocity_before": "rad/s", "velocity_after": "rad/s", "coefficient": "1"}
+_SAMPLES = (
+    "time", "rotation", "angular_velocity", "ground_acceleration", "vertical_ground_acceleration", "kinetic_energy",
+    "potential_energy", "work_of_ground", "energy_lost", "horizontal_force", "vertical_force",
+)  # fmt: skip
 
 
 def columns(response: "Response") -> dict[str, FloatArray]:
@@ -38,8 +28,8 @@ def columns(response: "Response") -> dict[str, FloatArray]:
         contact.horizontal, contact.vertical,
     )  # fmt: skip
     count = response.time.size  # energy and forces may have one row more, for a fall after the last sample
-    pairs = zip(_COLUMNS, values, strict=True)
-    return {name: value[:count] for (name, _, _), value in pairs if value is not None}
+    pairs = zip(_SAMPLES, values, strict=True)
+    return {name: value[:count] for name, value in pairs if value is not None}
 
 
 def provenance(response: "Response") -> dict[str, Any]:
@@ -76,9 +66,9 @@ def provenance(response: "Response") -> dict[str, Any]:
 
 def exported(response: "Response") -> Exported:
     """Return what the files of a response hold."""
-    about = {name: (unit, words) for name, unit, words in _COLUMNS}
-    samples = {name: Quantity(values, *about[name]) for name, values in columns(response).items()}
-    impacts = {name: Quantity(response.impacts[name], unit) for name, unit in _IMPACT_UNITS.items()}
+    samples = {name: Column.of(name, values) for name, values in columns(response).items()}
+    measured = ("time", "velocity_before", "velocity_after", "coefficient")
+    impacts = {name: Column.of(name, response.impacts[name]) for name in measured}
     onto = np.where(response.impacts["onto"] == "right", 1, -1).astype(np.int8)
-    impacts["onto"] = Quantity(onto, "1", "foot landed on: 1 right, -1 left")
+    impacts["onto"] = Column.of("onto", onto)
     return Exported(samples, {"impact": impacts}, provenance(response))

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome, Status
+from rocking.outcome import Outcome, Status
 
 
 class EventKind(IntEnum):

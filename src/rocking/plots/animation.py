@@ -13,10 +13,10 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
+from rocking.outcome import Outcome
 from rocking.plots.animation_film import film
 from rocking.plots.animation_scene import scene_of, scene_until
 

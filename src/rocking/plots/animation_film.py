@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
+from rocking.outcome import Outcome
 from rocking.plots.animation_scene import Scene, Shape, scene_of
 from rocking.plots.response_curves import motion_curves, over_slenderness
 from rocking.plots.style import GREY, INK, PALE, in_journal_style

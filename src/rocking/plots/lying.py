@@ -7,8 +7,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics import equations
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
+from rocking.outcome import Outcome
 
 _STEP = 0.01
 """Step of the integration, over 1 / p: what the fourth order leaves out is below 1e-8 of the angle."""

@@ -7,8 +7,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
+from rocking.outcome import Outcome
 from rocking.plots.response_curves import Curves, ground_curve, motion_curves, over_slenderness, shown_until
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.motions.motion import GroundMotion
+from rocking.outcome import Outcome
 
 _INSIDE = np.linspace(0.0, 1.0, 5)
 _REST = 0.06

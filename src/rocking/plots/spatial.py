@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.response import SpatialResponse
+from rocking.outcome import Contact, Outcome
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
 
 if TYPE_CHECKING:

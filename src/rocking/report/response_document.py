@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from rocking.bodies import Body
 from rocking.conventions import FEET, g
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Motion, Response
 from rocking.motions.intensity import Measure
+from rocking.outcome import Outcome
 from rocking.report.document import Paragraph, Table, cell
 from rocking.report.facts.body import side_facts
 from rocking.report.facts.impact import ImpactAnswer

@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping
 
 from rocking.conventions import Foot, g, given_or_assumed
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.evidence.coefficient_table import CALIBRATED, CoefficientRow
 from rocking.motions.intensity import Measure
+from rocking.outcome import Outcome
 from rocking.report.document import Cell, Table, cell
 from rocking.report.facts.impact import ImpactAnswer
 from rocking.report.facts.response import outcome_facts

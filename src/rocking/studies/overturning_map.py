@@ -6,31 +6,15 @@ from typing import TYPE_CHECKING, Any
 from rocking import conventions
 from rocking.bodies import Body
 from rocking.dynamics.export import extra
-from rocking.dynamics.lost_contact import FORCES, contact_words
-from rocking.dynamics.outcome import OVERTURNED, STILL_ROCKING, Outcome, Status
+from rocking.dynamics.lost_contact import contact_words
 from rocking.dynamics.response import Motion
+from rocking.quantities import HISTORY, attributes
 from rocking.studies.axis import Axis
 from rocking.studies.plane import Plane
 from rocking.studies.refined import refined
 
 if TYPE_CHECKING:
     import xarray as xr
-
-VARIABLES = {
-    "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
-    "overturned": OVERTURNED,
-    "mode": ("1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts"),
-    "peak_rotation": ("rad", "rotation of largest size; a quarter turn if it overturned"),
-    "peak_ratio": ("1", "peak rotation over the slenderness angle of its side; beyond 1 is not overturning"),
-    "impacts": ("1", "number of impacts during the motion, and after it those that end in overturning"),
-    "still_rocking": STILL_ROCKING,
-    "side": ("1", "side to which it overturned: 1 right, -1 left"),
-    "overturning_time": ("s", "when the centre passed over the foot for good; the end of the motion if it is later"),
-    "status": ("1", ", ".join(f"{s.code} {s.value}" for s in Status)),
-    "truncation": ("rad", "sum of what the series of the steps leave out; no measure of accuracy"),
-    **FORCES,
-}
-"""Unit and meaning of every variable of a map."""
 
 
 def overturning_map(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -106,7 +90,7 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     shape = (plane.y.values.size, plane.x.values.size)
     dims = (plane.y.name, plane.x.name)
     made: xr.Dataset = xarray.Dataset(
-        {name: (dims, results[name].reshape(shape), _about(name)) for name in VARIABLES},
+        {name: (dims, results[name].reshape(shape), attributes(name)) for name in HISTORY},
         coords={axis.name: (axis.name, axis.values, axis.attributes) for axis in (plane.y, plane.x)},
         attrs={**plane.question.attributes(work), "contact": contact_words(results["lost_contact"])},
     )
@@ -116,11 +100,6 @@ def overturning_map(  # noqa: PLR0913 - every one of them is a question that use
     return made.assign(
         refined_x=("point", points.x, plane.x.attributes),
         refined_y=("point", points.y, plane.y.attributes),
-        refined_mode=("point", points.modes, _about("mode")),
-        refined_peak_ratio=("point", points.peak_ratio, _about("peak_ratio")),
+        refined_mode=("point", points.modes, attributes("mode")),
+        refined_peak_ratio=("point", points.peak_ratio, attributes("peak_ratio")),
     )
-
-
-def _about(name: str) -> dict[str, str]:
-    unit, words = VARIABLES[name]
-    return {"units": unit, "long_name": words}

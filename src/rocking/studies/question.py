@@ -13,13 +13,13 @@ from rocking.dynamics.batch import SIDES, Batch, Rows
 from rocking.dynamics.engine import Arrays, instruction_set
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.lost_contact import flags
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
+from rocking.outcome import Outcome
 from rocking.studies.histories import part
 
 UNLIFTED, SURVIVED, FAILED = -2, -1, -3

@@ -17,9 +17,9 @@ from rocking.dynamics.lost_contact import contact_words, flags
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
+from rocking.quantities import HISTORY, attributes
 from rocking.studies.histories import Histories, Product
 from rocking.studies.motion_set import MotionList
-from rocking.studies.overturning_map import VARIABLES
 from rocking.studies.question import Question, modes_of, peak_ratio, sides_of
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def rocking_spectrum(
     alpha = np.tile(sides["alpha_right"], len(given))
     results |= {"mode": modes_of(results), **flags(results)}
     results["peak_ratio"] = peak_ratio(results["peak_rotation"], alpha, alpha)
-    data = {name: (_DIMENSIONS, results[name].reshape(shape), _about(name)) for name in VARIABLES}
+    data = {name: (_DIMENSIONS, results[name].reshape(shape), attributes(name)) for name in HISTORY}
     constant = isinstance(question.law, ConstantRestitution)
     coefficient = np.where(constant, sides["r_right"], np.nan).reshape(shape[1:])
     made: xr.Dataset = xarray.Dataset(
@@ -126,11 +126,6 @@ def _row(name: str, given: Any, unit: str) -> FloatArray:
     if values.ndim != 1 or not values.size:
         raise InvalidValueError(f"{name} must be a row of numbers [{unit}], got shape {values.shape}")
     return values
-
-
-def _about(name: str) -> dict[str, str]:
-    unit, words = VARIABLES[name]
-    return {"units": unit, "long_name": words}
 
 
 def _computed(histories: Histories, threads: int | None, progress: Callable[[int], None] | None) -> Arrays:

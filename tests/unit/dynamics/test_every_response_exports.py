@@ -46,7 +46,7 @@ def test_every_sample_has_a_unit_and_is_finite(kind):
     assert next(iter(content.samples)) == "time"
     for one in content.samples.values():
         assert one.unit
-        assert one.words
+        assert one.attributes["long_name"]
         assert one.values.shape == (count,)
         assert np.isfinite(one.values).all()
     for table in content.tables.values():
@@ -96,7 +96,10 @@ def test_netcdf_is_read_by_xarray(kind, tmp_path):
         for name, one in content.samples.items():
             assert found[name].dims == ("time",)
             assert equal(found[name].to_numpy(), one.values)
-            assert (found[name].attrs["units"], found[name].attrs["long_name"]) == (one.unit, one.words)
+            assert (found[name].attrs["units"], found[name].attrs["long_name"]) == (
+                one.unit,
+                one.attributes["long_name"],
+            )
         for row, table in content.tables.items():
             for name, one in table.items():
                 assert found[f"{row}_{name}"].dims == (row,)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.motions.pulses import sine
+from rocking.outcome import Outcome, Status
 
 ENGINES = Path(__file__).parents[3] / "engine"
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])
@@ -37,8 +37,8 @@ def test_there_is_no_second_list():
             things = vars(importlib.import_module(module.name)).values()
             found |= {c for c in things if isinstance(c, type) and issubclass(c, Enum) and shared & set(c.__members__)}
     assert {f"{c.__module__}.{c.__name__}" for c in found} == {
-        "rocking.dynamics.outcome.Outcome",
-        "rocking.dynamics.outcome.Status",
+        "rocking.outcome.Outcome",
+        "rocking.outcome.Status",
         "rocking.dynamics.bed.emergent.BedStatus",  # of one impact on a bed
     }
 

@@ -15,13 +15,13 @@ import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import Outcome, Rocker, RockingSide
 from rocking.dynamics.impact_law import ConstantRestitution
-from rocking.dynamics.outcome import Status
 from rocking.dynamics.reference import Reference
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, last_fall, turning_points
 from rocking.dynamics.trajectory import EventKind, Trajectory
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
+from rocking.outcome import Status
 
 ALPHA = 0.2
 BLOCK = rk.Block(width=0.5, height=2.0)

@@ -5,8 +5,8 @@ import pytest
 
 import rocking as rk
 from rocking.app.studies.results.maps import contours_of
-from rocking.dynamics.outcome import Outcome, Status, overturned
 from rocking.motions.pulses import sine
+from rocking.outcome import Outcome, Status, overturned
 from rocking.plots.falling import falling_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 from rocking.studies.fragility.stripes import multiple_stripes

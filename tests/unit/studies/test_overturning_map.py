@@ -7,8 +7,9 @@ import pytest
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.quantities import HISTORY
 from rocking.studies.lattice import Lattice
-from rocking.studies.overturning_map import VARIABLES, overturning_map
+from rocking.studies.overturning_map import overturning_map
 from rocking.studies.plane import Plane
 from rocking.studies.refined import refined_map
 
@@ -100,7 +101,7 @@ def test_what_a_map_says_of_itself():
     """Units and meanings of variables and coordinates; software, settings, motion and restitution in the attributes."""
     found = overturning_map(BLOCK, PULSE, ("pga", [1.0, 2.0]), ("pgv", [0.1, 0.2, 0.3]), "housner", linear=True)
     assert found["mode"].dims == ("pgv", "pga")
-    assert set(found.data_vars) == set(VARIABLES)
+    assert set(found.data_vars) == set(HISTORY)
     assert all({"units", "long_name"} <= set(found[name].attrs) for name in found.variables)
     assert found["pgv"].attrs["units"] == "m/s"
     assert found.attrs["software"] == f"rocking {rk.__version__}"
@@ -146,7 +147,7 @@ def test_refinement_keeps_the_base_and_finds_what_a_fine_map_has():
     x, y = ("frequency_ratio", np.linspace(1.5, 6.0, 10)), ("amplitude_ratio", np.linspace(0.5, 8.0, 11))
     base = overturning_map(BLOCK, PULSE, x, y, 0.9, threads=1)
     finer = overturning_map(BLOCK, PULSE, x, y, 0.9, threads=1, refine=2)
-    for name in VARIABLES:
+    for name in HISTORY:
         np.testing.assert_array_equal(base[name].values, finer[name].values)
     np.testing.assert_array_equal(finer["refined_mode"].values[: base["mode"].size], base["mode"].values.ravel())
     fine = overturning_map(

@@ -6,9 +6,9 @@ from typing import Any
 from rocking.app.api.curves import fall_series, response_series
 from rocking.app.problems import TooLarge
 from rocking.app.question import Question
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 from rocking.report.facts.body import body_facts, outline_facts
 from rocking.report.facts.response import moved_facts, response_facts
 from rocking.report.facts.verdict import Verdict

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.app.takeaway.plain_text import plain_line
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
+from rocking.outcome import Outcome
 from rocking.plots.response_curves import ground_curve, motion_curves, over_slenderness, shown_until
 from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, PALE, in_journal_style, new_figure
 from rocking.report.facts.verdict import Verdict

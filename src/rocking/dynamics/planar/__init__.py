@@ -1,11 +1,11 @@
 """Rest, sliding, rocking, sliding while rocking, and flight of a plane body, with friction and impacts."""
 
 from rocking.dynamics.planar.histories import simulate_with_contact
-from rocking.dynamics.planar.mode import Regime
 from rocking.dynamics.planar.response import PlanarResponse
 from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
 from rocking.dynamics.planar.shenton import analytic_regime, friction_demand, regime_at_start, regime_map
 from rocking.dynamics.planar.start import Start
+from rocking.outcome import Regime
 
 __all__ = [
     "ContactLaw",

@@ -7,13 +7,13 @@ Lemke's algorithm would find is among them, and unlike it the trial also sees wh
 from itertools import chain, combinations
 from typing import NamedTuple
 
-from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.course import Course, course
 from rocking.dynamics.planar.footing import Footing
 from rocking.dynamics.planar.ground import Ground
 from rocking.dynamics.planar.margins import consistent, margins
 from rocking.dynamics.planar.mode import Mode
 from rocking.dynamics.planar.state import State, along, away
+from rocking.outcome import Status
 
 TOLERANCE = 1e-12
 _LADDER = (TOLERANCE, 1e-10, 1e-8)

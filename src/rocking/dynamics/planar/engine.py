@@ -10,7 +10,6 @@ import math
 
 import numpy as np
 
-from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.choosing import TOLERANCE, Choice, choose, weight_of
 from rocking.dynamics.planar.course import Course, course
 from rocking.dynamics.planar.footing import BOTH, Footing
@@ -27,6 +26,7 @@ from rocking.dynamics.planar.state import State, away, kept, kinetic
 from rocking.dynamics.planar.stirring import stirring
 from rocking.dynamics.taylor import first_fall, shifted
 from rocking.motions.segments import Segments
+from rocking.outcome import Status
 
 _ORDER = 30
 _WHOLE = 1.0 - 1e-13

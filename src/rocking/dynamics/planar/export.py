@@ -5,44 +5,27 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.exported import Exported, Quantity, told
-from rocking.dynamics.planar.mode import Regime
+from rocking.dynamics.exported import Column, Exported, told
 
 if TYPE_CHECKING:
     from rocking.dynamics.planar.response import PlanarResponse
 
-COLUMNS = (
-    ("time", "s", "time"),
-    ("displacement", "m", "displacement of the centre of mass to the right, relative to the ground"),
-    ("rise", "m", "height of the centre of mass above its place at rest"),
-    ("rotation", "rad", "rotation theta, positive clockwise"),
-    ("horizontal_velocity", "m/s", "velocity of the centre of mass to the right, relative to the ground"),
-    ("vertical_velocity", "m/s", "velocity of the centre of mass upwards, relative to the ground"),
-    ("angular_velocity", "rad/s", "angular velocity"),
-    ("regime", "1", "; ".join(f"{r.code} {r.value}" for r in Regime)),
-    ("sliding_distance", "m", "path of the feet along the ground since the start"),
-    ("horizontal_force", "N", "force of the ground on the body, to the right"),
-    ("vertical_force_left", "N", "force of the ground on the left foot, upwards"),
-    ("vertical_force_right", "N", "force of the ground on the right foot, upwards"),
-    ("kinetic_energy", "J", "kinetic energy relative to the ground"),
-    ("potential_energy", "J", "potential energy above rest"),
-    ("work_of_ground", "J", "work done by the ground since the start"),
-    ("lost_in_impacts", "J", "energy lost in impacts since the start"),
-    ("lost_in_friction", "J", "energy lost in friction since the start"),
-)
-"""Name, unit and meaning of every column."""
-
-_IMPACT_UNITS = {
-    "time": "s", "velocity_before": "rad/s", "velocity_after": "rad/s", "normal_left": "N s", "normal_right": "N s",
-    "tangential_left": "N s", "tangential_right": "N s", "lost": "J",
-}  # fmt: skip
-_INTERVAL_UNITS = {"start": "s", "end": "s", "distance": "m"}
+SAMPLES = (
+    "time", "displacement", "rise", "rotation", "horizontal_velocity", "vertical_velocity", "angular_velocity",
+    "regime", "sliding_distance", "horizontal_force", "vertical_force_left", "vertical_force_right", "kinetic_energy",
+    "potential_energy", "work_of_ground", "energy_lost", "lost_in_friction",
+)  # fmt: skip
+"""What is known at every sample."""
+_IMPACTS = (
+    "time", "velocity_before", "velocity_after", "normal_left", "normal_right", "tangential_left", "tangential_right",
+    "lost",
+)  # fmt: skip
 
 
 def columns(response: "PlanarResponse") -> dict[str, FloatArray]:
     """Return the samples of a response by name.
 
-    Returns all of one length, in the order of `COLUMNS`.
+    Returns all of one length, in the order of `SAMPLES`.
     """
     energy, forces = response.energy, response.forces
     values = (
@@ -51,7 +34,7 @@ def columns(response: "PlanarResponse") -> dict[str, FloatArray]:
         forces.horizontal, forces.left, forces.right, energy.kinetic, energy.potential, energy.work,
         energy.lost_in_impacts, energy.lost_in_friction,
     )  # fmt: skip
-    return {name: value for (name, _, _), value in zip(COLUMNS, values, strict=True)}
+    return dict(zip(SAMPLES, values, strict=True))
 
 
 def provenance(response: "PlanarResponse") -> dict[str, Any]:
@@ -90,13 +73,12 @@ def exported(response: "PlanarResponse") -> Exported:
 
     Returns Samples, impacts, intervals of one regime, and provenance.
     """
-    about = {name: (unit, words) for name, unit, words in COLUMNS}
-    samples = {name: Quantity(values, *about[name]) for name, values in columns(response).items()}
+    samples = {name: Column.of(name, values) for name, values in columns(response).items()}
     impacts, regimes = response.impacts, response.regimes
-    blows = {name: Quantity(impacts[name], unit) for name, unit in _IMPACT_UNITS.items()}
-    blows["feet"] = Quantity(impacts["feet"], words="feet that touch the ground")
-    blows["slips"] = Quantity(impacts["slips"].astype(np.int8), "1", "whether the feet slid in the impact: 1 yes, 0 no")
-    intervals = {name: Quantity(regimes[name], unit) for name, unit in _INTERVAL_UNITS.items()}
-    intervals["regime"] = Quantity(regimes["regime"], words="regime")
-    intervals["feet"] = Quantity(regimes["feet"], words="feet that carry")
+    blows = {name: Column.of(name, impacts[name]) for name in _IMPACTS}
+    blows["feet"] = Column.of("feet", impacts["feet"])
+    blows["slips"] = Column.of("slips", impacts["slips"].astype(np.int8))
+    intervals = {name: Column.of(name, regimes[name]) for name in ("start", "end", "distance")}
+    intervals["regime"] = Column.said(regimes["regime"], "", "regime")
+    intervals["feet"] = Column.said(regimes["feet"], "", "feet that carry")
     return Exported(samples, {"impact": blows, "interval": intervals}, provenance(response))

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.log import Log
+from rocking.outcome import Status
 
 
 class History(NamedTuple):

@@ -12,9 +12,9 @@ that only the sum of the ``P_t`` is determined: it is shared as the ``P_n`` are.
 from itertools import combinations
 from typing import NamedTuple
 
-from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
 from rocking.dynamics.planar.state import State, along, away, kept, kinetic
+from rocking.outcome import Status
 
 _ROUNDING = 1e-13
 

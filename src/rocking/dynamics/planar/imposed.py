@@ -9,10 +9,10 @@ k b). That place is kept. Where the impact takes more friction than there is, ``
 new foot slides off; with Housner's r this is the complementarity problem's own solution.
 """
 
-from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.footing import LEFT, RIGHT, Footing
 from rocking.dynamics.planar.impact import Struck
 from rocking.dynamics.planar.state import State, along, away, kinetic
+from rocking.outcome import Status
 
 _ROUNDING = 1e-12
 

@@ -1,24 +1,9 @@
 """Which feet carry the body and whether they slide: ten modes, six regimes."""
 
-from enum import Enum
 from typing import NamedTuple
 
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT
-
-
-class Regime(Enum):
-    """What the body does, in words."""
-
-    REST = "at rest"
-    SLIDE = "sliding on its base"
-    ROCK = "rocking about one foot"
-    SLIDE_ROCK = "rocking about one foot that slides"
-    FLIGHT = "in flight"
-
-    @property
-    def code(self) -> int:
-        """Number of the regime in arrays."""
-        return list(Regime).index(self)
+from rocking.outcome import Regime
 
 
 class Mode(NamedTuple):

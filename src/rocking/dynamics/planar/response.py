@@ -10,18 +10,17 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.planar.books import PlanarEnergy, PlanarForces, energy_of, forces_of
 from rocking.dynamics.planar.events import impacts_of, places_of, regimes_of
 from rocking.dynamics.planar.footing import Footing
 from rocking.dynamics.planar.history import History
 from rocking.dynamics.planar.log import SAMPLED
-from rocking.dynamics.planar.mode import Regime
 from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome, Regime, Status
 
 if TYPE_CHECKING:
     from rocking.dynamics.exported import Exported

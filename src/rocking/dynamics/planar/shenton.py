@@ -18,9 +18,9 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.planar.choosing import Choice, choose
 from rocking.dynamics.planar.footing import LEFT, RIGHT, Footing
 from rocking.dynamics.planar.ground import Ground
-from rocking.dynamics.planar.mode import Regime
 from rocking.dynamics.planar.state import State
 from rocking.errors import InvalidValueError
+from rocking.outcome import Regime
 
 
 def friction_demand(body: Body, acceleration: float) -> float:

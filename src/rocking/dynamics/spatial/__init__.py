@@ -2,10 +2,10 @@
 
 from rocking.dynamics.spatial.histories import free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.response import SpatialResponse
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
+from rocking.outcome import Contact
 
 __all__ = [
     "Contact",

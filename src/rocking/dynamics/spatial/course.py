@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.rocker import SpatialBody
@@ -13,6 +12,7 @@ from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.spatial.trajectory import Piece, SpatialEvent, SpatialEventKind, SpatialTrajectory
 from rocking.dynamics.taylor import slope, turning_points
+from rocking.outcome import Outcome, Status
 from rocking.portable import dot
 
 _HALVINGS = 60

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.polynomials import NOTHING, first_zero
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.stance import Stance
+from rocking.outcome import Contact
 from rocking.portable import applied, norm
 
 SLOW_OPENING = 1e-9

@@ -5,36 +5,26 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.dynamics.exported import Exported, Quantity
-from rocking.dynamics.spatial.outcome import Contact
+from rocking.dynamics.exported import Column, Exported
 
 if TYPE_CHECKING:
     from rocking.dynamics.spatial.response import SpatialResponse
 
 _AXES = ("x", "y", "z")
-_CONTACTS = ", ".join(f"{contact.code} {contact.name.lower()}" for contact in Contact)
-_IMPACT_UNITS = {"time": "s", "energy_before": "J", "energy_after": "J", "impulse": "N s", "pull": "N s"}
 
 
-def columns(response: "SpatialResponse") -> dict[str, Quantity]:
+def columns(response: "SpatialResponse") -> dict[str, Column]:
     """Return the samples of a response in space by name."""
     energy, states = response.energy, response.states
     ground = response.ground.at(response.time)
-    made = {"time": Quantity(response.time, "s", "time")}
-    for k, name in enumerate(("s", *_AXES)):
-        words = f"attitude, component {name} of the unit quaternion"
-        made[f"quaternion_{name}"] = Quantity(states.quaternion[:, k], "1", words)
-    made |= _vector("angular_velocity", "rad/s", "angular velocity about", states.angular_velocity)
-    made["tilt"] = Quantity(response.tilt, "rad", "angle between the axis of the body and the vertical")
-    made["azimuth"] = Quantity(response.azimuth, "rad", "direction in which the body leans, from x towards y")
-    made["contact"] = Quantity(response.contact.astype(np.float64), "1", _CONTACTS)
-    made |= _vector("centre", "m", "centre of mass,", response.centre)
-    made |= _vector("ground_acceleration", "m/s2", "acceleration of the ground,", ground)
-    made["kinetic_energy"] = Quantity(energy.kinetic, "J", "kinetic energy")
-    made["potential_energy"] = Quantity(energy.potential, "J", "potential energy above rest")
-    made["work_of_ground"] = Quantity(energy.work, "J", "work done by the ground since the start")
-    made["energy_lost"] = Quantity(energy.lost, "J", "energy lost at impacts since the start")
-    return made
+    values = {"time": response.time}
+    values |= {f"quaternion_{axis}": states.quaternion[:, k] for k, axis in enumerate(("s", *_AXES))}
+    values |= _vector("angular_velocity", states.angular_velocity)
+    values |= {"tilt": response.tilt, "azimuth": response.azimuth, "contact": response.contact.astype(np.float64)}
+    values |= _vector("centre", response.centre) | _vector("ground_acceleration", ground)
+    values |= {"kinetic_energy": energy.kinetic, "potential_energy": energy.potential}
+    values |= {"work_of_ground": energy.work, "energy_lost": energy.lost}
+    return {name: Column.of(name, each) for name, each in values.items()}
 
 
 def provenance(response: "SpatialResponse") -> dict[str, Any]:
@@ -68,21 +58,23 @@ def exported(response: "SpatialResponse") -> Exported:
 
     Returns Samples, impacts, intervals of one contact, and provenance.
     """
-    impacts = {name: Quantity(response.impacts[name], unit) for name, unit in _IMPACT_UNITS.items()}
-    impacts["contact"] = Quantity(response.impacts["contact"], words="contact that stays")
-    impacts["vertices"] = Quantity(response.impacts["vertices"], words="vertices that stay on the ground")
+    known = ("time", "energy_before", "energy_after", "impulse", "pull")
+    impacts = {name: Column.of(name, response.impacts[name]) for name in known}
+    impacts["contact"] = Column.said(response.impacts["contact"], "", "contact that stays")
+    impacts["vertices"] = Column.said(response.impacts["vertices"], "", "vertices that stay on the ground")
     rows = response.intervals
     intervals = {
-        "start": Quantity(np.array([start for start, _, _, _ in rows], dtype=np.float64), "s"),
-        "end": Quantity(np.array([end for _, end, _, _ in rows], dtype=np.float64), "s"),
-        "contact": Quantity(np.array([contact.name.lower() for _, _, contact, _ in rows], dtype="U8"), words="contact"),
-        "vertices": Quantity(
-            np.array(["-".join(map(str, points)) for _, _, _, points in rows], dtype="U64"),
-            words="vertices on the ground",
+        "start": Column.of("start", np.array([start for start, _, _, _ in rows], dtype=np.float64)),
+        "end": Column.of("end", np.array([end for _, end, _, _ in rows], dtype=np.float64)),
+        "contact": Column.said(
+            np.array([contact.name.lower() for _, _, contact, _ in rows], dtype="U8"), "", "contact"
+        ),
+        "vertices": Column.of(
+            "vertices", np.array(["-".join(map(str, points)) for _, _, _, points in rows], dtype="U64")
         ),
     }
     return Exported(columns(response), {"impact": impacts, "interval": intervals}, provenance(response))
 
 
-def _vector(name: str, unit: str, words: str, values: np.ndarray) -> dict[str, Quantity]:
-    return {f"{name}_{axis}": Quantity(values[:, k], unit, f"{words} {axis}") for k, axis in enumerate(_AXES)}
+def _vector(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    return {f"{name}_{axis}": values[:, k] for k, axis in enumerate(_AXES)}

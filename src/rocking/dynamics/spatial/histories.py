@@ -11,13 +11,13 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial.ground import Component, ground_of
 from rocking.dynamics.spatial.impact import law_of
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.reference import SpatialReference
 from rocking.dynamics.spatial.response import SpatialResponse
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
+from rocking.outcome import Contact
 from rocking.portable import applied
 
 _FINE, _AFTER, _LONG = 0.05, 15.0, 300.0

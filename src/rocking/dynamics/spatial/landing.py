@@ -7,10 +7,10 @@ from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.attitude import cross
 from rocking.dynamics.spatial.events import START_ROLLING, STOP_ROLLING
 from rocking.dynamics.spatial.impact import SpatialImpactLaw, projected
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.selection import Choice, State, candidates, forces, impulses, of_forces, of_impact
 from rocking.dynamics.spatial.stance import Stance
+from rocking.outcome import Contact
 from rocking.portable import applied, dot, norm
 
 CLOSED = 1e-12

@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import attitude, events, flow, release, resting
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.attitude import cross
@@ -14,13 +13,13 @@ from rocking.dynamics.spatial.events import Step
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
 from rocking.dynamics.spatial.landing import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.rolling import RollingFlow
 from rocking.dynamics.spatial.selection import Choice, State, of_forces
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.spatial.trajectory import Piece, SpatialEventKind, SpatialTrajectory
+from rocking.outcome import Contact, Outcome, Status
 from rocking.portable import applied, norm
 
 _PULL = 1e-9

@@ -5,11 +5,11 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial.attitude import cross
 from rocking.dynamics.spatial.events import Step
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.polynomials import cauchy, dot, first_zero, padded, square_root
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.taylor import value
+from rocking.outcome import Contact
 from rocking.portable import applied, inverse, times
 from rocking.portable import dot as dot_of
 

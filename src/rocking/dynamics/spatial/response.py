@@ -11,16 +11,15 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial.events import NEARLY_FLAT
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory
 from rocking.errors import InvalidValueError
+from rocking.outcome import Contact, Outcome, Status
 from rocking.portable import applied, dot, norm
 
 if TYPE_CHECKING:

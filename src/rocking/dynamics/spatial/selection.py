@@ -17,9 +17,9 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.attitude import cross
 from rocking.dynamics.spatial.impact import SpatialImpactLaw, projected
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.stance import Stance
+from rocking.outcome import Contact
 from rocking.portable import applied, dot, norm, solution
 
 _ROUNDING = 1e-9

@@ -6,8 +6,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial.attitude import cross
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.outcome import Contact
 from rocking.portable import dot, norm
 
 UP = np.array([0.0, 0.0, 1.0])

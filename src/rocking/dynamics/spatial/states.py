@@ -7,9 +7,9 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.spatial import attitude
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.trajectory import Piece, SpatialTrajectory
+from rocking.outcome import Contact
 from rocking.portable import applied, times
 
 

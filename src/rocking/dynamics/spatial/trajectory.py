@@ -6,9 +6,8 @@ from enum import Enum
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome, Status
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.stance import Stance
+from rocking.outcome import Contact, Outcome, Status
 from rocking.portable import powers, times
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.dynamics.exported import Exported, Quantity, told
+from rocking.dynamics.exported import Column, Exported, told
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
 from rocking.dynamics.spatial_batch.start import SpatialStart
@@ -61,16 +61,16 @@ def exported(batch: "SpatialBatch") -> Exported:
 
     Returns one row a history: numbers of body, motion and start, names of motion and restitution, scale, all results.
     """
-    from rocking.dynamics.spatial_batch.result import DIMENSIONS, UNITS
+    from rocking.dynamics.spatial_batch.result import DIMENSIONS
 
     places = dict(zip(DIMENSIONS, np.unravel_index(np.arange(len(batch)), batch.shape), strict=True))
-    rows = {name: Quantity(places[name], "1", f"number of the {name}") for name in ("body", "motion", "start")}
+    rows = {name: Column.said(places[name], "1", f"number of the {name}") for name in ("body", "motion", "start")}
     for name in ("motion", "restitution"):
         words = np.array([str(label) for label in batch.labels[name]])
         key = "motion_name" if name == "motion" else name
-        rows[key] = Quantity(words[places[name]], words=f"name of the {name}")
-    rows["scale"] = Quantity(np.array(batch.labels["scale"], dtype=np.float64)[places["scale"]], "1", "factor")
-    rows |= {name: Quantity(values, *UNITS[name]) for name, values in batch.results.items()}
+        rows[key] = Column.said(words[places[name]], "", f"name of the {name}")
+    rows["scale"] = Column.said(np.array(batch.labels["scale"], dtype=np.float64)[places["scale"]], "1", "factor")
+    rows |= {name: Column.of(name, values) for name, values in batch.results.items()}
     return Exported(rows, {}, stated(batch))
 
 

@@ -5,10 +5,9 @@ import math
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.spatial import attitude
-from rocking.dynamics.spatial.outcome import Contact
 from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory
+from rocking.outcome import Contact, Outcome
 
 
 def results_of(found: SpatialTrajectory) -> tuple[FloatArray, list[int]]:

@@ -7,8 +7,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.outcome import OVERTURNED, Outcome, Status, of_results, overturned
-from rocking.dynamics.spatial.outcome import Contact
+from rocking.outcome import of_results, overturned
+from rocking.quantities import attributes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,29 +19,6 @@ if TYPE_CHECKING:
 
 DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
 """Axes of the arrays of a batch, in order."""
-
-UNITS: dict[str, tuple[str, str]] = {
-    "outcome": ("1", ", ".join(f"{o.code} {o.name.lower()}" for o in Outcome)),
-    "status": ("1", ", ".join(f"{s.code} {s.name.lower()}" for s in Status)),
-    "overturned": OVERTURNED,
-    "over_contact": ("1", ", ".join(f"{c.code} {c.name.lower()}" for c in Contact) + " over which it fell, -1 none"),
-    "over_number": ("1", "number of that edge or vertex; -1 where there is none"),
-    "peak_tilt": ("rad", "largest angle from the vertical; a quarter turn if it overturned"),
-    "peak_time": ("s", "time of the peak"),
-    "peak_spin": ("rad/s", "largest angular velocity at ends of steps and at impacts"),
-    "overturning_time": ("s", "when the centre of mass passed over the contact for good"),
-    "direction": ("rad", "direction in which it lies, from x towards y"),
-    "first_uplift": ("s", "first uplift"),
-    "end_time": ("s", "end of the history"),
-    "held": ("s", "for how long a corner, or a rim that is nearly flat, was held down though it should slip or hop"),
-    "lost": ("J", "kinetic energy lost at impacts"),
-    "impacts": ("1", "number of impacts"),
-    "still_rocking": ("1", "1 where it stands but does not yet rest when its history ends, else 0; NaN no result"),
-    "uplifts": ("1", "number of uplifts from rest"),
-    "events": ("1", "number of impacts, uplifts and changes of contact"),
-    "steps": ("1", "number of steps of the engine"),
-}
-"""Unit and meaning of every array of a batch."""
 
 FLOATS = (
     "peak_tilt", "peak_time", "peak_spin", "overturning_time", "direction", "first_uplift", "end_time", "held", "lost",
@@ -58,7 +35,7 @@ class SpatialBatch(Exportable):
     shape : tuple of int
         Numbers of bodies, motions, scales, restitutions and starts.
     values : dict of str to ndarray
-        The results by name, one after another; see `UNITS` for their meaning.
+        The results by name, one after another; `rocking.quantities` has their meanings.
     engine : str
         Which engine ran, and how.
     labels : dict of str to list
@@ -151,8 +128,7 @@ class SpatialBatch(Exportable):
 
         xarray = extra("xarray", "a labelled dataset")
         data = {
-            name: (DIMENSIONS, values.reshape(self.shape), {"units": UNITS[name][0], "long_name": UNITS[name][1]})
-            for name, values in self.results.items()
+            name: (DIMENSIONS, values.reshape(self.shape), attributes(name)) for name, values in self.results.items()
         }
         made: xr.Dataset = xarray.Dataset(
             data, coords={name: (name, row) for name, row in self.labels.items()}, attrs=stated(self)

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import law_of
 from rocking.dynamics.spatial.reference import SpatialReference
@@ -20,6 +19,7 @@ from rocking.dynamics.spatial_batch.result import FLOATS, WHOLES
 from rocking.dynamics.spatial_batch.rows import RowTable
 from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
 from rocking.errors import InvalidValueError, RockingError
+from rocking.outcome import Outcome, Status
 
 PIECE = 1 << 15
 """Histories handed to the engine at a time: memory beside the results does not grow with their number."""

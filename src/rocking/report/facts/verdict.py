@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
+from rocking.outcome import Outcome
 
 _WORDS = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 

@@ -10,9 +10,10 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray
 from rocking.dynamics.engine import Arrays
-from rocking.dynamics.lost_contact import FORCES, contact_words, lost_contact
-from rocking.dynamics.outcome import Outcome, of_results, overturned
+from rocking.dynamics.lost_contact import contact_words, lost_contact
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome, of_results, overturned
+from rocking.quantities import attributes
 
 
 @dataclass(frozen=True)
@@ -131,14 +132,12 @@ class Responses:
     def labelled(self, dimensions: Any) -> dict[str, Any]:
         """Return outcome and rotation as variables of a labelled dataset."""
         told = "largest rotation over alpha; infinite if overturned, NaN if the history failed"
-        codes = ", ".join(f"{one.code} {one.value}" for one in Outcome)
         made: dict[str, Any] = {
-            "outcome": (dimensions, self.outcome, {"units": "1", "long_name": codes}),
+            "outcome": (dimensions, self.outcome, attributes("outcome")),
             "rotation": (dimensions, self.rotation, {"units": "1", "long_name": told}),
         }
         if self.lost is not None:
-            unit, words = FORCES["lost_contact"]
-            made["lost_contact"] = (dimensions, self.lost, {"units": unit, "long_name": words})
+            made["lost_contact"] = (dimensions, self.lost, attributes("lost_contact"))
         return made
 
     def counts(self) -> dict[Outcome, int]:

@@ -2,11 +2,10 @@
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rocking.dynamics import export
 from rocking.dynamics.bed import fast
-from rocking.dynamics.exported import Exported, Quantity
+from rocking.dynamics.exported import Column, Exported
+from rocking.quantities import Quantity
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,7 +63,7 @@ class LaboratoryStudy:
         """What files hold: the varied quantity first, then every result, with units; and the provenance."""
         names = [*self.dataset.coords, *self.dataset.data_vars]
         samples = {
-            str(name): Quantity(self.dataset[name].values, *(self.dataset[name].attrs.get(a, "") for a in _ABOUT))
+            str(name): Column.said(self.dataset[name].values, *(self.dataset[name].attrs.get(a, "") for a in _ABOUT))
             for name in names
         }
         return Exported(samples, provenance=dict(self.dataset.attrs))
@@ -89,7 +88,7 @@ class LaboratoryStudy:
 
 def about(name: str, unit: str) -> dict[str, str]:
     """Return unit and meaning of a result."""
-    return Quantity(np.zeros(0), unit, _WORDS.get(name, "")).attributes
+    return Quantity(name, unit, _WORDS.get(name, "")).attributes
 
 
 def provenance(study: str, laboratory: object) -> dict[str, str]:

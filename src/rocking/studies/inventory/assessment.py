@@ -12,10 +12,10 @@ from rocking.dynamics.batch import SIDES
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.lost_contact import lost_contact
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
+from rocking.outcome import Outcome
 from rocking.studies.histories import Product
 from rocking.studies.inventory.hazard import Hazard
 from rocking.studies.inventory.lights import Thresholds, share_interval

@@ -7,11 +7,12 @@ import numpy as np
 from rocking.dynamics.export import extra
 from rocking.dynamics.impact_law import ImpactLaw, RandomRestitution
 from rocking.errors import InvalidValueError
+from rocking.quantities import attributes
 from rocking.studies.job.answer import Column, Sheet, variable_of, words_of
 from rocking.studies.job.findings import analyses, refuse_unfinished
 from rocking.studies.job.folder import JobFolder
 from rocking.studies.job.results import Results
-from rocking.studies.job.study import VARIABLES
+from rocking.studies.job.study import TYPES
 from rocking.studies.sensitivity.comparison import Sensitivity
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ _RANDOM = RandomRestitution.kind
 def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":
     xarray: Any = extra("xarray", "comparing restitutions")
     study, labels = folder.job.study, list(folder.job.parts.choices)
-    flat = {name: np.empty(study.histories.count, VARIABLES[name][0]) for name in _KEPT}
+    flat = {name: np.empty(study.histories.count, TYPES[name]) for name in _KEPT}
     for first, last, found in Results(study, folder.campaign, {}).pieces():
         for name in _KEPT:
             flat[name][first:last] = found[name]
@@ -81,7 +82,7 @@ def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":
     dims = [name for name in study.dims if name != "restitution"]
     along = {name: study.coordinates[name] for name in dims if name in study.coordinates}
     coords = {name: each.values for name, each in along.items() if each.dims == (name,)}
-    told = {name: {"units": VARIABLES[name][1], "long_name": VARIABLES[name][2]} for name in _KEPT}
+    told = {name: attributes(name) for name in _KEPT}
     return {
         label: xarray.Dataset({name: (dims, whole[name][k], told[name]) for name in _KEPT}, coords)
         for k, label in enumerate(labels)

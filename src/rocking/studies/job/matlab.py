@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from rocking.errors import InvalidValueError
+from rocking.quantities import QUANTITIES
 from rocking.studies.job.answer import Sheet
 from rocking.studies.job.results import Results
-from rocking.studies.job.study import VARIABLES, blocks
+from rocking.studies.job.study import TYPES, blocks
 
 MOST_BYTES = 2**31 - 1
 """Largest variable of a MATLAB file of version 5 [bytes]."""
@@ -27,7 +28,7 @@ def to_matlab(results: Results, path: Path) -> None:
             f"MATLAB files take arrays up to 2 GiB, these are {study.histories.count} histories; take .nc, "
             "which MATLAB reads"
         )
-    whole = {name: np.empty(study.shape, kind) for name, (kind, _, _) in VARIABLES.items()}
+    whole = {name: np.empty(study.shape, kind) for name, kind in TYPES.items()}
     for first, last, arrays in results.pieces():
         for name, values in arrays.items():
             for place, part in blocks(first, last, study.shape):
@@ -36,7 +37,7 @@ def to_matlab(results: Results, path: Path) -> None:
         "dimensions": np.array(list(study.dims), dtype=object),
         "coordinates": {name: coordinate.values for name, coordinate in study.coordinates.items()},
         "results": whole,
-        "units": {name: unit for name, (_, unit, _) in VARIABLES.items()},
+        "units": {name: QUANTITIES[name].unit for name in TYPES},
         "provenance": results.attributes["provenance"],
     }
     savemat(path, {"campaign": told}, oned_as="column", appendmat=False, long_field_names=True)

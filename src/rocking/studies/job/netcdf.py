@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from rocking.dynamics.export import extra
+from rocking.quantities import attributes
 from rocking.studies.job.results import Results
-from rocking.studies.job.study import VARIABLES, Coordinate, blocks
+from rocking.studies.job.study import TYPES, Coordinate, blocks
 
 # attributes, and what HDF5 needs for itself [bytes]
 _MARGIN = 150_000
@@ -24,7 +25,7 @@ def to_netcdf(results: Results, path: Path) -> None:
     """Write results as netCDF, which xarray and MATLAB open."""
     h5py: Any = extra("h5py", "netCDF")
     study = results.study
-    room = study.histories.count * sum(np.dtype(kind).itemsize for kind, _, _ in VARIABLES.values())
+    room = study.histories.count * sum(np.dtype(kind).itemsize for kind in TYPES.values())
     room += sum(room_of(each.values) for each in study.coordinates.values())
     with netcdf_file(path, "w", room) as file:
         file.dimensions = dict(study.dims)
@@ -33,9 +34,9 @@ def to_netcdf(results: Results, path: Path) -> None:
         for name, coordinate in study.coordinates.items():
             _coordinate(file, name, coordinate, h5py.string_dtype())
         also = " ".join(name for name in study.coordinates if name not in study.dims)
-        for name, (kind, unit, words) in VARIABLES.items():
+        for name, kind in TYPES.items():
             made = file.create_variable(name, tuple(study.dims), dtype=np.dtype(kind))
-            made.attrs["units"], made.attrs["long_name"] = unit, words
+            made.attrs.update(attributes(name))
             if also:
                 made.attrs["coordinates"] = also
         for first, last, arrays in results.pieces():

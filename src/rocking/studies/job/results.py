@@ -33,7 +33,7 @@ class Results:
     def pieces(self) -> Iterator[tuple[int, int, Arrays]]:
         """Return the results in the order of the histories.
 
-        Returns first history, last one (not included), and what is known of them: the keys of `VARIABLES`.
+        Returns first history, last one (not included), and what is known of them: the keys of `HISTORY`.
         """
         for piece in self.campaign.pieces():
             for first in range(piece.first, piece.last, PIECE):

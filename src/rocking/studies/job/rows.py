@@ -9,9 +9,10 @@ import numpy as np
 
 from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
+from rocking.quantities import QUANTITIES
 from rocking.studies.fragility.tables import safe_cell
 from rocking.studies.job.results import Results
-from rocking.studies.job.study import VARIABLES, Coordinate
+from rocking.studies.job.study import TYPES, Coordinate
 from rocking.studies.job.workbook import new_book, save_book
 
 MOST_ROWS_OF_EXCEL = 1_048_575
@@ -30,8 +31,8 @@ def to_parquet(results: Results, path: Path) -> None:
             else pa.from_numpy_dtype(coordinate.values.dtype)
         )
         fields.append(pa.field(name, kind, metadata={"units": coordinate.unit, "long_name": coordinate.words}))
-    for name, (number, unit, meaning) in VARIABLES.items():
-        about = {"units": unit, "long_name": meaning}
+    for name, number in TYPES.items():
+        about = {"units": QUANTITIES[name].unit, "long_name": QUANTITIES[name].meaning}
         fields.append(pa.field(name, pa.from_numpy_dtype(np.dtype(number)), metadata=about))
     told = {name: value if isinstance(value, str) else json.dumps(value) for name, value in results.attributes.items()}
     schema = pa.schema(fields, metadata=told)
@@ -79,7 +80,7 @@ def to_excel(results: Results, path: Path) -> None:
 
 def _header(results: Results) -> list[str]:
     units = {name: coordinate.unit for name, coordinate in results.study.coordinates.items()}
-    units |= {name: unit for name, (_, unit, _) in VARIABLES.items()}
+    units |= {name: QUANTITIES[name].unit for name in TYPES}
     return [name if unit in {"1", "-"} else f"{name} [{unit}]" for name, unit in units.items()]
 
 

@@ -9,27 +9,17 @@ import numpy as np
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.lost_contact import flags
 from rocking.errors import InvalidValueError
+from rocking.quantities import HISTORY
 from rocking.studies.histories import Histories
 from rocking.studies.job.answer import Answer
 from rocking.studies.job.asked import Compute
-from rocking.studies.overturning_map import VARIABLES as OF_MAPS
 from rocking.studies.question import modes_of, peak_ratio
 
-VARIABLES: dict[str, tuple[Any, str, str]] = {
-    name: (kind, *OF_MAPS[name]) for name, kind in RESULTS.items() if name in OF_MAPS
-} | {
-    "peak_time": (np.float64, "s", "time of the peak rotation; the end of the motion if it comes later"),
-    "peak_velocity": (np.float64, "rad/s", "largest angular velocity at samples and impacts"),
-    "first_uplift": (np.float64, "s", "first uplift"),
-    "uplifts": (np.int64, "1", "number of uplifts from rest"),
-    "overturned": (np.float64, *OF_MAPS["overturned"]),
-    "still_rocking": (np.float64, *OF_MAPS["still_rocking"]),
-    "lost_contact": (np.float64, *OF_MAPS["lost_contact"]),
-    "mode": (np.int64, *OF_MAPS["mode"]),
-    "peak_ratio": (np.float64, *OF_MAPS["peak_ratio"]),
-}
-"""Type, unit and meaning of what is known of every history."""
-
+TYPES: dict[str, Any] = {
+    name: np.float64 if name in {"overturned", "still_rocking", "lost_contact"} else RESULTS.get(name, np.float64)
+    for name in HISTORY
+} | {"mode": np.int64}
+"""Type of what is known of every history."""
 Block = tuple[tuple[slice, ...], slice]
 
 
@@ -82,7 +72,7 @@ class Study:
         sides = self.histories.rows(first, last).values
         ratio = peak_ratio(found["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
         whole = {**found, **flags(found), "mode": modes_of(found), "peak_ratio": ratio}
-        return {name: whole[name] for name in VARIABLES}
+        return {name: whole[name] for name in HISTORY}
 
     def places(self, first: int, last: int) -> dict[str, np.ndarray]:
         """Return where some histories are along every dimension."""

@@ -10,8 +10,8 @@ import numpy as np
 
 from rocking.conventions import percent
 from rocking.dynamics.export import extra
-from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 from rocking.studies.sensitivity.curves import CurveChange, curve_change
 from rocking.studies.sensitivity.differences import Flips, difference_of, flips_of
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 
 if TYPE_CHECKING:
     import xarray as xr

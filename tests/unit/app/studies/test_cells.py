@@ -16,10 +16,10 @@ from rocking.app.studies.cells.motions import stretched_words
 from rocking.app.studies.cells.place import Place
 from rocking.app.studies.opened import OpenStudy
 from rocking.bodies import Block
-from rocking.dynamics.outcome import Outcome
 from rocking.motions.formats import write_motion
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import catalogue, pulse
+from rocking.outcome import Outcome
 from rocking.studies.axes import axes
 
 Tables = dict[str, Any]

@@ -7,7 +7,6 @@ import pytest
 
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
-from rocking.dynamics.outcome import Status
 from rocking.dynamics.planar.choosing import Choice, candidates, choose, weight_of
 from rocking.dynamics.planar.course import course
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
@@ -15,10 +14,11 @@ from rocking.dynamics.planar.ground import Ground
 from rocking.dynamics.planar.impact import Struck, strike
 from rocking.dynamics.planar.imposed import strike_with
 from rocking.dynamics.planar.margins import Kind, Margin, consistent, first_end, leading, margins
-from rocking.dynamics.planar.mode import FLIGHT, REST, Mode, Regime
+from rocking.dynamics.planar.mode import FLIGHT, REST, Mode
 from rocking.dynamics.planar.power_series import derivative, integral, value
 from rocking.dynamics.planar.state import State, along, away, kept, kinetic
 from rocking.dynamics.planar.turning import turning
+from rocking.outcome import Regime, Status
 
 G = 9.80665
 TALL = Footing.of_body(Block(width=1.0, height=2.0))

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from rocking.bodies import Block
 from rocking.dynamics import simulate
 from rocking.dynamics.impact_law import SpeedRestitution
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.planar import (
     Regime,
     Start,
@@ -20,7 +19,7 @@ from rocking.dynamics.planar import (
     simulate_with_contact,
 )
 from rocking.dynamics.planar.engine import Planar
-from rocking.dynamics.planar.export import COLUMNS
+from rocking.dynamics.planar.export import SAMPLES
 from rocking.dynamics.planar.footing import Footing
 from rocking.dynamics.planar.log import Log
 from rocking.dynamics.planar.mode import Mode
@@ -29,6 +28,8 @@ from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine
 from rocking.motions.segments import Segments
+from rocking.outcome import Outcome, Status
+from rocking.quantities import QUANTITIES
 
 G = 9.80665
 BODY = Block(width=1.0, height=2.0)
@@ -125,7 +126,7 @@ def test_impacts_have_impulses_that_press(rocked):
 def test_tables_hold_all_columns(rocked, tmp_path):
     """Data frame, CSV and dataset agree to the last digit, with units."""
     frame, data = rocked.to_dataframe(), rocked.to_xarray()
-    assert list(frame.columns) == [f"{name} [{unit}]".replace("[1]", "[-]") for name, unit, _ in COLUMNS]
+    assert list(frame.columns) == [f"{name} [{QUANTITIES[name].unit}]".replace("[1]", "[-]") for name in SAMPLES]
     path = rocked.to_csv(tmp_path / "planar.csv")
     read = np.loadtxt(path, delimiter=",", skiprows=1)
     assert np.array_equal(read, frame.to_numpy())

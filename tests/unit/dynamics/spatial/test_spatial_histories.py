@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.dynamics.spatial import Contact, SpatialBody, free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial.impact import law_of
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome, Status
 
 BOX = SpatialBody.box(1.0, 1.2, 4.0, density=2000.0)
 ALPHA = math.atan(0.25)

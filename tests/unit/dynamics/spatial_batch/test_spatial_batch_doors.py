@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Status
 from rocking.dynamics.spatial import SpatialBody, SpatialSettings
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial
@@ -16,6 +15,7 @@ from rocking.dynamics.spatial_batch.ground import joined
 from rocking.dynamics.spatial_batch.laws import batch_law
 from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning, UnknownModelError
+from rocking.outcome import Status
 
 BOX = SpatialBody.box(0.5, 0.6, 2.0)
 PULSE = rk.pulses.sine(amplitude=4.0, period=0.8)

@@ -9,7 +9,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics.spatial import SpatialBody
 from rocking.dynamics.spatial_batch import SpatialStart, engine, simulate_spatial_batch
-from rocking.dynamics.spatial_batch.result import UNITS
+from rocking.dynamics.spatial_batch.result import FLOATS, WHOLES
 from rocking.errors import InvalidValueError
 
 pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
@@ -52,7 +52,7 @@ def test_a_csv_keeps_every_digit(batch, tmp_path):
     np.testing.assert_array_equal(read, batch.values["peak_tilt"])
     assert np.isnan(read[8:]).all()
     names = {name.partition(" [")[0] for name in rows[0]}
-    assert names == {"body", "motion", "start", "motion_name", "restitution", "scale", *UNITS}
+    assert names == {"body", "motion", "start", "motion_name", "restitution", "scale", "overturned", *FLOATS, *WHOLES}
 
 
 def test_a_netcdf_file_keeps_axes_units_and_provenance(batch, tmp_path):

@@ -8,8 +8,8 @@ import pytest
 from scipy import stats
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 from rocking.studies.fragility.cloud import cloud, cloud_plan
 from rocking.studies.fragility.comparison import compare_measures, replace_measure
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from scipy import stats
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 from rocking.studies.fragility.censored import fit_censored, fit_crossings, fit_moments
 from rocking.studies.fragility.crossings import Brackets, brackets_of, intervals_of, refined
 from rocking.studies.fragility.incremental import incremental, incremental_plan

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
+from rocking.outcome import Outcome
 from rocking.studies.fragility.cloud import cloud_plan
 from rocking.studies.fragility.counts import count_outcomes
 from rocking.studies.fragility.curves import model_of

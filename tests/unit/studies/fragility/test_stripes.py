@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 from rocking.studies.fragility.stripes import multiple_stripes, stripes_plan
 from rocking.studies.fragility.subject import Subject, checked_levels
 from rocking.studies.fragility.uplift import uplift_check

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from rocking.dynamics.impact_law import RandomRestitution
-from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.motions.motion import GroundMotion
+from rocking.outcome import Outcome
 from rocking.studies.inventory import assessment as module
 from rocking.studies.inventory import words
 from rocking.studies.inventory.assessment import assess

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.quantities import QUANTITIES
 from rocking.studies.campaign import Campaign, CampaignIncompleteError, CampaignStorageError
 from rocking.studies.job import Job, JobFolder, export
 from rocking.studies.job.exporting import FORMATS
-from rocking.studies.job.study import VARIABLES
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")
@@ -31,7 +31,7 @@ def test_netcdf(finished, tmp_path):
     found = xr.load_dataset(export(folder, tmp_path / "r.nc"), engine="h5netcdf")
     for name, values in truth(folder).items():
         assert np.array_equal(found[name].values.ravel(), values, equal_nan=values.dtype.kind == "f")
-        assert found[name].attrs["units"] == VARIABLES[name][1]
+        assert found[name].attrs["units"] == QUANTITIES[name].unit
     assert json.loads(found.attrs["provenance"]) == folder.job.provenance
     assert found.attrs["software"].startswith("rocking ")
 
@@ -71,7 +71,7 @@ def test_csv(finished, tmp_path):
     with path.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for name, values in truth(folder).items():
-        unit = VARIABLES[name][1]
+        unit = QUANTITIES[name].unit
         cells = [row[name if unit == "1" else f"{name} [{unit}]"] for row in rows]
         assert np.array_equal([float(c) if c else np.nan for c in cells], values, equal_nan=True)
     assert any(row["first_uplift [s]"] == "" for row in rows) == bool(np.isnan(truth(folder)["first_uplift"]).any())

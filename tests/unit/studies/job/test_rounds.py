@@ -12,8 +12,8 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics.impact_law import RandomRestitution
-from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 from rocking.studies import boundary, minimum_overturning_accelerations, overturning_map
 from rocking.studies.campaign import (
     CampaignBusyError,

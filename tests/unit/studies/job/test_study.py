@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.quantities import QUANTITIES
 from rocking.studies import MotionList, Product, SyntheticSet
 from rocking.studies.job import Job, forecast
-from rocking.studies.job.study import VARIABLES, Study, blocks
+from rocking.studies.job.study import TYPES, Study, blocks
 
 
 @given(st.lists(st.integers(1, 5), min_size=1, max_size=4), st.data())
@@ -33,8 +34,8 @@ def test_blocks_fill_an_array_once(shape, data):
 
 def test_variables_have_units():
     """Every result of the engine, and what follows from it, has a unit and words."""
-    assert set(rk.dynamics.engine.RESULTS) | {"overturned", "lost_contact", "mode", "peak_ratio"} == set(VARIABLES)
-    assert all(unit in {"1", "rad", "rad/s", "s"} and words for _, unit, words in VARIABLES.values())
+    assert set(rk.dynamics.engine.RESULTS) | {"overturned", "lost_contact", "mode", "peak_ratio"} == set(TYPES)
+    assert all(QUANTITIES[name].unit in {"1", "rad", "rad/s", "s"} and QUANTITIES[name].meaning for name in TYPES)
 
 
 def test_dimensions_must_fit():

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rocking.dynamics.outcome import Outcome
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome
 from rocking.studies.sensitivity.differences import Flips, difference_of, flip_map, flips_of, share_interval
 
 STILL, ROCKED, OVER, FAILED = range(4)

@@ -9,8 +9,8 @@ import pytest
 import rocking as rk
 from rocking.dynamics import RandomRestitution, Rocker
 from rocking.dynamics.impact_law import uniform
-from rocking.dynamics.outcome import Outcome, Status
 from rocking.errors import InvalidValueError
+from rocking.outcome import Outcome, Status
 from rocking.studies.histories import Product, Table
 from rocking.studies.motion_set import MotionList
 from rocking.studies.sensitivity.sampled import SampledHistories, SampledRestitution, sampled, uniforms

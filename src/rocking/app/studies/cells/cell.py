@@ -11,9 +11,9 @@ from rocking.app.studies.cells.variation import Variation, valid
 from rocking.app.studies.opened import OpenStudy
 from rocking.app.studies.results.plain import meaning, plain
 from rocking.dynamics.histories import simulate
-from rocking.dynamics.outcome import Outcome
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, PureRockingWarning
+from rocking.outcome import Outcome
 
 POINTS = 1000
 """Samples of the curves."""

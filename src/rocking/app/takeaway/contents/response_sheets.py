@@ -5,26 +5,15 @@ from collections.abc import Mapping
 from rocking.app.takeaway.sheets import Column, Sheet
 from rocking.dynamics.export import columns
 from rocking.dynamics.response import Response
+from rocking.quantities import QUANTITIES
 from rocking.report.facts.response import outcome_facts
-
-_UNITS = {
-    "time": "s",
-    "rotation": "rad",
-    "angular_velocity": "rad/s",
-    "ground_acceleration": "m/s2",
-    "vertical_ground_acceleration": "m/s2",
-    "kinetic_energy": "J",
-    "potential_energy": "J",
-    "work_of_ground": "J",
-    "energy_lost": "J",
-    "horizontal_force": "N",
-    "vertical_force": "N",
-}
 
 
 def response_sheet(response: Response, name: str, about: dict[str, str]) -> Sheet:
     """Return the samples of a response."""
-    return Sheet(name, [Column.of(key, _UNITS[key], values) for key, values in columns(response).items()], about)
+    return Sheet(
+        name, [Column.of(key, QUANTITIES[key].unit, values) for key, values in columns(response).items()], about
+    )
 
 
 def impacts_sheet(responses: Mapping[str, Response], about: dict[str, str]) -> Sheet:

@@ -7,6 +7,7 @@ import numpy as np
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.engine import Arrays
 from rocking.errors import InvalidValueError
+from rocking.quantities import QUANTITIES
 from rocking.studies.boundary import Polyline, checked, outlines
 from rocking.studies.job.answer import Answer, Column, Sheet, words_of
 from rocking.studies.job.asked import AskedQuestion, Compute
@@ -15,7 +16,6 @@ from rocking.studies.job.results import PIECE
 from rocking.studies.job.study import Study
 from rocking.studies.job.tables import MapTable
 from rocking.studies.lattice import Lattice
-from rocking.studies.overturning_map import VARIABLES
 from rocking.studies.plane import Plane
 from rocking.studies.question import modes_of, peak_ratio
 from rocking.studies.refined import Refined, refine
@@ -82,11 +82,12 @@ class MapSearch:
 
 def _points(points: Refined, plane: Plane) -> Sheet:
     x, y = plane.x, plane.y
+    mode, ratio = QUANTITIES["mode"], QUANTITIES["peak_ratio"]
     columns = {
         x.name: Column(points.x, x.unit, x.words, "refined_x"),
         y.name: Column(points.y, y.unit, y.words, "refined_y"),
-        "mode": Column(points.modes, *VARIABLES["mode"], "refined_mode"),
-        "peak_ratio": Column(points.peak_ratio, *VARIABLES["peak_ratio"], "refined_peak_ratio"),
+        "mode": Column(points.modes, mode.unit, mode.meaning, "refined_mode"),
+        "peak_ratio": Column(points.peak_ratio, ratio.unit, ratio.meaning, "refined_peak_ratio"),
         "base": Column(
             points.base.astype(np.int64), "1", "1 for points of the map itself, 0 for new ones", "refined_base"
         ),
@@ -102,7 +103,7 @@ def _vertices(lines: list[Polyline], plane: Plane) -> Sheet:
     number = np.repeat(np.arange(len(lines)), sizes)
     closed = np.repeat(np.array([line.closed for line in lines], np.int64), sizes)
     regions = words_of([line.region for line in lines for _ in line.points])
-    unit, meaning = VARIABLES["mode"]
+    unit, meaning = QUANTITIES["mode"].unit, QUANTITIES["mode"].meaning
     columns = {
         "line": Column(number, "1", "number of the polyline", "boundary_line"),
         "region": Column(regions, "1", "what lies inside", "boundary_region"),

@@ -1,4 +1,4 @@
-"""How a history ends, and whether it could be computed: one list for rocking, sliding and flying, in plane and space.
+"""How a history ends, whether it could be computed, and on what the body stands: in the plane and in space.
 
 The values are the sentences that a user reads; the codes stand in arrays, in files and in the C++ engines, so that
 what comes new comes last.
@@ -49,13 +49,33 @@ class Status(Enum):
         return list(Status).index(self)
 
 
-OVERTURNED = ("1", "1 it overturned, 0 it did not, NaN where there is no result: neither")
-"""Unit and meaning of what `overturned` returns."""
+class Regime(Enum):
+    """What a body in the plane does that may slide and hop, in words."""
 
-STILL_ROCKING = (
-    "1", "1 where it stands, but did not yet rest when the motion ended, and later impacts do not count; NaN no result"
-)  # fmt: skip
-"""Unit and meaning of `still_rocking`."""
+    REST = "at rest"
+    SLIDE = "sliding on its base"
+    ROCK = "rocking about one foot"
+    SLIDE_ROCK = "rocking about one foot that slides"
+    FLIGHT = "in flight"
+
+    @property
+    def code(self) -> int:
+        """Number of the regime in arrays."""
+        return list(Regime).index(self)
+
+
+class Contact(Enum):
+    """On what a body in space stands."""
+
+    REST = "at rest on its whole base"
+    EDGE = "turning about an edge"
+    VERTEX = "turning about a vertex"
+    ROLLING = "rolling on its rim"
+
+    @property
+    def code(self) -> int:
+        """Number of the regime in arrays."""
+        return list(Contact).index(self)
 
 
 def overturned(outcome: Any) -> FloatArray:
