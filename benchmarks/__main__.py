@@ -1,7 +1,7 @@
 """Run the benchmarks, print their tables and keep them in benchmarks/.
 
 `python -m benchmarks` runs all; `python -m benchmarks restitution`, `engine [--full]`, `studies`, `bed` or `spatial`
-one part.
+one part. `python -m benchmarks house` measures the code instead: its size, names, circles and paths.
 """
 
 import argparse
@@ -10,10 +10,11 @@ import sys
 
 import numpy as np
 
-from benchmarks import bed, engine, ked, section, spatial, start, studies, table
+from benchmarks import bed, engine, house, ked, section, spatial, start, studies, table
 from benchmarks.table import Row
 
 PARTS = ("restitution", "engine", "studies", "bed", "spatial")
+PARTS_ALONE = ("house",)  # not of speed
 
 
 def rows() -> list[Row]:
@@ -64,7 +65,7 @@ def restitution() -> bool:
 def main() -> None:
     """Run what was asked for; leave with 1 if a goal is missed."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description="Speed, as ratios in one run.")
-    parser.add_argument("part", nargs="?", choices=("all", *PARTS), default="all")
+    parser.add_argument("part", nargs="?", choices=("all", *PARTS, *PARTS_ALONE), default="all")
     parser.add_argument("--full", action="store_true", help="engine: more repeats, more histories of slow peers")
     parser.add_argument("--histories", type=int, default=10_000, help="engine: fewer for a trial, not kept")
     asked = parser.parse_args()
@@ -78,6 +79,8 @@ def main() -> None:
     for part, made in (("bed", bed), ("spatial", spatial)):
         if asked.part in {"all", part}:
             good = made.main() and good
+    if asked.part == "house":
+        good = house.main()
     sys.exit(0 if good else 1)
 
 

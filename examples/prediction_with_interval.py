@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import rocking as rk
-from rocking.evidence.coefficient_table import outside_evidence
+from rocking.evidence._coefficient_table import outside_evidence
 from rocking.plots import coefficient_picture, write
 
 statue = rk.read_body(Path(__file__).parent / "bodies" / "statue_on_pedestal.toml")

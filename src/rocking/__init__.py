@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from rocking.motions.formats import read_motion
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
     from rocking.restitution.spatial import edge_coefficient, impact_in_space
+    from rocking.studies._overturning_map import overturning_map
+    from rocking.studies._rocking_spectrum import rocking_spectrum
     from rocking.studies.campaign import Campaign
     from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
-    from rocking.studies.overturning_map import overturning_map
-    from rocking.studies.rocking_spectrum import rocking_spectrum
 
 __version__ = "0.1.0"
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
+from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED, claims
+from rocking.evidence._errata import closer_rows, errata
 from rocking.evidence.agreement import correlation, relative_error
-from rocking.evidence.claims import FAILS, HOLDS, IN_PART, UNRESOLVED, claims
-from rocking.evidence.errata import closer_rows, errata
 from rocking.evidence.measurements import all_measurements, datasets
 from rocking.evidence.tables import Entry, recomputed
 from rocking.restitution import Housner, Ked

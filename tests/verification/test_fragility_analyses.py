@@ -13,9 +13,9 @@ import pytest
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.cloud import cloud
+from rocking.studies.fragility._cloud import cloud
+from rocking.studies.fragility._incremental import incremental
 from rocking.studies.fragility.curves import model_of
-from rocking.studies.fragility.incremental import incremental
 from rocking.studies.fragility.nrml import to_nrml
 from rocking.studies.fragility.stripes import multiple_stripes
 

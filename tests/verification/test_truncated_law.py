@@ -19,9 +19,9 @@ from rocking.dynamics.impact_law import uniform
 from rocking.dynamics.run import run
 from rocking.dynamics.trajectory import EventKind
 from rocking.errors import InvalidValueError, PlausibilityWarning
+from rocking.evidence._restitution_distribution import restitution_distribution
 from rocking.evidence.calibration import Calibration, calibrate
 from rocking.evidence.likelihood import scatter
-from rocking.evidence.restitution_distribution import restitution_distribution
 from rocking.motions.segments import Segments
 from rocking.restitution import ShiftedImpulse, coefficient_of_restitution
 from rocking.studies import SampledRestitution

@@ -8,7 +8,7 @@ from typing import Any
 
 from rocking.cli.shared_options import in_unit
 from rocking.conventions import FEET, Foot
-from rocking.evidence.coefficient_table import CoefficientRow, outside_evidence
+from rocking.evidence._coefficient_table import CoefficientRow, outside_evidence
 from rocking.report.facts.impact import ImpactAnswer, impact_facts
 from rocking.restitution import energy_ledger
 

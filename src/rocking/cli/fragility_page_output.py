@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from rocking.cli import study_output as shared
 from rocking.cli.fragility_question import FragilityAnswer
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.incremental import IncrementalAnalysis
+from rocking.studies.fragility._incremental import IncrementalAnalysis
 from rocking.studies.fragility.separation import Separation
 
 if TYPE_CHECKING:

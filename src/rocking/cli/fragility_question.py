@@ -13,7 +13,7 @@ from rocking.cli.fragility_motions import motions_from
 from rocking.cli.simulate_question import restitution_from
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.measures import IntensityMeasure, measure
+from rocking.studies.fragility._measures import IntensityMeasure, measure
 from rocking.studies.fragility.states import limit_states
 from rocking.studies.fragility.subject import Subject, checked_levels
 from rocking.studies.motion_set import MotionList

@@ -79,8 +79,8 @@ class MapQuestion:
 
     def answered(self, *, quiet: bool = False) -> "MapAnswer":
         """Compute the map, with every restitution."""
+        from rocking.studies._overturning_map import overturning_map
         from rocking.studies.islands import safe_islands
-        from rocking.studies.overturning_map import overturning_map
         from rocking.studies.sensitivity import map_sensitivity
 
         first, several = next(iter(self.choices)), len(self.choices) > 1
@@ -129,7 +129,7 @@ def axis_from(option: str, word: str) -> tuple[Axis, str]:
     >>> axis.values.tolist(), unit
     ([0.4, 0.8], 'cm')
     """
-    from rocking.studies.axes import axes
+    from rocking.studies._axes import axes
 
     name, equals, values = word.partition("=")
     known = axes()
@@ -169,7 +169,7 @@ def _draw(answer: MapAnswer, path: Path) -> None:
     from rocking.plots.overturning_map import overturning_map_picture
     from rocking.plots.study_words import shown_in
     from rocking.plots.style import write as write_picture
-    from rocking.studies.boundary import boundary
+    from rocking.studies._boundary import boundary
 
     asked = answer.question
     lines = boundary(

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from rocking.evidence.claims import FAILS, HOLDS, IN_PART, UNRESOLVED
+from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED
 from rocking.report.folder import as_plain, steps
 from rocking.report.paper_document import look_at
 from rocking.report.reproduction import Reproduction

@@ -10,7 +10,7 @@ from rocking.cli.simulate_question import Question, restitution_from
 from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
-from rocking.evidence.coefficient_table import default_models
+from rocking.evidence._coefficient_table import default_models
 from rocking.outcome import Outcome
 
 

@@ -83,7 +83,7 @@ def answer(
 
     angles: slenderness angles [rad]; periods: 2 pi / p [s].
     """
-    from rocking.studies.rocking_spectrum import rocking_spectrum
+    from rocking.studies._rocking_spectrum import rocking_spectrum
 
     total = len(motions) * angles.size * periods.size
     if total > _MOST:

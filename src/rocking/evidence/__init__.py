@@ -1,13 +1,18 @@
 """What was measured, and what it says about the models."""
 
-from rocking.evidence.calibration import Calibration, Prediction, calibrate, interval_for
-from rocking.evidence.claims import Claim, claims
-from rocking.evidence.coefficient_table import CoefficientRow, coefficient_table
-from rocking.evidence.errata import Erratum, errata
-from rocking.evidence.league import LeagueRow, league
-from rocking.evidence.measurements import DataSet, all_measurements, datasets
-from rocking.evidence.restitution_distribution import RestitutionDistribution, restitution_distribution
-from rocking.evidence.verdict import verdict
+from typing import TYPE_CHECKING
+
+from rocking.lazy import exports
+
+if TYPE_CHECKING:
+    from rocking.evidence._claims import Claim, claims
+    from rocking.evidence._coefficient_table import CoefficientRow, coefficient_table
+    from rocking.evidence._errata import Erratum, errata
+    from rocking.evidence._league import LeagueRow, league
+    from rocking.evidence._restitution_distribution import RestitutionDistribution, restitution_distribution
+    from rocking.evidence._verdict import verdict
+    from rocking.evidence.calibration import Calibration, Prediction, calibrate, interval_for
+    from rocking.evidence.measurements import DataSet, all_measurements, datasets
 
 __all__ = [
     "Calibration",
@@ -29,3 +34,27 @@ __all__ = [
     "restitution_distribution",
     "verdict",
 ]
+
+__getattr__, __dir__ = exports(
+    __name__,
+    {
+        "Calibration": "rocking.evidence.calibration",
+        "Claim": "rocking.evidence._claims",
+        "CoefficientRow": "rocking.evidence._coefficient_table",
+        "DataSet": "rocking.evidence.measurements",
+        "Erratum": "rocking.evidence._errata",
+        "LeagueRow": "rocking.evidence._league",
+        "Prediction": "rocking.evidence.calibration",
+        "RestitutionDistribution": "rocking.evidence._restitution_distribution",
+        "all_measurements": "rocking.evidence.measurements",
+        "calibrate": "rocking.evidence.calibration",
+        "claims": "rocking.evidence._claims",
+        "coefficient_table": "rocking.evidence._coefficient_table",
+        "datasets": "rocking.evidence.measurements",
+        "errata": "rocking.evidence._errata",
+        "interval_for": "rocking.evidence.calibration",
+        "league": "rocking.evidence._league",
+        "restitution_distribution": "rocking.evidence._restitution_distribution",
+        "verdict": "rocking.evidence._verdict",
+    },
+)

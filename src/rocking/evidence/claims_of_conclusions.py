@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from rocking.evidence._errata import closer_rows
 from rocking.evidence.agreement import rmse
 from rocking.evidence.claim import IN_PART, UNTESTABLE, Claim, all_or_open, truth
 from rocking.evidence.comparison import compare, errors_of_groups
-from rocking.evidence.errata import closer_rows
 from rocking.evidence.measurements import all_measurements
 from rocking.restitution import HorizontalMomentum, Ked
 from rocking.studies.impact_laboratory.large_bodies import large_bodies

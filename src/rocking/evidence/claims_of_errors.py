@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.evidence._errata import closer_rows
 from rocking.evidence.agreement import correlation, relative_error, zone
 from rocking.evidence.claim import FAILS, HOLDS, IN_PART, Claim, all_or_open, resolved, truth, verdict_of
 from rocking.evidence.comparison import Difference, compare, drawn, errors_of_groups, resampled
-from rocking.evidence.errata import closer_rows
 from rocking.evidence.measurements import blocks, datasets
 from rocking.restitution import Housner, Ked, RestitutionModel
 

@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from rocking.evidence._errata import closer_rows
 from rocking.evidence.agreement import correlation, loss_rmse, rmse
 from rocking.evidence.claim import FAILS, HOLDS, IN_PART, Claim, all_or_open, resolved, truth, verdict_of
 from rocking.evidence.comparison import compare, errors_of_groups
-from rocking.evidence.errata import closer_rows
 from rocking.evidence.measurements import blocks, datasets
 from rocking.evidence.tables import recomputed
 from rocking.restitution import Ked

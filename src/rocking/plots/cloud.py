@@ -46,7 +46,7 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility.cloud import cloud
+    >>> from rocking.studies.fragility._cloud import cloud
     >>> pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.2, 3.0, 6.0, 2.9, 8.0)]
     >>> cloud_picture(cloud(rk.Block(width=0.4, height=1.6), pulses)).axes[1].get_xlabel()
     'peak ground acceleration [m/s$^2$]'

@@ -43,7 +43,7 @@ def measures_picture(found: MeasureComparison) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility.cloud import cloud
+    >>> from rocking.studies.fragility._cloud import cloud
     >>> from rocking.studies.fragility.comparison import compare_measures
     >>> pulses = [rk.pulses.sine(a, t) for a in (2.6, 3.0, 3.4) for t in (0.3, 0.4, 0.5)]
     >>> found = compare_measures(cloud(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9), ["pga", "pgv"])

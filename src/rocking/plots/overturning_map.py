@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rocking.studies.boundary import Polyline
+    from rocking.studies._boundary import Polyline
 
 HEIGHT = 3.3
 _PANEL = (2.95, 2.55)
@@ -74,7 +74,7 @@ def overturning_map_picture(
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.overturning_map import overturning_map
+    >>> from rocking.studies._overturning_map import overturning_map
     >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
     >>> axes = ("frequency_ratio", [1.0, 2.0, 3.0]), ("amplitude_ratio", [1.0, 2.0, 3.0])
     >>> overturning_map_picture(overturning_map(block, pulse, *axes, 0.9)).axes[0].get_xlabel()

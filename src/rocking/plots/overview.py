@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rocking.evidence._league import LeagueRow
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration
-from rocking.evidence.league import LeagueRow
 from rocking.evidence.measurements import GROUPS, DataSet, datasets
 from rocking.plots.curves import curve, points, slenderness_axis
 from rocking.plots.style import DOUBLE, GREY, GROUP_STYLE, INK, MODEL_STYLE, PALE, in_journal_style, new_figure

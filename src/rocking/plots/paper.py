@@ -3,11 +3,11 @@
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from rocking.evidence._league import LeagueRow
 from rocking.evidence.calibration import Calibration
 from rocking.evidence.explanation import explanation
-from rocking.evidence.league import LeagueRow
-from rocking.plots.figure_1 import figure_1
-from rocking.plots.figure_2 import figure_2
+from rocking.plots._figure_1 import figure_1
+from rocking.plots._figure_2 import figure_2
 from rocking.plots.laboratory import bed_dependence_figure, explanations_figure, residuals_figure
 from rocking.plots.overview import calibration_figure, league_figure, models_and_measurements
 from rocking.plots.paper_figures import figure_3, figure_5, figure_6, figure_7, figure_8, figure_9

@@ -10,7 +10,7 @@ from rocking.errors import InvalidValueError
 from rocking.plots.overturning_map import CLASSES, FAILED, FIRST, LATER, ROCKED, SECOND, UNLIFTED
 from rocking.plots.study_words import axis_label, geometric, note, plain, plain_log
 from rocking.plots.style import DOUBLE, INK, SINGLE, in_journal_style, new_figure
-from rocking.studies.boundary import Polyline
+from rocking.studies._boundary import Polyline
 from rocking.studies.refined import Refined
 
 if TYPE_CHECKING:

@@ -45,7 +45,7 @@ def rocking_spectrum_picture(found: "xr.Dataset") -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.rocking_spectrum import rocking_spectrum
+    >>> from rocking.studies._rocking_spectrum import rocking_spectrum
     >>> found = rocking_spectrum(rk.pulses.sine(amplitude=4.0, period=0.8), [0.2, 0.3], [2.0, 4.0, 8.0], 0.9)
     >>> rocking_spectrum_picture(found).axes[1].get_xlabel()
     '$2\\pi\\,/\\,p$ [s]'

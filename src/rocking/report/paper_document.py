@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from rocking.evidence.claims import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
+from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED, Claim
+from rocking.evidence._league import LeagueRow
 from rocking.evidence.explanation import explanation
-from rocking.evidence.league import LeagueRow
 from rocking.evidence.measurements import BANDS, GROUPS
 from rocking.evidence.tables import Entry, TableRow
 from rocking.report.document import Cell, Document, Paragraph, Picture, Section, Table, cell

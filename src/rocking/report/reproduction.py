@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass
 
+from rocking.evidence._claims import Claim, claims
+from rocking.evidence._errata import Erratum, errata
+from rocking.evidence._league import LeagueRow, league
+from rocking.evidence._verdict import verdict
 from rocking.evidence.calibration import Calibration, calibrate
-from rocking.evidence.claims import Claim, claims
 from rocking.evidence.coverage import Coverage, coverage
-from rocking.evidence.errata import Erratum, errata
-from rocking.evidence.league import LeagueRow, league
 from rocking.evidence.tables import TableRow, recomputed
-from rocking.evidence.verdict import verdict
 
 TABLES = {
     "Table 1": ("table1",),

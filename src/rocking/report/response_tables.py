@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from rocking.conventions import Foot, g, given_or_assumed
 from rocking.dynamics.response import Response
-from rocking.evidence.coefficient_table import CALIBRATED, CoefficientRow
+from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.motions.intensity import Measure
 from rocking.outcome import Outcome
 from rocking.report.document import Cell, Table, cell

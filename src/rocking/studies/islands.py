@@ -96,7 +96,7 @@ def safe_islands(overturning: "xr.Dataset", *, enclosed: bool = True) -> Islands
     --------
     >>> import numpy as np
     >>> import rocking as rk
-    >>> from rocking.studies.overturning_map import overturning_map
+    >>> from rocking.studies._overturning_map import overturning_map
     >>> block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)
     >>> x, y = ("frequency_ratio", np.linspace(2.5, 4.0, 7)), ("amplitude_ratio", np.linspace(0.5, 10.0, 39))
     >>> found = overturning_map(block, pulse, x, y, 0.85)

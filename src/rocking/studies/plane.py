@@ -10,7 +10,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.engine import Arrays
 from rocking.dynamics.histories import settings_of
 from rocking.errors import InvalidValueError
-from rocking.studies.axes import axis_of
+from rocking.studies._axes import axis_of
 from rocking.studies.axis import Axis
 from rocking.studies.case import Case
 from rocking.studies.question import Question

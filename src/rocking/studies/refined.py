@@ -54,7 +54,7 @@ def refine(lattice: Lattice, modes: IntArray, peaks: Any = None) -> tuple[Refine
     """Return a map that is known, refined on a lattice of which nothing is known yet, and its mixed finest cells.
 
     peaks: relative peaks of the map; NaN if not given [-]. Returns refined: all points; the map's own first, in its
-    order; cells: columns and rows of the finest cells whose corners differ: where `rocking.studies.boundary.outlines`
+    order; cells: columns and rows of the finest cells whose corners differ: where `rocking.studies._boundary.outlines`
     begins.
     """
     first = lattice.base()

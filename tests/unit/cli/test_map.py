@@ -14,8 +14,8 @@ import rocking as rk
 from rocking.cli import application, main, study_output
 from rocking.cli.map import map as map_command
 from rocking.cli.map_output import axis_from
+from rocking.studies._overturning_map import overturning_map
 from rocking.studies.islands import safe_islands
-from rocking.studies.overturning_map import overturning_map
 from rocking.studies.sensitivity import map_sensitivity
 
 G = 9.80665

@@ -15,7 +15,7 @@ from rocking.cli.simulate_json import as_json
 from rocking.cli.simulate_output import Answer
 from rocking.cli.simulate_page import show
 from rocking.dynamics import engine as fast_engine
-from rocking.evidence.coefficient_table import default_models
+from rocking.evidence._coefficient_table import default_models
 
 G = 9.80665
 BLOCK = rk.Block(width=0.5, height=2.0)

@@ -12,7 +12,7 @@ import rocking as rk
 from rocking.cli import application, main
 from rocking.cli.spectrum import spectrum
 from rocking.cli.spectrum_output import angles_from, periods_from
-from rocking.studies.rocking_spectrum import rocking_spectrum
+from rocking.studies._rocking_spectrum import rocking_spectrum
 
 G = 9.80665
 SINE, COSINE = "sine:amplitude=3,period=0.8", "cosine:amplitude=3,period=0.8"

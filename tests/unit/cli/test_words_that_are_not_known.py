@@ -10,8 +10,8 @@ from rocking.motions.formats.registry import format_named
 from rocking.motions.pulses import pulse
 from rocking.restitution import model
 from rocking.restitution.spatial import spatial_model, spatial_models
-from rocking.studies.axes import axis_of
-from rocking.studies.fragility.measures import measure
+from rocking.studies._axes import axis_of
+from rocking.studies.fragility._measures import measure
 
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=3,period=0.8"

@@ -7,6 +7,7 @@ import pytest
 from scipy import stats
 
 from rocking import Block
+from rocking.evidence._coefficient_table import coefficient_table, outside_evidence
 from rocking.evidence.calibration import (
     NAMES,
     calibrate,
@@ -15,7 +16,6 @@ from rocking.evidence.calibration import (
     marginal_quantiles,
     posterior_grid,
 )
-from rocking.evidence.coefficient_table import coefficient_table, outside_evidence
 from rocking.evidence.coverage import coverage
 from rocking.evidence.likelihood import fit_scatter, scatter
 from rocking.evidence.measurements import all_measurements

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from rocking.evidence import agreement
+from rocking.evidence._league import league
+from rocking.evidence._verdict import verdict
 from rocking.evidence.contenders import as_it_is, contenders
-from rocking.evidence.league import league
 from rocking.evidence.likelihood import gaussian_bic, interval_log_likelihood
 from rocking.evidence.measurements import all_measurements
-from rocking.evidence.verdict import verdict
 from rocking.restitution import Fixed, Housner, Interface, Ked
 
 # RMSE of r: T1, S, M, L, all; BIC (physics.md 1.8)

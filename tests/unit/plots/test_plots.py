@@ -7,9 +7,9 @@ import pytest
 
 from rocking import Block, MassPoints, Section
 from rocking.errors import RockingError
+from rocking.evidence._coefficient_table import coefficient_table
+from rocking.evidence._league import league
 from rocking.evidence.calibration import calibrate
-from rocking.evidence.coefficient_table import coefficient_table
-from rocking.evidence.league import league
 from rocking.evidence.measurements import datasets
 from rocking.plots import body_picture, coefficient_picture, figure_2, figure_3, figure_7, figure_8, hero, save, write
 from rocking.plots.paper import paper_figures

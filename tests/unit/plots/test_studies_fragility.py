@@ -13,9 +13,9 @@ from rocking.errors import InvalidValueError
 from rocking.plots.fragility import caption, fragility_picture, gathered, state_colors, symbol
 from rocking.plots.incremental import incremental_picture
 from rocking.plots.measures import measures_picture
-from rocking.studies.fragility.cloud import cloud
+from rocking.studies.fragility._cloud import cloud
+from rocking.studies.fragility._incremental import incremental
 from rocking.studies.fragility.comparison import compare_measures
-from rocking.studies.fragility.incremental import incremental
 from rocking.studies.fragility.stripes import multiple_stripes
 
 G = 9.80665

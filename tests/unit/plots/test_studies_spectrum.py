@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.plots.rocking_spectrum import fractiles, rocking_spectrum_picture
-from rocking.studies.rocking_spectrum import rocking_spectrum
+from rocking.studies._rocking_spectrum import rocking_spectrum
 
 G = 9.80665
 PERIODS = np.geomspace(0.8, 12.0, 40)

@@ -8,7 +8,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics.impact_law import SpeedRestitution
 from rocking.errors import InvalidValueError
-from rocking.studies.axes import axes, axis_of
+from rocking.studies._axes import axes, axis_of
 from rocking.studies.geometry import changed_body, reference_side
 from rocking.studies.motion_axes import Scale
 from rocking.studies.motion_measures import main_period, peak_velocity

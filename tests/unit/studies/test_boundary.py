@@ -8,10 +8,10 @@ from scipy.optimize import brentq
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.studies.boundary import boundary
+from rocking.studies._boundary import boundary
+from rocking.studies._overturning_map import overturning_map
 from rocking.studies.contours import chains, crossed_edges, edge_numbers, segments
 from rocking.studies.lattice import Lattice
-from rocking.studies.overturning_map import overturning_map
 from rocking.studies.plane import Plane
 
 BLOCK = rk.Block.from_angle(0.15, 1.0)

@@ -6,8 +6,8 @@ import xarray as xr
 
 import rocking as rk
 from rocking.errors import InvalidValueError
+from rocking.studies._overturning_map import overturning_map
 from rocking.studies.islands import safe_beyond_overturning, safe_islands
-from rocking.studies.overturning_map import overturning_map
 
 
 def drawn(*rows):

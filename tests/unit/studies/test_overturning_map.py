@@ -8,8 +8,8 @@ import pytest
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.quantities import HISTORY
+from rocking.studies._overturning_map import overturning_map
 from rocking.studies.lattice import Lattice
-from rocking.studies.overturning_map import overturning_map
 from rocking.studies.plane import Plane
 from rocking.studies.refined import refined_map
 

@@ -16,7 +16,7 @@ from rocking.app.work import heavy
 from rocking.bodies import Body
 from rocking.bodies.formats.body_schema import UnitName
 from rocking.conventions import FEET, g
-from rocking.evidence.coefficient_table import outside_evidence
+from rocking.evidence._coefficient_table import outside_evidence
 from rocking.report.facts.body import body_facts, outline_facts
 
 router = APIRouter(prefix="/api", tags=["body"])

@@ -152,12 +152,12 @@ def _formats() -> list[dict[str, Any]]:
 
 
 def _measures() -> list[dict[str, Any]]:
-    from rocking.studies.fragility.measures import measures
+    from rocking.studies.fragility._measures import measures
 
     return [{"name": one.name, "words": one.words, "unit": one.unit} for one in measures().values()]
 
 
 def _axes() -> list[dict[str, Any]]:
-    from rocking.studies.axes import axes
+    from rocking.studies._axes import axes
 
     return [{"name": one.name, "unit": one.unit, "words": one.words} for one in axes().values()]

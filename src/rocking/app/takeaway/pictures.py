@@ -47,8 +47,8 @@ async def picture(
 
 def figure_of(what: str, asked: Asked, restitution: int | None = None) -> "Figure":
     """Return a picture."""
-    from rocking.plots.body_picture import body_picture, coefficient_picture
-    from rocking.plots.figure_2 import figure_2
+    from rocking.plots._body_picture import body_picture, coefficient_picture
+    from rocking.plots._figure_2 import figure_2
     from rocking.plots.ground_motion import ground_motion_picture
 
     if what == "motion":

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.evidence.coefficient_table import default_models
+from rocking.evidence._coefficient_table import default_models
 from rocking.evidence.measurements import all_measurements
 
 _RATIOS = np.geomspace(0.8, 12.0, 40)

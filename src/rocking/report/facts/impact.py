@@ -8,7 +8,7 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FEET, Foot
 from rocking.errors import InvalidValueError
-from rocking.evidence.coefficient_table import CoefficientRow, coefficient_table, default_models
+from rocking.evidence._coefficient_table import CoefficientRow, coefficient_table, default_models
 from rocking.report.facts.body import body_facts
 from rocking.restitution import IdentityCheck, RestitutionModel, energy_ledger, identity_report
 

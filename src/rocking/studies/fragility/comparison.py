@@ -11,11 +11,11 @@ from rocking import checks
 from rocking.conventions import BoolArray, FloatArray
 from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
+from rocking.studies.fragility._cloud import CloudAnalysis
+from rocking.studies.fragility._measures import measure
 from rocking.studies.fragility.barely_lifted import LEAST, checked_least, clearly_lifted
-from rocking.studies.fragility.cloud import CloudAnalysis
 from rocking.studies.fragility.curves import curve_of
 from rocking.studies.fragility.fits import fits_of
-from rocking.studies.fragility.measures import measure
 from rocking.studies.fragility.regression import Regression, regression
 from rocking.studies.fragility.subject import Progress, check_progress
 
@@ -163,7 +163,7 @@ def compare_measures(
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility.cloud import cloud
+    >>> from rocking.studies.fragility._cloud import cloud
     >>> pulses = [rk.pulses.half_sine(a, t) for a in (3.0, 3.5, 4.0) for t in (0.2, 0.3, 0.4)]
     >>> found = cloud(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9)
     >>> compare_measures(found, ["pga", "pgv", "pgv/pga"]).best

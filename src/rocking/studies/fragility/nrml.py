@@ -7,9 +7,9 @@ from xml.etree import ElementTree as ET
 
 from rocking import checks, conventions
 from rocking.errors import InvalidValueError
+from rocking.studies.fragility._measures import spectral_period
 from rocking.studies.fragility.curves import FragilityModel
 from rocking.studies.fragility.export import Destination, checked_path
-from rocking.studies.fragility.measures import spectral_period
 from rocking.studies.fragility.nesting import Crossing, nested
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"

@@ -18,7 +18,7 @@ from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.measures import IntensityMeasure, RockingScale, measure
+from rocking.studies.fragility._measures import IntensityMeasure, RockingScale, measure
 from rocking.studies.histories import Histories, Product, Table
 from rocking.studies.motion_set import MotionList, MotionSet, digest
 

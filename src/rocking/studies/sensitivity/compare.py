@@ -10,7 +10,7 @@ from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
-from rocking.studies.axes import axis_of
+from rocking.studies._axes import axis_of
 from rocking.studies.body_axes import Restitution
 from rocking.studies.motion_set import MotionSet
 from rocking.studies.sensitivity.choices import named_choices
@@ -112,7 +112,7 @@ def map_sensitivity(
     >>> bool(found.differences("verdict").any())
     False
     """
-    from rocking.studies.overturning_map import overturning_map
+    from rocking.studies._overturning_map import overturning_map
 
     along = axis_of(x), axis_of(y)
     if any(isinstance(axis, Restitution) for axis in along):
@@ -151,7 +151,7 @@ def spectrum_sensitivity(
     Sensitivity
         Flips and differences, block by block and motion by motion.
     """
-    from rocking.studies.rocking_spectrum import rocking_spectrum
+    from rocking.studies._rocking_spectrum import rocking_spectrum
 
     study = partial(rocking_spectrum, _kept(motions), slenderness_angles, periods, **options)
     return sensitivity(study, restitutions, baseline)

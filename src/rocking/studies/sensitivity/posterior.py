@@ -10,7 +10,7 @@ from rocking.dynamics.impact_law import RandomRestitution
 from rocking.studies.sensitivity.sampled import SampledRestitution
 
 # the evidence belongs to the layer above, which is asked for by name and only where a study wants it
-_PROVIDER = ("rocking.evidence.restitution_distribution", "restitution_distribution")
+_PROVIDER = ("rocking.evidence._restitution_distribution", "restitution_distribution")
 
 
 class Posterior(Protocol):

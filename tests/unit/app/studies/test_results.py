@@ -14,10 +14,10 @@ from rocking.app.studies.opened import OpenStudies, OpenStudy
 from rocking.app.studies.results import result_of
 from rocking.app.studies.results.maps import contours_of
 from rocking.app.studies.results.plain import plain
+from rocking.studies._overturning_map import overturning_map
+from rocking.studies._rocking_spectrum import rocking_spectrum
 from rocking.studies.fragility.stripes import multiple_stripes
-from rocking.studies.overturning_map import overturning_map
 from rocking.studies.record_set import SyntheticSet
-from rocking.studies.rocking_spectrum import rocking_spectrum
 
 Tables = dict[str, Any]
 BLOCK = rk.Block(width=0.5, height=2.0)

@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 
 import rocking as rk
 from rocking.app.takeaway.comparison_picture import _looks, comparison_picture
-from rocking.evidence.coefficient_table import default_models
+from rocking.evidence._coefficient_table import default_models
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 PULSE = rk.pulses.sine(3.0, 0.8)

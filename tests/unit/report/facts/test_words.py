@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rocking import app
-from rocking.evidence.coefficient_table import CALIBRATED, default_models
+from rocking.evidence._coefficient_table import CALIBRATED, default_models
 from rocking.report.facts.words import restitution_words
 from rocking.restitution import models
 

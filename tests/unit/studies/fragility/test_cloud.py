@@ -12,8 +12,8 @@ from scipy import stats
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
+from rocking.studies.fragility._cloud import cloud, cloud_plan
 from rocking.studies.fragility.barely_lifted import ClearShare
-from rocking.studies.fragility.cloud import cloud, cloud_plan
 from rocking.studies.fragility.regression import regression
 from rocking.studies.fragility.states import Responses
 

@@ -12,9 +12,9 @@ from scipy import stats
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
+from rocking.studies.fragility._incremental import incremental, incremental_plan
 from rocking.studies.fragility.censored import fit_censored, fit_crossings, fit_moments
 from rocking.studies.fragility.crossings import Brackets, brackets_of, intervals_of, refined
-from rocking.studies.fragility.incremental import incremental, incremental_plan
 from rocking.studies.fragility.stripes import multiple_stripes
 
 BODY = rk.Block(width=0.4, height=1.6).with_feet(0.04, 0.4)

@@ -6,7 +6,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.incremental import incremental
+from rocking.studies.fragility._incremental import incremental
 from rocking.studies.fragility.stripes import multiple_stripes
 
 BLOCK = rk.Block(width=0.4, height=1.6)

@@ -7,10 +7,10 @@ import pytest
 
 import rocking as rk
 from rocking.outcome import Outcome
-from rocking.studies.fragility.cloud import cloud_plan
+from rocking.studies.fragility._cloud import cloud_plan
+from rocking.studies.fragility._measures import IntensityMeasure
 from rocking.studies.fragility.counts import count_outcomes
 from rocking.studies.fragility.curves import model_of
-from rocking.studies.fragility.measures import IntensityMeasure
 from rocking.studies.fragility.pooling import pooled
 from rocking.studies.fragility.stripes import stripes_plan
 from rocking.studies.motion_set import MotionSet

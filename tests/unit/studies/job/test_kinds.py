@@ -8,8 +8,8 @@ import pytest
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
-from rocking.studies.fragility.cloud import cloud
-from rocking.studies.fragility.incremental import incremental
+from rocking.studies.fragility._cloud import cloud
+from rocking.studies.fragility._incremental import incremental
 from rocking.studies.fragility.stripes import multiple_stripes
 from rocking.studies.job import Job, analyses, export
 from rocking.studies.job.kinds import KINDS

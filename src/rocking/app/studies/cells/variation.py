@@ -10,7 +10,7 @@ from rocking.app.studies.cells.place import Place
 from rocking.app.studies.opened import OpenStudy
 from rocking.bodies import Block, Body
 from rocking.bodies.formats.body_writer import body_to_toml
-from rocking.studies.axes import axis_of
+from rocking.studies._axes import axis_of
 from rocking.studies.body_axes import Restitution
 from rocking.studies.geometry import changed_body
 from rocking.studies.plane import Plane

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from rocking.app.takeaway.sheets import Column, Sheet
 from rocking.bodies import Body
-from rocking.evidence.coefficient_table import CoefficientRow
+from rocking.evidence._coefficient_table import CoefficientRow
 from rocking.report.facts.body import body_facts
 from rocking.report.facts.impact import ImpactAnswer
 

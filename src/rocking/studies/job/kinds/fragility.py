@@ -8,8 +8,8 @@ import numpy as np
 
 from rocking.dynamics.engine import Arrays
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.cloud import cloud_plan
-from rocking.studies.fragility.incremental import incremental_plan
+from rocking.studies.fragility._cloud import cloud_plan
+from rocking.studies.fragility._incremental import incremental_plan
 from rocking.studies.fragility.stripes import stripes_plan
 from rocking.studies.fragility.subject import Subject
 from rocking.studies.histories import Product

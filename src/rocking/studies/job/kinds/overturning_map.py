@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from rocking.errors import InvalidValueError
-from rocking.studies.axes import axis_of
+from rocking.studies._axes import axis_of
 from rocking.studies.axis import Axis
 from rocking.studies.body_axes import Restitution
 from rocking.studies.job.kinds.map_histories import MapHistories

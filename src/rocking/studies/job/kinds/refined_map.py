@@ -8,7 +8,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.quantities import QUANTITIES
-from rocking.studies.boundary import Polyline, checked, outlines
+from rocking.studies._boundary import Polyline, checked, outlines
 from rocking.studies.job.answer import Answer, Column, Sheet, words_of
 from rocking.studies.job.asked import AskedQuestion, Compute
 from rocking.studies.job.reading import located

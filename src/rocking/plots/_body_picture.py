@@ -7,8 +7,8 @@ import numpy as np
 
 from rocking.bodies import Body
 from rocking.conventions import Foot
+from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.evidence.calibration import calibrate
-from rocking.evidence.coefficient_table import CALIBRATED, CoefficientRow
 from rocking.evidence.measurements import GROUPS, datasets
 from rocking.plots.curves import points, slenderness_axis
 from rocking.plots.outline import draw_body

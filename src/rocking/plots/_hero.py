@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from rocking.bodies import Section
 from rocking.bodies.region import Region
-from rocking.plots.figure_2 import figure_2
+from rocking.plots._figure_2 import figure_2
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

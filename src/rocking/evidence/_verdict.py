@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rocking.evidence._league import LeagueRow
 from rocking.evidence.comparison import MEASURES, compare
-from rocking.evidence.league import LeagueRow
 from rocking.evidence.measurements import all_measurements
 
 _UNRESOLVED = 6.0

@@ -1,0 +1,276 @@
+"""The size and shape of the code, measured from the code itself: lines, names, circles, arrows, doors, paths."""
+
+import ast
+import subprocess
+import sys
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from benchmarks.house_paths import files_passed
+
+ROOT = Path(__file__).parents[1]
+SOURCE, TESTS = ROOT / "src" / "rocking", ROOT / "tests"
+# rooms from the lowest up: what stands on one line does not know each other
+FLOORS = (
+    ("conventions", "errors", "lazy", "portable"),
+    ("outcome", "checks", "quantities"),
+    ("tables", "bodies", "motions", "statistics"),
+    ("plausibility",),
+    ("restitution",),
+    ("dynamics",),
+    ("studies",),
+    ("spec",),
+    ("campaigns", "evidence"),
+    ("plots",),
+    ("report", "reports"),
+    ("app", "cli"),
+    ("__main__",),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Measure:
+    """One line of the table."""
+
+    what: str
+    measured: str
+    goal: str
+    met: bool
+
+
+@cache
+def trees(folder: Path) -> dict[str, ast.Module]:
+    """Return the syntax tree of every module below a folder, by its dotted name."""
+    found = {}
+    for path in sorted(folder.rglob("*.py")):
+        parts = path.relative_to(folder.parent).with_suffix("").parts
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = ast.parse(path.read_text("utf-8"))
+    return found
+
+
+def lines(folder: Path) -> tuple[int, int, int]:
+    """Return the lines below a folder: all, with code, of docstrings."""
+    every = code = docstrings = 0
+    for path in sorted(folder.rglob("*.py")):
+        text = path.read_text("utf-8")
+        every += len(text.splitlines())
+        told = _docstring_lines(ast.parse(text))
+        docstrings += len(told)
+        code += sum(
+            bool(line.strip()) and not line.lstrip().startswith("#") and number not in told
+            for number, line in enumerate(text.splitlines(), 1)
+        )
+    return every, code, docstrings
+
+
+def _docstring_lines(tree: ast.Module) -> set[int]:
+    found: set[int] = set()
+    for node in ast.walk(tree):
+        kinds = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+        if isinstance(node, kinds) and ast.get_docstring(node):
+            text = node.body[0]
+            found.update(range(text.lineno, (text.end_lineno or text.lineno) + 1))
+    return found
+
+
+def classes(folder: Path) -> Counter[str]:
+    """Return how often each class name is defined below a folder."""
+    return Counter(
+        node.name for tree in trees(folder).values() for node in ast.walk(tree) if isinstance(node, ast.ClassDef)
+    )
+
+
+def imports(folder: Path) -> dict[str, set[str]]:
+    """Return what each module imports of the others, within functions and as strings too, types aside.
+
+    A name that a package hands on leads to the module where it stands.
+    """
+    modules = trees(folder)
+    return {name: set(_imported(name, tree, modules)) - {name} for name, tree in modules.items()}
+
+
+def _imported(name: str, tree: ast.Module, modules: dict[str, ast.Module]) -> Iterator[str]:
+    # a package's table of its own exports is no arrow
+    named = () if name.count(".") and _is_package(name, modules) else [each for each in modules if "." in each]
+    for node in _executed(tree):
+        if isinstance(node, ast.Import):
+            yield from (each.name for each in node.names if each.name in modules)
+        elif isinstance(node, ast.ImportFrom) and node.module in modules:
+            for each in node.names:
+                yield _home(node.module, each.name, modules)
+        elif isinstance(node, ast.Constant) and node.value in named:
+            yield str(node.value)
+
+
+def _is_package(name: str, modules: dict[str, ast.Module]) -> bool:
+    return any(each.startswith(f"{name}.") for each in modules)
+
+
+def _executed(tree: ast.AST) -> Iterator[ast.AST]:
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
+            for other in node.orelse:
+                yield from _executed(other)
+            continue
+        yield node
+        yield from _executed(node)
+
+
+def _home(module: str, name: str, modules: dict[str, ast.Module]) -> str:
+    if f"{module}.{name}" in modules:
+        return f"{module}.{name}"
+    for node in ast.walk(modules[module]):
+        if not isinstance(node, ast.ImportFrom) or node.module not in modules or node.module == module:
+            continue
+        if any((each.asname or each.name) == name for each in node.names):
+            return _home(node.module, name, modules)
+    return module
+
+
+def circles(arrows: dict[str, set[str]]) -> list[list[str]]:
+    """Return the groups of modules that import each other in a loop, by Tarjan's method."""
+    number: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(name: str) -> None:
+        number[name] = low[name] = len(number)
+        stack.append(name)
+        for other in sorted(arrows.get(name, ())):
+            if other not in number:
+                visit(other)
+            if other in stack:
+                low[name] = min(low[name], low[other])
+        if low[name] == number[name]:
+            group = stack[stack.index(name) :]
+            del stack[stack.index(name) :]
+            if len(group) > 1:
+                found.append(sorted(group))
+
+    sys.setrecursionlimit(10_000)
+    for name in sorted(arrows):
+        if name not in number:
+            visit(name)
+    return found
+
+
+def upward(arrows: dict[str, set[str]]) -> list[tuple[str, str]]:
+    """Return the imports of a room above, or beside, its own."""
+    floor = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
+
+    def room(name: str) -> str:
+        return name.split(".")[1] if "." in name else ""
+
+    return [
+        (name, other)
+        for name, others in arrows.items()
+        for other in sorted(others)
+        if room(name) and room(other) and room(name) != room(other) and floor[room(other)] >= floor[room(name)]
+    ]
+
+
+def options() -> dict[str, list[str]]:
+    """Return the options of each command, by its name."""
+    import typer
+
+    from rocking.cli.application import application
+
+    found: dict[str, list[str]] = {}
+
+    def collect(command: Any, name: str) -> None:
+        if hasattr(command, "commands"):
+            for key, each in command.commands.items():
+                collect(each, f"{name} {key}".strip())
+        else:
+            found[name] = [each.opts[-1] for each in command.params if each.param_type_name == "option"]
+
+    collect(typer.main.get_command(application()), "")
+    return found
+
+
+def deep_imports(folder: Path) -> tuple[int, int]:
+    """Return how many test files import inner modules, and how many such modules they import."""
+    modules = trees(SOURCE)
+    faces = {name for name in modules if _is_package(name, modules) or name.count(".") < 2}
+    deep: dict[str, set[str]] = defaultdict(set)
+    for name, tree in trees(folder).items():
+        for node in ast.walk(tree):
+            wanted = (
+                [node.module or ""] if isinstance(node, ast.ImportFrom)
+                else [each.name for each in node.names] if isinstance(node, ast.Import) else []
+            )  # fmt: skip
+            deep[name].update(each for each in wanted if each in modules and each not in faces)
+    found = {name: each for name, each in deep.items() if each}
+    return len(found), len(set().union(*found.values()) if found else ())
+
+
+def cited(rooms: tuple[str, ...]) -> int:
+    """Return how many lines of rooms cite an equation or a section by its number."""
+    marks = ("Eq. ", "Eqs. ", "section ")
+    return sum(
+        any(mark in line for mark in marks)
+        for room in rooms
+        for path in (SOURCE / room).rglob("*.py")
+        for line in path.read_text("utf-8").splitlines()
+    )
+
+
+def measures() -> list[Measure]:
+    """Return every line of the table."""
+    import rocking
+
+    every, code, docstrings = lines(SOURCE)
+    kinds = classes(SOURCE)
+    arrows = imports(SOURCE)
+    twice = sorted(name for name, count in kinds.items() if count > 1)
+    loops, up = circles(arrows), upward(arrows)
+    spoken = options()
+    distinct = {option for each in spoken.values() for option in each}
+    tests = lines(TESTS)[0]
+    files, inner = deep_imports(TESTS)
+    count = len(trees(SOURCE))
+    found = [
+        ("lines of Python under src", every, 60_000),
+        ("lines of code", code, 36_000),
+        ("lines of docstrings", docstrings, 13_000),
+        ("files", count, 400),
+        ("classes", sum(kinds.values()), 420),
+        (f"class names defined twice ({', '.join(twice) or 'none'})", len(twice), 0),
+        ("circles, lazy ones too", len(loops), 0),
+        ("arrows upward", len(up), 0),
+        ("names in rk", len(rocking.__all__), 32),
+        ("options of rocking simulate", len(spoken["simulate"]), 22),
+        ("distinct options", len(distinct), 55),
+        *((f"files passed: {what}", passed, most) for what, passed, most in files_passed()),
+        ("lines of tests", tests, 36_000),
+        (f"test files that import inner modules ({inner} of them)", files, 100),
+    ]
+    table = [Measure(what, f"{value:,}", f"<= {most:,}", value <= most) for what, value, most in found]
+    equations = cited(("dynamics", "studies"))
+    table.append(
+        Measure(
+            "lines of dynamics and studies that cite an equation", f"{equations:,}", "every one computed", equations > 0
+        )
+    )
+    for loop in loops:
+        print("circle:", " ".join(loop))
+    for one, other in up:
+        print(f"upward: {one} -> {other}")
+    return table
+
+
+def main() -> bool:
+    """Print the table; whether every goal was met."""
+    version = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False
+    ).stdout.strip()
+    print(f"The house at {version or 'an unnamed state'}\n\n| measure | measured | goal | |\n|---|---|---|---|")
+    found = measures()
+    for each in found:
+        print(f"| {each.what} | {each.measured} | {each.goal} | {'met' if each.met else 'missed'} |")
+    return all(each.met for each in found)
