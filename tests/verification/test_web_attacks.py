@@ -13,8 +13,9 @@ from typing import Any
 import pytest
 
 from rocking.app.application import create_app
-from rocking.app.security import gate, limits
-from rocking.app.security.tokens import Sessions
+from rocking.app.security import bodies as limits
+from rocking.app.security import gate
+from rocking.app.security.sessions import Sessions
 from rocking.app.settings import Limits, Settings
 
 with warnings.catch_warnings():  # it says that another client than httpx is coming

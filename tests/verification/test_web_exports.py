@@ -19,8 +19,8 @@ import scipy.io
 import xarray
 
 import rocking as rk
-from rocking.app.files import attachment
-from rocking.app.problems import Refused
+from rocking.app.answers import attachment
+from rocking.app.errors import Refused
 from rocking.app.records import RecordStore
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.settings import Limits

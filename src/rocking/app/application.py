@@ -1,35 +1,40 @@
 """The application: gate, endpoints, pages, put together."""
 
 import mimetypes
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Any, cast
 
-from fastapi import FastAPI
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
 from fastapi.routing import APIRoute
+from pydantic import ValidationError
+from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
 from starlette.responses import FileResponse
 from starlette.staticfiles import StaticFiles
 
 from rocking import __version__
-from rocking.app.answers import JsonAnswer
+from rocking.app.answers import JsonAnswer, error_answer, refusal
 from rocking.app.api import body, impact, info, motion, records, response
-from rocking.app.handlers import install_handlers
+from rocking.app.errors import kind_of_status
 from rocking.app.records import RecordStore
-from rocking.app.schemas.error import ERRORS, describe_api
-from rocking.app.security import session
-from rocking.app.security.failures import Failures
-from rocking.app.security.gate import Gate
-from rocking.app.security.headers import SafeHeaders
-from rocking.app.security.limits import BodyLimits
-from rocking.app.security.tokens import Sessions
-from rocking.app.settings import Settings
-from rocking.app.state import AppState
+from rocking.app.schemas.answers import ERRORS, describe_api
+from rocking.app.security import sessions as session
+from rocking.app.security.bodies import BodyLimits
+from rocking.app.security.gate import Failures, Gate, SafeHeaders
+from rocking.app.security.sessions import Sessions
+from rocking.app.settings import AppState, Settings
 from rocking.app.studies import router as studies
 from rocking.app.studies.manager import StudyManager
 from rocking.app.takeaway import documents, pictures, tables
 from rocking.app.work import WaitingLine
+from rocking.bodies.formats.words import sentence
+from rocking.errors import RockingError
 
+_SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
+_WORDS = {404: "there is no such thing here", 405: "this takes another method"}
 STATIC = Path(__file__).parent / "static"
 _ABOUT = """\
 The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers are SI, float64, with every digit.
@@ -37,6 +42,70 @@ The same API serves the pages of `rocking serve`, scripts and MATLAB. Numbers ar
 A script sends with every request `Authorization: Bearer KEY`, where KEY stands in the file `api-key` of the data
 folder and is new at every start, and with every POST or DELETE also `Origin: {origin}`, the server's
 own address. Errors are `{{"error": {{"kind", "message"}}}}`."""
+
+
+def install_handlers(app: FastAPI) -> None:
+    """Let errors of the endpoints be answered in one form."""
+    app.add_exception_handler(RockingError, _handler(refusal))
+    app.add_exception_handler(RequestValidationError, _handler(_invalid))
+    app.add_exception_handler(ValidationError, _handler(_invalid))
+    app.add_exception_handler(HTTPException, _handler(_refused))
+
+
+def validation_sentence(error: ValidationError | RequestValidationError) -> str:
+    """Return what is wrong with an input in one sentence.
+
+    Returns Key, allowed range and value of the first problem.
+    """
+    problems = [_without_place(dict(problem)) for problem in error.errors()]
+    if problems and problems[0]["loc"] == ():
+        problems[0]["loc"] = ("the body of the request",)
+    in_body = problems and problems[0]["loc"][0] == "body"
+    units = _units_of(getattr(error, "body", None)) if in_body else None
+    return sentence(cast("ValidationError", _Found(problems)), units)
+
+
+class _Found:
+    """Problems in the form in which a `ValidationError` has them."""
+
+    def __init__(self, problems: list[dict[str, Any]]) -> None:
+        self._problems = problems
+
+    def errors(self, include_url: bool = True) -> list[dict[str, Any]]:
+        return self._problems
+
+
+def _without_place(problem: dict[str, Any]) -> dict[str, Any]:
+    place = problem["loc"]
+    if place and place[0] in {"body", "query", "path", "header"}:
+        problem["loc"] = tuple(place[1:])
+    problem["type"] = _SAME_AS.get(problem["type"], problem["type"])
+    return problem
+
+
+def _units_of(document: Any) -> Any:
+    body = document.get("body") if isinstance(document, dict) else None
+    return body.get("units") if isinstance(body, dict) else None
+
+
+def _invalid(error: ValidationError | RequestValidationError) -> JsonAnswer:
+    return error_answer(422, "invalid-value", validation_sentence(error))
+
+
+def _refused(error: HTTPException) -> JsonAnswer:
+    answer = error_answer(
+        error.status_code, kind_of_status(error.status_code), _WORDS.get(error.status_code, str(error.detail))
+    )
+    answer.headers.update(error.headers or {})
+    return answer
+
+
+def _handler(answer: Callable[[Any], JsonAnswer]) -> Callable[[Request, Exception], Awaitable[JsonAnswer]]:
+    # no thread for it: a server that ends would not wait for one
+    async def handle(request: Request, error: Exception) -> JsonAnswer:
+        return answer(error)
+
+    return handle
 
 
 def create_app(settings: Settings) -> FastAPI:

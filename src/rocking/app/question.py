@@ -3,7 +3,7 @@
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from rocking.app.schemas.caps import check_contact
+from rocking.app.schemas.inputs import check_contact
 from rocking.bodies import Body
 from rocking.bodies.formats.source import blamed
 from rocking.dynamics.response import Motion
@@ -14,8 +14,7 @@ from rocking.studies.job.response_question import ResponseQuestion
 
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore
-    from rocking.app.schemas.body import BodyInput
-    from rocking.app.schemas.inputs import Inputs, MotionInput
+    from rocking.app.schemas.inputs import BodyInput, Inputs, MotionInput
 
 __all__ = ["Question", "body_from", "motion_from", "question_of"]
 

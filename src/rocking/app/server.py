@@ -1,12 +1,14 @@
-"""The server: lock, socket, link, and a clean end."""
+"""The server: address, lock, socket, link, what is computed ahead, and a clean end."""
 
 import asyncio
 import contextlib
+import errno
 import os
 import signal
 import socket
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,17 +18,126 @@ import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from rocking.app.address import check_host, listen
 from rocking.app.application import create_app
 from rocking.app.folder import DataFolder
-from rocking.app.settings import DEFAULT_PORT, Settings
-from rocking.app.warm_up import warm_up_later
+from rocking.app.settings import DEFAULT_PORT, LOOPBACK, Settings
 from rocking.app.work import WaitingLine
+from rocking.errors import InvalidValueError, RockingError
 
+_TRIED = 50
+# so that a restart finds its port free; on Windows the same option would let a stranger take it
+_OPTION = getattr(socket, "SO_EXCLUSIVEADDRUSE", socket.SO_REUSEADDR)
+_EVERYWHERE = {"0.0.0.0", "::", ""}
+Step = Callable[[], Any]
+_FIRST_PAGE_SECONDS = 0.5
+_BREATH_SECONDS = 0.02
+_BLOCK = {"units": "m", "width": 1.0, "height": 4.0}
 _HEAD_SECONDS = 15.0
 _CONNECTIONS = 512
 _TURN = 0.0005
 """How long a computation may keep the interpreter while light requests wait [s]; Python's own is ten times that."""
+
+
+def check_host(host: str, *, allow_remote: bool) -> None:
+    """Refuse an address that others reach, unless that is wanted."""
+    if host in _EVERYWHERE:
+        raise InvalidValueError(
+            f"--host {host or repr(host)} is every address at once: name the one under which others open the page"
+        )
+    if host not in LOOPBACK and not allow_remote:
+        raise InvalidValueError(
+            f"--host {host} can be reached from other machines, over a connection that is not encrypted: "
+            "add --allow-remote if that is meant; without it the server listens on 127.0.0.1 only"
+        )
+
+
+def listen(host: str, port: int, *, search: bool) -> socket.socket:
+    """Return a socket that listens."""
+    if not 0 <= port <= 65535:
+        raise InvalidValueError(f"--port must be in 0 ... 65535, got {port}")
+    for candidate in range(port, min(port + _TRIED, 65536)) if search and port else (port,):
+        try:
+            return _bound(host, candidate)
+        except PermissionError as error:
+            raise InvalidValueError(
+                f"port {candidate} is not free to use: choose one above 1023 with --port"
+            ) from error
+        except socket.gaierror as error:
+            raise InvalidValueError(f"--host {host} is not an address ({error.strerror})") from error
+        except OSError as error:
+            if not _taken(error):
+                raise InvalidValueError(f"cannot listen on {host}: {error.strerror}") from error
+    raise InvalidValueError(
+        f"ports {port} to {port + _TRIED - 1} are taken: choose another with --port"
+        if search and port
+        else f"port {port} is taken, perhaps by another rocking serve: choose another with --port"
+    )
+
+
+def _taken(error: OSError) -> bool:
+    return error.errno == errno.EADDRINUSE
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    family, kind, protocol, _, place = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    door = socket.socket(family, kind, protocol)
+    try:
+        door.setsockopt(socket.SOL_SOCKET, _OPTION, 1)
+        door.bind(place)
+        door.listen(256)
+    except OSError:
+        door.close()
+        raise
+    return door
+
+
+def warm_up_later(*more: Step) -> None:
+    """Start to warm up in a thread, once the first page has had its time."""
+    timer = threading.Timer(_FIRST_PAGE_SECONDS, warm_up, more)
+    timer.daemon = True
+    timer.start()
+
+
+def warm_up(*more: Step) -> None:
+    """Fit the calibration, answer one question of each kind and draw one picture.
+
+    What cannot be had, such as pictures without their extra, is left for the request that asks for it.
+    """
+    for step in (_impact, _response, _picture, *more):
+        with contextlib.suppress(ImportError, RockingError):
+            step()
+        time.sleep(_BREATH_SECONDS)
+
+
+def _impact() -> None:
+    from rocking.app.api.impact import warm_up as first_impact
+
+    first_impact()
+
+
+def _response() -> None:
+    from rocking.app.api.response import ResponseAnswers
+    from rocking.app.question import body_from
+    from rocking.app.schemas.inputs import ResponseAsked
+    from rocking.motions.pulses import pulse
+    from rocking.motions.spectrum import response_spectrum
+    from rocking.plots.traces import fine_samples
+    from rocking.studies.job.response import question_from
+
+    moved = "sine:amplitude=3,period=0.8"
+    asked = ResponseAsked.model_validate({"body": _BLOCK, "motion": {"pulse": moved}})
+    motion = pulse(moved)
+    ResponseAnswers.of(question_from(asked, body_from(asked.body), motion)).facts(10)
+    response_spectrum(fine_samples(motion), [1.0], 0.05)
+
+
+def _picture() -> None:
+    from rocking.app.takeaway.drawing import drawn
+    from rocking.bodies import Block
+    from rocking.plots._body_picture import body_picture
+
+    for kind in ("svg", "png"):
+        drawn(lambda: body_picture(Block(width=1.0, height=4.0)), kind)
 
 
 @dataclass(frozen=True)

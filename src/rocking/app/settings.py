@@ -1,9 +1,19 @@
-"""What the server is told when it starts."""
+"""What the server is told when it starts, and what its endpoints share."""
 
 import os
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+from starlette.requests import HTTPConnection
+
+from rocking.app.work import WaitingLine
+
+if TYPE_CHECKING:
+    from rocking.app.records import RecordStore
+    from rocking.app.security.sessions import Sessions
+    from rocking.app.studies.manager import StudyManager
 
 MEBIBYTE = 1 << 20
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -58,3 +68,22 @@ class Settings:
         """Return the address of the page, without a path."""
         host = f"[{self.host}]" if ":" in self.host else self.host
         return f"http://{host}:{self.port}"
+
+
+@dataclass(frozen=True)
+class AppState:
+    """What the endpoints share."""
+
+    settings: Settings  # what the server was told
+    records: "RecordStore"  # uploaded records
+    studies: "StudyManager"  # campaigns that run, wait or are done
+    sessions: "Sessions"  # who is signed in
+    heavy: WaitingLine  # threads for long computations
+
+
+def state_of(request: HTTPConnection) -> AppState:
+    """Return what the endpoints share.
+
+    Returns the same object for every request of an application.
+    """
+    return cast("AppState", request.app.state.rocking)

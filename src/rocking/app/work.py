@@ -1,17 +1,23 @@
-"""Long computations: a few threads, a short line before them, and an honest answer when the line is full."""
+"""Long computations: a few threads, a short queue before them, and the same question computed once."""
 
 import asyncio
 import threading
+from collections import OrderedDict
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec, TypeVar
 
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
-from rocking.app.problems import Busy, Ending
+from rocking.app.errors import Busy, Ending
+from rocking.app.schemas.inputs import size_of
+from rocking.bodies.formats.body_schema import Document
 
 P = ParamSpec("P")
 T = TypeVar("T")
+_SMALL = 200
+"""Vertices up to which a body takes a few milliseconds."""
 
 
 class WaitingLine:
@@ -59,3 +65,42 @@ async def heavy(request: HTTPConnection, function: Callable[P, T], *args: P.args
         return await asyncio.wrap_future(line.submit(function, *args, **kwargs))
     except asyncio.CancelledError as error:  # only a server that ends cancels a request
         raise Ending("the server ends before this is computed; start it again, then ask again") from error
+
+
+class Remembered(Generic[T]):
+    """The latest results by key; safe to use from several threads."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._held: OrderedDict[str, Future[T]] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def get(self, key: str, compute: Callable[[], T]) -> T:
+        """Return the result of a key; one that cannot be computed is not kept."""
+        with self._lock:
+            known = self._held.get(key)
+            future: Future[T] = Future() if known is None else known
+            self._held[key] = future
+            self._held.move_to_end(key)
+            while len(self._held) > self._most:
+                self._held.popitem(last=False)
+        if known is not None:
+            return known.result()
+        try:
+            future.set_result(compute())
+        except BaseException as error:
+            with self._lock:
+                if self._held.get(key) is future:
+                    del self._held[key]
+            future.set_exception(error)
+            raise
+        return future.result()
+
+
+async def sized(
+    request: HTTPConnection, body: Document, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs
+) -> T:
+    """Compute in a thread; a large body waits in line with other long computations."""
+    if size_of(body) <= _SMALL:
+        return await run_in_threadpool(function, *args, **kwargs)
+    return await heavy(request, function, *args, **kwargs)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from rocking.app.address import check_host, listen
 from rocking.app.folder import DataFolder, FolderInUseError, write_private
+from rocking.app.server import check_host, listen
 from rocking.app.settings import Settings, default_folder
 from rocking.errors import InvalidValueError
 

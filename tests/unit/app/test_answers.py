@@ -13,9 +13,8 @@ from fastapi.testclient import TestClient
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.requests import Request
 
-from rocking.app.answers import JsonAnswer
-from rocking.app.files import attachment, safe_name
-from rocking.app.problems import Busy, NotFound, Refused, TooLarge
+from rocking.app.answers import JsonAnswer, attachment, safe_name
+from rocking.app.errors import Busy, NotFound, Refused, TooLarge
 from rocking.app.work import WaitingLine, heavy
 from rocking.errors import (
     BodyFileError,

@@ -15,9 +15,9 @@ import uvicorn
 from fastapi import FastAPI
 
 from rocking.app import server
-from rocking.app.address import listen
 from rocking.app.application import create_app
 from rocking.app.folder import write_private
+from rocking.app.server import listen
 from rocking.app.settings import Settings
 
 playwright = pytest.importorskip("playwright.sync_api")

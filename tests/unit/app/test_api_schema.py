@@ -5,7 +5,7 @@ from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from pydantic import ValidationError
 
-from rocking.app.schemas.error import ErrorAnswer
+from rocking.app.schemas.answers import ErrorAnswer
 
 BLOCK = {"units": "cm", "width": 50, "height": 200}
 ASKED = {

@@ -5,9 +5,8 @@ from typing import Any
 
 import pytest
 
-from rocking.app.problems import Refused
-from rocking.app.security.json_text import check_json
-from rocking.app.security.limits import BodyLimits
+from rocking.app.errors import Refused
+from rocking.app.security.bodies import BodyLimits, check_json
 from rocking.app.settings import Limits
 
 

@@ -4,12 +4,18 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from rocking.app.problems import BadRequest, NotAllowed, NotFound, WrongContent, WrongMethod
-from rocking.app.security.asked import Asked
-from rocking.app.security.contents import check_content
-from rocking.app.security.hosts import check_host, own_hosts
-from rocking.app.security.origins import check_origin, check_site
-from rocking.app.security.targets import TooLong, check_method, check_target
+from rocking.app.errors import BadRequest, NotAllowed, NotFound, WrongContent, WrongMethod
+from rocking.app.security.requests import (
+    Asked,
+    TooLong,
+    check_content,
+    check_host,
+    check_method,
+    check_origin,
+    check_site,
+    check_target,
+    own_hosts,
+)
 from rocking.app.settings import Settings
 
 OWN = own_hosts(Settings())

@@ -5,8 +5,8 @@ import re
 import pytest
 from fastapi.testclient import TestClient
 
-from rocking.app.problems import Busy, NotSignedIn
-from rocking.app.security.tokens import Sessions, new_token
+from rocking.app.errors import Busy, NotSignedIn
+from rocking.app.security.sessions import Sessions, new_token
 from rocking.app.settings import Limits
 
 ORIGIN = {"Origin": "http://127.0.0.1:8765"}

@@ -1,6 +1,6 @@
 """What the server does before anybody asks."""
 
-from rocking.app import warm_up
+from rocking.app import server as warm_up
 from rocking.app.api import impact
 from rocking.evidence.calibration import calibrate
 

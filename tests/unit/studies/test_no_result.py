@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.app.studies.results.maps import contours_of
+from rocking.app.studies.results import contours_of
 from rocking.motions.pulses import sine
 from rocking.outcome import Outcome, Status, overturned
 from rocking.plots.falling import falling_picture

@@ -1,30 +1,40 @@
 """POST /api/body and /api/body/file: what a body is, from a document or from a file."""
 
+import tomllib
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 
-from rocking.app.answers import JsonAnswer
-from rocking.app.api.sized import sized
-from rocking.app.api.uploads import OCTETS
+from rocking.app.answers import JsonAnswer, safe_name
+from rocking.app.errors import Refused, room_on_disk
 from rocking.app.question import body_from
-from rocking.app.schemas.answers.answer import answered
-from rocking.app.schemas.answers.body import BodyInFile, DescribedBody
-from rocking.app.schemas.body import BodyInput
-from rocking.app.schemas.inputs import BodyAsked
-from rocking.app.work import heavy
+from rocking.app.schemas.answers import BodyInFile, DescribedBody, answered
+from rocking.app.schemas.inputs import BodyAsked, BodyInput, check_file, parsed_toml
+from rocking.app.work import heavy, sized
 from rocking.bodies import Body
+from rocking.bodies.formats import read_body
 from rocking.bodies.formats.body_schema import UnitName
+from rocking.bodies.formats.body_writer import body_to_toml
+from rocking.bodies.formats.source import blamed
 from rocking.conventions import FEET, g
+from rocking.errors import BodyFileError
 from rocking.evidence._coefficient_table import outside_evidence
 from rocking.report.facts.body import body_facts, outline_facts
 
 router = APIRouter(prefix="/api", tags=["body"])
-
 _ABOUT = "The keys of `body` of `rocking cor --json`, the polygons that draw the body, and warnings in plain words."
 _FILE = """\
 The content of a DXF, WKT, GeoJSON or TOML file; `name` says by its ending which of them it is. `units` is needed for
 WKT and GeoJSON, and for a drawing that does not state its unit. `body` of the answer is what stands in the inputs."""
+OCTETS: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+    }
+}
+"""What the schema of an endpoint says that takes a file."""
 
 
 @router.post(
@@ -77,7 +87,36 @@ def _body(asked: BodyAsked) -> JsonAnswer:
 
 
 def _read(content: bytes, name: str, units: str | None, density: float | None) -> dict[str, Any]:
-    from rocking.app.api.uploads import body_in_file
 
     given: BodyInput = body_in_file(content, name, units, density)
     return {"body": given.table(), **described(body_from(given), g, given.name)}
+
+
+def body_in_file(content: bytes, name: str, units: str | None, density: float | None) -> BodyInput:
+    """Return the body that a file describes.
+
+    density: density of what has none of its own, in a drawing [kg/m3].
+    """
+    shown = safe_name(name, "body")
+    check_file(content, shown)
+    if shown.lower().endswith(".toml"):
+        return _toml(content, shown, units)
+    with TemporaryDirectory(prefix="rocking-") as folder:
+        path = Path(folder) / shown
+        with room_on_disk():
+            path.write_bytes(content)
+        body = read_body(path, units=units, density=density)
+    return BodyInput.model_validate({**tomllib.loads(body_to_toml(body)), "name": Path(shown).stem})
+
+
+def _toml(content: bytes, name: str, units: str | None) -> BodyInput:
+    with blamed(name):
+        try:
+            given = parsed_toml(content.decode("utf-8-sig"))
+        except (UnicodeDecodeError, Refused) as error:
+            raise BodyFileError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
+        if "body" in given and isinstance(given["body"], dict):
+            given = given["body"]
+        if units is not None and given.get("units", units) != units:
+            raise BodyFileError(f"states units = {given['units']!r:.20}, but units = {units!r} was asked for")
+    return BodyInput.model_validate(given)

@@ -5,12 +5,10 @@ from typing import Any
 from fastapi import APIRouter, Request
 
 from rocking.app.answers import JsonAnswer
-from rocking.app.api.remembered import Remembered
-from rocking.app.api.sized import sized
 from rocking.app.question import body_from
-from rocking.app.schemas.answers.answer import answered
-from rocking.app.schemas.answers.impact import ImpactAnswered
+from rocking.app.schemas.answers import ImpactAnswered, answered
 from rocking.app.schemas.inputs import ImpactAsked
+from rocking.app.work import Remembered, sized
 from rocking.bodies import Block
 from rocking.conventions import g
 from rocking.report.facts.body import outline_facts

@@ -10,10 +10,9 @@ from typing import Any
 from fastapi import APIRouter, Request
 
 from rocking.app.answers import JsonAnswer
-from rocking.app.schemas.answers.answer import answered
-from rocking.app.schemas.answers.info import Info
-from rocking.app.schemas.caps import CAPS
-from rocking.app.state import state_of
+from rocking.app.schemas.answers import Info, answered
+from rocking.app.schemas.inputs import CAPS
+from rocking.app.settings import state_of
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, g
 
 router = APIRouter(prefix="/api", tags=["info"])

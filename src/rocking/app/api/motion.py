@@ -6,15 +6,13 @@ import numpy as np
 from fastapi import APIRouter, Request
 
 from rocking.app.answers import JsonAnswer
-from rocking.app.api.remembered import Remembered
-from rocking.app.api.series import thinned
+from rocking.app.api.response import thinned
 from rocking.app.question import motion_from
 from rocking.app.records import RecordStore
-from rocking.app.schemas.answers.answer import answered
-from rocking.app.schemas.answers.motion import MotionAnswered
+from rocking.app.schemas.answers import MotionAnswered, answered
 from rocking.app.schemas.inputs import MotionAsked
-from rocking.app.state import state_of
-from rocking.app.work import heavy
+from rocking.app.settings import state_of
+from rocking.app.work import Remembered, heavy
 from rocking.conventions import FloatArray
 from rocking.motions.intensity import Measure
 from rocking.motions.motion import GroundMotion

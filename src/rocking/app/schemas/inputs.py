@@ -1,11 +1,17 @@
-"""The one document of everything that a user chose: body, motion, restitution, response and settings."""
+"""The one document of everything that a user chose: body, motion, restitution, response, settings; and their caps."""
 
+import re
+import sys
+import tomllib
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import AfterValidator, ConfigDict, Field, FiniteFloat, model_validator
+from pydantic_core import PydanticCustomError
 
-from rocking.app.schemas.body import BodyInput
-from rocking.app.schemas.caps import MOST_RESTITUTIONS, refuse_more
+from rocking.app.errors import Refused, TooLarge
+from rocking.bodies import Body
+from rocking.bodies.formats.body_schema import BODIES, Document, Positive
 from rocking.studies.job.response_tables import OneMotionTable, ResponseTables, check_start
 from rocking.studies.job.table import JobTable, Words, refused
 from rocking.studies.job.tables import SettingsTable
@@ -23,10 +29,184 @@ __all__ = [
     "Window",
 ]
 
-Hash = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of an uploaded record")]
+_UPLOAD = "the application reads no file by its name: upload it to /api/body/file, which answers with its points"
+MOST_REGIONS = 250
+MOST_HOLES = 500
+MOST_VERTICES = 10_000
+MOST_POINTS = 10_000
+MOST_STRETCHES = 40
+MOST_RESTITUTIONS = 24
+MOST_RECORD_SAMPLES = 2_000_000
+MOST_DRAWING_BYTES = 4 << 20
+MOST_ENTITIES = 20_000
+_X_IN_DXF = re.compile(rb"^[ \t]*10[ \t]*\r?$", re.MULTILINE)
+_ENTITY_IN_DXF = re.compile(rb"^[ \t]*0[ \t]*\r?$", re.MULTILINE)
+_MINISEED = re.compile(rb"\d{6}[DRQM][ \0]")
+CAPS = {
+    "regions": MOST_REGIONS,
+    "holes": MOST_HOLES,
+    "vertices": MOST_VERTICES,
+    "mass_points": MOST_POINTS,
+    "contact_stretches": MOST_STRETCHES,
+    "restitutions": MOST_RESTITUTIONS,
+    "record_samples": MOST_RECORD_SAMPLES,
+    "drawing_bytes": MOST_DRAWING_BYTES,
+    "drawing_entities": MOST_ENTITIES,
+}
+"""What one body and one question may hold, as the API tells it."""
 
+Hash = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of an uploaded record")]
 Points = Annotated[int, Field(ge=10, le=2000)]
 """Over how many dots curves are drawn; each keeps the lowest and the highest value of every curve."""
+
+LONGEST = 4 << 20
+"""Bytes of a TOML file that is read."""
+
+_DEEPEST = 32
+_LARGEST = 2**63
+
+
+class BodyInput(Document):
+    """A unit of length, and one table that says what the body is, or width and height."""
+
+    width: Positive | None = None
+    height: Positive | None = None
+    depth: Positive | None = None
+    density: Positive | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _names_no_file(cls, given: Any) -> Any:
+        if isinstance(given, dict) and "file" in given:
+            raise _refused(f"file: {_UPLOAD}")
+        return given
+
+    @model_validator(mode="after")
+    def _one_body(self) -> "BodyInput":
+        sized = self.width is not None or self.height is not None
+        found = [key for key in BODIES if getattr(self, key) is not None] + ["width and height"] * sized
+        if len(found) != 1:
+            choice = ", ".join(("width and height", *BODIES))
+            raise _refused(f"a body has exactly one of {choice}, got {' and '.join(found) or 'none'}")
+        if sized and (self.width is None or self.height is None):
+            raise _refused(f"{'width' if self.width is None else 'height'} is missing")
+        if not sized and (self.depth is not None or self.density is not None):
+            raise _refused(f"depth and density of a {found[0]} stand in its own table")
+        for k, region in enumerate(self.section.region if self.section else ()):
+            for key in ("geojson", "dxf"):
+                if getattr(region, key) is not None:
+                    raise _refused(f"section.region[{k}].{key}: {_UPLOAD}")
+        check_size(self)
+        _refuse_subnormal(self.table(), "")
+        return self
+
+    def table(self) -> dict[str, Any]:
+        """Return the body as a table of a body file or job file.
+
+        Returns plain values; what was not given is left out.
+        """
+        return self.model_dump(exclude_none=True, exclude_unset=True)
+
+
+def _refuse_subnormal(given: Any, key: str) -> None:
+    """Refuse numbers that have lost digits already: what is computed from them would have none that are right."""
+    if isinstance(given, float) and 0.0 < abs(given) < sys.float_info.min:
+        least = f"{sys.float_info.min:.3g}"
+        raise _refused(f"{key} is {given!r}, too small for a number with all its digits ({least}); a wrong unit?")
+    if isinstance(given, dict):
+        for name, value in given.items():
+            _refuse_subnormal(value, f"{key}.{name}" if key else name)
+    if isinstance(given, (list, tuple)):
+        for place, value in enumerate(given):
+            _refuse_subnormal(value, f"{key}[{place}]")
+
+
+def _refused(words: str) -> PydanticCustomError:
+    return PydanticCustomError("contradiction", "{words}", {"words": words})
+
+
+def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
+    """Refuse more of something than one answer takes."""
+    if count > most:
+        raise TooLarge(f"{what.format(most=most)}, got {count}" + (f"; {way_out}" if way_out else ""))
+
+
+def check_size(given: Document) -> None:
+    """Refuse a body that is too large, before anything is made of it."""
+    regions, holes, vertices = _polygons(given)
+    refuse_more(regions, MOST_REGIONS, "a section holds up to {most} regions", "join those of one density")
+    refuse_more(holes, MOST_HOLES, "a section holds up to {most} holes", "leave out the small ones")
+    refuse_more(vertices, MOST_VERTICES, "outlines and holes hold up to {most} vertices", "simplify the outline")
+    points = given.mass_points
+    held = 0 if points is None else max(len(points.points), len(points.masses), len(points.contact or ()))
+    refuse_more(held, MOST_POINTS, "a body holds up to {most} points with mass")
+
+
+def check_file(content: bytes, name: str) -> None:
+    """Refuse a body file that holds far more than a body may have, before it is read."""
+    drawing = name.lower().endswith(".dxf")
+    if drawing:
+        way_out = "save only the outline in a drawing of its own"
+        refuse_more(len(content), MOST_DRAWING_BYTES, "a drawing has up to {most} bytes", way_out)
+        refuse_more(len(_ENTITY_IN_DXF.findall(content)), MOST_ENTITIES, "a drawing has up to {most} parts", way_out)
+    # a drawing may hold much that is no outline; in text a comma or a bracket stands before every point
+    points = len(_X_IN_DXF.findall(content)) // 4 if drawing else max(content.count(b","), content.count(b"[")) // 3
+    refuse_more(points, MOST_VERTICES, "a body file may describe up to {most} vertices", "simplify the outlines")
+
+
+def check_record(content: bytes) -> None:
+    """Refuse a record file of far more numbers than a record has, before any of them is read."""
+    if _MINISEED.match(content):
+        check_samples(_packed_samples(content))
+        return
+    if len(content) <= MOST_RECORD_SAMPLES or b"\0" in content:
+        return
+    octets = np.frombuffer(content, dtype=np.uint8)
+    between = (octets <= 32) | np.isin(octets, (44, 59))  # white space, comma, semicolon
+    check_samples(int(np.count_nonzero(between[:-1] & ~between[1:])) + int(not between[0]))
+
+
+def _packed_samples(content: bytes) -> int:
+    """Return how many samples the headers of a miniSEED file announce, and not one fewer than are decoded."""
+    found = 0
+    for head in _MINISEED.finditer(content):
+        years = content[head.start() + 20 : head.start() + 22]
+        order: Literal["big", "little"] = "big" if 1900 <= int.from_bytes(years, "big") <= 2200 else "little"
+        found += int.from_bytes(content[head.start() + 30 : head.start() + 32], order)
+    return found
+
+
+def check_samples(count: int) -> None:
+    """Refuse a record of too many samples."""
+    what = "a record holds up to {most} numbers"
+    refuse_more(count, MOST_RECORD_SAMPLES, what, "cut it, or leave out columns; Python reads longer ones")
+
+
+def check_contact(body: Body) -> Body:
+    """Return a body, unless its base touches the ground in too many places."""
+    what = "a base touches the ground in up to {most} separate stretches"
+    refuse_more(len(body.local_contact), MOST_STRETCHES, what, "leave out those that are no feet")
+    return body
+
+
+def size_of(given: Document) -> int:
+    """Return how much there is to compute with."""
+    return _polygons(given)[-1] + (len(given.mass_points.points) if given.mass_points else 0)
+
+
+def _polygons(given: Document) -> tuple[int, int, int]:
+    regions = holes = vertices = 0
+    for region in given.section.region if given.section else ():
+        words = region.wkt or ""
+        # every polygon of a text begins with two brackets, and commas stand between its points
+        polygons = 1 if region.outline is not None else max(1, words.count("(("))
+        regions += polygons
+        holes += len(region.holes or ()) + max(0, words.count(",(") + words.count(", (") - polygons + 1)
+        rings = [region.outline or [], *(region.holes or ())]
+        vertices += sum(map(len, rings)) + (words.count(",") + 1 if words else 0)
+    for shape in (given.ellipse, given.regular_polygon):
+        vertices += shape.sides if shape is not None else 0
+    return regions, holes, vertices
 
 
 def _forward(window: tuple[float, float]) -> tuple[float, float]:
@@ -40,7 +220,9 @@ Window = Annotated[tuple[FiniteFloat, FiniteFloat], Field(strict=False), AfterVa
 
 
 _BODY: dict[str, Any] = {"units": "cm", "width": 50, "height": 200}
+
 _MOTION: dict[str, Any] = {"pulse": "sine:amplitude=3,period=0.8"}
+
 _INPUTS: dict[str, Any] = {"body": _BODY, "motion": _MOTION, "restitution": {"models": ["ked", "housner"]}}
 
 
@@ -122,3 +304,45 @@ class MotionAsked(JobTable):
     points: Points = 1000
     window: Window | None = None
     spectrum: bool = True
+
+
+def parsed_toml(text: str) -> dict[str, Any]:
+    """Return the tables of a TOML text that somebody sent.
+
+    Returns its tables; every whole number fits into 64 bits, so that it can be told again.
+    """
+    if len(text) > LONGEST:
+        raise Refused(f"a TOML file may have up to {LONGEST >> 20} MiB, this has {len(text) / 2**20:.1f}")
+    try:
+        tables = tomllib.loads(text.removeprefix("\ufeff"))
+    except tomllib.TOMLDecodeError as error:
+        raise Refused(f"this is not TOML that can be read: {' '.join(str(error).split())[:200]}") from error
+    except (ValueError, RecursionError) as error:
+        raise Refused("this is not TOML that can be read: nested too deeply, or a number is too long") from error
+    _check_values(tables)
+    return tables
+
+
+def _check_values(tables: dict[str, Any]) -> None:
+    level: list[Any] = [tables]
+    for _ in range(_DEEPEST):
+        for each in level:
+            _check_value(each)
+        level = [item for each in level for item in _inside(each)]
+        if not level:
+            return
+    raise Refused(f"the TOML is nested deeper than {_DEEPEST}")
+
+
+def _check_value(value: Any) -> None:
+    if type(value) is int and not -_LARGEST <= value < _LARGEST:  # not written out: that itself may be refused
+        raise Refused(f"a whole number of {value.bit_length()} bits in the TOML does not fit into 64 bits")
+    words = value if isinstance(value, dict) else (value,) if isinstance(value, str) else ()
+    if any("\0" in word for word in words):
+        raise Refused("a text in the TOML holds a NUL")
+
+
+def _inside(value: Any) -> list[Any]:
+    if isinstance(value, dict):
+        return list(value.values())
+    return value if isinstance(value, list) else []

@@ -40,8 +40,8 @@ def main(arguments: list[str]) -> int:
 
 def _compute(study: Path, workers: int) -> None:
     from rocking.app.studies.opened import OpenStudy
-    from rocking.app.studies.results.kept import keep_result
-    from rocking.app.studies.study_folder import CAMPAIGN, JOB, StudyFolder
+    from rocking.app.studies.results import keep_result
+    from rocking.app.studies.study import CAMPAIGN, JOB, StudyFolder
     from rocking.dynamics import engine
     from rocking.studies.campaign import CampaignBusyError
     from rocking.studies.job import Job, JobFolder

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rocking.app.problems import TooLarge
+from rocking.app.errors import TooLarge
 from rocking.app.takeaway.toml_words import toml_of
 from rocking.errors import InvalidValueError
 from rocking.restitution.from_file import file_of
@@ -210,7 +210,7 @@ def _checked_regions(table: dict[str, Any]) -> int:
     """Return the regions of a body, unless the body alone is larger than a page takes."""
     from pydantic import ValidationError
 
-    from rocking.app.schemas.body import BodyInput
+    from rocking.app.schemas.inputs import BodyInput
 
     try:
         body = BodyInput.model_validate(table)

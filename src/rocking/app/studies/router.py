@@ -1,5 +1,7 @@
-"""Endpoints of studies: launch, watch, cancel, resume, look at, take away."""
+"""Endpoints of studies: launch, watch, cancel, resume, look at, take away; the list is pushed whenever it changes."""
 
+import asyncio
+import contextlib
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -7,35 +9,36 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, WebSocket
+from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
+from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from rocking.app.answers import JsonAnswer
-from rocking.app.files import safe_name
-from rocking.app.schemas.answers.answer import answered, answered_with_file
-from rocking.app.schemas.answers.records import Deleted
-from rocking.app.schemas.answers.studies import Cell, Launched, Studies, StudyFacts
-from rocking.app.schemas.answers.study_results import StudyResult
-from rocking.app.state import state_of
+from rocking.app.answers import JsonAnswer, safe_name
+from rocking.app.schemas.answers import Deleted, answered, answered_with_file
+from rocking.app.schemas.study_answers import Cell, Launched, Studies, StudyFacts, StudyResult
+from rocking.app.settings import state_of
 from rocking.app.studies.exports import MEDIA_TYPES, Crossing, Kind
-from rocking.app.studies.live import serve
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.study_folder import StudyFolder
+from rocking.app.studies.study import StudyFolder
 from rocking.app.work import heavy
 from rocking.errors import RockingError
 
 router = APIRouter(prefix="/api/studies", tags=["studies"])
-
 _JOB = """\
 The tables of a job file (`examples/jobs/*.toml`) as JSON. Records are named by the SHA-256 under which they were
 uploaded, `{"records": ["64 hexadecimal digits"]}`; bodies are given as they are, not by the names of files."""
-
 Whole = Annotated[int, Field(ge=0, le=10_000_000)]
-
 _ONE = answered(StudyFacts, "State and progress.")
+SHORTEST = 0.2
+"""Time between two messages, at least [s]."""
+
+MOST = 64
+"""Browsers that are told at the same time."""
+
+_TRY_LATER = 1013
 
 
 class StudyAsked(BaseModel):
@@ -216,7 +219,7 @@ def _there(manager: StudyManager, study: str) -> Iterator[StudyFolder]:
 
 
 def _result(manager: StudyManager, study: str) -> bytes:
-    from rocking.app.studies.results.kept import keep_result, kept_result
+    from rocking.app.studies.results import keep_result, kept_result
 
     with _there(manager, study) as folder:
         return manager.opened.answer(
@@ -225,8 +228,7 @@ def _result(manager: StudyManager, study: str) -> bytes:
 
 
 def _cell(manager: StudyManager, study: str, point: PointAsked) -> bytes:
-    from rocking.app.studies.cells.cell import cell_of
-    from rocking.app.studies.cells.place import Place
+    from rocking.app.studies.history_at_point import Place, cell_of
 
     with _there(manager, study) as folder:
         opened = manager.opened.get(folder)
@@ -252,3 +254,49 @@ def _file(
 
 def _json(told: dict[str, Any]) -> bytes:
     return bytes(JsonAnswer(told).body)
+
+
+async def serve(manager: StudyManager, socket: WebSocket) -> None:
+    """Send the list of studies now and after every change, until the browser goes."""
+    loop, changed = asyncio.get_running_loop(), asyncio.Event()
+
+    def tell() -> None:
+        with contextlib.suppress(RuntimeError):  # the loop has ended, the browser with it
+            loop.call_soon_threadsafe(changed.set)
+
+    if manager.watchers >= MOST:
+        await socket.close(_TRY_LATER)
+        return
+    leave = manager.subscribe(tell)
+    gone = None
+    try:
+        await socket.accept()
+        gone = asyncio.create_task(_gone(socket))
+        while not gone.done():
+            changed.clear()
+            await socket.send_text(bytes(JsonAnswer({"studies": manager.overview()}).body).decode())
+            await _either(gone, changed)
+            await asyncio.wait({gone}, timeout=SHORTEST)
+    except (WebSocketDisconnect, RuntimeError):  # it went while it was told
+        pass
+    finally:
+        leave()
+        if gone is not None:
+            gone.cancel()
+
+
+async def _either(gone: "asyncio.Task[None]", changed: asyncio.Event) -> None:
+    woken: asyncio.Task[Any] = asyncio.create_task(changed.wait())
+    try:
+        both: set[asyncio.Task[Any]] = {gone, woken}
+        await asyncio.wait(both, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        woken.cancel()
+
+
+async def _gone(socket: WebSocket) -> None:
+    """Return when the browser has gone; what it says is not listened to."""
+    while True:
+        message = await socket.receive()
+        if message["type"] == "websocket.disconnect":
+            return

@@ -4,7 +4,7 @@ import io
 import zlib
 from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
-from rocking.app.problems import Refused, TooLarge
+from rocking.app.errors import Refused, TooLarge
 from rocking.app.takeaway.plain_text import plain_line
 
 MOST_FILES = 8

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from rocking.app.api.answers import ResponseAnswers
-from rocking.app.problems import Refused
+from rocking.app.api.response import ResponseAnswers
+from rocking.app.errors import Refused
 from rocking.app.question import Question, body_from, motion_from, question_of
 from rocking.app.records import RecordStore
 from rocking.app.schemas.inputs import Inputs

@@ -3,11 +3,10 @@
 import hashlib
 from typing import Any
 
-from rocking.app.api.record_file import Looked, Told
-from rocking.app.problems import NotFound, Refused
+from rocking.app.api.records import Looked, Told
+from rocking.app.errors import NotFound, Refused
 from rocking.app.records import RecordStore
-from rocking.app.schemas.inputs import Inputs
-from rocking.app.schemas.toml_text import LONGEST, parsed_toml
+from rocking.app.schemas.inputs import LONGEST, Inputs, parsed_toml
 from rocking.app.takeaway.archive import Archive
 from rocking.app.takeaway.inputs_file import FindRecord, inputs_from_toml
 from rocking.app.takeaway.plain_text import record_file_name

@@ -6,12 +6,11 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response as Answer
 
-from rocking.app.answers import JsonAnswer
-from rocking.app.api.uploads import OCTETS
-from rocking.app.files import attachment
-from rocking.app.schemas.answers.answer import answered, answered_with_file
+from rocking.app.answers import JsonAnswer, attachment
+from rocking.app.api.body import OCTETS
+from rocking.app.schemas.answers import answered, answered_with_file
 from rocking.app.schemas.inputs import Inputs, ResponseInputs
-from rocking.app.state import state_of
+from rocking.app.settings import state_of
 from rocking.app.takeaway.asked import Asked
 from rocking.app.takeaway.bundle import bundle_of
 from rocking.app.takeaway.bundle_reading import inputs_from_file

@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 from threading import RLock
 from typing import TYPE_CHECKING, Literal
 
-from rocking.app.api.series import thinned
+from rocking.app.api.response import thinned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

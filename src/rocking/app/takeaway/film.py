@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from rocking.app.problems import Busy, Refused
+from rocking.app.errors import Busy, Refused
 from rocking.dynamics.response import Response
 from rocking.errors import RockingError
 from rocking.report.facts.words import restitution_words

@@ -8,9 +8,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from rocking.app.problems import Refused
-from rocking.app.schemas.inputs import Inputs
-from rocking.app.schemas.toml_text import parsed_toml
+from rocking.app.errors import Refused
+from rocking.app.schemas.inputs import Inputs, parsed_toml
 from rocking.app.takeaway.command_words import simulate_words
 from rocking.app.takeaway.plain_text import plain_line, record_file_name
 from rocking.app.takeaway.toml_words import toml_of, toml_value

@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response as Answer
 
-from rocking.app.files import attachment
-from rocking.app.schemas.answers.answer import answered_with_file
+from rocking.app.answers import attachment
+from rocking.app.schemas.answers import answered_with_file
 from rocking.app.schemas.inputs import Inputs
-from rocking.app.state import state_of
+from rocking.app.settings import state_of
 from rocking.app.takeaway.asked import Asked
 from rocking.app.takeaway.contents.body_sheets import body_sheet, coefficient_sheet
 from rocking.app.takeaway.contents.motion_sheets import measures_sheet, motion_sheet, spectrum_sheet

@@ -5,8 +5,8 @@ import time
 
 import pytest
 
-from rocking.app.problems import TooLarge
-from rocking.app.schemas.caps import CAPS, check_file
+from rocking.app.errors import TooLarge
+from rocking.app.schemas.inputs import CAPS, check_file
 
 AT_MOST = 3.0
 """Seconds for an answer; one of an idle core takes less than one."""

@@ -7,7 +7,7 @@ from dataclasses import MISSING, fields
 import pytest
 
 import rocking as rk
-from rocking.app.schemas.answers.info import Info
+from rocking.app.schemas.answers import Info
 from rocking.restitution import models
 
 BODY = {"units": "m", "width": 0.6, "height": 1.8}

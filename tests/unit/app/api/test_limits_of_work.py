@@ -6,11 +6,12 @@ import os
 import numpy as np
 import pytest
 
-from rocking.app import record_folder, records
-from rocking.app.api import answers
-from rocking.app.problems import NoRoom, NotFound, TooLarge
+from rocking.app import records
+from rocking.app import records as record_folder
+from rocking.app.api import response as answers
+from rocking.app.errors import NoRoom, NotFound, TooLarge
 from rocking.app.records import RecordStore
-from rocking.app.schemas.caps import MOST_RECORD_SAMPLES, check_file, check_record
+from rocking.app.schemas.inputs import MOST_RECORD_SAMPLES, check_file, check_record
 from rocking.app.settings import Limits
 from rocking.errors import RecordError
 
@@ -67,8 +68,8 @@ def test_a_record_of_endless_numbers_is_not_read(client, piece):
 
 def test_samples_that_a_file_hides_are_counted_after_reading(client, monkeypatch):
     """Formats that pack samples densely are refused by what was read, and not kept."""
-    monkeypatch.setattr("rocking.app.schemas.caps.MOST_RECORD_SAMPLES", 499)
-    monkeypatch.setattr("rocking.app.api.record_file.check_record", lambda content: None)
+    monkeypatch.setattr("rocking.app.schemas.inputs.MOST_RECORD_SAMPLES", 499)
+    monkeypatch.setattr("rocking.app.api.records.check_record", lambda content: None)
     assert kind_of(client.post("/api/records?name=a.txt", content=QUIET, headers=OCTETS)) == (413, "too-large")
     assert client.get("/api/records").json() == []
 

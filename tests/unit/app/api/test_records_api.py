@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.app.problems import NotFound, TooLarge
+from rocking.app.errors import NotFound, TooLarge
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.errors import RecordError

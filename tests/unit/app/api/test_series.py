@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rocking.app.api.series import thinned
+from rocking.app.api.response import thinned
 
 TIME = np.linspace(0.0, 30.0, 30_001)
 WAVE = np.sin(7.0 * TIME) * np.exp(-0.1 * TIME)

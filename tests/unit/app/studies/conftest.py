@@ -10,9 +10,8 @@ from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.names import new_id
 from rocking.app.studies.opened import OpenStudy
-from rocking.app.studies.study_folder import Meta, StudyFolder
+from rocking.app.studies.study import Meta, StudyFolder, new_id
 from rocking.studies.job import Job, JobFolder
 
 Tables = dict[str, Any]

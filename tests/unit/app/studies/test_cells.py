@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rocking.app.problems import NotFound
+from rocking.app.errors import NotFound
 from rocking.app.question import question_of
 from rocking.app.records import RecordStore
 from rocking.app.schemas.inputs import Inputs
-from rocking.app.studies.cells.cell import cell_of
-from rocking.app.studies.cells.motions import stretched_words
-from rocking.app.studies.cells.place import Place
+from rocking.app.studies.history_at_point import Place, cell_of, stretched_words
 from rocking.app.studies.opened import OpenStudy
 from rocking.bodies import Block
 from rocking.motions.formats import write_motion

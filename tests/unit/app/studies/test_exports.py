@@ -14,7 +14,7 @@ import openpyxl
 import pytest
 from scipy.io import loadmat
 
-from rocking.app.problems import NotFound, Refused
+from rocking.app.errors import NotFound, Refused
 from rocking.app.studies.exports import MEDIA_TYPES, written
 from rocking.app.studies.opened import OpenStudy
 from rocking.studies.job import Job

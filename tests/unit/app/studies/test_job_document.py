@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from rocking.app.problems import TooLarge
+from rocking.app.errors import TooLarge
 from rocking.app.studies.job_document import KINDS, JobDocument
 from rocking.errors import InvalidValueError
 from rocking.studies.job import Job

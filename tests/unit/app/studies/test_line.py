@@ -15,13 +15,13 @@ from typing import Any
 
 import pytest
 
-from rocking.app.problems import NoRoom, NotFound, Refused
+from rocking.app.errors import NoRoom, NotFound, Refused
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
-from rocking.app.studies import line, router
+from rocking.app.studies import queue as line
+from rocking.app.studies import router
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.study import Study
-from rocking.app.studies.study_folder import StudyFolder
+from rocking.app.studies.study import Study, StudyFolder
 from rocking.errors import RockingError
 
 pytestmark = [pytest.mark.timed, pytest.mark.skipif(sys.platform == "win32", reason="other signals")]

@@ -11,13 +11,12 @@ from typing import Any
 import pytest
 
 from rocking.app.answers import JsonAnswer
-from rocking.app.problems import Busy, NotFound, Refused, TooLarge
+from rocking.app.errors import Busy, NotFound, Refused, TooLarge
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
 from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.opened import OpenStudy
-from rocking.app.studies.results import result_of
-from rocking.app.studies.results.kept import kept_result
+from rocking.app.studies.results import kept_result, result_of
 from rocking.errors import InvalidValueError
 from rocking.studies.job import Job, JobFolder
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rocking.app.studies.progress import Pace
+from rocking.app.studies.study import Pace
 
 
 def test_a_steady_study_has_its_rate() -> None:

@@ -11,9 +11,7 @@ import pytest
 import rocking as rk
 from rocking.app.answers import JsonAnswer
 from rocking.app.studies.opened import OpenStudies, OpenStudy
-from rocking.app.studies.results import result_of
-from rocking.app.studies.results.maps import contours_of
-from rocking.app.studies.results.plain import plain
+from rocking.app.studies.results import contours_of, plain, result_of
 from rocking.studies._overturning_map import overturning_map
 from rocking.studies._rocking_spectrum import rocking_spectrum
 from rocking.studies.fragility.stripes import multiple_stripes

@@ -10,7 +10,7 @@ from fastapi import FastAPI
 from starlette.websockets import WebSocketDisconnect
 
 from rocking.app.settings import Settings
-from rocking.app.studies import live
+from rocking.app.studies import router as live
 
 pytestmark = pytest.mark.timed
 

@@ -10,7 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from rocking.app.application import create_app
-from rocking.app.problems import Refused
+from rocking.app.errors import Refused
 from rocking.app.settings import Limits, Settings
 from rocking.app.takeaway.archive import Archive
 

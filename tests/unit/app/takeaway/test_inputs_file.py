@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from rocking.app.problems import Refused
+from rocking.app.errors import Refused
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.takeaway.inputs_file import commands, fingerprint, inputs_as_toml, inputs_from_toml
 from rocking.cli.application import application

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from rocking.app.problems import NotFound
+from rocking.app.errors import NotFound
 from rocking.app.takeaway.sheets.csv_file import csv_of
 from rocking.app.takeaway.sheets.excel_file import excel_of
 from rocking.app.takeaway.sheets.matlab_file import matlab_of

@@ -1,14 +1,12 @@
-"""The line of studies: one after another is computed, watched, and told of."""
+"""The queue of studies: one after another is computed, watched, and told of."""
 
 import logging
 import threading
 from collections.abc import Callable
 from typing import Any
 
-from rocking.app.problems import Busy, NotFound
-from rocking.app.studies.process import StudyProcess
-from rocking.app.studies.study import Study
-from rocking.app.studies.study_folder import FAILED, INTERRUPTED, RUNNING, WAITING
+from rocking.app.errors import Busy, NotFound
+from rocking.app.studies.study import FAILED, INTERRUPTED, RUNNING, WAITING, Study, StudyProcess
 
 LOOK = 0.2
 """Time between looks at what runs [s]."""

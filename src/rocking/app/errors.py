@@ -1,19 +1,12 @@
 """What goes wrong, as the client is told it: one kind, one sentence, never a traceback."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import ClassVar
 
-from rocking.errors import (
-    BodyFileError,
-    GeometryError,
-    MissingExtraError,
-    RecordError,
-    RockingError,
-    UnknownModelError,
-)
+from rocking.errors import BodyFileError, GeometryError, MissingExtraError, RecordError, RockingError, UnknownModelError
 
 INTERNAL = "something went wrong; its trace is in the server's log"
-
 _KINDS: tuple[tuple[type[RockingError], str], ...] = (
     (UnknownModelError, "unknown-model"),
     (GeometryError, "geometry"),
@@ -128,3 +121,15 @@ def status_and_kind(error: RockingError) -> tuple[int, str]:
 def kind_of_status(status: int) -> str:
     """Return the kind of a problem of which only the status is known."""
     return _BY_STATUS.get(status, "internal" if status >= 500 else "invalid-value")
+
+
+@contextmanager
+def room_on_disk() -> Iterator[None]:
+    """Turn what a disk says that takes nothing more into a sentence for whoever sent the file."""
+    try:
+        yield
+    except OSError as error:  # its own words name files of the server
+        why = error.strerror or "it cannot be written"
+        raise NoRoom(
+            f"the disk of the server does not take the file: {why}; make room there, then send it again"
+        ) from error

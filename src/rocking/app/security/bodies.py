@@ -1,19 +1,22 @@
-"""Bodies of requests: counted while they arrive, whatever their head says, and read once they are whole."""
+"""Bodies of requests: counted while they arrive; JSON is UTF-8, not deep, with no key twice and no NaN."""
 
 import asyncio
+import json
 import math
+import re
+from typing import Any, NoReturn
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from rocking.app.answers import refusal
-from rocking.app.problems import Busy, Problem, TooLarge
-from rocking.app.security.asked import SAFE, Asked
-from rocking.app.security.contents import BYTES, content_type
-from rocking.app.security.json_text import check_json
+from rocking.app.errors import Busy, Problem, Refused, TooLarge
+from rocking.app.security.requests import BYTES, SAFE, Asked, content_type
 from rocking.app.settings import MEBIBYTE, Limits
 
 _DRAINED = 64 * MEBIBYTE
 _LONG_JSON = 1 << 16
+_BRACKETS = re.compile(rb'"(?:[^"\\]|\\.)*"|[\[\]{}]', re.DOTALL)
+_LARGEST = 2**63
 
 
 class TooSlow(Problem):
@@ -126,3 +129,64 @@ def _again(body: bytes, receive: Receive) -> Receive:
         return {"type": "http.request", "body": body, "more_body": False}
 
     return whole
+
+
+def check_json(data: bytes, depth: int) -> None:
+    """Refuse a text that is not plain JSON."""
+    if not data.strip():
+        return
+    _check_depth(data, depth)
+    try:
+        text = data.decode("utf-8")
+        json.loads(text, parse_constant=_constant, parse_float=_float, parse_int=_int, object_pairs_hook=_object)
+    except UnicodeDecodeError as error:
+        raise Refused("the JSON is not in UTF-8") from error
+    except json.JSONDecodeError as error:
+        raise Refused(f"this is not JSON: {error.msg} at line {error.lineno}, column {error.colno}") from error
+    lower = text.lower()
+    if "\\u0000" in lower or "\0" in text:
+        raise Refused("a text in the JSON holds a NUL")
+    if "\\ud" in lower:
+        _check_characters(text)
+
+
+def _check_depth(data: bytes, most: int) -> None:
+    depth = 0
+    for match in _BRACKETS.finditer(data):
+        mark = match[0]
+        depth += (mark in b"[{") - (mark in b"]}")
+        if depth > most:
+            raise Refused(f"the JSON is nested deeper than {most}")
+
+
+def _check_characters(text: str) -> None:
+    try:
+        json.dumps(json.loads(text), ensure_ascii=False).encode("utf-8")
+    except UnicodeEncodeError as error:
+        raise Refused("a text in the JSON holds half a character (a lone surrogate)") from error
+
+
+def _constant(word: str) -> NoReturn:
+    raise Refused(f"{word} is not a number that can be computed with")
+
+
+def _float(word: str) -> float:
+    value = float(word)
+    if not math.isfinite(value):
+        raise Refused(f"the number {word[:40]} is larger than float64 holds")
+    return value
+
+
+def _int(word: str) -> int:
+    if len(word) > 20 or not -_LARGEST <= int(word) < _LARGEST:
+        raise Refused(f"the whole number {word[:40]} does not fit into 64 bits")
+    return int(word)
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    content = dict(pairs)
+    if len(content) != len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise Refused(f"the key {twice[:60]!r} is there twice")
+    return content

@@ -4,8 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from rocking.app.schemas.answers.answer import Answer
-from rocking.app.schemas.answers.body import DrawnBody, Foot
+from rocking.app.schemas.answers import Answer, DrawnBody, Foot
 
 
 class RockingSide(Answer):
