@@ -22,8 +22,8 @@ from benchmarks import table
 from benchmarks.engine_batch import STEP, histories
 from benchmarks.engine_growth import _forget_peak, _peak
 from benchmarks.table import Row
+from rocking.campaigns import Campaign, Progress
 from rocking.studies import MotionList, Product, Table
-from rocking.studies.campaign import Campaign, Progress
 
 RECORDS = 200
 MEMORY_GOAL = 2 << 30

@@ -120,7 +120,7 @@ def rows() -> list[Row]:
 
 def refined_map() -> tuple[float, float]:
     """A large map, two levels finer along its boundaries, in rounds on disk; then all points into one netCDF file."""
-    from rocking.studies.job import Job, JobFolder, export
+    from rocking.campaigns.jobs import Job, JobFolder, export
 
     with TemporaryDirectory() as path:
         folder = JobFolder.create(Path(path) / "map", Job.of_text(JOB))

@@ -4,9 +4,9 @@ import csv
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from rocking.campaigns.jobs import Job, JobFolder, analyses, export, measure_comparison
 from rocking.plots import write
 from rocking.plots.cloud import cloud_picture
-from rocking.studies.job import Job, JobFolder, analyses, export, measure_comparison
 
 job = Job.of_text("""
 [campaign]

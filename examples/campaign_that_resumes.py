@@ -6,10 +6,10 @@ from tempfile import TemporaryDirectory
 
 import xarray
 
+from rocking.campaigns import CampaignInterrupted
+from rocking.campaigns.jobs import Job, JobFolder, export, forecast
 from rocking.plots import write
 from rocking.plots.overturning_map import overturning_map_picture
-from rocking.studies.campaign import CampaignInterrupted
-from rocking.studies.job import Job, JobFolder, export, forecast
 
 job = Job.read(Path(__file__).parent / "jobs" / "overturning_map.toml")
 print(f"{job.document.campaign.name}: {dict(job.study.dims)}")

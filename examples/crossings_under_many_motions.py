@@ -4,10 +4,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import rocking as rk
+from rocking.campaigns.jobs import Job, JobFolder, answer
 from rocking.plots import write
 from rocking.plots.crossings_of_many import crossings_of_many_picture
 from rocking.studies import SyntheticSet, minimum_overturning_acceleration
-from rocking.studies.job import Job, JobFolder, answer
 
 COUNT = 12
 job = Job.of_text(f"""

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from rocking.bodies import Block, Body, MassPoints, Region, Section, Side, shapes, solid
     from rocking.bodies.formats import read_body, read_solid
     from rocking.bodies.solid import Part, Solid
+    from rocking.campaigns import Campaign
     from rocking.dynamics import (
         Outcome,
         RandomRestitution,
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from rocking.restitution.spatial import edge_coefficient, impact_in_space
     from rocking.studies._overturning_map import overturning_map
     from rocking.studies._rocking_spectrum import rocking_spectrum
-    from rocking.studies.campaign import Campaign
     from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
 
 __version__ = "0.1.0"
@@ -89,7 +89,7 @@ __all__ = [
 _HOME = {
     "Block": "rocking.bodies",
     "Body": "rocking.bodies",
-    "Campaign": "rocking.studies.campaign",
+    "Campaign": "rocking.campaigns",
     "ContactBed": "rocking.dynamics.bed",
     "GroundMotion": "rocking.motions",
     "MassPoints": "rocking.bodies",

@@ -160,6 +160,8 @@ def same(one: Any, other: Any, tolerance: float = 0.0) -> bool:  # noqa: PLR0911
         one, other = np.asarray(one), np.asarray(other)
         if one.shape != other.shape or one.dtype.kind != other.dtype.kind:
             return False
+        if one.dtype.kind == "O":
+            return all(same(each, beside, tolerance) for each, beside in zip(one.flat, other.flat, strict=True))
         if one.dtype.kind not in "fc" or tolerance == 0.0:
             return bool(np.array_equal(one, other, equal_nan=one.dtype.kind in "fc"))
         size = float(np.abs(one[np.isfinite(one)]).max(initial=0.0))

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rocking.campaigns import Campaign, CampaignInterrupted, Progress
 from rocking.dynamics import engine
 from rocking.dynamics.engine import Arrays
 from rocking.dynamics.impact_law import RandomRestitution
 from rocking.studies import Table
-from rocking.studies.campaign import Campaign, CampaignInterrupted, Progress
 
 sys.path.insert(0, str(Path(__file__).parent / "durability"))
 from workload import histories

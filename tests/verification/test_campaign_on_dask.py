@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
+from rocking.campaigns import Campaign, DaskExecutor, Progress
 from rocking.dynamics import engine
 from rocking.studies import SyntheticSet
-from rocking.studies.campaign import Campaign, DaskExecutor, Progress
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "unit" / "studies" / "campaign"))  # for the workers, too
 from slow import Motions, product
@@ -51,7 +51,7 @@ def took(campaign: Campaign, workers: int) -> float:
 
     seen: list[tuple[float, int]] = []
     with cluster(workers) as made, Client(made, set_as_default=False) as client:
-        client.run(__import__, "rocking.studies.campaign")
+        client.run(__import__, "rocking.campaigns")
         campaign.run(
             DaskExecutor(made.scheduler_address),
             progress=lambda p: seen.append((time.perf_counter(), p.done_histories)),

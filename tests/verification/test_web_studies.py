@@ -20,9 +20,9 @@ import numpy as np
 import pytest
 import websockets
 
-from rocking.studies.job import Job, JobFolder
-from rocking.studies.job.netcdf import to_netcdf
-from rocking.studies.job.results import Results
+from rocking.campaigns.jobs import Job, JobFolder
+from rocking.campaigns.jobs.netcdf import to_netcdf
+from rocking.campaigns.jobs.results import Results
 
 Tables = dict[str, Any]
 
@@ -168,7 +168,7 @@ def _same_as_alone(folder: Path, table: bytes) -> None:
     """Compute the job without a server and without interruption, and compare every byte of every value."""
     import h5netcdf
 
-    from rocking.studies.job import export
+    from rocking.campaigns.jobs import export
 
     alone = JobFolder.create(folder / "alone", Job.read(folder / "job.toml"))
     alone.run(workers=1)

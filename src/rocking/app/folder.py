@@ -7,9 +7,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from rocking.campaigns.disk import CampaignBusyError, FolderLock
 from rocking.errors import InvalidValueError
-from rocking.studies.campaign.errors import CampaignBusyError
-from rocking.studies.campaign.lock import FolderLock
 
 KEY_FILE = "api-key"
 _NOTE = "server.json"

@@ -8,9 +8,8 @@ from rocking.bodies import Body
 from rocking.bodies.formats.source import blamed
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError, RockingError
-from rocking.studies.job.parts import body_of
-from rocking.studies.job.response import made_motion, question_from
-from rocking.studies.job.response_question import ResponseQuestion
+from rocking.spec.parts import body_of
+from rocking.spec.response import ResponseQuestion, made_motion, question_from
 
 if TYPE_CHECKING:
     from rocking.app.records import RecordStore
@@ -96,7 +95,7 @@ def _synthetic(
     pgv: float | None,
     time_step: float | None,
 ) -> Motion:
-    from rocking.studies.job.response_tables import OneMotionTable
+    from rocking.spec.document import OneMotionTable
 
     return made_motion(
         OneMotionTable(synthetic=family, seed=seed, member=member, pga=pga, pgv=pgv, time_step=time_step)

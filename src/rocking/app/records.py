@@ -13,10 +13,10 @@ from typing import Any
 from rocking.app.answers import safe_name
 from rocking.app.errors import NotFound, TooLarge, room_on_disk
 from rocking.app.settings import Limits
+from rocking.campaigns.disk import remove_unfinished, write_new
 from rocking.errors import RecordError
 from rocking.motions.formats import read_motion
 from rocking.motions.motion import GroundMotion
-from rocking.studies.campaign.disk import remove_unfinished, write_new
 
 _DIGITS = frozenset("0123456789abcdef")
 _HELD = 128 * 1024 * 1024

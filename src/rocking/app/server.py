@@ -122,7 +122,7 @@ def _response() -> None:
     from rocking.motions.pulses import pulse
     from rocking.motions.spectrum import response_spectrum
     from rocking.plots.traces import fine_samples
-    from rocking.studies.job.response import question_from
+    from rocking.spec.response import question_from
 
     moved = "sine:amplitude=3,period=0.8"
     asked = ResponseAsked.model_validate({"body": _BLOCK, "motion": {"pulse": moved}})

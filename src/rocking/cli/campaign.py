@@ -56,8 +56,8 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Begin a campaign and compute it; the job is copied into its folder."""
+    from rocking.campaigns.jobs import Job, JobFolder
     from rocking.cli import campaign_output as output
-    from rocking.studies.job import Job, JobFolder
 
     with output.codes(out):
         who = output.executor_of(executor, workers, address)
@@ -74,8 +74,8 @@ def resume(
     as_json: AsJson = False,
 ) -> None:
     """Go on with a campaign where it stopped; files that have changed since are refused."""
+    from rocking.campaigns.jobs import JobFolder
     from rocking.cli import campaign_output as output
-    from rocking.studies.job import JobFolder
 
     with output.codes(folder):
         who = output.executor_of(executor, workers, address)

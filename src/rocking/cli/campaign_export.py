@@ -7,12 +7,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from rocking.campaigns import CampaignStorageError, Progress, disk
+from rocking.campaigns.jobs import JobFolder, assessment, export, exports_of
+from rocking.campaigns.jobs.exporting import write_provenance
+from rocking.campaigns.jobs.round_status import finished_rounds
 from rocking.cli.campaign_output import bar
 from rocking.errors import InvalidValueError, RockingError
-from rocking.studies.campaign import CampaignStorageError, Progress, disk
-from rocking.studies.job import JobFolder, assessment, export, exports_of
-from rocking.studies.job.exporting import write_provenance
-from rocking.studies.job.round_status import finished_rounds
 
 REPORT = "report"
 """The ranked table of an inventory with its lights."""

@@ -10,8 +10,7 @@ from typing import Any
 
 import typer
 
-from rocking.errors import InvalidValueError
-from rocking.studies.campaign import (
+from rocking.campaigns import (
     CampaignBusyError,
     CampaignDamagedError,
     CampaignInterrupted,
@@ -21,9 +20,10 @@ from rocking.studies.campaign import (
     Executor,
     Progress,
 )
-from rocking.studies.job import Job, JobFolder, JobStatus, forecast, status_of, verified
-from rocking.studies.job.folder import JOB
-from rocking.studies.job.round_status import resume
+from rocking.campaigns.jobs import Job, JobFolder, JobStatus, forecast, status_of, verified
+from rocking.campaigns.jobs.folder import JOB
+from rocking.campaigns.jobs.round_status import resume
+from rocking.errors import InvalidValueError
 
 INTERRUPTED, STORAGE, BUSY, DAMAGED = 3, 4, 5, 6
 """Exit codes beside 0 (done) and 2 (bad input)."""

@@ -6,11 +6,10 @@ from typing import Any
 from rocking.bodies import Body
 from rocking.cli.solid_options import spelt
 from rocking.errors import InvalidValueError
-from rocking.studies.job.inputs import Inputs
-from rocking.studies.job.parts import body_of
-from rocking.studies.job.reading import located, read_text, validated
-from rocking.studies.job.table import JobTable
-from rocking.studies.job.tables import SettingsTable
+from rocking.spec.document import SettingsTable
+from rocking.spec.fields import JobTable
+from rocking.spec.parts import body_of
+from rocking.spec.reading import Inputs, located, read_text, validated
 
 
 class BodyOfDocument(JobTable):

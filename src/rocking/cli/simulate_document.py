@@ -15,7 +15,7 @@ def path_of(context: typer.Context) -> Path | None:
 
     Returns none if the first word is something else.
     """
-    from rocking.studies.job.response import is_response
+    from rocking.spec.response import is_response
 
     word = context.params.get("body")
     if word is None or not is_response(Path(word)):
@@ -32,7 +32,7 @@ def answer_of(path: Path) -> Answer:
 
     Returns the response with the first restitution, and with the others that the file lists.
     """
-    from rocking.studies.job.response import ResponseJob
+    from rocking.spec.response import ResponseJob
 
     return Answer.of_choices(ResponseJob.read(path).question)
 

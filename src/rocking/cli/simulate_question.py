@@ -13,7 +13,7 @@ from rocking.conventions import DEFAULT_FRICTION, g
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
-from rocking.studies.job.response_question import ResponseQuestion
+from rocking.spec.response import ResponseQuestion
 
 Question = ResponseQuestion
 """Everything that a response depends on."""

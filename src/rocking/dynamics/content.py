@@ -23,7 +23,8 @@ def hash_of(values: np.ndarray) -> str:
 
 def full_name(kind: type) -> str:
     """Return the name of a class with its module: two classes of the same name are not the same."""
-    return f"{kind.__module__}.{kind.__qualname__}"
+    module = kind.__module__.replace("campaigns.jobs", "studies.job")  # where it stood when keys were kept
+    return f"{module}.{kind.__qualname__}"
 
 
 def fields_of(thing: object) -> dict[str, Any]:

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
+    from rocking.campaigns import Campaign
     from rocking.studies._axes import axes
     from rocking.studies._boundary import Polyline, boundary
     from rocking.studies._overturning_map import overturning_map
     from rocking.studies._rocking_spectrum import rocking_spectrum
     from rocking.studies.axis import Axis
-    from rocking.studies.campaign import Campaign
     from rocking.studies.crossings import Crossings
     from rocking.studies.fragility import (
         LognormalFit,
@@ -79,7 +79,7 @@ __getattr__, __dir__ = exports(
     __name__,
     {
         "Axis": "rocking.studies.axis",
-        "Campaign": "rocking.studies.campaign",
+        "Campaign": "rocking.campaigns",
         "Crossings": "rocking.studies.crossings",
         "Histories": "rocking.studies.histories",
         "Island": "rocking.studies.islands",

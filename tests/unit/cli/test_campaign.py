@@ -9,10 +9,10 @@ import time
 
 import pytest
 
+from rocking.campaigns.disk import FolderLock
+from rocking.campaigns.jobs import status_of
 from rocking.cli import application, main
 from rocking.cli.campaign import campaign
-from rocking.studies.campaign.lock import FolderLock
-from rocking.studies.job import status_of
 
 JOB = """
 [campaign]
@@ -188,8 +188,8 @@ def test_mistakes_in_the_job(run, job, tmp_path, more):
 
 def begun(tmp_path, path):
     """A campaign that was stopped after one chunk of six, by Ctrl-C in its progress."""
-    from rocking.studies.campaign import CampaignInterrupted
-    from rocking.studies.job import Job, JobFolder
+    from rocking.campaigns import CampaignInterrupted
+    from rocking.campaigns.jobs import Job, JobFolder
 
     folder = JobFolder.create(tmp_path / "c", Job.read(path))
 
@@ -233,7 +233,7 @@ def test_disk_full(run, job, tmp_path, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("rocking.studies.campaign.disk.write_new", full)
+    monkeypatch.setattr("rocking.campaigns.disk.write_new", full)
     code, _, err = run("resume", folder)
     assert (code, len(err.splitlines())) == (4, 1)
     assert "No space left on device; 1 of 6 chunks are safe" in err
@@ -391,7 +391,7 @@ def test_ctrl_c_before_anything(run, job, tmp_path, monkeypatch):
     def pressed(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("rocking.studies.job.Job.read", pressed)
+    monkeypatch.setattr("rocking.campaigns.jobs.Job.read", pressed)
     code, out, err = run("run", job(), "--out", tmp_path / "c")
     assert (code, out) == (3, "")
     assert err == "rocking: stopped; nothing was begun\n"

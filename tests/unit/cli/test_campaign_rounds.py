@@ -92,7 +92,7 @@ def test_rounds_in_words_and_in_json(run, tmp_path):
 
 def test_stopped_while_the_job_is_read(run, tmp_path, monkeypatch):
     """Ctrl-C before there is a campaign: nothing was begun, and nobody says that anything is safe; afterwards it is."""
-    from rocking.studies.job import Job, JobFolder
+    from rocking.campaigns.jobs import Job, JobFolder
 
     def stopped(*_):
         raise KeyboardInterrupt

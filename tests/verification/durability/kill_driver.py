@@ -22,9 +22,11 @@ from typing import BinaryIO
 
 from workload import histories
 
-from rocking.studies.campaign import Campaign, disk, executors, ledger, pace, shard
-from rocking.studies.campaign.chunks import Chunk, Plan
-from rocking.studies.campaign.errors import CampaignDamagedError, CampaignWorkerError
+from rocking.campaigns import Campaign, disk, executors, ledger
+from rocking.campaigns import chunks as shard
+from rocking.campaigns import executors as pace
+from rocking.campaigns.chunks import Chunk, Plan
+from rocking.campaigns.disk import CampaignDamagedError, CampaignWorkerError
 
 CHUNK = 500
 PIECE, CUT = 130, "KILL_DRIVER_CUTS"

@@ -16,10 +16,10 @@ import traceback
 from collections import Counter
 from pathlib import Path
 
+from rocking.campaigns import Campaign, disk, ledger, reading
+from rocking.campaigns.identity import Identity
+from rocking.campaigns.jobs import Job, JobFolder, answer, status_of
 from rocking.errors import RockingError
-from rocking.studies.campaign import Campaign, disk, ledger, reading
-from rocking.studies.campaign.identity import Identity
-from rocking.studies.job import Job, JobFolder, answer, status_of
 
 JOB = """[campaign]
 name = "killed again and again"

@@ -50,7 +50,7 @@ def info(request: Request) -> JsonAnswer:
 @cache
 def _constant() -> dict[str, Any]:
     from rocking.app.studies.job_document import KINDS
-    from rocking.studies.job.tables import NEEDS
+    from rocking.spec.document import NEEDS
 
     return {
         "version": version("rocking"),

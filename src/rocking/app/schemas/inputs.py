@@ -12,9 +12,8 @@ from pydantic_core import PydanticCustomError
 from rocking.app.errors import Refused, TooLarge
 from rocking.bodies import Body
 from rocking.bodies.formats.body_schema import BODIES, Document, Positive
-from rocking.studies.job.response_tables import OneMotionTable, ResponseTables, check_start
-from rocking.studies.job.table import JobTable, Words, refused
-from rocking.studies.job.tables import SettingsTable
+from rocking.spec.document import OneMotionTable, ResponseTables, SettingsTable, check_start
+from rocking.spec.fields import JobTable, Words, refused
 
 __all__ = [
     "BodyAsked",

@@ -25,8 +25,8 @@ def main(arguments: list[str]) -> int:
     """Begin or go on with the campaign of a study."""
     _end_with_the_server()
     _be_nice()
+    from rocking.campaigns import CampaignInterrupted
     from rocking.errors import RockingError
-    from rocking.studies.campaign import CampaignInterrupted
 
     try:
         _compute(Path(arguments[0]), int(arguments[1]))
@@ -42,9 +42,9 @@ def _compute(study: Path, workers: int) -> None:
     from rocking.app.studies.opened import OpenStudy
     from rocking.app.studies.results import keep_result
     from rocking.app.studies.study import CAMPAIGN, JOB, StudyFolder
+    from rocking.campaigns import CampaignBusyError
+    from rocking.campaigns.jobs import Job, JobFolder
     from rocking.dynamics import engine
-    from rocking.studies.campaign import CampaignBusyError
-    from rocking.studies.job import Job, JobFolder
 
     campaign = study / CAMPAIGN
     begun = (campaign / JOB).is_file()

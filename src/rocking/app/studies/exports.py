@@ -48,7 +48,7 @@ def written(
 
 
 def _exported(study: OpenStudy, target: Path, what: str | None, label: str, crossing: Crossing | None) -> None:
-    from rocking.studies.job import export
+    from rocking.campaigns.jobs import export
 
     of_curves = what in {"fragility", "fema-p58"}
     try:

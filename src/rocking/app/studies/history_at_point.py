@@ -21,17 +21,17 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.pulses import pulse
 from rocking.outcome import Outcome
+from rocking.spec.parts import motions_of
+from rocking.spec.reading import Inputs
+from rocking.spec.response import ResponseQuestion
 from rocking.studies._axes import axis_of
 from rocking.studies.body_axes import Restitution
 from rocking.studies.geometry import changed_body
-from rocking.studies.job.inputs import Inputs
-from rocking.studies.job.parts import motions_of
-from rocking.studies.job.response_question import ResponseQuestion
 from rocking.studies.plane import Plane
 from rocking.studies.question import Question
 
 if TYPE_CHECKING:
-    from rocking.studies.job.tables import MotionTable
+    from rocking.spec.document import MotionTable
 
 _ACROSS = {
     "rocking-spectrum": ("period", "slenderness_angle"),

@@ -12,7 +12,7 @@ from rocking.errors import InvalidValueError
 from rocking.restitution.from_file import file_of
 
 if TYPE_CHECKING:
-    from rocking.studies.job.tables import Document
+    from rocking.spec.document import CampaignDocument
 
 KINDS = (
     "overturning-map", "minimum-acceleration", "rocking-spectrum", "stripes", "incremental", "cloud", "histories",
@@ -33,7 +33,7 @@ class JobDocument:
     """A job as it came, and as its tables say it."""
 
     given: dict[str, Any]  # as it came; records are named by their hashes
-    document: "Document"  # the same, checked
+    document: "CampaignDocument"  # the same, checked
 
     @classmethod
     def of(cls, given: object) -> "JobDocument":
@@ -41,7 +41,7 @@ class JobDocument:
         from pydantic import ValidationError
 
         from rocking.bodies.formats.words import sentence
-        from rocking.studies.job.tables import Document
+        from rocking.spec.document import CampaignDocument
 
         if not isinstance(given, dict):
             raise InvalidValueError(f"job must be an object of tables, as a job file has them, got {given!r:.60}")
@@ -52,7 +52,7 @@ class JobDocument:
         if isinstance(kind, str) and kind not in KINDS:
             raise InvalidValueError(f"campaign.kind must be one of {', '.join(KINDS)}, got {kind!r:.60}")
         try:
-            made = cls(given, Document.model_validate(given))
+            made = cls(given, CampaignDocument.model_validate(given))
         except ValidationError as error:
             raise InvalidValueError(f"job: {sentence(error, None)}") from error
         made._refuse_too_many()
@@ -180,7 +180,7 @@ def _keys(value: Any) -> Iterator[str]:
         yield from _keys(item)
 
 
-def _sizes(document: "Document") -> list[int]:
+def _sizes(document: "CampaignDocument") -> list[int]:
     """Return the numbers whose product is that of the histories."""
     choices, motions = _choices(document), sum(_motions(each) for each in document.motions)
     kind, bodies = document.campaign.kind, len(document.body or [])
@@ -197,7 +197,7 @@ def _sizes(document: "Document") -> list[int]:
     return [motions, choices, 1 if levels is None else _count(levels)]
 
 
-def _choices(document: "Document") -> int:
+def _choices(document: "CampaignDocument") -> int:
     table = document.restitution
     return max(1, len(table.models or []) + len(table.values or []))
 

@@ -32,7 +32,7 @@ from rocking.app.studies.study import (
     processors,
     shown,
 )
-from rocking.studies.campaign import disk
+from rocking.campaigns import disk
 
 _BYTES = 100
 """Disk for a history, generously [byte]."""

@@ -14,8 +14,8 @@ from rocking.errors import RockingError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rocking.studies.job import JobFolder
-    from rocking.studies.job.answer import Answer
+    from rocking.campaigns.jobs import JobFolder
+    from rocking.campaigns.jobs.answer import Answer
 
 _HELD = 256 * 2**20
 _ANSWERS = 64 * 2**20
@@ -35,7 +35,7 @@ class OpenStudy:
 
         Returns the study; results are read when they are asked for.
         """
-        from rocking.studies.job import JobFolder
+        from rocking.campaigns.jobs import JobFolder
 
         try:
             return cls(folder.id, folder, JobFolder.open(folder.campaign, folder.path))
@@ -76,7 +76,7 @@ class OpenStudy:
     @cached_property
     def answer(self) -> "Answer":
         """What an adaptive study has found, from all of its rounds."""
-        from rocking.studies.job import answer
+        from rocking.campaigns.jobs import answer
 
         return answer(self.job)
 

@@ -9,10 +9,10 @@ from rocking import __version__
 from rocking.app.answers import JsonAnswer
 from rocking.app.studies.opened import OpenStudy
 from rocking.app.studies.study import StudyFolder
+from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.dynamics.lost_contact import contact_words, lost_contact
 from rocking.errors import InvalidValueError
-from rocking.studies.campaign import disk
 from rocking.studies.contours import chains, edge_numbers, segments
 
 MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact"}

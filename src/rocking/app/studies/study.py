@@ -23,10 +23,10 @@ import numpy as np
 from rocking.app.errors import NotFound
 from rocking.app.studies.child import GRACE
 from rocking.app.studies.job_document import JobDocument
+from rocking.campaigns import Estimate, Status, disk
+from rocking.campaigns.jobs.folder import status_of
+from rocking.campaigns.status import Speed
 from rocking.errors import InvalidValueError, RockingError
-from rocking.studies.campaign import Estimate, Status, disk
-from rocking.studies.campaign.estimate import Speed
-from rocking.studies.job.folder import status_of
 
 _WINDOW = 6.0
 _LEAST = 0.15
@@ -152,7 +152,7 @@ class StudyFolder:
 
     def create(self, meta: Meta, job: JobDocument, records: Records) -> None:
         """Write what a study needs, so that it needs nothing else: a power cut leaves all of it or no `meta.json`."""
-        from rocking.studies.job import Job
+        from rocking.campaigns.jobs import Job
 
         try:
             disk.make_folder(self.path)

@@ -12,7 +12,7 @@ from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.opened import OpenStudy
 from rocking.app.studies.study import Meta, StudyFolder, new_id
-from rocking.studies.job import Job, JobFolder
+from rocking.campaigns.jobs import Job, JobFolder
 
 Tables = dict[str, Any]
 

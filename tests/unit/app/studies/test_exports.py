@@ -17,7 +17,7 @@ from scipy.io import loadmat
 from rocking.app.errors import NotFound, Refused
 from rocking.app.studies.exports import MEDIA_TYPES, written
 from rocking.app.studies.opened import OpenStudy
-from rocking.studies.job import Job
+from rocking.campaigns.jobs import Job
 
 Tables = dict[str, Any]
 NAME = '=cmd|" /C calc"!A0<script>alert(1)</script>'

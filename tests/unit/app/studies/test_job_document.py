@@ -11,8 +11,8 @@ import pytest
 
 from rocking.app.errors import TooLarge
 from rocking.app.studies.job_document import KINDS, JobDocument
+from rocking.campaigns.jobs import Job
 from rocking.errors import InvalidValueError
-from rocking.studies.job import Job
 
 pytestmark = pytest.mark.timed
 

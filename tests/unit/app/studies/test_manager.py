@@ -17,8 +17,8 @@ from rocking.app.settings import Limits
 from rocking.app.studies.manager import StudyManager
 from rocking.app.studies.opened import OpenStudy
 from rocking.app.studies.results import kept_result, result_of
+from rocking.campaigns.jobs import Job, JobFolder
 from rocking.errors import InvalidValueError
-from rocking.studies.job import Job, JobFolder
 
 pytestmark = pytest.mark.timed
 

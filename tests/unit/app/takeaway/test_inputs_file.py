@@ -13,7 +13,7 @@ from rocking.app.errors import Refused
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.takeaway.inputs_file import commands, fingerprint, inputs_as_toml, inputs_from_toml
 from rocking.cli.application import application
-from rocking.studies.job.response import ResponseJob
+from rocking.spec.response import ResponseJob
 
 HASH = "ab" * 32
 POSITIVE = st.floats(1e-3, 1e3)

@@ -1,0 +1,40 @@
+"""Campaigns: very many histories in chunks that are computed once, whatever dies on the way."""
+
+from rocking.campaigns.campaign import Campaign
+from rocking.campaigns.dask_cluster import DaskExecutor
+from rocking.campaigns.disk import (
+    CampaignBusyError,
+    CampaignDamagedError,
+    CampaignError,
+    CampaignIncompleteError,
+    CampaignInterrupted,
+    CampaignMismatchError,
+    CampaignStorageError,
+    CampaignWorkerError,
+)
+from rocking.campaigns.executors import Executor, Serial
+from rocking.campaigns.forecast import Forecast
+from rocking.campaigns.reading import Piece, Verification
+from rocking.campaigns.status import Estimate, Progress, Status, Summary
+
+__all__ = [
+    "Campaign",
+    "CampaignBusyError",
+    "CampaignDamagedError",
+    "CampaignError",
+    "CampaignIncompleteError",
+    "CampaignInterrupted",
+    "CampaignMismatchError",
+    "CampaignStorageError",
+    "CampaignWorkerError",
+    "DaskExecutor",
+    "Estimate",
+    "Executor",
+    "Forecast",
+    "Piece",
+    "Progress",
+    "Serial",
+    "Status",
+    "Summary",
+    "Verification",
+]

@@ -1,0 +1,218 @@
+"""How a campaign is cut: chunks of histories named by the hash of what they hold; their results as sealed bytes."""
+
+import hashlib
+import json
+import struct
+import zlib
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rocking.campaigns.disk import CampaignDamagedError
+from rocking.dynamics.engine import RESULTS, Arrays
+from rocking.errors import InvalidValueError
+from rocking.studies.histories import LARGEST_CHUNK
+
+MAGIC = b"ROCKSHRD"
+_LENGTHS = struct.Struct("<8sII")
+_SEAL = 32
+FORMAT = 2
+"""Version of the files of a campaign."""
+
+DEFAULT_CHUNK = 65536
+"""Histories of a chunk of the fast engine: about 0.3 s of work, beside which a few milliseconds of safety are small."""
+
+REFERENCE_CHUNK = 256
+"""Histories of a chunk of the reference engine, which takes a hundred times as long."""
+
+
+class Chunk(NamedTuple):
+    """Some histories: from the first up to but not including the last; of a piece of a chunk, with the chunk's name."""
+
+    number: int
+    first: int
+    last: int
+    name: str
+    of: str = ""
+
+    def piece(self, first: int, last: int) -> "Chunk":
+        """Return a piece of it, which is named by what it holds, too.
+
+        Returns the piece; itself if that is all of it.
+        """
+        if (first, last) == (self.first, self.last):
+            return self
+        whole = self.of or self.name
+        name = hashlib.sha256(f"{whole} {first} {last}".encode()).hexdigest()
+        return Chunk(self.number, first, last, name, whole)
+
+
+def default_chunk(engine: str, together: int = 1) -> int:
+    """Return how many histories make a chunk, unless somebody wants another number."""
+    usual = DEFAULT_CHUNK if engine.startswith("fast") else REFERENCE_CHUNK
+    return max(usual - usual % together, usual if together > usual else 1)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What fixes the name of every chunk, and with it the bytes of its shard.
+
+    >>> plan = Plan("0" * 64, 100, 40, "fast", "1.0")
+    >>> [plan.chunk(k)[1:3] for k in range(plan.chunks)]
+    [(0, 40), (40, 80), (80, 100)]
+    """
+
+    key: str  # name of the histories
+    count: int  # number of histories
+    size: int  # histories of a chunk
+    engine: str  # the engine that computes all of them, with the last digits that it gives: "fast, 0123456789abcdef"
+    software: str  # version of this package
+    format: int = FORMAT  # version of the files
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        for name, value, low, high in (("count", self.count, 1, 1 << 48), ("chunk", self.size, 1, LARGEST_CHUNK)):
+            given: object = value
+            if isinstance(given, bool) or not isinstance(given, int) or not low <= value <= high:
+                raise InvalidValueError(f"{name} must be a whole number of histories in [{low}, {high}], got {value!r}")
+
+    @property
+    def chunks(self) -> int:
+        """Number of chunks."""
+        return -(-self.count // self.size)
+
+    def chunk(self, number: int) -> Chunk:
+        """Return one of the chunks.
+
+        Returns the chunk; its name is the SHA-256 of the plan without its size, and of the first and last history.
+        """
+        if not 0 <= number < self.chunks:
+            raise InvalidValueError(f"chunk must be in [0, {self.chunks - 1}], got {number}")
+        first = number * self.size
+        last = min(first + self.size, self.count)
+        content = {name: value for name, value in asdict(self).items() if name != "size"}
+        text = json.dumps(content | {"first": first, "last": last}, sort_keys=True)
+        return Chunk(number, first, last, hashlib.sha256(text.encode()).hexdigest())
+
+
+def pack(chunk: Chunk, arrays: Arrays) -> bytes:
+    """Return the bytes of a shard: no time, place or machine is in them, so whoever makes them makes the same.
+
+    Returns magic word, version, length of the header; the header in JSON; the columns, little-endian; SHA-256 of all
+    that.
+    """
+    count = chunk.last - chunk.first
+    columns = [np.ascontiguousarray(arrays[name][:count], _little(kind)).data for name, kind in RESULTS.items()]
+    header = json.dumps(_header(chunk, columns), sort_keys=True, separators=(",", ":")).encode()
+    head = _LENGTHS.pack(MAGIC, FORMAT, len(header)) + header
+    made = hashlib.sha256(head)
+    for column in columns:
+        made.update(column)
+    return b"".join([head, *columns, made.digest()])
+
+
+def seal(data: bytes) -> str:
+    """Return the seal that a shard bears, without breaking it open.
+
+    Returns 64 hexadecimal digits: SHA-256 of all that stands before.
+    """
+    return data[-_SEAL:].hex()
+
+
+def range_of(data: bytes) -> tuple[int, int]:
+    """Return which histories a shard says that it holds.
+
+    Returns from the first up to but not including the last.
+    """
+    header = _read_header(data, _payload_at(data))
+    found = header.get("first"), header.get("last")
+    if not all(isinstance(each, int) for each in found):
+        raise CampaignDamagedError("its header does not say what it holds")
+    return found
+
+
+def unpack(data: bytes, chunk: Chunk, sealed: str | None = None) -> Arrays:
+    """Return the results that a shard holds, if not a bit of it has changed."""
+    place = _payload_at(data)
+    if hashlib.sha256(memoryview(data)[:-_SEAL]).digest() != data[-_SEAL:]:
+        raise CampaignDamagedError(_where_broken(data, place))
+    header = _read_header(data, place)
+    if header.get("name") != chunk.name:
+        raise CampaignDamagedError(f"it holds another chunk, {str(header.get('name'))[:12]}, not {chunk.name[:12]}")
+    if sealed is not None and seal(data) != sealed:
+        raise CampaignDamagedError("it is whole, but not the one that the ledger recorded")
+    return _columns(data, place, chunk, header)
+
+
+def _columns(data: bytes, place: int, chunk: Chunk, header: Any) -> Arrays:
+    count, arrays = chunk.last - chunk.first, {}
+    if header.get("first") != chunk.first or header.get("last") != chunk.last or header.get("columns") != _names():
+        raise CampaignDamagedError("its header does not fit its name")
+    if place + count * _width() + _SEAL != len(data):
+        raise CampaignDamagedError(f"it has {len(data)} bytes, {place + count * _width() + _SEAL} are due")
+    for name, kind in RESULTS.items():
+        arrays[name] = np.frombuffer(data, _little(kind), count, place).astype(kind, copy=False)
+        place += count * np.dtype(kind).itemsize
+    return arrays
+
+
+def _payload_at(data: bytes) -> int:
+    """Check the first bytes; where the columns start."""
+    if len(data) < _LENGTHS.size + _SEAL:
+        raise CampaignDamagedError(f"it was cut short: {len(data)} bytes are no shard")
+    magic, version, length = _LENGTHS.unpack_from(data)
+    if magic != MAGIC:
+        raise CampaignDamagedError("it does not start as a shard does")
+    if version != FORMAT:
+        raise CampaignDamagedError(f"it says format {version}, not {FORMAT}; of another version of this package?")
+    place = _LENGTHS.size + int(length)
+    if place + _SEAL > len(data):
+        raise CampaignDamagedError(f"it was cut short within its header: {len(data)} bytes")
+    return place
+
+
+def _where_broken(data: bytes, place: int) -> str:
+    """Say which column changed, as far as the header can still tell."""
+    try:
+        header = _read_header(data, place)
+        count = int(header["last"]) - int(header["first"])
+        due = place + count * _width() + _SEAL
+        if due != len(data):
+            return f"it has {len(data)} bytes, {due} are due: cut short?"
+        for name, kind in RESULTS.items():
+            end = place + count * np.dtype(kind).itemsize
+            if zlib.crc32(memoryview(data)[place:end]) != header["crc32"][name]:
+                return f"column {name} has changed"
+            place = end
+    except (CampaignDamagedError, KeyError, TypeError, ValueError):
+        pass
+    return "its seal is broken"
+
+
+def _read_header(data: bytes, place: int) -> Any:
+    try:
+        header = json.loads(data[_LENGTHS.size : place])
+    except ValueError as error:
+        raise CampaignDamagedError("its header cannot be read") from error
+    if not isinstance(header, dict):
+        raise CampaignDamagedError("its header is no header")
+    return header
+
+
+def _header(chunk: Chunk, columns: list[memoryview]) -> dict[str, Any]:
+    sums = {name: zlib.crc32(column) for name, column in zip(RESULTS, columns, strict=True)}
+    return {"name": chunk.name, "first": chunk.first, "last": chunk.last, "columns": _names(), "crc32": sums}
+
+
+def _names() -> list[list[str]]:
+    return [[name, _little(kind).str] for name, kind in RESULTS.items()]
+
+
+def _little(kind: Any) -> Any:
+    return np.dtype(kind).newbyteorder("<")
+
+
+def _width() -> int:
+    """Bytes of a history."""
+    return sum(np.dtype(kind).itemsize for kind in RESULTS.values())

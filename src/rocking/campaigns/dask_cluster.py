@@ -1,0 +1,170 @@
+"""Workers of a Dask cluster that is there already: they return shards, which are written here."""
+
+import os
+import pickle
+import socket
+import time
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+from rocking.campaigns.chunks import Chunk
+from rocking.campaigns.disk import CampaignWorkerError
+from rocking.campaigns.executors import Done, Executor, Job, cannot_be_sent, whole
+from rocking.errors import InvalidValueError, MissingExtraError, how_to_install
+
+_LOOK = 0.2
+_GRACE = 0.8
+
+
+class DaskExecutor(Executor):
+    """Computes the chunks on a Dask cluster; its workers need this package, but not the campaign's folder.
+
+    Parameters
+    ----------
+    address : str
+        Address of the scheduler, as in ``tcp://host:8786``.
+    ahead : int
+        Chunks that each thread of the cluster has at hand; the results of no more than these are held in memory.
+    timeout : float
+        How long to look for the scheduler [s].
+
+    Raises
+    ------
+    InvalidValueError
+        If the address is none.
+    """
+
+    def __init__(self, address: str, *, ahead: int = 2, timeout: float = 10.0) -> None:
+        given: object = address
+        if not isinstance(given, str) or not given:
+            raise InvalidValueError(f'address must be that of a scheduler, as in "tcp://host:8786", got {given!r:.60}')
+        self.address, self.ahead, self.timeout = address, whole("ahead", ahead), timeout
+
+    def run(
+        self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
+    ) -> Iterator[Done]:
+        """Compute chunks.
+
+        Parameters
+        ----------
+        job : Job
+            What to compute.
+        chunks : iterator of Chunk
+            What remains to be done.
+        stop : callable
+            Whether to stop: chunks that are not done within a second are left.
+        retried : callable
+            Called with a chunk that the cluster lost; a chunk whose worker dies is retried by the cluster itself.
+
+        Yields
+        ------
+        Done
+            In the order in which they finish.
+
+        Raises
+        ------
+        MissingExtraError
+            If Dask is not installed.
+        CampaignWorkerError
+            If the scheduler cannot be reached, or a chunk cannot be computed.
+        """
+        dask = _distributed()
+        try:
+            client = dask.Client(self.address, timeout=self.timeout, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise CampaignWorkerError(f"no Dask scheduler answers at {self.address}: {error}") from error
+        with client:
+            yield from _Window(dask, client, job, self).work(chunks, stop, retried)
+
+
+class _Window:
+    """Chunks that are on the cluster, never many."""
+
+    def __init__(self, dask: ModuleType, client: Any, job: Job, executor: DaskExecutor) -> None:
+        self._dask, self._client, self._job, self._executor = dask, client, job, executor
+        # a task and not scattered data: when the worker that holds it dies, another one makes it again
+        self._loaded = client.submit(pickle.loads, _pickled(job), pure=False)
+        self._flying: dict[Any, tuple[Chunk, int]] = {}
+
+    def work(
+        self, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
+    ) -> Iterator[Done]:
+        deadline = None
+        while self._fill(chunks, stop):
+            if deadline is None and stop():
+                deadline = time.monotonic() + _GRACE
+            if deadline is not None and time.monotonic() > deadline:
+                self._client.cancel(list(self._flying))
+                return
+            for future in self._landed():
+                chunk, attempts = self._flying.pop(future)
+                done = self._kept(future, chunk)
+                if done is None:
+                    self._lost(chunk, attempts, retried)
+                else:
+                    yield done._replace(attempts=attempts)
+
+    def _fill(self, chunks: Iterator[Chunk], stop: Callable[[], bool]) -> bool:
+        if not stop():
+            self._executor.at_once = max(1, sum(self._client.nthreads().values()))
+        while len(self._flying) < self._executor.at_once * self._executor.ahead and not stop():
+            chunk = next(chunks, None)
+            if chunk is None:
+                break
+            self._submit(chunk, 1)
+        return bool(self._flying)
+
+    def _submit(self, chunk: Chunk, attempts: int) -> None:
+        self._flying[self._client.submit(_compute, self._loaded, chunk, pure=False)] = (chunk, attempts)
+
+    def _landed(self) -> list[Any]:
+        # asking the futures rather than waiting for one: a lost scheduler makes waiting raise, and these cancelled
+        end = time.monotonic() + _LOOK
+        while not (found := [future for future in self._flying if future.done()]) and time.monotonic() < end:
+            time.sleep(0.002)
+        return found
+
+    def _kept(self, future: Any, chunk: Chunk) -> Done | None:
+        """Write what came back; None if the cluster lost it."""
+        if future.status in {"cancelled", "lost"}:
+            return None
+        try:
+            data, seconds, worker = future.result()
+        except Exception as error:
+            if isinstance(error, (self._dask.CancelledError, self._dask.comm.CommClosedError)):
+                return None
+            where = f"histories {chunk.first} to {chunk.last - 1}"
+            raise CampaignWorkerError(f"{where}: {type(error).__name__}: {error}") from error
+        return self._job.keep(chunk, data, seconds, worker)
+
+    def _lost(self, chunk: Chunk, attempts: int, retried: Callable[[Chunk, str], None]) -> None:
+        if attempts >= 3 or self._client.status != "running":
+            raise CampaignWorkerError(f"the Dask cluster lost histories {chunk.first} to {chunk.last - 1}; is it gone?")
+        retried(chunk, "the cluster lost a chunk; it is computed again")
+        self._submit(chunk, attempts + 1)
+
+
+def _pickled(job: Job) -> bytes:
+    try:
+        return pickle.dumps(job)
+    except (AttributeError, TypeError, pickle.PicklingError) as error:
+        raise CampaignWorkerError(cannot_be_sent(error)) from error
+
+
+def _compute(job: Job, chunk: Chunk) -> tuple[bytes, float, str]:
+    start = time.perf_counter()
+    data = job.compute(chunk)
+    return (
+        data or b"",
+        job.pace.settled(time.perf_counter() - start),
+        f"process {os.getpid()} on {socket.gethostname()}",
+    )
+
+
+def _distributed() -> ModuleType:
+    try:
+        return import_module("distributed")
+    except ImportError as error:
+        raise MissingExtraError(how_to_install("a campaign on a Dask cluster", "distributed", error)) from error

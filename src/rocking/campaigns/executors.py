@@ -1,0 +1,368 @@
+"""Who computes the chunks and the rules for all who do; the executor that computes them in this process."""
+
+import os
+import signal
+import threading
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextvars import copy_context
+from dataclasses import dataclass, field
+from pathlib import Path
+from threading import Event
+from types import FrameType
+from typing import Any, NamedTuple
+
+from rocking.campaigns import chunks as shard
+from rocking.campaigns import disk, identity
+from rocking.campaigns import identity as fingerprint
+from rocking.campaigns.chunks import DEFAULT_CHUNK, Chunk
+from rocking.campaigns.disk import CampaignWorkerError
+from rocking.campaigns.identity import kind_of
+from rocking.dynamics.engine import Arrays, empty_results
+from rocking.errors import InvalidValueError
+from rocking.studies.histories import Histories
+
+PIECE = 1.0
+"""Time after which what is computed is kept [s]: a kill costs no more, a count moves as often."""
+
+_ASK = 0.3
+_FIRST = {"fast": 64, "reference": 4}
+_FASTER = 4
+_REST = 0.5
+SUFFIX, PIECES = ".shard", "pieces"
+"""End of the names of shards; the folder of those that are pieces of a chunk, until it is whole."""
+
+_LOOK = 0.2
+
+
+class Interruption:
+    """Notes the first Ctrl-C or SIGTERM; the second one stops at once, as if this was not here.
+
+    Outside of the main thread nothing is noted: signals never arrive there.
+
+    >>> with Interruption() as interruption:
+    ...     interruption.asked()
+    False
+    """
+
+    _WATCHED = (signal.SIGINT, signal.SIGTERM)
+
+    def __init__(self) -> None:
+        self._asked = False
+        self._before: dict[signal.Signals, Any] = {}
+
+    def asked(self) -> bool:
+        """Return whether to stop."""
+        return self._asked
+
+    def __enter__(self) -> "Interruption":
+        if threading.current_thread() is threading.main_thread():
+            self._before = {each: signal.signal(each, self._note) for each in self._WATCHED}
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._restore()
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self._asked = True
+        self._restore()
+
+    def _restore(self) -> None:
+        for each, handler in self._before.items():
+            signal.signal(each, handler if handler is not None else signal.SIG_DFL)
+        self._before = {}
+
+
+class Pace:
+    """How many histories at a time take as long as nobody minds to wait, learned from one step to the next."""
+
+    def __init__(self, engine: str, together: int = 1, made: bool = False) -> None:
+        self.least = _FIRST[kind_of(engine)]
+        self.step = min(self.least, together) if made else self.least
+        self.together = together
+        self._first: tuple[int, float] | None = None
+        self._startup = 0.0
+        self.begun = False
+
+    def until(self, first: int, last: int) -> int:
+        """Return where to stop: after equal steps, since short ones leave lanes idle."""
+        left = last - first
+        end = first + -(-left // -(-left // self.step))
+        between = end - end % self.together
+        return between if end < last and between > first else end
+
+    def took(self, count: int, seconds: float) -> None:
+        """Learn from a step.
+
+        seconds: what they took [s].
+        """
+        if self._first is None:
+            self._first = count, seconds
+        elif not self.begun:
+            self.begun, self._startup = True, max(0.0, self._first[1] - self._first[0] * seconds / count)
+        wanted = int(count * _ASK / max(seconds, 1e-6))
+        if wanted < self.step or 2 * count >= self.step:  # the end of a piece says nothing about longer steps
+            self.step = max(1, min(wanted, _FASTER * self.step, DEFAULT_CHUNK))
+
+    def settled(self, seconds: float) -> float:
+        """Return what a piece took without what its first step took beyond its histories: code, motions laid out.
+
+        seconds: what it took [s]. Returns the rest; all of it where the first step was in an earlier piece [s].
+        """
+        found, self._startup = self._startup, 0.0
+        return seconds - found if found < seconds else seconds
+
+
+class Watch:
+    """Says when a piece is long enough: after a second, unless the rest takes less than half of one."""
+
+    def __init__(self) -> None:
+        self._start = time.perf_counter()
+
+    def over(self, done: int, left: int) -> bool:
+        """Return whether to keep what is done, and leave the rest to whoever is free.
+
+        Returns false as long as nothing is done.
+        """
+        spent = time.perf_counter() - self._start
+        return spent > PIECE and done > 0 and left * spent > _REST * PIECE * done
+
+
+class Done(NamedTuple):
+    """A chunk whose shard is on disk; a piece from its start, where all of it takes long."""
+
+    chunk: Chunk
+    seal: str
+    size: int
+    seconds: float
+    worker: str
+    attempts: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """What workers need: it can be pickled."""
+
+    histories: Histories  # what to compute
+    engine: str  # the engine that all workers must have, with the last digits that it gives
+    software: str  # version of this package that all workers must have
+    folder: Path  # where the shards are
+    pace: Pace = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Start with few histories at a time."""
+        made = not self.histories.motions.in_memory
+        object.__setattr__(self, "pace", Pace(self.engine, self.histories.together, made))
+
+    def check(self) -> None:
+        """Refuse to compute what this campaign would not recognise as its own bits."""
+        software = identity.software()
+        if software != self.software:
+            raise CampaignWorkerError(
+                f"this worker has version {software}, the campaign was begun with {self.software}"
+            )
+        here, wanted = fingerprint.engine_of(self.histories), self.engine
+        if kind_of(here) != kind_of(wanted):
+            kinds = f"{kind_of(here)} engine, the campaign takes the {kind_of(wanted)} one"
+            raise CampaignWorkerError(f"this worker has the {kinds}")
+        if here != wanted:
+            raise CampaignWorkerError(
+                f"this worker computes other last digits: its engine is {here}, that of the campaign is {wanted} "
+                f"({fingerprint.LAST_DIGITS})"
+            )
+
+    def compute(self, chunk: Chunk, threads: int | None = 1, stop: Callable[[], bool] = lambda: False) -> bytes | None:
+        """Return the shard of a chunk, or of as much of it from its start as takes a second.
+
+        Returns the shard, which says how far it goes; None if it was stopped.
+        """
+        results = empty_results(chunk.last - chunk.first)
+        last = self.fill(results, chunk, threads, stop)
+        return None if last is None else shard.pack(chunk.piece(chunk.first, last), results)
+
+    def fill(self, results: Arrays, chunk: Chunk, threads: int | None, stop: Callable[[], bool]) -> int | None:
+        """Compute the results of a chunk, or of as much of it from its start as takes a second.
+
+        Returns how far it came: the first history that is not there; None if it was stopped.
+        """
+        self.check()
+        first, watch = chunk.first, Watch()
+        while first < chunk.last and not watch.over(first - chunk.first, chunk.last - first):
+            if first > chunk.first and stop():
+                return None
+            start, last = time.perf_counter(), self.pace.until(first, chunk.last)
+            for name, values in self.histories.run(first, last, threads=threads).items():
+                results[name][first - chunk.first : last - chunk.first] = values
+            if not self.pace.begun:
+                watch = Watch()  # the first step of all starts much else
+            self.pace.took(last - first, time.perf_counter() - start)
+            first = last
+        return first
+
+    def keep(self, chunk: Chunk, data: bytes, seconds: float, worker: str = "") -> Done:
+        """Write the shard of a chunk, or of a piece of it.
+
+        seconds: what it took [s].
+        """
+        done = chunk.piece(*shard.range_of(data))
+        disk.write_new(path_of(self.folder, done), data)
+        return Done(done, shard.seal(data), len(data), seconds, worker or f"process {os.getpid()}")
+
+
+def path_of(folder: Path, chunk: Chunk) -> Path:
+    """Return where the shard of a chunk is, or of a piece of one."""
+    return (folder.with_name(PIECES) if chunk.of else folder) / f"{chunk.name}{SUFFIX}"
+
+
+class Executor(ABC):
+    """Computes chunks, wherever; the shards are the same whoever does."""
+
+    at_once = 1
+    """How many workers share the work."""
+
+    @abstractmethod
+    def run(
+        self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
+    ) -> Iterator[Done]:
+        """Compute chunks, taking no more of them than are being computed or about to be.
+
+        Parameters
+        ----------
+        job : Job
+            What to compute.
+        chunks : iterator of Chunk
+            What remains to be done; it ends early when the campaign is to stop.
+        stop : callable
+            Whether to stop within a second.
+        retried : callable
+            Called with a chunk that is tried again, and why.
+
+        Yields
+        ------
+        Done
+            Chunks whose shards are on disk, in any order. Of one that takes long it is a piece from its start; the
+            iterator then gives the rest, also after it had ended.
+        """
+
+
+def cannot_be_sent(error: Exception) -> str:
+    """Return what is said of histories that cannot be pickled."""
+    return f"the histories cannot be sent to a process: {error}; lambdas and local functions cannot, named ones can"
+
+
+def chosen(executor: "str | Executor", workers: int | None, start_method: str | None) -> Executor:
+    """Return the executor that was asked for."""
+    given: object = executor
+    if given != "processes" and start_method is not None:
+        raise InvalidValueError(f'start_method={start_method!r} goes with executor="processes" only')
+    if isinstance(given, Executor):
+        if workers is not None:
+            raise InvalidValueError(f"workers={workers!r} goes with the name of an executor; the object has its own")
+        return given
+    if given == "serial":
+        return Serial(workers)
+    if given == "processes":
+        from rocking.campaigns.processes import Processes
+
+        return Processes(workers, start_method or "spawn")
+    raise InvalidValueError(f'executor must be "serial", "processes" or an Executor, got {given!r:.60}')
+
+
+def whole(name: str, value: object, high: int = 4096) -> int:
+    """Return a whole number of things of which there is at least one."""
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= high:
+        raise InvalidValueError(f"{name} must be a whole number in [1, {high}], got {value!r:.60}")
+    return value
+
+
+class Serial(Executor):
+    """Computes the chunks one after another in this process.
+
+    While a chunk is packed, written, recorded and told, a second thread computes the next one: `Histories.run` is
+    called there, never twice at a time, and at the same time as the function that is told of the progress. No more
+    than two chunks and the file of one are held in memory, and the thread has ended when the run has, however it ends.
+
+    Parameters
+    ----------
+    threads : int, optional
+        Threads of the fast engine; as many as the processor has, if not given.
+    """
+
+    def __init__(self, threads: int | None = None) -> None:
+        self._threads = None if threads is None else whole("workers", threads)
+
+    def run(
+        self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
+    ) -> Iterator[Done]:
+        """Compute chunks.
+
+        Parameters
+        ----------
+        job : Job
+            What to compute.
+        chunks : iterator of Chunk
+            What remains to be done.
+        stop : callable
+            Whether to stop: a large chunk is left unfinished then, and one that was begun too early is not wanted.
+        retried : callable
+            Never called.
+
+        Yields
+        ------
+        Done
+            One after another.
+        """
+        with _Ahead(job, self._threads, stop) as ahead:
+            begun = ahead.begin(chunks)
+            while begun is not None:
+                chunk, results = begun
+                found = ahead.found()
+                if found is None:
+                    return
+                last, seconds = found
+                begun = ahead.begin(chunks)
+                yield job.keep(chunk, shard.pack(chunk.piece(chunk.first, last), results), seconds)
+                if stop():  # as if the next one had not been begun
+                    return
+                begun = begun or ahead.begin(chunks)  # what was left of the last one
+
+
+class _Ahead:
+    """The thread that computes, one chunk at a time."""
+
+    def __init__(self, job: Job, threads: int | None, stop: Callable[[], bool]) -> None:
+        self._job, self._threads, self._stop = job, threads, stop
+        self._over = Event()
+        self._pool = ThreadPoolExecutor(1, "campaign")
+        self._begun: Future[tuple[int, float] | None]
+
+    def __enter__(self) -> "_Ahead":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Wait for the thread, which leaves its chunk as soon as it asks; what it says then is not wanted."""
+        self._over.set()
+        self._pool.shutdown()
+
+    def begin(self, chunks: Iterator[Chunk]) -> tuple[Chunk, Arrays] | None:
+        """Begin the next chunk, if there is one; its results are there as soon as its time is known."""
+        chunk = next(chunks, None)
+        if chunk is None:
+            return None
+        results = empty_results(chunk.last - chunk.first)
+        # in the context of the caller: what NumPy does about an overflow is part of it
+        self._begun = self._pool.submit(copy_context().run, self._compute, results, chunk)
+        return chunk, results
+
+    def found(self) -> tuple[int, float] | None:
+        """Wait for the chunk that was begun: how far it came, and what it took [s]; None if it was stopped."""
+        while not wait([self._begun], _LOOK).done:
+            pass  # a wait without end would not be woken by Ctrl-C everywhere
+        return self._begun.result()
+
+    def _compute(self, results: Arrays, chunk: Chunk) -> tuple[int, float] | None:
+        start = time.perf_counter()
+        last = self._job.fill(results, chunk, self._threads, lambda: self._over.is_set() or self._stop())
+        return None if last is None else (last, self._job.pace.settled(time.perf_counter() - start))

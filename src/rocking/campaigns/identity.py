@@ -1,0 +1,228 @@
+"""What a campaign is, written once in words that a person can read, and which last digits its engine computes."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.campaigns import disk
+from rocking.campaigns.chunks import FORMAT, Plan, default_chunk
+from rocking.campaigns.disk import CampaignDamagedError, CampaignMismatchError
+from rocking.conventions import FloatArray
+from rocking.dynamics import engine
+from rocking.dynamics.batch import Batch, Rows
+from rocking.dynamics.engine import RESULTS
+from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.motions.segments import Segments
+from rocking.studies.histories import Histories
+
+LAST_DIGITS = "another processor, build or ROCKING_ISA"
+"""What may make an engine compute other last digits."""
+
+_EACH = 16
+_OF_REFERENCE = 4
+NAME = "campaign.json"
+SHARDS = "shards"
+_SHOWN = 5
+
+
+def engine_of(histories: Histories) -> str:
+    """Return the engine that computes histories here, with the last digits that it gives.
+
+    Returns as in ``fast, 0123456789abcdef``: engines of the same words give the same bits, whatever the machine.
+    """
+    chosen = engine.chosen(histories.engine, histories.law)
+    return f"{chosen}, {_fingerprint(chosen, engine.instruction_set() if chosen == 'fast' else '')}"
+
+
+def kind_of(name: str) -> str:
+    """Return which engine it is, whatever its last digits."""
+    return name.partition(", ")[0]
+
+
+@cache
+def _fingerprint(chosen: str, instruction_set: str) -> str:
+    """Hash the results of a few histories; the instruction set is what the cache tells engines apart by."""
+    made = hashlib.sha256()
+    count = _EACH if chosen == "fast" else _OF_REFERENCE
+    for motions, law, settings in _batches():
+        results = Batch(motions, law, settings, 1, chosen).run(count, lambda first, last: _rows(count))[0]
+        for name, kind in RESULTS.items():
+            made.update(np.ascontiguousarray(results[name], np.dtype(kind).newbyteorder("<")).tobytes())
+    return made.hexdigest()[:16]
+
+
+def _batches() -> list[tuple[list[Segments], ImpactLaw, Settings]]:
+    """Pulses and records, with and without a vertical part, all laws, both kinds of equations, all orders."""
+    quantiles = {"right": np.arange(33) / 256.0 + 0.8125, "left": np.arange(33) / 512.0 + 0.875}
+    by_speed = SpeedRestitution(np.array([0.0, 1.0, 4.0]), np.array([1.0, 0.9375, 0.75]))
+    drawn = RandomRestitution(quantiles, 7)
+    plain, linear = Settings(gravity=9.8125), Settings(gravity=9.8125, linear=True)
+    return [
+        (_pulses(), drawn, plain),
+        (_records(vertical=False), ConstantRestitution(), Settings(gravity=9.8125, order=6)),
+        (_records(vertical=True), by_speed, plain),
+        (_pulses(), by_speed, linear),
+    ]
+
+
+def _pulses() -> list[Segments]:
+    """Waves of parabolas: four stretches up, four down; of fractions that every machine has to the last bit."""
+    bump = np.array([0.0, 4.0, -4.0, 0.5, -0.5, 0.0, 0.25, -0.25])
+    waves = np.array([1.0, -1.0, 1.0, -1.0])[:, None] * bump
+    return [Segments(step, size * waves) for size, step in ((2.0, 0.25), (6.0, 0.25), (12.0, 0.5), (3.0, 0.75))]
+
+
+def _records(*, vertical: bool) -> list[Segments]:
+    """Shaking by remainders of whole numbers, which look like noise and are the same everywhere."""
+    return [
+        Segments.between_samples(0.03125, _noise(37 + k, size), _noise(91 + k, 0.25 * size) if vertical else None)
+        for k, size in enumerate((2.0, 6.0, 12.0, 3.0))
+    ]
+
+
+def _noise(factor: int, size: float) -> FloatArray:
+    number = np.arange(96)
+    return np.asarray(size * ((number * number * factor + 11 * number) % 101 - 50) / 64.0, np.float64)
+
+
+def _rows(count: int) -> Rows:
+    """Bodies from squat to slender, one of which no engine can take."""
+    k = np.arange(_EACH)[-count:]
+    alpha = 0.0625 + 0.03125 * (k * 5 % 13)
+    values = {
+        "alpha_right": alpha, "alpha_left": 0.75 * alpha + 0.03125, "p_right": 1.0 + 0.25 * (k * 7 % 16),
+        "p_left": 1.125 + 0.25 * (k * 7 % 16), "r_right": 0.75 + k / 128.0, "r_left": 0.875 - k / 128.0,
+        "q_right": 0.5 + k / 128.0, "q_left": 0.75 - k / 128.0,
+        "share_right": 1.0 - k / 64.0, "share_left": 0.5 + k / 64.0,
+        "scale": np.where(k == _EACH - 1, np.nan, 0.5 + k / 16.0), "rotation": np.where(k % 5 == 4, 0.03125, 0.0),
+    }  # fmt: skip
+    return Rows.of(count, k % 4, k, **values)
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Plan of a campaign, and what its histories are."""
+
+    plan: Plan  # how it is cut
+    histories: dict[str, Any]  # what they say of themselves
+
+    @classmethod
+    def of(cls, histories: Histories, size: int | None = None) -> "Identity":
+        """Return the identity of a new campaign.
+
+        Returns the same wherever it is made with this version of the package by an engine of the same last digits.
+        """
+        chosen = engine_of(histories)
+        pieces = usual_chunk(histories) if size is None else size
+        told = histories.description()
+        return cls(Plan(histories.key(told), histories.count, pieces, chosen, software()), _plain(told))
+
+    @classmethod
+    def read(cls, folder: Path) -> "Identity":
+        """Return the identity of a campaign on disk."""
+        path = folder / NAME
+        try:
+            text = path.read_bytes()
+        except (FileNotFoundError, NotADirectoryError) as error:
+            raise CampaignMismatchError(f"{folder}: no campaign here ({NAME} is missing)") from error
+        try:
+            content = _decoded(text)
+            if content["plan"]["format"] != FORMAT:
+                raise CampaignMismatchError(f"{path}: format {content['plan']['format']}, this is {FORMAT}")
+            return cls(Plan(**content["plan"]), content["histories"])
+        except (ValueError, KeyError, TypeError, InvalidValueError) as error:
+            raise CampaignDamagedError(
+                f"{path} is damaged ({error}); the shards are intact: create a campaign of the same histories and "
+                "chunk size elsewhere, copy them into its folder shards, and run it"
+            ) from error
+
+    def write(self, folder: Path) -> None:
+        """Write it; a folder becomes a campaign by this."""
+        content = {"plan": asdict(self.plan), "histories": self.histories}
+        disk.write_new(folder / NAME, _encoded(content, _sum(content)))
+
+    def refuse_other(self, folder: Path, histories: Histories) -> None:
+        """Refuse histories, or a version of this package, that the campaign was not created with."""
+        given = Identity.of(histories, self.plan.size)
+        if given.plan.key != self.plan.key:
+            differences = _differences(self.histories, given.histories, "")
+            found = sorted(differences, key=lambda text: "..." in text)  # what a person can read comes first
+            shown = "; ".join(found[:_SHOWN]) + (f"; and {len(found) - _SHOWN} more" if len(found) > _SHOWN else "")
+            raise CampaignMismatchError(f"{folder}: this campaign is of other histories: {shown or 'their key'}")
+        if given.plan.software != self.plan.software:
+            raise CampaignMismatchError(_other(folder, "software", self.plan.software, given.plan.software))
+        was, now = self.plan.engine, given.plan.engine
+        if was != now and kind_of(was) == kind_of(now):
+            raise CampaignMismatchError(
+                f"{folder}: this machine computes other last digits: begun with engine {was}, here it is {now} "
+                f"({LAST_DIGITS}); finish it where it was begun, or create a new campaign"
+            )
+        if was != now:
+            raise CampaignMismatchError(_other(folder, "engine", was, now))
+
+
+def usual_chunk(histories: Histories) -> int:
+    """Return how many histories make a chunk, unless somebody wants another number.
+
+    Returns Histories; where motions are made for them, those of one motion are in one chunk.
+    """
+    together = 1 if histories.motions.in_memory else histories.together
+    return default_chunk(engine.chosen(histories.engine, histories.law), together)
+
+
+def software() -> str:
+    """Return the version of this package."""
+    from rocking import __version__
+
+    return str(__version__)
+
+
+def _decoded(text: bytes) -> Any:
+    outer = json.loads(text)
+    content, stated = outer["campaign"], outer["sha256"]
+    if _encoded(content, stated) != text or _sum(content) != stated:
+        raise ValueError("its checksum does not fit")
+    return content
+
+
+def _plain(described: dict[str, Any]) -> dict[str, Any]:
+    return dict(json.loads(json.dumps(described, allow_nan=False)))
+
+
+def _sum(content: Any) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _encoded(content: Any, stated: str) -> bytes:
+    return (json.dumps({"campaign": content, "sha256": stated}, sort_keys=True, indent=1) + "\n").encode()
+
+
+def _other(folder: Path, what: str, was: str, now: str) -> str:
+    return (
+        f"{folder}: begun with {what} {was}, this is {now}, whose results may differ in their last bits; "
+        f"finish it with {was}, or create a new campaign"
+    )
+
+
+def _differences(was: Any, now: Any, where: str) -> Iterator[str]:
+    if isinstance(was, dict) and isinstance(now, dict):
+        for name in sorted(was.keys() | now.keys()):
+            yield from _differences(was.get(name), now.get(name), f"{where}.{name}" if where else str(name))
+    elif isinstance(was, list) and isinstance(now, list) and len(was) == len(now):
+        for k, (one, other) in enumerate(zip(was, now, strict=True)):
+            yield from _differences(one, other, f"{where}[{k}]")
+    elif was != now:
+        yield f"{where} was {_short(was)}, is {_short(now)}"
+
+
+def _short(value: Any) -> str:
+    text = f"a list of {len(value)}" if isinstance(value, list) else str(value)
+    return text if len(text) <= 24 else text[:12] + "..."

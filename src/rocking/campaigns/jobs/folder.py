@@ -1,0 +1,304 @@
+"""The folder of a campaign that a job file describes: the job, the hashes of its inputs, and the results."""
+
+import hashlib
+import json
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.campaigns import (
+    Campaign,
+    CampaignDamagedError,
+    CampaignMismatchError,
+    Executor,
+    Progress,
+    Status,
+    Summary,
+    Verification,
+    disk,
+    reading,
+)
+from rocking.campaigns.identity import NAME
+from rocking.campaigns.jobs.job import Job
+from rocking.campaigns.jobs.round_status import (
+    finished_rounds,
+    resume,
+    round_folder,
+    status_of_rounds,
+    verified_rounds,
+    way_out,
+)
+from rocking.campaigns.jobs.rounds import opened, run_rounds
+from rocking.errors import InvalidValueError
+from rocking.spec.reading import Inputs, document_of, located, refuse_changes
+
+JOB, INPUTS, HISTORIES = "job.toml", "inputs.json", "histories"
+"""Files of the folder, and its folder of results."""
+
+
+@dataclass(frozen=True)
+class JobFolder:
+    """A campaign on disk with the job that describes it.
+
+    Parameters
+    ----------
+    path : Path
+        The folder.
+    job : Job
+        The job, its inputs checked against their hashes.
+    """
+
+    path: Path
+    job: Job
+
+    @classmethod
+    def create(cls, folder: str | os.PathLike[str], job: Job) -> "JobFolder":
+        """Begin a campaign: the job is copied, with the hashes of its inputs.
+
+        Parameters
+        ----------
+        folder : path
+            A new folder, or an empty one.
+        job : Job
+            The job.
+
+        Returns
+        -------
+        JobFolder
+            Nothing is computed yet.
+        """
+        path = Path(folder)
+        content: dict[str, Any] = {
+            "job_file": job.name,
+            "job_folder": str(job.folder),
+            "job_sha256": _sha256(job.text.encode()),
+        }
+        content |= {"files": job.inputs}
+        with disk.guarded(path, lambda: "nothing was written"):
+            _refuse_used(path)
+            disk.make_folder(path)
+            disk.write_new(path / INPUTS, (json.dumps(content, indent=1, sort_keys=True) + "\n").encode())
+            disk.write_new(path / JOB, job.text.encode())
+        made = cls(path, job)
+        _ = made.campaign
+        return made
+
+    @classmethod
+    def open(cls, folder: str | os.PathLike[str], inputs: str | os.PathLike[str] | None = None) -> "JobFolder":
+        """Go on with a campaign, if its inputs are what they were.
+
+        Parameters
+        ----------
+        folder : path
+            The folder.
+        inputs : path, optional
+            Where the files are now that the job names; where they were, if not given.
+
+        Returns
+        -------
+        JobFolder
+            With all that is finished.
+
+        Raises
+        ------
+        InvalidValueError
+            If a file that the job names is not what it was.
+        CampaignDamagedError
+            If the job itself is not.
+        """
+        path = Path(folder)
+        text, content = _kept(path)
+        base = Path(content["job_folder"] if inputs is None else inputs)
+        if not base.is_dir() and content["files"]:
+            raise InvalidValueError(f"{path}: the folder of its inputs, {base}, is not there; give --inputs")
+        with located(str(path)):
+            found = Inputs(base)
+            for item in content["files"]:  # before they are read: what has changed may not be readable
+                found.file(item["path"])
+            refuse_changes(content["files"], found.told())
+        job = Job.of_text(text, content["job_file"], base)
+        with located(str(path)):
+            refuse_changes(content["files"], job.inputs)
+        return cls(path, job)
+
+    @cached_property
+    def campaign(self) -> Campaign:
+        """The campaign, of an adaptive study its first round; begun where a killed process had not come that far."""
+        chunk = self.job.document.campaign.chunk
+        if self.job.study.search is None:
+            return opened(self.path / HISTORIES, self.job.study.histories, chunk)
+        with way_out(self.path, 0):
+            return opened(round_folder(self.path, 0), self.job.study.histories, chunk)
+
+    def run(
+        self, executor: str | Executor = "serial", *, workers: int | None = None,
+        progress: Callable[[Progress], object] | None = None, **options: Any,
+    ) -> Summary:  # fmt: skip
+        """Compute what is missing; of an adaptive study all rounds, one after another.
+
+        Parameters
+        ----------
+        executor : {"serial", "processes"} or Executor
+            Who computes.
+        workers : int, optional
+            Threads or processes.
+        progress : callable, optional
+            Called with a `Progress` at the start and after every chunk; of an adaptive study it tells of one round.
+        **options
+            ``start_method`` and ``order_seed`` of `Campaign.run`.
+
+        Returns
+        -------
+        Summary
+            What was done.
+
+        Raises
+        ------
+        CampaignMismatchError
+            If a round on disk is not the one that the job asks for.
+        CampaignInterrupted
+            If Ctrl-C or SIGTERM asked it to stop.
+        """
+        search = self.job.study.search
+        if search is None:
+            return self.campaign.run(executor, workers=workers, progress=progress, **options)
+        chunk = self.job.document.campaign.chunk
+        return run_rounds(search, self.path, chunk, executor, workers=workers, progress=progress, **options)
+
+
+@dataclass(frozen=True)
+class JobStatus:
+    """How far a campaign is, and what it is.
+
+    Parameters
+    ----------
+    path : Path
+        The folder.
+    name, kind : str
+        Of the campaign, as the job says.
+    status : Status or None
+        How far it is; None if it was killed before it had begun. Of an adaptive study it is of all rounds that have
+        begun.
+    complete : bool
+        Whether all is computed.
+    rounds : int or None
+        Rounds of an adaptive study that have begun; how many will follow is not known before they do. None of others.
+    """
+
+    path: Path
+    name: str
+    kind: str
+    status: Status | None
+    complete: bool
+    rounds: int | None = None
+
+
+def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> JobStatus:
+    """Return how far a campaign is; nothing is written, and its inputs are not needed.
+
+    Parameters
+    ----------
+    folder : path
+        The folder.
+    verify : bool
+        Whether to read all results: what is damaged does not count. Without it the ledger is believed.
+
+    Returns
+    -------
+    JobStatus
+        As recorded at this instant.
+    """
+    path = Path(folder)
+    text, content = _kept(path)
+    with located(content["job_file"]):
+        document = document_of(text)
+    name, kind = document.campaign.name, document.campaign.kind
+    if document.is_adaptive:
+        status, begun, complete = status_of_rounds(path, verify=verify)
+        return JobStatus(path, name, kind, status, complete, begun)
+    there = (path / HISTORIES / NAME).exists()
+    found = Campaign.status_of(path / HISTORIES, verify=verify) if there else None
+    return JobStatus(path, name, kind, found, found is not None and found.complete)
+
+
+def verified(folder: str | os.PathLike[str]) -> Verification:
+    """Read everything that a campaign has, and see that it is there once, and is what was written.
+
+    Parameters
+    ----------
+    folder : path
+        The folder; its inputs are not needed, and nothing is written.
+
+    Returns
+    -------
+    Verification
+        Of an adaptive study that of all rounds that have begun, which count on.
+    """
+    path = Path(folder)
+    text, content = _kept(path)
+    wrong: list[str] = []
+    with located(content["job_file"]):
+        adaptive = document_of(text).is_adaptive
+    if adaptive:
+        found = verified_rounds(path)
+        told = finished_rounds(path)
+        if told is None or told["rounds"] != len(found):
+            wrong.append(f"{path} is not finished, and more rounds may follow")
+    else:
+        there = (path / HISTORIES / NAME).exists()
+        found = [reading.verified(path / HISTORIES)] if there else []
+        wrong += [] if there else [f"{path}: nothing is computed yet"]
+    begins = np.cumsum([0, *(each.histories for each in found)]).tolist()
+    return Verification(
+        begins[-1],
+        sum(each.verified for each in found),
+        sum(each.chunks for each in found),
+        (*wrong, *(sentence for each in found for sentence in each.damaged)),
+        tuple((a + k, b + k) for k, each in zip(begins, found, strict=False) for a, b in each.missing),
+    )
+
+
+def _kept(path: Path) -> tuple[str, dict[str, Any]]:
+    """Return the job as it was copied, and what was noted of its inputs."""
+    with disk.guarded(path):
+        if not (path / JOB).is_file():
+            raise CampaignMismatchError(f"{path}: no campaign of a job file here ({JOB} is missing)")
+        text, noted = (path / JOB).read_bytes(), (path / INPUTS).read_bytes() if (path / INPUTS).exists() else b""
+    try:
+        content = json.loads(noted)
+        files = [(item["path"], item["sha256"], item["bytes"]) for item in content["files"]]
+        assert all(isinstance(name, str) and isinstance(sha, str) for name, sha, _ in files)
+        if content.get("job_sha256", _sha256(text)) != _sha256(text):  # older folders have none
+            raise CampaignDamagedError(
+                f"{path / JOB} has changed since the campaign began; restore it, or begin a new campaign in another "
+                "folder"
+            )
+        return text.decode(), {
+            **content,
+            "job_folder": str(content["job_folder"]),
+            "job_file": str(content["job_file"]),
+        }
+    except (ValueError, KeyError, TypeError, AssertionError) as error:
+        raise CampaignDamagedError(
+            f"{path / INPUTS} is missing or damaged ({error}); begin a new campaign of {path / JOB} in another folder"
+        ) from error
+
+
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def _refuse_used(path: Path) -> None:
+    if path.exists() and not path.is_dir():
+        raise CampaignMismatchError(f"{path}: a file, not a folder")
+    there = {entry.name for entry in path.iterdir() if not entry.name.startswith(".")} if path.is_dir() else set()
+    if JOB in there:
+        raise CampaignMismatchError(f"{path}: a campaign is here already; go on with: {resume(path)}")
+    odd = sorted(there - {INPUTS})
+    if odd:
+        raise CampaignMismatchError(f"{path}: not empty ({odd[0]} ...); a campaign takes a folder of its own")

@@ -1,0 +1,98 @@
+"""Minimum overturning accelerations as campaigns: every motion with every restitution and body, searched together."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rocking.campaigns.jobs.answer import Answer
+from rocking.campaigns.jobs.asked import Asked, Compute, first_round
+from rocking.campaigns.jobs.kinds.minimum_sheets import sheets_of
+from rocking.campaigns.jobs.kinds.words import along, of_words
+from rocking.campaigns.jobs.study import Coordinate, Study
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.engine import Arrays, empty_results
+from rocking.dynamics.impact_law import ImpactLaw
+from rocking.dynamics.rocker import Rocker
+from rocking.errors import InvalidValueError
+from rocking.spec.document import MinimumTable
+from rocking.spec.parts import MOST_IN_MEMORY, Parts
+from rocking.spec.reading import located
+from rocking.studies.minimum_search import Cases, Effort, searched
+from rocking.studies.motion_set import MotionList
+from rocking.studies.question import modes_of, peak_ratio, sides_of
+from rocking.studies.sensitivity.sampled import sampled
+
+
+@dataclass(frozen=True)
+class MinimumSearch:
+    """A search for crossings that somebody else computes, round by round."""
+
+    cases: Cases  # every motion with every restitution and body; the body changes fastest
+    effort: Effort  # how closely to look
+    motions: MotionList
+    shape: tuple[int, int, int]  # numbers of motions, restitutions and bodies
+    law: ImpactLaw  # how the coefficient changes from impact to impact
+    options: dict[str, Any]  # settings and engine, as `Histories` takes them
+    names: dict[str, list[str]]  # what the motions and the restitutions are called
+
+    def __call__(self, compute: Compute) -> Answer:
+        """Return all crossings.
+
+        Returns A tuple of `Crossings`, None where no history could be computed, and tables of them.
+        """
+        motion, _, body = np.unravel_index(np.arange(self.cases.uplift.size), self.shape)
+
+        def run(values: dict[str, FloatArray], case: IntArray) -> Arrays:
+            if case.size:
+                # the draws of a body are the same at every amplitude, and those of a call with this motion alone
+                told: dict[str, Any] = {"law": self.law, **self.options}
+                found = compute(sampled(Asked(self.motions, motion[case], values, body[case], **told)))
+            else:
+                found = empty_results(0)
+            ratio = peak_ratio(found["peak_rotation"], values["alpha_right"], values["alpha_left"])
+            return {**found, "mode": modes_of(found), "peak_ratio": ratio}
+
+        crossings = searched(self.cases, self.effort, run)
+        return Answer(crossings, sheets_of(crossings, self.cases, self.effort, self.shape, self.names))
+
+
+def minimum_study(parts: Parts) -> Study:
+    """Return the study of minimum overturning accelerations.
+
+    Returns of the first samples, over motion, restitution, body and point; its search asks for the others.
+    """
+    table = parts.document.minimum or MinimumTable()
+    motions, settings = _held(parts), parts.settings
+    with located("body"):
+        rockers = [
+            [Rocker.of_body(b, choice, settings.gravity) for b in parts.bodies] for choice in parts.choices.values()
+        ]
+    sides = [sides_of(row) for row in rockers]
+    with located("minimum"):
+        effort = Effort(table.points, table.levels, table.tolerance)
+        cases = Cases.joined([
+            Cases.of(motions[k], each, settings, table.lowest, table.highest)
+            for k in range(len(motions)) for each in sides
+        ])  # fmt: skip
+    shape = (len(motions), len(parts.choices), len(parts.bodies))
+    names = {"motion": [motions[k].name for k in range(len(motions))], "restitution": list(parts.choices)}
+    options = {"settings": settings, "engine": parts.document.settings.engine}
+    search = MinimumSearch(cases, effort, motions, shape, rockers[0][0].law, options, names)
+    dims = dict(zip(("motion", "restitution", "body", "point"), (*shape, effort.points), strict=True))
+    scale = cases.grid(effort.points).reshape(*dims.values())
+    coordinates = {
+        "motion": of_words("motion", names["motion"], "name of the motion"),
+        "restitution": of_words("restitution", names["restitution"], "restitution"),
+        "body": along("body", np.arange(len(parts.bodies)), "1", "number of the body in the job"),
+        "scale": Coordinate(tuple(dims), scale, "1", "factor on the motion"),
+    }
+    told = {"points": effort.points, "levels": effort.levels, "tolerance": effort.tolerance}
+    bodies = "; ".join(repr(body) for body in parts.bodies)[:4000]
+    return Study(first_round(search), dims, coordinates, {**told, "bodies": bodies}, search=search)
+
+
+def _held(parts: Parts) -> MotionList:
+    if len(parts.motions) > MOST_IN_MEMORY:
+        raise InvalidValueError(f"motions: there may be up to {MOST_IN_MEMORY}, got {len(parts.motions)}")
+    return MotionList([parts.motions[k] for k in range(len(parts.motions))])

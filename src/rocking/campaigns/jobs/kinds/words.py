@@ -1,0 +1,26 @@
+"""Coordinates of studies: words and numbers along a dimension, and the names of motions."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from rocking.campaigns.jobs.study import Coordinate
+from rocking.studies.motion_set import MotionList, MotionSet
+
+
+def along(dim: str, values: Any, unit: str = "1", words: str = "") -> Coordinate:
+    """Return numbers along a dimension."""
+    return Coordinate((dim,), np.asarray(values), unit, words)
+
+
+def of_words(dim: str, values: Iterable[str], words: str) -> Coordinate:
+    """Return words along a dimension."""
+    return Coordinate((dim,), np.array(list(values), dtype=object), "1", words)
+
+
+def of_motions(motions: MotionSet) -> Coordinate:
+    """Return what the motions are called: by name, or by number where each is made from a seed when it is needed."""
+    if isinstance(motions, MotionList):
+        return of_words("motion", (motions[k].name for k in range(len(motions))), "name of the motion")
+    return along("motion", np.arange(len(motions)), "1", "number of the motion in its set")

@@ -1,0 +1,218 @@
+"""Which chunks, and pieces of them, are finished: a small database that only the process of the campaign writes."""
+
+import hashlib
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from rocking.campaigns.chunks import FORMAT, Plan
+from rocking.campaigns.disk import CampaignDamagedError, ledger_damaged, sync_folder
+from rocking.campaigns.status import Costs
+
+NAME = "ledger.sqlite"
+_ALL = "(SELECT * FROM chunks UNION ALL SELECT * FROM pieces)"
+_TABLES = """
+CREATE TABLE IF NOT EXISTS chunks (
+    number INTEGER PRIMARY KEY, first INTEGER NOT NULL, last INTEGER NOT NULL, name TEXT NOT NULL UNIQUE,
+    seal TEXT NOT NULL, size INTEGER NOT NULL, attempts INTEGER NOT NULL, seconds REAL NOT NULL,
+    worker TEXT NOT NULL, finished TEXT NOT NULL, sum TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS pieces (
+    number INTEGER NOT NULL, first INTEGER PRIMARY KEY, last INTEGER NOT NULL, name TEXT NOT NULL UNIQUE,
+    seal TEXT NOT NULL, size INTEGER NOT NULL, attempts INTEGER NOT NULL, seconds REAL NOT NULL,
+    worker TEXT NOT NULL, finished TEXT NOT NULL, sum TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS events (
+    id INTEGER PRIMARY KEY, happened TEXT NOT NULL, what TEXT NOT NULL, chunk INTEGER, detail TEXT NOT NULL);
+"""
+
+
+class Record(NamedTuple):
+    """A finished chunk, or a piece of one."""
+
+    number: int
+    first: int
+    last: int
+    name: str
+    seal: str
+    size: int
+    attempts: int
+    seconds: float
+    worker: str
+    finished: str
+
+
+class Ledger:
+    """The ledger of a campaign: what it has recorded outlives the process, the machine and a power cut."""
+
+    def __init__(self, folder: Path, *, writable: bool = False) -> None:
+        self._folder = folder
+        self._database = _writable(folder / NAME) if writable else _readable(folder / NAME)
+
+    def __enter__(self) -> "Ledger":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def begun(self) -> bool:
+        """Whether its tables are there: for an instant after its file is made they are not."""
+        (tables,) = self._database.execute("SELECT count(*) FROM sqlite_schema").fetchone()
+        return bool(tables)
+
+    @contextmanager
+    def instant(self) -> Iterator[None]:
+        """Read as of one instant: between two questions another process may make a chunk of its pieces."""
+        self._database.execute("BEGIN")
+        try:
+            yield
+        finally:
+            self._database.execute("COMMIT")
+
+    def record(self, record: Record) -> None:
+        """Acknowledge a chunk, which takes the place of its pieces; on return this is on disk."""
+        with self._database:
+            self._database.execute("BEGIN")
+            self._insert("chunks", record)
+            self._database.execute("DELETE FROM pieces WHERE number = ?", (record.number,))
+
+    def record_piece(self, record: Record) -> None:
+        """Acknowledge a piece of a chunk; on return this is on disk."""
+        self._insert("pieces", record)
+
+    def _insert(self, table: str, record: Record) -> None:
+        row = (*record, _sum(record))
+        self._database.execute(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(row))})", row)
+
+    def forget(self, name: str) -> None:
+        """Take a chunk or a piece back: its shard turned out to be damaged."""
+        for table in ("chunks", "pieces"):
+            self._database.execute(f"DELETE FROM {table} WHERE name = ?", (name,))
+
+    def note(self, what: str, number: int | None, detail: str) -> None:
+        """Write down what happened."""
+        self._database.execute(
+            "INSERT INTO events (happened, what, chunk, detail) VALUES (datetime('now'), ?, ?, ?)",
+            (what, number, detail),
+        )
+
+    def records(self) -> Iterator[Record]:
+        """Return the finished chunks, in order.
+
+        Returns one after another; none that was changed behind the ledger's back.
+        """
+        return self._records("SELECT * FROM chunks ORDER BY number")
+
+    def pieces(self) -> Iterator[Record]:
+        """Return the finished pieces of chunks that are not whole yet, in order.
+
+        Returns one after another; none that was changed behind the ledger's back.
+        """
+        return self._records("SELECT * FROM pieces ORDER BY first")
+
+    def _records(self, asked: str) -> Iterator[Record]:
+        for *values, checked in self._database.execute(asked):
+            record = Record(*values)
+            if _sum(record) != checked:
+                raise CampaignDamagedError(ledger_damaged(self._folder, f"row {record.number!r:.20} has changed"))
+            yield record
+
+    def check(self, plan: Plan) -> None:
+        """Refuse a ledger that is damaged or of another campaign."""
+        (found,) = self._database.execute("PRAGMA integrity_check(1)").fetchone()
+        (version,) = self._database.execute("PRAGMA user_version").fetchone()
+        if found != "ok" or version != FORMAT:
+            why = f"it is of version {version} of these files, not {FORMAT}" if found == "ok" else str(found)
+            raise CampaignDamagedError(ledger_damaged(self._folder, " ".join(why.split())[:120]))
+        whole = set()
+        for record in self.records():
+            whole.add(record.number)
+            if record.number >= plan.chunks or plan.chunk(record.number)[:4] != record[:4]:
+                why = f"its chunk {record.number} is not of this campaign"
+                raise CampaignDamagedError(ledger_damaged(self._folder, why))
+        end = 0
+        for record in self.pieces():
+            mine = record.number < plan.chunks and record.number not in whole
+            if not mine or plan.chunk(record.number).piece(*record[1:3])[:4] != record[:4] or record.first < end:
+                why = f"its histories {record.first} to {record.last - 1} are not of this campaign, or there twice"
+                raise CampaignDamagedError(ledger_damaged(self._folder, why))
+            end = record.last
+
+    def finished(self) -> tuple[int, int]:
+        """Return how much is finished.
+
+        Returns their numbers; of histories also those in pieces.
+        """
+        asked = f"SELECT (SELECT count(*) FROM chunks), (SELECT coalesce(sum(last - first), 0) FROM {_ALL})"
+        chunks, histories = self._database.execute(asked).fetchone()
+        return int(chunks), int(histories)
+
+    def effort(self) -> tuple[float, int]:
+        """Return what the finished chunks took.
+
+        Returns seconds: time of all workers [s].
+        """
+        asked = "SELECT coalesce(sum(seconds), 0), coalesce(sum(attempts - 1), 0) FROM " + _ALL
+        found = self._database.execute(asked).fetchone()
+        return float(found[0]), int(found[1])
+
+    def costs(self, count: int, since: str = "") -> Costs:
+        """Return what the histories have taken that are finished."""
+        found = Costs(count)
+        asked = "SELECT first, last, CASE WHEN finished >= ? THEN seconds ELSE 0.0 END FROM " + _ALL
+        rows = self._database.execute(asked, (since,)).fetchall()
+        if rows:
+            found.add(*(np.array(column) for column in zip(*rows, strict=True)))
+        return found
+
+    def events(self, what: str) -> list[str]:
+        """Return what happened of a kind."""
+        found = self._database.execute("SELECT detail FROM events WHERE what = ? ORDER BY id", (what,))
+        return [str(detail) for (detail,) in found]
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._database.close()
+
+
+def _writable(path: Path) -> sqlite3.Connection:
+    fresh = not path.exists()
+    database = sqlite3.connect(path, timeout=30.0, isolation_level=None)
+    try:
+        database.execute("PRAGMA journal_mode = WAL")
+        database.execute("PRAGMA synchronous = FULL")
+        database.execute("PRAGMA fullfsync = ON")
+        (version,) = database.execute("PRAGMA user_version").fetchone()
+        if version == 0:
+            database.executescript(f"BEGIN IMMEDIATE; {_TABLES} PRAGMA user_version = {FORMAT}; COMMIT;")
+    except sqlite3.DatabaseError:
+        database.close()  # now: later it would remove the log of the ledger that takes its place
+        raise
+    if fresh:
+        sync_folder(path.parent)
+    return database
+
+
+def _readable(path: Path) -> sqlite3.Connection:
+    """Open without writing a byte where nobody writes: the log is there only while somebody does, or was killed."""
+    address = f"{path.absolute().as_uri()}?mode=ro"
+    if path.with_name(f"{path.name}-wal").exists():
+        try:
+            return _connected(address)
+        except sqlite3.OperationalError:  # in a folder that cannot be written: what the log has beyond is not seen
+            if not path.exists():
+                raise
+    return _connected(f"{address}&immutable=1")
+
+
+def _connected(address: str) -> sqlite3.Connection:
+    database = sqlite3.connect(address, timeout=5.0, isolation_level=None, uri=True)
+    database.execute("SELECT name FROM sqlite_schema")
+    return database
+
+
+def _sum(record: Record) -> str:
+    return hashlib.sha256(repr(tuple(record)).encode()).hexdigest()[:32]

@@ -1,0 +1,234 @@
+"""Workers that are processes of this machine: any of them may die at any instant."""
+
+import contextlib
+import multiprocessing
+import os
+import pickle
+import signal
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from typing import Any, NamedTuple, NoReturn
+
+from rocking.campaigns.chunks import Chunk
+from rocking.campaigns.disk import CampaignWorkerError
+from rocking.campaigns.executors import Done, Executor, Job, cannot_be_sent, whole
+from rocking.errors import InvalidValueError
+
+_WATCH = 0.5
+_ATTEMPTS = 3
+_AHEAD = 2
+_LOOK = 0.1
+_GRACE = 0.8
+_GUARD = 'too little memory? A script that starts processes needs if __name__ == "__main__": around its calls'
+Retried = Callable[[Chunk, str], None]
+
+
+class Failure(NamedTuple):
+    """A chunk that could not be computed, and why; the number is of an error of the disk."""
+
+    chunk: Chunk
+    why: str
+    number: int | None
+
+
+def serve(job: Job, connection: Connection) -> None:
+    """Compute chunks until told to end, or the campaign's process is gone."""
+    orphaned = _orphaned()
+    # Ctrl-C goes to all processes of a terminal: the campaign's process decides what it means
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    try:
+        while (chunk := _next(connection, orphaned)) is not None:
+            connection.send(answer(job, chunk, orphaned))
+    except (EOFError, OSError):
+        return
+
+
+def answer(job: Job, chunk: Chunk, stop: Callable[[], bool] = lambda: False) -> Done | Failure:
+    """Return what became of a chunk; nothing that goes wrong with it ends the worker."""
+    start = time.perf_counter()
+    try:
+        data = job.compute(chunk, 1, stop)
+        if data is None:
+            return Failure(chunk, "stopped", None)
+        return job.keep(chunk, data, job.pace.settled(time.perf_counter() - start))
+    except OSError as error:
+        return Failure(chunk, error.strerror or str(error), error.errno)
+    except Exception as error:  # noqa: BLE001 (it is raised where the campaign runs)
+        return Failure(chunk, f"{type(error).__name__}: {error}", None)
+
+
+def _orphaned() -> Callable[[], bool]:
+    """Make the question whether the campaign's process has gone."""
+    # its end closes a pipe, but a forked sibling may hold that open; a new father tells as well, but under a fork
+    # server the father is the server: so both are asked
+    father, campaign = os.getppid(), multiprocessing.parent_process()
+    return lambda: os.getppid() != father or (campaign is not None and not campaign.is_alive())
+
+
+def _next(connection: Connection, orphaned: Callable[[], bool]) -> Chunk | None:
+    while not connection.poll(_WATCH):
+        if orphaned():
+            return None
+    received: Chunk | None = connection.recv()
+    return received
+
+
+class Processes(Executor):
+    """Computes the chunks on processes of this machine, one thread of the engine each."""
+
+    def __init__(self, workers: int | None = None, start_method: str = "spawn") -> None:
+        known = multiprocessing.get_all_start_methods()
+        if start_method not in known:
+            raise InvalidValueError(f"start_method must be one of {', '.join(known)}, got {start_method!r:.60}")
+        self.at_once = _processors() if workers is None else whole("workers", workers)
+        self.start_method = start_method
+
+    def run(self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Retried) -> Iterator[Done]:
+        """Compute chunks.
+
+        Returns in the order in which they finish.
+        """
+        with closing(_Crew(self.at_once, self.start_method, job, retried)) as crew:
+            deadline = None
+            while crew.feed(chunks, stop):
+                if deadline is None and stop():
+                    deadline = time.monotonic() + _GRACE
+                if deadline is not None and time.monotonic() > deadline:
+                    return
+                yield from crew.collect()
+
+
+class _Member:
+    """A worker, and the chunks that were sent to it with the number of attempts; the first one is at work."""
+
+    def __init__(self, context: Any, job: Job) -> None:
+        self.connection, theirs = context.Pipe()
+        self.tasks: deque[tuple[Chunk, int]] = deque()
+        self.process: BaseProcess = context.Process(target=serve, args=(job, theirs), daemon=True)
+        try:
+            with _no_interruption():
+                self.process.start()
+        except (AttributeError, TypeError, pickle.PicklingError) as error:
+            raise CampaignWorkerError(cannot_be_sent(error)) from error
+        finally:
+            theirs.close()
+
+    def send(self, chunk: Chunk, attempts: int) -> None:
+        self.tasks.append((chunk, attempts))
+        with contextlib.suppress(OSError):  # dead: it will be noticed with this chunk among its tasks
+            self.connection.send(chunk)
+
+    def answers(self, ready: set[Any]) -> Iterator[Done | Failure | None]:
+        """Give what it has sent; None if it is dead."""
+        if self.connection not in ready and self.process.sentinel not in ready:
+            return
+        try:
+            while self.connection.poll():
+                yield self.connection.recv()
+        except (EOFError, OSError):
+            yield None
+            return
+        if self.process.sentinel in ready:
+            yield None
+
+    def end(self) -> None:
+        self.process.kill()
+        self.process.join()
+        self.connection.close()
+        self.process.close()
+
+
+class _Crew:
+    """The workers of a run."""
+
+    def __init__(self, wanted: int, start_method: str, job: Job, retried: Retried) -> None:
+        self._wanted, self._job, self._retried = wanted, job, retried
+        self._context = multiprocessing.get_context(start_method)
+        self._members: list[_Member] = []
+        self._again: deque[tuple[Chunk, int]] = deque()
+
+    def feed(self, chunks: Iterator[Chunk], stop: Callable[[], bool]) -> bool:
+        """Hand out chunks while there are any and there is room; whether any are at work."""
+        while not stop() and (len(self._members) < self._wanted or len(self._least().tasks) < _AHEAD):
+            task = self._again.popleft() if self._again else (next(chunks, None), 1)
+            if task[0] is None:
+                break
+            if len(self._members) < self._wanted and (not self._members or self._least().tasks):
+                self._members.append(_Member(self._context, self._job))
+            self._least().send(task[0], task[1])
+        return any(member.tasks for member in self._members)
+
+    def collect(self) -> Iterator[Done]:
+        """Wait a little; give what is done, raise what failed, bury who died."""
+        watched: list[Any] = [m.connection for m in self._members] + [m.process.sentinel for m in self._members]
+        ready = set(wait(watched, _LOOK))
+        for member in list(self._members):
+            for found in member.answers(ready):
+                if found is None:
+                    self._bury(member)
+                    break
+                if isinstance(found, Failure):
+                    _raise(found)
+                yield found._replace(attempts=member.tasks.popleft()[1])
+
+    def close(self) -> None:
+        """End all workers; what they have not finished is not wanted."""
+        for member in self._members:
+            member.end()
+        self._members = []
+
+    def _least(self) -> _Member:
+        return min(self._members, key=lambda member: len(member.tasks))
+
+    def _bury(self, member: _Member) -> None:
+        self._members.remove(member)
+        member.process.join()
+        why = _cause(member.process.exitcode)
+        for place, (chunk, attempts) in enumerate(reversed(member.tasks), 1 - len(member.tasks)):
+            at_work = place == 0
+            if at_work and attempts >= _ATTEMPTS:
+                where = f"histories {chunk.first} to {chunk.last - 1}"
+                raise CampaignWorkerError(f"{where}: {attempts} workers died of them, the last one {why}; {_GUARD}")
+            self._again.appendleft((chunk, attempts + at_work))
+            if at_work:
+                self._retried(chunk, f"a worker ended ({why}); its chunk is computed again")
+        member.end()
+
+
+def _raise(failure: Failure) -> NoReturn:
+    if failure.number is not None:
+        raise OSError(failure.number, failure.why)
+    raise CampaignWorkerError(f"histories {failure.chunk.first} to {failure.chunk.last - 1}: {failure.why}")
+
+
+def _cause(code: int | None) -> str:
+    if code is None or code >= 0:
+        return f"with code {code}"
+    with contextlib.suppress(ValueError):
+        return f"by {signal.Signals(-code).name}"
+    return f"by signal {-code}"
+
+
+@contextlib.contextmanager
+def _no_interruption() -> Iterator[None]:
+    """Hold Ctrl-C back, which a new worker inherits: it must not see it before it ignores it."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _processors() -> int:
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:
+        return os.cpu_count() or 1

@@ -1,0 +1,95 @@
+"""What all tables of a job file have in common, and numbers in them. Imported only when one is read."""
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from rocking.bodies.formats.words import suggestion
+from rocking.conventions import FloatArray
+
+Positive = Annotated[float, Field(gt=0.0)]
+Seed = Annotated[int, Field(ge=0, le=2**63 - 1)]
+Words = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+def refused(words: str) -> PydanticCustomError:
+    """Return an error whose words are a sentence already."""
+    return PydanticCustomError("contradiction", "{words}", {"words": words})
+
+
+class JobTable(BaseModel):
+    """A table whose keys are all known; numbers are numbers, and finite."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, given: Any) -> Any:
+        known = [field.alias or name for name, field in cls.model_fields.items()]
+        for key in given if isinstance(given, dict) else ():
+            if key not in known:
+                words = f"unknown key {key!r:.60}{suggestion(key, known)}"
+                raise PydanticCustomError("unknown_key", "{words}", {"words": words})
+        return given
+
+    def chosen(self, *names: str) -> str:
+        """Return which one of several keys is there."""
+        found = [name for name in names if getattr(self, name) is not None]
+        if len(found) != 1:
+            words = f"exactly one of {', '.join(names)} is needed, got {' and '.join(found) or 'none'}"
+            raise PydanticCustomError("contradiction", "{words}", {"words": words})
+        return found[0]
+
+
+class Values(JobTable):
+    """Numbers: a list of them, or a range."""
+
+    values: Annotated[list[float], Field(min_length=1, max_length=10_000_000)] | None = None
+    start: float | None = Field(default=None, alias="from")
+    stop: float | None = Field(default=None, alias="to")
+    count: Annotated[int, Field(ge=1, le=10_000_000)] | None = None
+    spacing: Literal["linear", "log"] = "linear"
+
+    @model_validator(mode="after")
+    def _whole(self) -> "Values":
+        ends = {"from": self.start, "to": self.stop, "count": self.count}
+        given = [name for name, value in ends.items() if value is not None]
+        if self.values is not None and (given or "spacing" in self.model_fields_set):
+            raise refused(f"values stand alone, without {', '.join(given) or 'spacing'}")
+        if self.values is None and len(given) < len(ends):
+            raise refused(f"give values = [...], or from, to and count; got {', '.join(given) or 'none of them'}")
+        if self.values is None and self.spacing == "log" and min(self.start or 0.0, self.stop or 0.0) <= 0.0:
+            raise refused(f"from and to must be > 0 where the spacing is log, got {self.start!r} and {self.stop!r}")
+        if self.count == 1 and self.start != self.stop:
+            raise refused(f"count must be >= 2 where from and to differ, got 1 from {self.start!r} to {self.stop!r}")
+        return self
+
+    def numbers(self) -> FloatArray:
+        """Return the numbers."""
+        if self.values is not None:
+            return np.array(self.values, dtype=np.float64)
+        start, stop, count = self.start or 0.0, self.stop or 0.0, self.count or 1  # all are there: checked above
+        if self.spacing == "log":
+            return np.asarray(np.geomspace(start, stop, count), dtype=np.float64)
+        return np.linspace(start, stop, count)
+
+
+def _in_table(given: Any) -> Any:
+    if isinstance(given, list):
+        return {"values": given}
+    return {"values": [given]} if isinstance(given, (int, float)) and not isinstance(given, bool) else given
+
+
+def in_list(given: Any) -> Any:
+    """Return a single table or word as a list of one.
+
+    Returns the list; everything else as it is.
+    """
+    return [given] if isinstance(given, (dict, str)) else given
+
+
+Numbers = Annotated[Values, BeforeValidator(_in_table)]
+
+Names = Annotated[list[Words], Field(min_length=1), BeforeValidator(in_list)]

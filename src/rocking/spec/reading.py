@@ -1,0 +1,180 @@
+"""Files that describe a question: their text, what is wrong with it in one sentence, and the files that they name."""
+
+import hashlib
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from rocking.errors import InvalidValueError, MissingExtraError, RockingError
+
+if TYPE_CHECKING:
+    from rocking.spec.document import CampaignDocument
+    from rocking.spec.fields import JobTable
+
+    _Kind = TypeVar("_Kind", bound=JobTable)
+
+_PIECE = 1 << 20
+_SPECIAL = "*?["
+LARGEST_JOB = 16 * 2**20
+"""Larger job files are refused [byte]."""
+
+_PLAIN = {
+    "bool_type": "must be true or false",
+    "string_too_short": "must not be empty",
+    "string_too_long": "must be shorter than 200 characters",
+}
+
+
+@dataclass(frozen=True)
+class InputFile:
+    """A file that a job names."""
+
+    path: str  # as the job names it, or as its pattern finds it: relative to the folder of the job file
+    sha256: str  # hash of its bytes, 64 hexadecimal digits
+    size: int  # its length [bytes]
+
+
+@dataclass
+class Inputs:
+    """The files that a job names, hashed when they are asked for."""
+
+    folder: Path  # folder of the job file
+    files: dict[str, InputFile] = field(default_factory=dict)
+
+    def file(self, name: str) -> Path:
+        """Return the path of a file, and note its hash."""
+        path = self.folder / name
+        try:
+            with path.open("rb") as stream:
+                made, size = hashlib.sha256(), 0
+                while piece := stream.read(_PIECE):
+                    made.update(piece)
+                    size += len(piece)
+        except (OSError, ValueError) as error:
+            why = getattr(error, "strerror", None) or error
+            raise InvalidValueError(f"{name}: {why}; files are relative to the job file, here {self.folder}") from error
+        self.files[name] = InputFile(name, made.hexdigest(), size)
+        return path
+
+    def named(self, pattern: str) -> list[str]:
+        """Return the names of the files that a pattern finds, in the order of the alphabet.
+
+        pattern: name of a file, or with ``*``, ``?``, ``[...]`` and ``**`` for those of several. Returns relative to
+        the folder of the job file.
+        """
+        if not any(mark in pattern for mark in _SPECIAL) or (self.folder / pattern).exists():
+            return [pattern]
+        root, rest = (Path(Path(pattern).anchor), Path(pattern).parts[1:]) if Path(pattern).is_absolute() else (
+            self.folder, Path(pattern).parts,
+        )  # fmt: skip
+        try:
+            found = sorted(path for path in root.glob("/".join(rest)) if path.is_file())
+        except (ValueError, OSError, NotImplementedError) as error:
+            raise InvalidValueError(f"{pattern!r:.80} is no pattern of files ({error})") from error
+        if not found:
+            raise InvalidValueError(f"{pattern!r:.80} finds no file in {self.folder}")
+        return [path.as_posix() if Path(pattern).is_absolute() else self._relative(path) for path in found]
+
+    def _relative(self, path: Path) -> str:
+        return path.relative_to(self.folder).as_posix()
+
+    def told(self) -> list[dict[str, Any]]:
+        """Return the files as plain values, in the order of their names."""
+        return [{"path": f.path, "sha256": f.sha256, "bytes": f.size} for _, f in sorted(self.files.items())]
+
+
+def refuse_changes(before: list[dict[str, Any]], now: list[dict[str, Any]]) -> None:
+    """Refuse files that are not what they were when the campaign began."""
+    was, found = ({item["path"]: item for item in items} for items in (before, now))
+    advice = "restore it, or begin a new campaign in another folder"
+    for path, item in was.items():
+        if path not in found:
+            raise InvalidValueError(f"{path}: was there when the campaign began and is missing now; {advice}")
+        if found[path]["sha256"] != item["sha256"]:
+            raise InvalidValueError(
+                f"{path}: has changed since the campaign began (SHA-256 {item['sha256'][:12]}... then, "
+                f"{found[path]['sha256'][:12]}... now); {advice}"
+            )
+    added = sorted(set(found) - set(was))
+    if added:
+        raise InvalidValueError(f"{added[0]}: was not there when the campaign began; remove it, or begin a new one")
+
+
+@contextmanager
+def located(where: str) -> Iterator[None]:
+    """Turn what is refused inside into an error that says where in the job file its cause stands."""
+    try:
+        yield
+    except MissingExtraError:
+        raise
+    except RockingError as error:
+        raise InvalidValueError(f"{where}: {error}") from error
+
+
+def read_text(path: Path) -> str:
+    """Return the text of a job file."""
+    try:
+        if path.is_dir():
+            raise InvalidValueError(f"{path} is a folder; give a job file, or take status, resume and export for it")
+        data = path.read_bytes()
+    except FileNotFoundError as error:
+        raise InvalidValueError(f"{path}: there is no such job file") from error
+    except (OSError, ValueError) as error:
+        raise InvalidValueError(f"{path}: cannot be opened ({getattr(error, 'strerror', None) or error})") from error
+    if len(data) > LARGEST_JOB:
+        raise InvalidValueError(f"{path}: has {len(data) / 2**20:.1f} MiB; job files may have up to 16 MiB")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InvalidValueError(f"{path}: is not UTF-8 text (byte {error.start})") from error
+
+
+def document_of(text: str) -> "CampaignDocument":
+    r"""Return what a job file says.
+
+    >>> document_of('[campaign]\nname = "a"\nkind = "stripe"')
+    Traceback (most recent call last):
+    rocking.errors.InvalidValueError: campaign.kind must be one of 'overturning-map', ... got 'stripe'; did you mean
+    stripes? (and 1 more)
+    """
+    from rocking.spec.document import CampaignDocument
+
+    return validated(CampaignDocument, text)
+
+
+def validated(kind: "type[_Kind]", text: str) -> "_Kind":
+    """Return the tables of a text, checked for themselves."""
+    from pydantic import ValidationError
+
+    from rocking.bodies.formats.words import sentence
+
+    try:
+        given = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InvalidValueError(f"is not TOML: {error}") from error
+    except (ValueError, RecursionError) as error:
+        raise InvalidValueError(f"is not TOML that can be read: {str(error).partition(';')[0]}") from error
+    try:
+        return kind.model_validate(given)
+    except ValidationError as error:
+        raise InvalidValueError(_nearest(sentence(error, None), error.errors(include_url=False)[0])) from error
+
+
+def _nearest(words: str, problem: object) -> str:
+    """Say it in plain words, and add the nearest known word where one of several was expected."""
+    import difflib
+    import re
+
+    assert isinstance(problem, dict)
+    given, kind = problem.get("input"), problem["type"]
+    if kind in _PLAIN:
+        return words.replace(f"is refused ({problem['msg']})", _PLAIN[kind])
+    if kind != "literal_error" or not isinstance(given, str):
+        return words
+    known = re.findall(r"'([^']+)'", problem["ctx"]["expected"])
+    near = difflib.get_close_matches(given[:60], known, n=1)
+    head, mark, tail = words.partition(" (and ")
+    return f"{head}; did you mean {near[0]}?{mark}{tail}" if near else words

@@ -1,0 +1,137 @@
+"""The folder of a campaign: what is in it, what is refused, and how it goes on."""
+
+import json
+
+import pytest
+
+from rocking.campaigns import CampaignDamagedError, CampaignMismatchError
+from rocking.campaigns.jobs import Job, JobFolder, forecast, status_of, verified
+from rocking.errors import InvalidValueError
+
+
+@pytest.fixture
+def job(text, records):
+    """Job of two records, in a file."""
+    words = '[motions]\nrecords = "*.txt"\nunits = "m/s2"\n#'
+    path = records / "job.toml"
+    path.write_text(text("histories", 4).replace("[motions]\n", words), encoding="utf-8")
+    return path
+
+
+def test_begin_and_go_on(job, tmp_path):
+    """The job is copied with the hashes of its inputs; another process opens it and goes on."""
+    folder = JobFolder.create(tmp_path / "c", Job.read(job))
+    kept = json.loads((tmp_path / "c" / "inputs.json").read_text())
+    assert [item["path"] for item in kept["files"]] == ["one.txt", "two.txt"]
+    assert (tmp_path / "c" / "job.toml").read_bytes() == job.read_bytes()
+    assert status_of(tmp_path / "c").status.chunks_done == 0
+    folder.campaign.run(workers=1)
+    again = JobFolder.open(tmp_path / "c")
+    assert again.campaign.run(workers=1).computed == 0
+    assert status_of(tmp_path / "c").status.complete
+    assert (status_of(tmp_path / "c").name, status_of(tmp_path / "c").kind) == ("a small histories", "histories")
+
+
+def test_job_file_may_change_afterwards(job, tmp_path):
+    """What counts is the copy."""
+    JobFolder.create(tmp_path / "c", Job.read(job))
+    job.unlink()
+    assert JobFolder.open(tmp_path / "c").campaign.plan.count == 32
+
+
+@pytest.mark.parametrize(
+    ("change", "wanted"),
+    [
+        (
+            lambda path: path.write_text("0.0 0.0\n0.1 1.0\n0.2 0.0\n"),
+            r"one\.txt: has changed since the campaign began",
+        ),
+        (lambda path: path.write_text("no record at all"), r"one\.txt: has changed since the campaign began"),
+        (lambda path: path.unlink(), r"one\.txt: No such file"),
+        (lambda path: path.with_name("zero.txt").write_bytes(path.read_bytes()), r"zero\.txt: was not there"),
+    ],
+)
+def test_inputs_that_changed(job, tmp_path, records, change, wanted):
+    """A record that changed, went or came between two runs is refused by name; as it was, it is taken again."""
+    JobFolder.create(tmp_path / "c", Job.read(job))
+    data = (records / "one.txt").read_bytes()
+    change(records / "one.txt")
+    with pytest.raises(InvalidValueError, match=wanted):
+        JobFolder.open(tmp_path / "c")
+    (records / "one.txt").write_bytes(data)
+    (records / "zero.txt").unlink(missing_ok=True)
+    assert JobFolder.open(tmp_path / "c").campaign.plan.count == 32
+
+
+def test_inputs_that_moved(job, tmp_path, records):
+    """Inputs in a new folder are taken if they are the same; otherwise the sentence says which folder is missing."""
+    inputs = tmp_path / "inputs"
+    inputs.mkdir()
+    for name in ("one.txt", "two.txt", "job.toml"):
+        (records / name).rename(inputs / name)
+    JobFolder.create(tmp_path / "c", Job.read(inputs / "job.toml"))
+    inputs.rename(tmp_path / "moved")
+    with pytest.raises(InvalidValueError, match=r"inputs, is not there; give --inputs"):
+        JobFolder.open(tmp_path / "c")
+    assert JobFolder.open(tmp_path / "c", tmp_path / "moved").campaign.plan.count == 32
+
+
+def test_folders_in_use(job, tmp_path):
+    """A folder with a campaign, with something else, and a file are refused; nothing in them changes."""
+    JobFolder.create(tmp_path / "c", Job.read(job))
+    with pytest.raises(CampaignMismatchError, match="is here already; go on with: rocking campaign resume"):
+        JobFolder.create(tmp_path / "c", Job.read(job))
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "thesis.tex").touch()
+    with pytest.raises(CampaignMismatchError, match=r"not empty \(thesis.tex ...\)"):
+        JobFolder.create(other, Job.read(job))
+    with pytest.raises(CampaignMismatchError, match="a file, not a folder"):
+        JobFolder.create(job, Job.read(job))
+    with pytest.raises(CampaignMismatchError, match="no campaign of a job file here"):
+        status_of(other)
+
+
+def test_killed_before_it_began(job, tmp_path):
+    """Killed between the job and the campaign: the status says so, and opening it begins it."""
+    JobFolder.create(tmp_path / "c", Job.read(job))
+    (tmp_path / "c" / "histories" / "campaign.json").unlink()
+    (tmp_path / "c" / "histories" / "shards").rmdir()
+    assert status_of(tmp_path / "c").status is None
+    JobFolder.open(tmp_path / "c").campaign.run(workers=1)
+    assert status_of(tmp_path / "c").status.complete
+
+
+@pytest.mark.parametrize("data", [b"", b"{", b'{"files": [{}]}', b"[]", None])
+def test_damaged_notes(job, tmp_path, data):
+    """Notes of the inputs that are damaged or gone are a sentence, not a traceback."""
+    JobFolder.create(tmp_path / "c", Job.read(job))
+    path = tmp_path / "c" / "inputs.json"
+    path.unlink() if data is None else path.write_bytes(data)
+    with pytest.raises(CampaignDamagedError, match="is missing or damaged"):
+        JobFolder.open(tmp_path / "c")
+
+
+def test_changed_copy_is_refused(job, tmp_path):
+    """A copied job that was edited is refused by all that read it; without its hash, by what differs."""
+    folder = JobFolder.create(tmp_path / "c", Job.read(job))
+    assert folder.campaign.plan.size == 4
+    copy = tmp_path / "c" / "job.toml"
+    copy.write_text(copy.read_text().replace("8.0", "8.5"))
+    for ask in (JobFolder.open, status_of, verified):
+        with pytest.raises(CampaignDamagedError, match=r"job\.toml has changed since the campaign began; restore it"):
+            ask(tmp_path / "c")
+    noted = tmp_path / "c" / "inputs.json"
+    noted.write_text(json.dumps({k: v for k, v in json.loads(noted.read_text()).items() if k != "job_sha256"}))
+    with pytest.raises(CampaignMismatchError, match=r"this campaign is of other histories: content\.scales"):
+        _ = JobFolder.open(tmp_path / "c").campaign
+
+
+def test_forecast(job, tmp_path):
+    """A forecast counts right, finds a rate, and writes nothing."""
+    found = forecast(Job.read(job), workers=2, folder=tmp_path / "none" / "c")
+    assert (found.histories, found.chunk, found.chunks) == (32, 4, 8)
+    assert found.seconds == pytest.approx(32 / found.rate / 2)
+    assert found.disk >= 75 * 32
+    assert found.free > 0
+    assert not (tmp_path / "none").exists()

@@ -1,0 +1,191 @@
+"""Job files with mistakes: each is one sentence that names the key, the value and what is allowed."""
+
+import re
+
+import pytest
+
+from rocking.campaigns.jobs import Job
+from rocking.errors import InvalidValueError
+
+REFUSED = {
+    "unknown table": ("[campain]\n", "[campaign]\n", r"unknown key 'campain'; did you mean campaign\?"),
+    "unknown key": ("hight = 2.0", "height = 2.0", r"body: .*unknown key 'hight'; did you mean height\?"),
+    "unknown key of motions": ("pulze =", "pulse =", r"motions\[0\]: unknown key 'pulze'; did you mean pulse\?"),
+    "unknown kind": ('"overturning-maps"', '"overturning-map"',
+        r"campaign\.kind must be one of .*'overturning-maps'; did"),
+    "missing name": ("", 'name = "a small overturning-map"\n', r"campaign\.name is missing"),
+    "empty name": ('name = ""', 'name = "a small overturning-map"', r"campaign\.name must not be empty, got ''"),
+    "units left out": ("", 'units = "m"\n', r"body: .*units is missing"),
+    "unknown unit": ('units = "yards"', 'units = "m"', r"body: .*units must be one of .*got 'yards'"),
+    "negative width": ("width = -0.5", "width = 0.5", r"body: block\.width must be a number > 0 \[m\], got -0\.5"),
+    "width as words": ('width = "wide"', "width = 0.5", r"body: .*width must be a number \[m\], got 'wide'"),
+    "infinite width": ("width = inf", "width = 0.5", r"body: .*width must be a finite number"),
+    "date as width": ("width = 2026-01-01", "width = 0.5", r"body: "),
+    "unknown pulse": ("cosin:", "sine:", r"motions\[0\]: .*cosin"),
+    "pulse parameter": ("amplitude=3,frequency=1", "amplitude=3,period=0.6", r"motions\[0\]: .*frequency"),
+    "pulse number": ("amplitude=big", "amplitude=3", r"motions\[0\]: .*amplitude.*'big'"),
+    "two sources": ('pulse = "sine:amplitude=3,period=0.6"\nsynthetic = "x"', 'pulse = "sine:amplitude=3,period=0.6"',
+                    r"motions\[0\]: exactly one of records, pulse, synthetic is needed, got pulse and synthetic"),
+    "key of another source": ('seed = 3\npulse =', 'pulse =',
+        r"motions\[0\]: pulse takes no seed; allowed beside it: scale"),
+    "no file": ('records = "a.AT2"', 'pulse = "sine:amplitude=3,period=0.6"', r"motions\[0\]: a\.AT2: No such file"),
+    "no match": ('records = "*.AT2"', 'pulse = "sine:amplitude=3,period=0.6"',
+        r"motions\[0\]: '\*\.AT2' finds no file"),
+    "no family": ('synthetic = "hard-ground"\ncount = 3', 'pulse = "sine:amplitude=3,period=0.6"',
+                  r"motions\[0\]: family must be one of firm-ground, .*got 'hard-ground'"),
+    "no count": ('synthetic = "firm-ground"', 'pulse = "sine:amplitude=3,period=0.6"',
+        r"motions\[0\]: count is missing"),
+    "several motions": ('pulse = ["sine:amplitude=3,period=0.6", "sine:amplitude=4,period=0.6"]',
+                        'pulse = "sine:amplitude=3,period=0.6"', r"motions: a map is of one motion, got 2"),
+    "zero scale": ('scale = 0\npulse =', 'pulse =', r"motions\[0\]: scale must not be 0"),
+    "unknown axis": ('axis = "frequency"', 'axis = "frequency_ratio"', r"map\.x: no axis named 'frequency'; there are"),
+    "same axis": ('axis = "amplitude_ratio"', 'axis = "frequency_ratio"', r"map: x and y must set different things"),
+    "negative axis": ("from = -1, to = 9", "from = 1, to = 9", r"map\.y: amplitude_ratio must be in .*got -1"),
+    "falling axis": ("from = 9, to = 1", "from = 1, to = 9", r"map\.y: amplitude_ratio must increase"),
+    "no end": ("from = 1, count = 7", "from = 1, to = 9, count = 7", r"map\.y: give values = .*got from, count"),
+    "count of one": ("to = 9, count = 1", "to = 9, count = 7", r"map\.y: count must be >= 2 where from and to differ"),
+    "count of none": ("to = 9, count = 0", "to = 9, count = 7", r"map\.y\.count must be a number >= 1, got 0"),
+    "half a count": ("to = 9, count = 2.5", "to = 9, count = 7", r"map\.y\.count must be a whole number, got 2\.5"),
+    "spacing": ('count = 7, spacing = "logs"', "count = 7", r"map\.y\.spacing must be one of .*did you mean log\?"),
+    "log of zero": ('from = 0, to = 9, count = 7, spacing = "log"', "from = 1, to = 9, count = 7",
+        r"map\.y: from and to .*> 0"),
+    "values and range": ("values = [1, 2], from = 1", "from = 1", r"map\.[xy]: values stand alone, without from"),
+    "wrong table": ("[spectrum]\nslenderness_angles = 0.1\nperiods = 1\n[map]", "[map]",
+        r'\[spectrum\] does not go with kind'),
+    "missing table": ("[histories]\nscales = 1\n[other]", "[map]", r"unknown key 'other'"),
+    "chunk of none": ("chunk = 0\n[body]", "[body]", r"campaign\.chunk must be a number >= 1, got 0"),
+    "chunk too large": ("chunk = 99999999\n[body]", "[body]", r"campaign\.chunk must be a number <= .*got 99999999"),
+    "negative seed": ("seed = -1\n[body]", "[body]", r"campaign\.seed must be a number >= 0, got -1"),
+    "seed as words": ('seed = "1"\n[body]', "[body]", r"campaign\.seed must be a whole number, got '1'"),
+    "unknown model": ('[restitution]\nmodel = "kedd"\n[map]', "[map]",
+        r"restitution: no restitution model named 'kedd'"),
+    "model twice": ('[restitution]\nmodels = ["ked", "ked"]\n[map]', "[map]", r"restitution: ked is given twice"),
+    "two restitutions": ('[restitution]\nmodel = "ked"\nvalue = 0.9\n[map]', "[map]",
+        r"restitution: exactly one of .*model and value"),
+    "a percentage": ("[restitution]\nvalue = 90.0\n[map]", "[map]",
+        r"restitution\.value must be a number <= 10, got 90"),
+    "energy from nothing": ("[restitution]\nvalue = 1.5\n[map]", "[map]", r"map: .*the impact would create energy"),
+    "one foot": ("[restitution]\nleft = 0.9\n[map]", "[map]", r"restitution: left and right go together"),
+    "deviation": ("[restitution.distribution]\nmean = 0.9\ndeviation = 0\n[map]", "[map]",
+                  r"restitution\.distribution\.deviation must be a number > 0, got 0"),
+    "gravity": ("[settings]\ngravity = 0\n[map]", "[map]", r"settings\.gravity must be a number > 0, got 0"),
+    "order": ("[settings]\norder = 5\n[map]", "[map]", r"settings: order must be one of \(4, 6, 8\), got 5"),
+    "engine": ('[settings]\nengine = "quick"\n[map]', "[map]", r"settings\.engine must be one of 'auto'.*got 'quick'"),
+    "linear as a number": ("[settings]\nlinear = 1\n[map]", "[map]", r"settings\.linear must be true or false, got 1"),
+    "no body": ("", '[body]\nunits = "m"\nwidth = 0.5\nheight = 2.0\n', r"\[body\] is missing"),
+    "two bodies": ('[[body]]\nunits = "m"\nwidth = 1\nheight = 2\n[[body]]', "[body]",
+        r"\[\[body\]\] can be given once only .*got 2"),
+    "body file and size": ('file = "b.toml"\nunits = "m"', 'units = "m"',
+        r"body: file stands alone, without height, units, width"),
+    "no body file": ('file = "b.toml"', 'units = "m"\nwidth = 0.5\nheight = 2.0', r"body: b\.toml: No such file"),
+    "not TOML": ("[campaign", "[campaign]", r"is not TOML: .*line 1"),
+    "twice in TOML": ("width = 1\nwidth = 2", "width = 0.5", r"is not TOML: .*"),
+}  # fmt: skip
+
+
+def refusal(words, folder):
+    """What is said of a job, in one line that begins with its name."""
+    with pytest.raises(InvalidValueError) as found:
+        Job.of_text(words, "my job.toml", folder)
+    said = str(found.value)
+    assert said.startswith("my job.toml: ")
+    assert "\n" not in said
+    assert len(said) < 600
+    return said
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_refusal(case, text, tmp_path):
+    """A mistake is refused in one sentence that shows where and what; without it the job is taken."""
+    new, old, wanted = REFUSED[case]
+    whole = text("overturning-map")
+    assert old in whole
+    said = refusal(whole.replace(old, new, 1), tmp_path)
+    assert re.search(wanted, said), said
+
+
+ELSEWHERE = {
+    "levels": ("stripes", "levels = { from = 2, to = 10, count = 5 }", "", r"fragility\.levels is missing"),
+    "falling": ("stripes", "from = 2, to = 10", "from = 10, to = 2",
+        r"fragility: levels must be numbers .* each above"),
+    "measure": ("stripes", '"pga"', '"pgaa"', r"fragility: measure must be one of pga, .*got 'pgaa'"),
+    "ratio": ("stripes", '"pga"', '"pgv/pga"', r"fragility: measure must be one that grows with the motion"),
+    "states": ("stripes", "states = [0.3]", "states = [0.3, -1]",
+        r"fragility\.states\[1\] must be a number > 0, got -1"),
+    "factor": ("stripes", "states", "factor = 2\nstates", r'fragility\.factor goes with kind = "cloud" only'),
+    "tolerance": ("stripes", "states", "tolerance = 0.1\nstates",
+        r'fragility\.tolerance goes with kind = "incremental"'),
+    "cloud": ("cloud", "factor = 2.0", "levels = [1]", r"fragility\.levels makes no sense: a cloud"),
+    "drawn": ("incremental", "value = 0.9", "[restitution.distribution]\nmean = 0.9\ndeviation = 0.1",
+        r"fragility: restitution"),
+    "search": ("incremental", "[fragility]", "[settings]\ntolerance = 1e-12\n[fragility]",
+        r"settings\.tolerance cannot be"),
+    "restitution twice": ("overturning-map", '[map]\nx = { axis = "frequency_ratio", from = 1, to = 7, count = 9 }',
+        '[restitution]\nmodels = ["housner", "ked"]\n[map]\nx = { axis = "restitution", values = [0.8, 0.9] }',
+        r"map: restitution cannot be an axis where it is what is compared"),
+    "spectrum": ("rocking-spectrum", "[spectrum]", '[body]\nunits = "m"\n[spectrum]', r"\[body\] makes no sense"),
+    "angle": ("rocking-spectrum", "[0.15, 0.3]", "[0.15, 2.0]", r"spectrum: .*2"),
+    "order": ("rocking-spectrum", "[0.15, 0.3]", "[0.3, 0.15]", r"spectrum\.slenderness_angles must increase"),
+    "scale": ("histories", "[2.5, 5.0, 8.0, 11.0]", "[2.5, 1e9]",
+        r"histories\.scales must be within 1e6, got 1e\+09 at index 1"),
+    "nan": ("histories", "[2.5, 5.0, 8.0, 11.0]", "[2.5, nan]",
+        r"histories\.scales\.values\[1\] must be a finite number"),
+    "second body": ("histories", "width = 0.3", "width = 0", r"body\[1\]: .*width must be a number > 0"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", ELSEWHERE)
+def test_refusal_of_other_kinds(case, text, tmp_path):
+    """Mistakes in the tables of the other kinds."""
+    kind, old, new, wanted = ELSEWHERE[case]
+    whole = text(kind)
+    assert old in whole
+    said = refusal(whole.replace(old, new, 1), tmp_path)
+    assert re.search(wanted, said), said
+
+
+def test_records_and_pulses_do_not_mix(text, records):
+    """A study takes records or pulses."""
+    more = '[[motions]]\npulse = "sine:amplitude=1,period=1"\n[[motions]]\nrecords = "one.txt"\nunits = "m/s2"\n'
+    whole = text("histories").replace(
+        '[motions]\npulse = ["sine:amplitude=1,period=0.5", "sine:amplitude=1,period=0.7"', "#"
+    )
+    said = refusal(re.sub(r"#.*\n", more, whole), records)
+    assert "all records or all pulses" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [
+        ('records = "one.txt"\n', "units"),
+        ('records = ["one.txt", "one.txt"]\nunits = "m/s2"\n', "one.txt is named twice"),
+        ('records = "broken.txt"\nunits = "m/s2"\n', "broken.txt"),
+        ('records = "one.txt"\nunits = "furlong"\n', "furlong"),
+    ],
+)
+def test_records_that_are_refused(text, records, words, wanted):
+    """A record without a unit is not guessed; one that cannot be read is named."""
+    (records / "broken.txt").write_text("0.0 zero\n", encoding="utf-8")
+    whole = re.sub(r"\[motions\]\n.*\n", f"[motions]\n{words}", text("histories"))
+    said = refusal(whole, records)
+    assert "motions[0]" in said
+    assert wanted in said
+
+
+@pytest.mark.parametrize(
+    ("data", "wanted"),
+    [(None, "there is no such job file"), (b"\xff\xfe\x00", "is not UTF-8 text"), (b"", "campaign is missing")],
+)
+def test_files_that_are_no_jobs(tmp_path, data, wanted):
+    """No file, no text, nothing in it."""
+    path = tmp_path / "job.toml"
+    if data is not None:
+        path.write_bytes(data)
+    with pytest.raises(InvalidValueError, match=wanted):
+        Job.read(path)
+
+
+def test_folder_is_no_job(tmp_path):
+    """A folder in place of the file: the sentence names the commands for folders."""
+    with pytest.raises(InvalidValueError, match="is a folder"):
+        Job.read(tmp_path)

@@ -1,0 +1,130 @@
+"""The document of one response: what it says becomes the question, and slips are refused by name."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.cli import main
+from rocking.errors import InvalidValueError
+from rocking.spec.response import ResponseJob, ResponseQuestion, is_response
+
+EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "responses").glob("*.toml"))
+BODY = '[body]\nunits = "cm"\nwidth = 50\nheight = 200\n'
+TEXT = f'[response]\nfriction = 0.4\n{BODY}[motion]\npulse = "sine:amplitude=3,period=0.8"\nscale = 1.2\n'
+
+
+def test_tables_become_the_question(tmp_path):
+    """Body, motion, factor, friction, restitutions in their order, and settings are those of the file."""
+    text = TEXT + '[restitution]\nmodels = ["housner"]\nvalues = [0.9]\n[settings]\ngravity = 9.81\nengine = "fast"\n'
+    question = ResponseJob.of_text(text, tmp_path).question
+    assert question.body == rk.Block(width=0.5, height=2.0)
+    assert (question.scale, question.friction, question.engine) == (1.2, 0.4, "fast")
+    assert list(question.choices) == ["housner", "0.9"]
+    assert question.settings.gravity == 9.81
+    assert question.motion.peak == 3.0
+
+
+def test_a_record_lies_beside_the_file(tmp_path):
+    """A record is named relative to the file; its hash is noted; options for reading are taken."""
+    (tmp_path / "a.txt").write_text("\n".join(f"{k * 0.01:.2f} {math.sin(k):.3f}" for k in range(50)))
+    (tmp_path / "job.toml").write_text(f'[response]\n{BODY}[motion]\nrecord = "a.txt"\nunits = "g"\n')
+    job = ResponseJob.read(tmp_path / "job.toml")
+    assert np.array_equal(job.question.motion.acceleration, rk.read_motion(tmp_path / "a.txt", units="g").acceleration)
+    assert [item["path"] for item in job.inputs.told()] == ["a.txt"]
+
+
+def test_free_rocking_starts_at_a_share_of_the_slenderness_angle():
+    """A share below zero leans to the left, over the angle of the left side."""
+    question = ResponseQuestion(rk.Block(width=1.0, height=4.0), None, free=-0.5)
+    assert math.isclose(question.rotation, -0.5 * math.atan(0.25))
+    assert question.answered_with(0.9).rotation[0] == question.rotation
+
+
+@pytest.mark.parametrize("given", [{"motion": None}, {"motion": rk.pulses.sine(1.0, 1.0), "free": 0.5}])
+def test_a_question_has_one_start(given):
+    """Neither or both of a motion and a first rotation are no question."""
+    with pytest.raises(InvalidValueError, match="either a motion or a first rotation"):
+        ResponseQuestion(rk.Block(width=1.0, height=4.0), **given)
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_run_as_they_say(path, capsys):
+    """Every example is recognised, answered, and prints JSON with the restitutions that it lists."""
+    assert is_response(path)
+    question = ResponseJob.read(path).question
+    with pytest.raises(SystemExit) as stop:
+        main(["simulate", str(path), "--json"])
+    assert not stop.value.code
+    printed = json.loads(capsys.readouterr().out)
+    assert [*printed["other_models"]] == [*question.choices][1:]
+    first = question.answered_with(next(iter(question.choices.values())))
+    assert printed["peak_rotation_rad"] == first.peak_rotation
+
+
+def test_the_example_of_a_decision_shows_one():
+    """Under the pulse of the example KED overturns and Housner stands: two models, two verdicts."""
+    question = ResponseJob.read(next(path for path in EXAMPLES if "pulse" in path.stem)).question
+    outcomes = [question.answered_with(choice).outcome.name for choice in ("ked", "housner")]
+    assert outcomes == ["OVERTURNED", "ROCKED"]
+
+
+def test_a_body_file_is_not_a_response(tmp_path):
+    """A body file, a record, a broken file and a missing one are something else."""
+    for name, text in {"body.toml": BODY, "a.txt": TEXT, "broken.toml": "[response", "nul.toml": "\x00"}.items():
+        (tmp_path / name).write_text(text)
+        assert not is_response(tmp_path / name)
+    assert not is_response(tmp_path / "none.toml")
+
+
+REFUSED = {
+    "unknown table": (TEXT + "[friction]\n", "friction"),
+    "unknown key": (TEXT.replace("scale", "scle"), "did you mean scale?"),
+    "no body": ("[response]\nfree = 0.5\n", "body is missing"),
+    "nothing moves": (f"[response]\n{BODY}", "what moves the body?"),
+    "both": (TEXT.replace("friction = 0.4", "free = 0.5"), "not both"),
+    "two sources": (TEXT + 'record = "a.at2"\n', "exactly one of pulse, record, synthetic"),
+    "pulse with units": (TEXT + 'units = "g"\n', "pulse takes no units"),
+    "zero": (TEXT.replace("1.2", "0.0"), "nothing would move"),
+    "nan": (TEXT.replace("1.2", "nan"), "must be a finite number"),
+    "body": (TEXT.replace("width = 50", "width = -50"), "body: block.width must be a number > 0"),
+    "record": (TEXT.replace('pulse = "sine:amplitude=3,period=0.8"', 'record = "a.at2"'), "motion: a.at2"),
+    "pulse": (TEXT.replace("sine:", "sinus:"), "motion: no pulse named 'sinus'"),
+    "two levels": (
+        f'[response]\n{BODY}[motion]\nsynthetic = "pulse-like"\npga = 1.0\npgv = 1.0\n',
+        "to pga or to pgv, not to both",
+    ),
+    "model": (TEXT + '[restitution]\nmodel = "best"\n', "no restitution model named 'best'"),
+    "drawn per history": (
+        TEXT + '[restitution.distribution]\nmean = 0.9\ndeviation = 0.01\neach = "history"\n',
+        'must be "impact" for one history',
+    ),
+    "settings": (TEXT + "[settings]\norder = 5\n", "settings: order must be one of"),
+    "not TOML": ("[response\n", "is not TOML"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_slips_are_refused_by_name(case, tmp_path):
+    """Each refusal names the file and the key, and says what is allowed."""
+    text, words = REFUSED[case]
+    path = tmp_path / "question.toml"
+    path.write_text(text)
+    with pytest.raises(InvalidValueError) as refused:
+        ResponseJob.read(path)
+    assert words in str(refused.value)
+    assert str(refused.value).startswith(str(path))
+
+
+@pytest.mark.parametrize("more", [["--scale", "2"], ["--free", "0.5"], ["x.at2"], ["--restitution", "ked"]])
+def test_the_file_stands_alone(more, tmp_path, capsys):
+    """A file that says everything takes no option that says something of it again."""
+    path = tmp_path / "question.toml"
+    path.write_text(TEXT)
+    with pytest.raises(SystemExit) as stop:
+        main(["simulate", str(path), *more])
+    assert stop.value.code == 2
+    assert "says everything itself, so it takes no" in capsys.readouterr().err

@@ -1,0 +1,67 @@
+"""The last digits of an engine: which bits it computes, noticed before they are mixed."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rocking.campaigns import Campaign, CampaignMismatchError
+from rocking.campaigns import identity as fingerprint
+from rocking.dynamics import engine
+from rocking.dynamics.batch import Batch
+from rocking.studies import Table
+
+pytestmark = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+
+
+def test_fingerprints_tell_the_bits_apart(make: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Instruction sets with the same results of 3000 histories have the same fingerprint, others another one."""
+    work, found = make(3000), {}
+    for name in engine.instruction_sets():
+        monkeypatch.setenv("ROCKING_ISA", name)
+        results = work.run(0, work.count, threads=1)
+        found[name] = (b"".join(results[column].tobytes() for column in results), fingerprint.engine_of(work))
+    for bits, told in found.values():
+        assert [told == other for _, other in found.values()] == [bits == others for others, _ in found.values()]
+
+
+@pytest.mark.skipif(len(engine.instruction_sets() if engine.available() else []) < 2, reason="one instruction set only")
+def test_another_instruction_set_is_refused(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A campaign begun with one set is neither opened nor run with another one, and is finished with the first."""
+    monkeypatch.delenv("ROCKING_ISA", raising=False)
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    sentence = r"this machine computes other last digits: begun with engine fast, \w{16}, here it is fast, \w{16} "
+    monkeypatch.setenv("ROCKING_ISA", "plain")
+    with pytest.raises(CampaignMismatchError, match=sentence):
+        Campaign.open(tmp_path / "c", work)
+    with pytest.raises(CampaignMismatchError, match=sentence):
+        campaign.run(workers=1)
+    monkeypatch.delenv("ROCKING_ISA")
+    assert Campaign.open(tmp_path / "c", work).run(workers=1).computed == 6
+
+
+def test_sample_has_all_outcomes() -> None:
+    """No uplift, rocking, overturning and refusal are among the histories, under every law, order and equation."""
+    outcomes = []
+    for motions, law, settings in fingerprint._batches():
+        results = Batch(motions, law, settings, 1, "fast").run(16, lambda first, last: fingerprint._rows(16))[0]
+        outcomes.append(set(results["outcome"].tolist()))
+        assert results["impacts"].max() > 2
+    assert outcomes == [{0, 1, 2, 3}] * 4
+
+
+@pytest.mark.parametrize("chosen", ["fast", "reference"])
+def test_one_bit_is_seen(chosen: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Negative control: the last bit of one number of one history gives another fingerprint."""
+    before = fingerprint._fingerprint.__wrapped__(chosen, "")
+    assert before == fingerprint._fingerprint.__wrapped__(chosen, "")
+    run = Batch.run
+
+    def nudged(self: Batch, *arguments: Any) -> Any:
+        results, work = run(self, *arguments)
+        results["peak_rotation"][1] = np.nextafter(results["peak_rotation"][1], 9.0)
+        return results, work
+
+    monkeypatch.setattr(Batch, "run", nudged)
+    assert fingerprint._fingerprint.__wrapped__(chosen, "") != before

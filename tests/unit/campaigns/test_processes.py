@@ -1,0 +1,198 @@
+"""Worker processes: any of them may die, none of them decides."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rocking.campaigns import Campaign, CampaignWorkerError, Progress, identity
+from rocking.campaigns import identity as fingerprint
+from rocking.campaigns.chunks import Chunk
+from rocking.campaigns.executors import Job
+from rocking.dynamics import engine
+from rocking.studies import Table
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="workers are forked, so that they can be made to fail")
+nameless = lambda: 0  # noqa: E731 (pickle refuses it in another way than a local one)
+FORK: dict[str, Any] = {"executor": "processes", "start_method": "fork"}
+
+
+def breaking(monkeypatch: pytest.MonkeyPatch, what: Callable[[Chunk], None]) -> None:
+    """Have workers do something bad before a chunk."""
+    compute = Job.compute
+
+    def broken(self: Job, chunk: Chunk, *args: Any) -> Any:
+        what(chunk)
+        return compute(self, chunk, *args)
+
+    monkeypatch.setattr(Job, "compute", broken)
+
+
+def test_worker_that_dies_once_costs_nothing(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """kill -9 in the middle of a chunk: it is computed again by another worker, which is told and recorded."""
+    marker = tmp_path / "died"
+
+    def die_once(chunk: Chunk) -> None:
+        if chunk.number == 3 and not marker.exists():
+            marker.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    breaking(monkeypatch, die_once)
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    seen: list[Progress] = []
+    summary = campaign.run(**FORK, workers=2, progress=seen.append)
+    assert summary.computed == 6
+    assert len(summary.retries) == seen[-1].retries == campaign.status().retries == 1
+    assert "by SIGKILL" in summary.retries[0]
+    bare = work.run(0, work.count, threads=1)
+    assert all(campaign.results()[name].tobytes() == bare[name].tobytes() for name in bare)
+
+
+def test_chunk_that_kills_every_worker_is_named(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three deaths of the same chunk end the run with its histories; the others that were done are safe."""
+    breaking(monkeypatch, lambda chunk: os.kill(os.getpid(), signal.SIGTERM) if chunk.number == 4 else None)
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    with pytest.raises(CampaignWorkerError, match=r"histories 200 to 249: 3 workers died of them, .* by SIGTERM"):
+        campaign.run(**FORK, workers=2)
+    assert campaign.verify().damaged == ()
+    monkeypatch.undo()
+    assert campaign.run(workers=1).computed < 6
+
+
+def test_error_in_a_worker_is_told(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a worker raises is raised where the campaign runs, with the histories, and is not tried again."""
+
+    def fail(_: Chunk) -> None:
+        raise ZeroDivisionError("by nought")
+
+    breaking(monkeypatch, fail)
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    with pytest.raises(CampaignWorkerError, match="histories 0 to 49: ZeroDivisionError: by nought"):
+        campaign.run(**FORK, workers=1)
+
+
+def test_worker_without_the_engine_is_refused(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Results of two engines are never mixed."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    breaking(monkeypatch, lambda _: setattr(engine, "chosen", lambda *_: "reference"))
+    with pytest.raises(CampaignWorkerError, match="this worker has the reference engine, the campaign takes the fast"):
+        campaign.run(**FORK, workers=1)
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "value", "words"),
+    [
+        (fingerprint, "_fingerprint", lambda *_: "0" * 16, "this worker computes other last digits: .* fast, 0000"),
+        (identity, "software", lambda: "9.9", r"this worker has version 9\.9, the campaign was begun with"),
+    ],
+)
+def test_worker_of_other_bits_is_refused(
+    tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, value: Any, words: str
+) -> None:
+    """Another version, or an engine of other last digits, writes nothing into chunks that are named for this one."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    breaking(monkeypatch, lambda _: setattr(module, name, value))
+    with pytest.raises(CampaignWorkerError, match=words):
+        campaign.run(**FORK, workers=1)
+    assert not list((campaign.folder / "shards").iterdir())
+
+
+def test_histories_that_cannot_be_sent_are_refused(tmp_path: Path, work: Table) -> None:
+    """What cannot be pickled has a sentence."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    for unsendable in (threading.Lock(), nameless, lambda: 0):
+        object.__setattr__(work, "listener", unsendable)
+        with pytest.raises(CampaignWorkerError, match="cannot be sent to a process"):
+            campaign.run("processes", workers=1)
+
+
+@pytest.mark.parametrize("start_method", ["fork", "forkserver"])
+def test_idle_workers_stay(tmp_path: Path, work: Table, start_method: str) -> None:
+    """Workers that wait for more than their patience are still there: under a fork server, too."""
+    campaign = Campaign.create(tmp_path / "c", work, 50)
+    summary = campaign.run(
+        "processes", workers=1, start_method=start_method, progress=lambda p: time.sleep(1.3 * (p.chunks_done == 1))
+    )
+    assert (summary.computed, summary.retries) == (6, ())
+
+
+ORPHANS = """
+import multiprocessing, os, signal, sys, time
+sys.path.insert(0, sys.argv[2])
+from conftest import made
+from rocking.campaigns import Campaign
+
+def die(progress):
+    if progress.chunks_done == 3:
+        print(*[child.pid for child in multiprocessing.active_children()], flush=True)
+        os.kill(os.getpid(), signal.SIGKILL)
+
+if __name__ == "__main__":
+    Campaign.create(sys.argv[1], made(100_000), 50).run("processes", workers=3, start_method=sys.argv[3], progress=die)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="/proc tells the dead from the living")
+@pytest.mark.parametrize("start_method", ["fork", "forkserver"])
+def test_orphans_end(tmp_path: Path, start_method: str) -> None:
+    """When the campaign's process is killed alone, its workers end by themselves, however they were started."""
+    (tmp_path / "run.py").write_text(ORPHANS, encoding="utf-8")
+    arguments = [str(tmp_path / "c"), str(Path(__file__).parent), start_method]
+    command = [sys.executable, str(tmp_path / "run.py"), *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == -signal.SIGKILL
+    left, deadline = list(map(int, done.stdout.split())), time.monotonic() + 10.0
+    assert left
+    while (left := [pid for pid in left if alive(pid)]) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert left == []
+
+
+def alive(process: int) -> bool:
+    """Whether a process runs: not gone, and no zombie."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def test_no_worker_stays(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After a run, one that failed, and one that was interrupted, all processes are gone."""
+    Campaign.create(tmp_path / "c", work, 50).run(**FORK, workers=3)
+    assert multiprocessing.active_children() == []
+
+    def leave(_: Progress) -> None:
+        raise RuntimeError("no more")
+
+    with pytest.raises(RuntimeError):
+        Campaign.create(tmp_path / "d", work, 50).run(**FORK, workers=3, progress=leave)
+    assert multiprocessing.active_children() == []
+
+
+def test_work_is_taken_as_it_is_needed(tmp_path: Path, work: Table) -> None:
+    """However many chunks there are, few are waiting: two a worker."""
+    from rocking.campaigns.processes import Processes
+
+    campaign = Campaign.create(tmp_path / "c", work, 5)
+    taken = finished = most = 0
+
+    def chunks() -> Iterator[Chunk]:
+        nonlocal taken
+        for k in range(campaign.plan.chunks):
+            taken += 1
+            yield campaign.plan.chunk(k)
+
+    job = Job(work, campaign.plan.engine, campaign.plan.software, campaign.folder / "shards")
+    for _ in Processes(2, "fork").run(job, chunks(), lambda: False, lambda *_: None):
+        finished += 1
+        most = max(most, taken - finished)
+    assert finished == 60
+    assert most <= 4
