@@ -69,6 +69,10 @@ demo: $(VENV)/demo $(ENGINE)
 	@$(BIN)/rocking simulate --width 0.5 --height 2 --motion "sine:amplitude=3.2,period=0.8" --restitution ked \
 		--picture $(OUT)/response.png --animation $(OUT)/response.html
 
+# What the calibrated default and the intervals of models are read from; a test asks whether it is what would be computed.
+calibration: $(VENV)/dev
+	$(BIN)/python -c "from rocking.evidence import calibration; calibration.keep(calibration.KEPT)"
+
 lint: $(VENV)/dev $(ENGINE)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .

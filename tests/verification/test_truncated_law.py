@@ -113,7 +113,7 @@ def test_what_is_cut_off_is_stated(body: Any, mean: float, sd: float) -> None:
 def one_point(eta: float, k: float, s: float) -> Calibration:
     """A posterior of one point, so that the predictive distribution is one normal distribution."""
     known = calibrate()
-    return Calibration(np.array([[eta, k, s, 0.0]]), known.marginals, known.joint)
+    return Calibration(np.array([[eta, k, s, 0.0]]), known.marginals, known.joint, known.summary)
 
 
 @quietly

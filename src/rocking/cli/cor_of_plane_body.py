@@ -11,7 +11,7 @@ from rocking.cli.model_options import models_from
 from rocking.cli.solid_options import refuse, spelt
 from rocking.conventions import g
 from rocking.report.facts.impact import ImpactAnswer
-from rocking.spec.response import is_response
+from rocking.spec.reading import is_response
 
 
 def answer(

@@ -15,7 +15,7 @@ def path_of(context: typer.Context) -> Path | None:
 
     Returns none if the first word is something else.
     """
-    from rocking.spec.response import is_response
+    from rocking.spec.reading import is_response
 
     word = context.params.get("body")
     if word is None or not is_response(Path(word)):

@@ -9,9 +9,11 @@ are left out one by one, fewer if a whole data set is: intervals for a new labor
 Priors: ``k ~ N(0.6, 0.12)`` cut to [0, 1]; ``1 - eta ~ Beta(1.5, 98.5)`` (mean 0.015); flat in ``ln s`` and in gamma.
 """
 
+import hashlib
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,9 +21,9 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
-from rocking.evidence.likelihood import fit_scatter, interval_log_likelihood, scatter
+from rocking.evidence.likelihood import fit_scatter, interval_log_likelihood, normal_cdf, scatter
 from rocking.evidence.measurements import DataSet, all_measurements
-from rocking.restitution import Fixed, ImpactGeometry, Interface, RestitutionModel, ShiftedImpulse
+from rocking.restitution import Fixed, ImpactGeometry, Interface, RestitutionModel, ShiftedImpulse, model, models
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
 
@@ -30,6 +32,9 @@ CALIBRATED_RANGE = (1.5, 9.75)
 
 NAMES = ("eta", "k", "s", "gamma")
 LEVEL = 0.95
+KEPT = Path(__file__).parent / "data" / "calibration.npz"
+"""The posterior and the misfits of all models, made by `make calibration`; computed anew for other measurements."""
+
 _ETA = np.linspace(0.9655, 0.9999, 32)
 _K = np.linspace(0.30, 0.80, 26)
 _LOG_S = np.linspace(math.log(0.02), math.log(0.60), 20)
@@ -72,23 +77,14 @@ class Calibration:
         Grid and posterior weight of each parameter.
     joint : ndarray
         Posterior weight on the grid of (eta, k).
+    summary : dict of str to dict
+        Mean, standard deviation and 95 % credible interval of each parameter.
     """
 
     samples: FloatArray
     marginals: dict[str, tuple[FloatArray, FloatArray]]
     joint: FloatArray
-
-    @property
-    def summary(self) -> dict[str, dict[str, float]]:
-        """Mean, standard deviation and 95 % credible interval of each parameter."""
-        found = {}
-        for name in NAMES:
-            grid, weight = self.marginals[name]
-            mean = float((grid * weight).sum())
-            low, high = marginal_quantiles(grid, weight, (0.5 * (1.0 - LEVEL), 0.5 * (1.0 + LEVEL)))
-            sd = math.sqrt(float(((grid - mean) ** 2 * weight).sum()))
-            found[name] = {"mean": mean, "sd": sd, "low": low, "high": high}
-        return found
+    summary: dict[str, dict[str, float]]
 
     @property
     def correlation(self) -> float:
@@ -186,7 +182,42 @@ def calibrate() -> Calibration:
     >>> bool(0.97 < facts["eta"]["mean"] < 1.0), bool(0.4 < facts["k"]["mean"] < 0.7)
     (True, True)
     """
-    return calibrate_on(all_measurements())
+    data = all_measurements()
+    with np.load(KEPT) as kept:
+        if kept["inputs"] != fingerprint(data):
+            return calibrate_on(data)
+        marginals = {name: (kept[f"{name}_grid"], kept[f"{name}_weight"]) for name in NAMES}
+        summary = {
+            name: dict(zip(("mean", "sd", "low", "high"), values, strict=True))
+            for name, values in zip(NAMES, kept["summary"].tolist(), strict=True)
+        }
+        return Calibration(kept["samples"], marginals, kept["joint"], summary)
+
+
+def fingerprint(data: DataSet) -> str:
+    """Return the hash of all that a posterior is made of: measurements, grid and number of samples."""
+    arrays = (data.slenderness, data.low, data.high, _ETA, _K, _LOG_S, _GAMMA)
+    text = [[f"{value:.12g}" for value in values.tolist()] for values in arrays]
+    return hashlib.sha256(repr((text, _SAMPLES)).encode()).hexdigest()
+
+
+def keep(path: Path) -> None:
+    """Compute what `calibrate` and `interval_for` read, and write it."""
+    data = all_measurements()
+    found = calibrate_on(data)
+    named = [model(name) for name in models() if name != "fixed"]
+    predictions = np.array([each.of_slenderness(data.slenderness) for each in named])
+    arrays: dict[str, Any] = {
+        "inputs": fingerprint(data),
+        "samples": found.samples,
+        "joint": found.joint,
+        "summary": [list(facts.values()) for facts in found.summary.values()],
+        "predictions": predictions,
+        "misfits": [fit_scatter(data, each)[:2] for each in predictions],
+    }
+    for name, (grid, weight) in found.marginals.items():
+        arrays |= {f"{name}_grid": grid, f"{name}_weight": weight}
+    np.savez_compressed(path, **arrays)
 
 
 def calibrate_on(data: DataSet) -> Calibration:
@@ -284,7 +315,14 @@ def _misfit(model: RestitutionModel) -> tuple[float, float]:
 
 @lru_cache(maxsize=1024)
 def _fitted(predictions: bytes) -> tuple[float, float]:
-    floor, slope, _ = fit_scatter(all_measurements(), np.frombuffer(predictions))
+    data, given = all_measurements(), np.frombuffer(predictions)
+    with np.load(KEPT) as kept:
+        if kept["inputs"] == fingerprint(data):
+            same = np.abs(kept["predictions"] - given).max(axis=1) < 1e-12
+            if same.any():
+                floor, slope = kept["misfits"][same][0].tolist()
+                return floor, slope
+    floor, slope, _ = fit_scatter(data, given)
     return floor, slope
 
 
@@ -313,15 +351,29 @@ def _summarised(weight: FloatArray) -> Calibration:
     picked = np.searchsorted(steps, (np.arange(_SAMPLES) + 0.5) / _SAMPLES * steps[-1])
     places = np.unravel_index(np.minimum(picked, steps.size - 1), weight.shape)
     samples = np.column_stack([grid[place] for grid, place in zip(grids, places, strict=True)])
-    return Calibration(samples, marginals, weight.sum(axis=(2, 3)))
+    summary = {name: _facts(*marginal) for name, marginal in marginals.items()}
+    return Calibration(samples, marginals, weight.sum(axis=(2, 3)), summary)
+
+
+def _facts(grid: FloatArray, weight: FloatArray) -> dict[str, float]:
+    mean = float((grid * weight).sum())
+    low, high = marginal_quantiles(grid, weight, (0.5 * (1.0 - LEVEL), 0.5 * (1.0 + LEVEL)))
+    return {"mean": mean, "sd": math.sqrt(float(((grid - mean) ** 2 * weight).sum())), "low": low, "high": high}
 
 
 def _quantile(mean: FloatArray, sd: FloatArray, level: float) -> FloatArray:
-    from scipy.special import ndtr
-
+    """Return a quantile of equally likely normals, those of a column together: Newton's method within a bracket."""
     low, high = (mean - 8.0 * sd).min(axis=0), (mean + 8.0 * sd).max(axis=0)
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        below = ndtr((middle - mean) / sd).mean(axis=0) < level
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return np.asarray(0.5 * (low + high))
+    found = mean.mean(axis=0)
+    for _ in range(100):
+        z = (found - mean) / sd
+        excess = normal_cdf(z).mean(axis=0) - level
+        low, high = np.where(excess < 0.0, found, low), np.where(excess < 0.0, high, found)
+        slope = (np.exp(-0.5 * z * z) / sd).mean(axis=0) / math.sqrt(2.0 * math.pi)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            following = found - excess / slope
+        following = np.where((following > low) & (following < high), following, 0.5 * (low + high))
+        if np.abs(following - found).max() < 1e-13:
+            return np.asarray(following)
+        found = following
+    return np.asarray(found)

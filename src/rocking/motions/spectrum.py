@@ -28,6 +28,8 @@ HIGH = 0.8
 TOGETHER = 60_000
 """Steps times periods that are held at once: they fit into the cache of a processor."""
 
+_BLOCK = 16  # samples of a row that follow one another in the recurrence of its states
+
 SHORTEST_PERIOD = 0.05
 """Shortest period in time steps: below, the record says nothing about what the oscillator feels."""
 
@@ -177,18 +179,34 @@ def _peaks(motion: GroundMotion, rates: ComplexArray, parts: int) -> FloatArray:
 
 
 def _states(motion: GroundMotion, rates: ComplexArray) -> ComplexArray:
-    """Return the states at the samples, one row an oscillator."""
-    from scipy.signal import lfilter
-
-    h, a = motion.time_step, motion.acceleration.astype(np.complex128)
+    """Return the states at the samples, one row an oscillator, at rest at the first."""
+    h, a = motion.time_step, motion.acceleration
     first, second = phi(rates * h)
-    pushes, decay = -h * np.stack([second, first - second], axis=1), np.exp(rates * h)
-    found = np.empty((rates.size, a.size), dtype=np.complex128)
-    for k, push in enumerate(pushes):
-        # the second argument starts the oscillator at rest whatever the first sample is
-        made: Any = lfilter(push, [1.0, -decay[k]], a, zi=-push[:1] * a[0])
-        found[k] = made[0]
-    return found
+    before, after = _blocks(a[None, :-1]), _blocks(a[None, 1:])
+    pushes = (-h * second)[:, None] * after + (-h * (first - second))[:, None] * before
+    found = np.zeros((rates.size, 1 + pushes.shape[0] * pushes.shape[2]), dtype=np.complex128)
+    found[:, 1:] = _recurrence(pushes, np.exp(rates * h)).transpose(1, 2, 0).reshape(rates.size, -1)
+    return found[:, : a.size]
+
+
+def _blocks(rows: NDArray[Any]) -> NDArray[Any]:
+    """Return rows cut into blocks: what stands at one place of all blocks together."""
+    padded = np.zeros((len(rows), -(-rows.shape[1] // _BLOCK) * _BLOCK), dtype=rows.dtype)
+    padded[:, : rows.shape[1]] = rows
+    return np.ascontiguousarray(padded.reshape(len(rows), -1, _BLOCK).transpose(2, 0, 1))
+
+
+def _recurrence(pushes: ComplexArray, decay: ComplexArray) -> ComplexArray:
+    """Return y[n] = decay y[n - 1] + push[n] of each row, in place of the pushes: blocks, then what they hand on."""
+    for k in range(1, _BLOCK):
+        pushes[k] += decay[:, None] * pushes[k - 1]
+    last = pushes[-1, :, :-1]
+    if last.shape[1]:
+        handed = _recurrence(_blocks(last), decay**_BLOCK).transpose(1, 2, 0).reshape(len(decay), -1)
+        carried = handed[:, : last.shape[1]]
+        for k in range(_BLOCK):
+            pushes[k, :, 1:] += (decay ** (k + 1))[:, None] * carried
+    return pushes
 
 
 def _close_steps(

@@ -1,18 +1,19 @@
 """A body that lands on a bed of plastic springs: its motion while the bed pushes, stretch by stretch of the base."""
 
+import math
 from bisect import bisect_right
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from operator import mul
 
 from rocking.conventions import FloatArray
+from rocking.errors import RockingError
 
 # The contact ends exponentially: once the tip is this slow, relative to the start, nothing more happens.
 _AT_REST = 1e-14
 _STOPPED = 1e-9
-_RELATIVE, _ABSOLUTE = 1e-13, 1e-16
-_LONGEST = 1e4
-_STEPS = 1_000_000
+_ORDER = 20
+_RELATIVE = 1e-16
+_STEPS = 100_000
 
 _State = tuple[float, ...]
 
@@ -75,7 +76,7 @@ class _Bed:
 
 
 class _Path:
-    """The motion as long as the pressure ends in one part of the base."""
+    """The motion as long as the pressure ends in one part of the base, by Taylor series."""
 
     def __init__(self, bed: _Bed, part: int) -> None:
         self._bed = bed
@@ -84,66 +85,82 @@ class _Path:
         self._whole = bed.whole(part)
         self._lower = bed.edges[part - 1] if part > 0 else None
         self._upper = bed.edges[part] if part < bed.last else None
-        self._kept: list[tuple[float, _State]] = []
         self.towards = 0
 
     def follow(self, state: _State) -> _State:
         """Return the state where the edge of the pressure leaves the part, or where the contact ends."""
-        self._kept = [(0.0, state)]
-        last = self._integrated(state, _LONGEST, watched=True)
-        if self.towards == 0:
-            return last
-        return self._at_edge(self._upper if self.towards > 0 else self._lower)
+        for _ in range(_STEPS):
+            series = self._series(state)
+            step = _step(series)
+            v, omega, *_ = after = _at(series, step)
+            for edge, sign in ((self._upper, 1), (self._lower, -1)):
+                if edge is not None and sign * (v - edge * omega) > 0.0:
+                    passing = self._at_edge(series, step, edge, sign)
+                    self.towards = sign if passing[1] >= _STOPPED else 0  # a body that stops there goes nowhere
+                    return passing
+            if omega < _STOPPED or self._bed.end * omega - v <= _AT_REST:
+                return after
+            state = after
+        raise RockingError(f"a landing on a bed of plastic springs did not end within {_STEPS} steps")
 
-    def _rates(self) -> Callable[[float, FloatArray], _State]:
-        push, turn, inside, end = self._bed.push, self._bed.turn, self._inside, self._far
+    def _series(self, state: _State) -> list[list[float]]:
+        """Return the Taylor coefficients of v, omega and their integrals."""
+        push, turn = self._bed.push, self._bed.turn
         length, first, second = self._whole
+        v, omega, y, theta = series = [[value] for value in state]
+        edge: list[float] = []
+        square: list[float] = []
+        cube: list[float] = []
+        end = self._far  # zero where the pressure ends between two stretches
+        reach, lever, inertia = [length + end], [first + 0.5 * end * end], [second + end**3 / 3.0]
+        for k in range(_ORDER):
+            if k:
+                for one in (reach, lever, inertia):
+                    one.append(0.0)
+            if self._inside:
+                edge.append((v[k] - _product(omega[1:], edge)) / omega[0])
+                square.append(_product(edge, edge))
+                cube.append(_product(edge, square))
+                reach[k] -= edge[k]
+                lever[k] -= 0.5 * square[k]
+                inertia[k] -= cube[k] / 3.0
+            v.append(push * (_product(theta, lever) - _product(y, reach)) / (k + 1))
+            omega.append(turn * (_product(theta, inertia) - _product(y, lever)) / (k + 1))
+            y.append(v[k] / (k + 1))
+            theta.append(omega[k] / (k + 1))
+        return series
 
-        def rates(_: float, state: FloatArray) -> _State:
-            v, omega, y, theta = state.tolist()
-            if not inside:
-                force, moment = theta * first - y * length, theta * second - y * first
-                return force * push, moment * turn, v, omega
-            edge = v / omega if omega > 0.0 else end
-            reach = end - edge
-            lever = first + 0.5 * reach * (end + edge)
-            inertia = second + reach * (end * end + end * edge + edge * edge) / 3.0
-            return (theta * lever - y * (length + reach)) * push, (theta * inertia - y * lever) * turn, v, omega
+    @staticmethod
+    def _at_edge(series: list[list[float]], step: float, edge: float, sign: int) -> _State:
+        """Return the state at an edge that was passed in a step: by halving, to the last bit."""
+        start, stop = 0.0, step
+        while start < (middle := 0.5 * (start + stop)) < stop:
+            v, omega, *_ = _at(series, middle)
+            if sign * (v - edge * omega) > 0.0:
+                stop = middle
+            else:
+                start = middle
+        return _at(series, start)
 
-        return rates
 
-    def _watch(self, time: float, found: FloatArray) -> Literal[-1, 0]:
-        v, omega, *_ = state = tuple(found.tolist())
-        if time == 0.0:
-            return 0
-        self._kept = [*self._kept[-1:], (time, state)]
-        if self._upper is not None and v > self._upper * omega:
-            self.towards = 1
-        elif self._lower is not None and v < self._lower * omega:
-            self.towards = -1
-        over = omega < _STOPPED or self._bed.end * omega - v <= _AT_REST
-        return -1 if self.towards or over else 0
+def _product(one: list[float], other: list[float]) -> float:
+    """Return the last coefficient of a product of series, as far as both are known."""
+    return float(sum(map(mul, one, reversed(other))))
 
-    def _at_edge(self, edge: float | None) -> _State:
-        """Return the state at an edge that was passed in the last step."""
-        from scipy.optimize import brentq
 
-        (start, before), (stop, _) = self._kept
+def _step(series: list[list[float]]) -> float:
+    """Return how far the series hold: what the last two terms add is below the rounding of the state."""
+    v, omega = series[0][0], series[1][0]
+    room = _RELATIVE * max(abs(v), abs(omega))
+    last, before = (max(abs(one[-k]) for one in series) + 1e-300 for k in (1, 2))
+    return min(math.pow(room / last, 1.0 / _ORDER), math.pow(room / before, 1.0 / (_ORDER - 1)))
 
-        def ahead(time: float) -> float:
-            v, omega, *_ = self._integrated(before, time - start) if time > start else before
-            return v - (edge or 0.0) * omega
 
-        if ahead(start) * ahead(stop) >= 0.0:  # it lies on the edge already, but for rounding
-            return before
-        time = float(brentq(ahead, start, stop, xtol=1e-15, rtol=1e-14))
-        return self._integrated(before, time - start) if time > start else before
-
-    def _integrated(self, state: _State, time: float, *, watched: bool = False) -> _State:
-        from scipy.integrate import ode
-
-        run = ode(self._rates()).set_integrator("dop853", rtol=_RELATIVE, atol=_ABSOLUTE, nsteps=_STEPS)
-        if watched:
-            run.set_solout(self._watch)
-        run.set_initial_value(list(state), 0.0)
-        return tuple(run.integrate(time).tolist())
+def _at(series: list[list[float]], time: float) -> _State:
+    found = []
+    for coefficients in series:
+        value = 0.0
+        for coefficient in reversed(coefficients):
+            value = value * time + coefficient
+        found.append(value)
+    return tuple(found)

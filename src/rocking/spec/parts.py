@@ -22,8 +22,6 @@ from rocking.restitution.from_file import file_of, model_in_file
 from rocking.spec.reading import Inputs, located
 from rocking.studies.motion_set import MotionList, MotionSet
 from rocking.studies.record_set import SyntheticSet
-from rocking.studies.sensitivity.posterior import posterior
-from rocking.studies.sensitivity.sampled import SampledRestitution
 
 if TYPE_CHECKING:
     from rocking.spec.document import CampaignDocument, MotionTable, RandomTable, RestitutionTable
@@ -68,6 +66,8 @@ def _model(word: str, inputs: Inputs | None) -> RestitutionModel:
 def _drawn(
     table: "RandomTable", seed: int, bodies: Sequence[Body], inputs: Inputs | None
 ) -> tuple[str, Any]:  # fmt: skip
+    from rocking.studies.sensitivity.sampled import SampledRestitution
+
     times = _model(table.times, inputs) if isinstance(table.times, str) else table.times
     law = SampledRestitution if table.each == "history" else RandomRestitution
     seed = seed if table.seed is None else table.seed
@@ -88,6 +88,8 @@ def _drawn(
 
 def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Body]) -> tuple[Any, str]:
     """Return the law that the measurements make of the body: all quantiles, or a sample of so many values."""
+    from rocking.studies.sensitivity.posterior import posterior
+
     if len(bodies) != 1:
         told = f"{len(bodies)} bodies: make a job of each" if bodies else "no [body]; give values instead"
         raise InvalidValueError(f"distribution.posterior is of one body, and the job has {told}")

@@ -178,3 +178,16 @@ def _nearest(words: str, problem: object) -> str:
     near = difflib.get_close_matches(given[:60], known, n=1)
     head, mark, tail = words.partition(" (and ")
     return f"{head}; did you mean {near[0]}?{mark}{tail}" if near else words
+
+
+def is_response(path: Path) -> bool:
+    """Return whether a file describes a response rather than a body: it has a table [response].
+
+    Returns false for everything that cannot be read as TOML; never raises.
+    """
+    if path.suffix.lower() != ".toml":
+        return False
+    try:
+        return "response" in tomllib.loads(read_text(path))
+    except (InvalidValueError, ValueError, RecursionError):
+        return False

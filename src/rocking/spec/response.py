@@ -1,7 +1,6 @@
 """One body, one motion or first rotation, some restitutions: the question of a response, and its file."""
 
 import os
-import tomllib
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,8 +21,6 @@ from rocking.studies.record_set import SyntheticSet
 
 if TYPE_CHECKING:
     from rocking.spec.document import OneMotionTable, ResponseDocument, ResponseTables
-
-__all__ = ["ResponseJob", "ResponseQuestion", "is_response", "made_motion", "question_from"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,19 +140,6 @@ def made_motion(table: "OneMotionTable") -> Motion:
         table.synthetic, member + 1, table.seed or 0, pga=table.pga, pgv=table.pgv, time_step=table.time_step
     )
     return made[member]
-
-
-def is_response(path: Path) -> bool:
-    """Return whether a file describes a response rather than a body: it has a table [response].
-
-    Returns false for everything that cannot be read as TOML; never raises.
-    """
-    if path.suffix.lower() != ".toml":
-        return False
-    try:
-        return "response" in tomllib.loads(read_text(path))
-    except (InvalidValueError, ValueError, RecursionError):
-        return False
 
 
 def _motion(table: "OneMotionTable", inputs: Inputs) -> Motion:

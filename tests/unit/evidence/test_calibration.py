@@ -7,6 +7,7 @@ import pytest
 from scipy import stats
 
 from rocking import Block
+from rocking.evidence import calibration
 from rocking.evidence._coefficient_table import coefficient_table, outside_evidence
 from rocking.evidence.calibration import (
     NAMES,
@@ -227,3 +228,51 @@ def test_quantiles_converge_with_the_grid(axis):
     # the logarithmic axis suits this law: there the finer points on which the spline is summed limit it already
     assert errors[0] / errors[1] > 2.0**3.5 or errors[0] < 2e-4
     assert coarse[1] > 100.0 * errors[1]
+
+
+def test_what_is_kept_is_what_would_be_computed():
+    """The posterior and the misfits of `make calibration`, computed anew: rounding alone may part them."""
+    kept, anew = calibrate(), calibrate_on(all_measurements())
+    for name in NAMES:
+        assert kept.summary[name] == pytest.approx(anew.summary[name], rel=1e-9)
+        for one, other in zip(kept.marginals[name], anew.marginals[name], strict=True):
+            np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-14)
+    np.testing.assert_allclose(kept.joint, anew.joint, rtol=1e-9, atol=1e-14)
+    # rounding may move a sample at the end of its cell into the next one
+    assert (kept.samples == anew.samples).all(axis=1).mean() > 0.995
+    for each in (Housner(), Ked(), ShiftedImpulse()):
+        floor, slope, _ = fit_scatter(all_measurements(), each.of_slenderness(all_measurements().slenderness))
+        assert calibration._misfit(each) == pytest.approx((floor, slope), rel=1e-6)
+
+
+def test_other_measurements_are_calibrated_anew(monkeypatch):
+    """With a row left out nothing that is kept is read: neither the posterior nor the misfit of a model."""
+    fewer = all_measurements().rows(np.arange(len(all_measurements()) - 1))
+    whole, misfit = calibrate().summary, calibration._misfit(Ked())
+    monkeypatch.setattr(calibration, "all_measurements", lambda: fewer)
+    for cache in (calibrate, calibration._fitted):
+        cache.cache_clear()
+    try:
+        assert calibrate().summary["k"] == pytest.approx(calibrate_on(fewer).summary["k"])
+        assert calibrate().summary["k"]["mean"] != pytest.approx(whole["k"]["mean"], rel=1e-6)
+        assert calibration._misfit(Ked()) != pytest.approx(misfit, rel=1e-6)
+    finally:
+        for cache in (calibrate, calibration._fitted):
+            cache.cache_clear()
+
+
+def test_quantiles_of_mixtures_against_bisection():
+    """Newton's method within a bracket ends where halving does, also where the density is 0."""
+    random = np.random.default_rng(8)
+    mean = np.stack([random.normal(0.9, 0.02, 50), np.repeat([0.1, 0.9], 25)], axis=1)
+    sd = np.stack([random.uniform(0.01, 0.05, 50), np.full(50, 0.004)], axis=1)
+    for level in (0.025, 0.5, 0.975):
+        low, high = np.full(2, -1.0), np.full(2, 2.0)
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            below = stats.norm.cdf((middle - mean) / sd).mean(axis=0) < level
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        found = calibration._quantile(mean, sd, level)
+        assert stats.norm.cdf((found - mean) / sd).mean(axis=0) == pytest.approx(np.full(2, level), abs=1e-11)
+        if level != 0.5:  # half of the second ones lie below anything between the two
+            assert found == pytest.approx(middle, abs=1e-12)

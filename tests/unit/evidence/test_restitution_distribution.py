@@ -84,7 +84,7 @@ def test_laws_are_made_of_it():
 def test_a_narrower_posterior_is_narrower():
     """With one point of the posterior the distribution is the normal one of that point's scatter."""
     posterior = calibrate()
-    point = type(posterior)(posterior.samples[:1], posterior.marginals, posterior.joint)
+    point = type(posterior)(posterior.samples[:1], posterior.marginals, posterior.joint, posterior.summary)
     found = restitution_distribution(4.0, calibration=point)
     eta, k, s, gamma = posterior.samples[0]
     mean = eta * float(ShiftedImpulse(k).of_slenderness([4.0])[0])

@@ -10,7 +10,8 @@ import pytest
 import rocking as rk
 from rocking.cli import main
 from rocking.errors import InvalidValueError
-from rocking.spec.response import ResponseJob, ResponseQuestion, is_response
+from rocking.spec.reading import is_response
+from rocking.spec.response import ResponseJob, ResponseQuestion
 
 EXAMPLES = sorted((Path(__file__).parents[4] / "examples" / "responses").glob("*.toml"))
 BODY = '[body]\nunits = "cm"\nwidth = 50\nheight = 200\n'
