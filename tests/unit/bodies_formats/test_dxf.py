@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from rocking import Section, read_body
+from rocking import read_body
+from rocking.bodies.formats import section_from_dxf
 from rocking.bodies.formats.curves import closed_ellipse, closed_polyline
 from rocking.errors import BodyFileError, RockingError
 
@@ -77,14 +78,14 @@ def test_layers(drawn):
         space.add_line((0, 0), (1, 1), dxfattribs={"layer": "notes"})
 
     path = drawn(inlay)
-    section = Section.from_dxf(path, layers={"stone": 2000.0, "lead": 11000.0})
+    section = section_from_dxf(path, layers={"stone": 2000.0, "lead": 11000.0})
     assert section.mass == pytest.approx(2000.0 * 2.25 + 11000.0 * 0.75)
     with pytest.raises(BodyFileError, match="has no layer 'stne'; did you mean stone"):
-        Section.from_dxf(path, layers={"stne": 2000.0})
+        section_from_dxf(path, layers={"stne": 2000.0})
     with pytest.raises(BodyFileError, match=r"layer 'notes'.* is not a closed outline"):
-        Section.from_dxf(path, layers={"stone": 2000.0, "notes": 1.0})
+        section_from_dxf(path, layers={"stone": 2000.0, "notes": 1.0})
     with pytest.raises(RockingError, match=r"density of layer 'stone' must be > 0"):
-        Section.from_dxf(path, layers={"stone": -1.0})
+        section_from_dxf(path, layers={"stone": -1.0})
     with pytest.raises(BodyFileError, match=r"LINE .* is not a closed outline"):
         read_body(path)
     toml = path.with_name("body.toml")
@@ -102,7 +103,7 @@ def test_chord_tolerance(drawn, tolerance):
         space.add_circle((500, 1000), 200)
         space.add_ellipse((500, 1700), (0, 300), 0.5)
 
-    section = Section.from_dxf(drawn(arch), 1.0, chord_tolerance=tolerance)
+    section = section_from_dxf(drawn(arch), 1.0, chord_tolerance=tolerance)
     arc, circle, ellipse = 0.125 * math.pi, 0.04 * math.pi, 0.045 * math.pi
     assert abs(section.mass - (2.0 + arc - circle - ellipse)) < 5.0 * tolerance
     assert section.local_box[3] == pytest.approx(2.5, abs=tolerance)

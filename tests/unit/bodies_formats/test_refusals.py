@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from rocking import Block, Section
+from rocking import Block
 from rocking.bodies.formats import (
     FORMATS,
     body_from_toml,
@@ -188,7 +188,7 @@ def test_geojson_kinds():
     ):
         assert section_from_geojson(given, 1000.0).mass == pytest.approx(2000.0)
     two = {"type": "FeatureCollection", "features": [feature(density=500.0), {**feature(upper), "properties": None}]}
-    assert Section.from_geojson(two, 1000.0).mass == pytest.approx(1500.0)
+    assert section_from_geojson(two, 1000.0).mass == pytest.approx(1500.0)
     loop = {"type": "GeometryCollection", "geometries": []}
     loop["geometries"].append(loop)
     with pytest.raises(BodyFileError, match="nested more than"):

@@ -12,6 +12,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.export import extra
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.agreement import Agreement, Ends, Repeated, agreement_of, repeated_of
+from rocking.studies.fragility.ordered_probit import nested_curves
 from rocking.studies.fragility.subject import Subject, checked_levels
 from rocking.studies.fragility.variables import variables_of
 
@@ -217,7 +218,6 @@ def model_of(
     InvalidValueError
         If the method is unknown, no state has a curve, or there is no common dispersion.
     """
-    from rocking.studies.fragility.nesting import with_common_dispersion
     from rocking.studies.fragility.ordered import ORDERED_METHODS
 
     if method not in ORDERED_METHODS:
@@ -268,3 +268,35 @@ def with_evidence(
     """
     repeated = repeated_of(fit, levels, bootstrap, seed) if bootstrap else None
     return replace(curve, agreement=agreement_of(fit, seed), repeated=repeated)
+
+
+def with_common_dispersion(model: FragilityModel) -> FragilityModel:
+    """Return the model with all states fitted again with one dispersion, from its counts.
+
+    Returns the same states with other medians and one dispersion; each curve says so in method and verdict.
+    """
+    missing = [curve.state for curve in model.curves if curve.state not in model.reached]
+    if missing:
+        raise InvalidValueError(f"counts of all states are needed for one dispersion, got none of {missing[0]!r:.60}")
+    tried = np.asarray(model.trials) > 0
+    reached = np.array([np.asarray(model.reached[c.state], dtype=np.float64)[tried] for c in model.curves])
+    found = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
+    curves = tuple(_common(curve, *pair) for curve, pair in zip(model.curves, found, strict=True))
+    return replace(model, curves=curves)
+
+
+def _common(curve: FragilityCurve, median: float, dispersion: float) -> FragilityCurve:
+    told = (
+        f"One dispersion was fitted to all states, so that no curves cross; alone this state has median"
+        f" {curve.median:.4g}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
+    )
+    none: dict[str, Any] = {
+        "median_95": None,
+        "dispersion_95": None,
+        "interval_method": "",
+        "agreement": None,
+        "repeated": None,
+    }
+    return replace(
+        curve, median=median, dispersion=dispersion, method="common-dispersion", verdict=told.strip(), **none
+    )

@@ -1,14 +1,13 @@
 """Whether a worse state is anywhere likelier than a lesser one, which curves of unlike dispersion always claim."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.curves import FragilityCurve, FragilityModel
+from rocking.studies.fragility.curves import FragilityModel, with_common_dispersion
 from rocking.studies.fragility.ordered import difference_extremes
-from rocking.studies.fragility.ordered_probit import nested_curves
 
 Crossing = Literal["refuse", "common-dispersion"]
 CROSSING: tuple[Crossing, ...] = ("refuse", "common-dispersion")
@@ -68,35 +67,3 @@ def check_crossing(crossing: Any) -> None:
     """Refuse what is no way to treat curves that cross."""
     if crossing not in CROSSING:
         raise InvalidValueError(f"crossing must be one of {', '.join(CROSSING)}, got {crossing!r:.60}")
-
-
-def with_common_dispersion(model: FragilityModel) -> FragilityModel:
-    """Return the model with all states fitted again with one dispersion, from its counts.
-
-    Returns the same states with other medians and one dispersion; each curve says so in method and verdict.
-    """
-    missing = [curve.state for curve in model.curves if curve.state not in model.reached]
-    if missing:
-        raise InvalidValueError(f"counts of all states are needed for one dispersion, got none of {missing[0]!r:.60}")
-    tried = np.asarray(model.trials) > 0
-    reached = np.array([np.asarray(model.reached[c.state], dtype=np.float64)[tried] for c in model.curves])
-    found = nested_curves(model.levels[tried], reached, np.asarray(model.trials, dtype=np.float64)[tried])
-    curves = tuple(_common(curve, *pair) for curve, pair in zip(model.curves, found, strict=True))
-    return replace(model, curves=curves)
-
-
-def _common(curve: FragilityCurve, median: float, dispersion: float) -> FragilityCurve:
-    told = (
-        f"One dispersion was fitted to all states, so that no curves cross; alone this state has median"
-        f" {curve.median:.4g}, dispersion {curve.dispersion:.3g}. {curve.verdict}"
-    )
-    none: dict[str, Any] = {
-        "median_95": None,
-        "dispersion_95": None,
-        "interval_method": "",
-        "agreement": None,
-        "repeated": None,
-    }
-    return replace(
-        curve, median=median, dispersion=dispersion, method="common-dispersion", verdict=told.strip(), **none
-    )
