@@ -124,11 +124,13 @@ def _home(module: str, name: str, modules: dict[str, ast.Module]) -> str:
     if f"{module}.{name}" in modules:
         return f"{module}.{name}"
     for node in ast.walk(modules[module]):
+        if name in (getattr(node, "name", None), getattr(node, "id", None)):
+            return module
         if not isinstance(node, ast.ImportFrom) or node.module not in modules or node.module == module:
             continue
         if any((each.asname or each.name) == name for each in node.names):
             return _home(node.module, name, modules)
-    return module
+    return ""  # compiled
 
 
 def circles(arrows: dict[str, set[str]]) -> list[list[str]]:

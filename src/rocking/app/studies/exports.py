@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from rocking.app.errors import NotFound, Refused
 from rocking.app.studies.opened import OpenStudy
-from rocking.app.studies.study import JOB
+from rocking.app.studies.study_folder import JOB
 from rocking.errors import RockingError
 
 if TYPE_CHECKING:

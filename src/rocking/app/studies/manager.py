@@ -14,7 +14,8 @@ from rocking.app.settings import Limits
 from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.opened import OpenStudies
 from rocking.app.studies.queue import Line
-from rocking.app.studies.study import (
+from rocking.app.studies.study import Study, processors
+from rocking.app.studies.study_folder import (
     CAMPAIGN,
     CANCELLED,
     DONE,
@@ -25,11 +26,9 @@ from rocking.app.studies.study import (
     WAITING,
     Meta,
     Records,
-    Study,
     StudyFolder,
     is_id,
     new_id,
-    processors,
     shown,
 )
 from rocking.campaigns import disk

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from rocking.app.studies.study import StudyFolder
+from rocking.app.studies.study_folder import StudyFolder
 from rocking.dynamics.engine import Arrays
 from rocking.errors import RockingError
 

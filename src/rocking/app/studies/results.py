@@ -8,7 +8,7 @@ import numpy as np
 from rocking import __version__
 from rocking.app.answers import JsonAnswer
 from rocking.app.studies.opened import OpenStudy
-from rocking.app.studies.study import StudyFolder
+from rocking.app.studies.study_folder import StudyFolder
 from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.dynamics.lost_contact import contact_words, lost_contact

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rocking.app.studies.study import file_name, is_id, new_id, shown
+from rocking.app.studies.study_folder import file_name, is_id, new_id, shown
 
 HOSTILE = [
     "../../etc/passwd", "..", ".", "", " ", "a/b\\c", "CON", "nul.txt", "a\x00b", "a\nb", "a\u202etxt.exe", "x" * 5000,
