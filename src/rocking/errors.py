@@ -1,5 +1,8 @@
 """One family of errors: everything this package refuses is a `RockingError`."""
 
+from importlib import import_module
+from types import ModuleType
+
 _EXTRAS = {
     "matplotlib": "plots",
     "jinja2": "report",
@@ -83,3 +86,29 @@ def how_to_install(what: str, module: str, error: ImportError) -> str:
     package = module.partition(".")[0]
     missing = (error.name or package).partition(".")[0]
     return f"{what} needs {missing}: pip install '.[{_EXTRAS.get(package, 'data')}]' in the folder of rocking's source"
+
+
+def extra(module: str, what: str) -> ModuleType:
+    """Return an optional dependency.
+
+    Parameters
+    ----------
+    module : str
+        The dependency.
+    what : str
+        What it is needed for.
+
+    Returns
+    -------
+    module
+        The dependency.
+
+    Raises
+    ------
+    MissingExtraError
+        If it is not installed.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise MissingExtraError(how_to_install(what, module, error)) from error

@@ -28,7 +28,7 @@ def write_csv(path: Path, head: list[str], columns: list[Any]) -> None:
 
 def write_netcdf(path: Path, dataset: Any) -> None:
     """Write a dataset as netCDF."""
-    from rocking.dynamics.export import extra
+    from rocking.errors import extra
 
     extra("h5netcdf", "a netCDF file")
     dataset.to_netcdf(path, engine="h5netcdf")

@@ -36,7 +36,7 @@ class Files:
 
     def check(self, question: FragilityQuestion) -> None:
         """Refuse, before anything is computed, what could not be written."""
-        from rocking.dynamics.export import extra
+        from rocking.errors import extra
         from rocking.studies.fragility.nrml import intensity_type
 
         check_files(self.picture, self.csv, *(getattr(self, name) for name in _CURVES))

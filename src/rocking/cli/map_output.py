@@ -111,7 +111,7 @@ class MapAnswer:
         """Everything as one dataset, over ``restitution`` too where there are several."""
         if self.compared is None:
             return self.found
-        from rocking.dynamics.export import extra
+        from rocking.errors import extra
 
         xarray = extra("xarray", "a file of several maps")
         maps = self.compared.datasets

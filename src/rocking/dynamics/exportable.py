@@ -1,7 +1,7 @@
 """What every response can be handed over as: a dataset, a table, and files for Excel, MATLAB and netCDF."""
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -9,20 +9,36 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from rocking.dynamics.exported import Exported
+    from rocking.tables import Table
+
+
+def software() -> str:
+    """Return name and version of this package."""
+    from rocking import __version__
+
+    return f"rocking {__version__}"
+
+
+def motion_provenance(motion: Any) -> str:
+    """Return where a motion comes from.
+
+    >>> motion_provenance(None)
+    'ground at rest'
+    """
+    return "ground at rest" if motion is None else "; ".join(getattr(motion, "provenance", ())) or repr(motion)
 
 
 class Exportable(ABC):
     """A response whose samples, impacts and provenance can leave Python."""
 
     @abstractmethod
-    def exported(self) -> "Exported":
+    def exported(self) -> "Table":
         """Return what the files of this response hold.
 
         Returns
         -------
-        Exported
-            Samples, tables and provenance, with units.
+        Table
+            Samples, with tables of impacts and the like beside them, units and provenance.
         """
 
     def to_xarray(self) -> "xr.Dataset":
@@ -33,9 +49,9 @@ class Exportable(ABC):
         xarray.Dataset
             Samples over `time`, impacts over `impact`, and intervals over `interval` where the response has them.
         """
-        from rocking.dynamics.export import to_xarray
+        from rocking.tables import to_dataset
 
-        return to_xarray(self.exported())
+        return to_dataset(self.exported())
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Return the samples as a table.
@@ -45,7 +61,7 @@ class Exportable(ABC):
         pandas.DataFrame
             One row a sample, units in the column names.
         """
-        from rocking.dynamics.export import to_dataframe
+        from rocking.tables import to_dataframe
 
         return to_dataframe(self.exported())
 
@@ -62,9 +78,9 @@ class Exportable(ABC):
         Path
             The file.
         """
-        from rocking.dynamics.export import to_csv
+        from rocking.tables import target_of, to_csv
 
-        return to_csv(self.exported(), path)
+        return to_csv(self.exported(), target_of(path), blank=False)
 
     def to_mat(self, path: "str | Path") -> "Path":
         """Write a file that MATLAB loads.
@@ -79,9 +95,9 @@ class Exportable(ABC):
         Path
             The file.
         """
-        from rocking.dynamics.export import to_mat
+        from rocking.tables import structure_of, target_of, to_mat
 
-        return to_mat(self.exported(), path)
+        return to_mat(structure_of(self.exported()), "rocking", target_of(path))
 
     def to_netcdf(self, path: "str | Path") -> "Path":
         """Write a netCDF file, which xarray and MATLAB open.
@@ -96,6 +112,6 @@ class Exportable(ABC):
         Path
             The file.
         """
-        from rocking.dynamics.export import to_netcdf
+        from rocking.tables import dataset_to_netcdf, target_of
 
-        return to_netcdf(self.exported(), path)
+        return dataset_to_netcdf(self.to_xarray(), target_of(path))

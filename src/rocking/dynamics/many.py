@@ -90,7 +90,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     """
     from rocking.dynamics.batch import Batch
     from rocking.dynamics.engine import instruction_set
-    from rocking.dynamics.export import extra
+    from rocking.errors import extra
 
     xarray = extra("xarray", "simulate_many")
     settings = settings_of(gravity, options)

@@ -22,10 +22,10 @@ from rocking.outcome import Outcome, Status
 
 if TYPE_CHECKING:
     from rocking.dynamics.contact import Contact
-    from rocking.dynamics.exported import Exported
     from rocking.dynamics.intervals import Intervals
     from rocking.dynamics.ledger import ResponseEnergy
     from rocking.dynamics.planar import PlanarResponse
+    from rocking.tables import Table
 
 Motion = GroundMotion | Pulse
 
@@ -355,12 +355,12 @@ class Response(Exportable):
         c = intervals.quintics()[k]
         return np.asarray((c * x[..., None] ** np.arange(6)).sum(axis=-1))
 
-    def exported(self) -> "Exported":
+    def exported(self) -> "Table":
         """Return what the files of this response hold.
 
         Returns
         -------
-        Exported
+        Table
             Samples, impacts and provenance, with units.
         """
         from rocking.dynamics.samples import exported

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.exported import Column, Exported, told
+from rocking.dynamics.exportable import motion_provenance, software
+from rocking.tables import Column, Table
 
 if TYPE_CHECKING:
     from rocking.dynamics.response import Response
@@ -34,8 +35,6 @@ def columns(response: "Response") -> dict[str, FloatArray]:
 
 def provenance(response: "Response") -> dict[str, Any]:
     """Return what was computed from what, as plain values."""
-    from rocking.dynamics.export import software  # which imports this module
-
     motion, rocker = response.motion, response.rocker
     sides = {
         f"{name}_{foot}": getattr(getattr(rocker, foot), name)
@@ -57,18 +56,18 @@ def provenance(response: "Response") -> dict[str, Any]:
         "restitution": rocker.label,
         **sides,
         "motion": "none: free rocking" if motion is None else motion.name,
-        "motion_provenance": told(motion),
+        "motion_provenance": motion_provenance(motion),
         "scale": response.scale,
         "random_key": response.key,
         **{f"setting_{k}": v for k, v in vars(response.settings).items()},
     }
 
 
-def exported(response: "Response") -> Exported:
+def exported(response: "Response") -> Table:
     """Return what the files of a response hold."""
     samples = {name: Column.of(name, values) for name, values in columns(response).items()}
     measured = ("time", "velocity_before", "velocity_after", "coefficient")
     impacts = {name: Column.of(name, response.impacts[name]) for name in measured}
     onto = np.where(response.impacts["onto"] == "right", 1, -1).astype(np.int8)
     impacts["onto"] = Column.of("onto", onto)
-    return Exported(samples, {"impact": impacts}, provenance(response))
+    return Table("time", samples, provenance(response), {"impact": Table("impact", impacts)}, no_unit="-")

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 from rocking import conventions
 from rocking.bodies import Body
-from rocking.dynamics.export import extra
 from rocking.dynamics.lost_contact import contact_words
 from rocking.dynamics.response import Motion
+from rocking.errors import extra
 from rocking.quantities import HISTORY, attributes
 from rocking.studies.axis import Axis
 from rocking.studies.plane import Plane

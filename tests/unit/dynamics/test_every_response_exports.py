@@ -43,15 +43,15 @@ def test_every_sample_has_a_unit_and_is_finite(kind):
     """Every sample is a finite number under a name with unit and meaning, all of one length."""
     content = RESPONSES[kind].exported()
     count = RESPONSES[kind].time.size
-    assert next(iter(content.samples)) == "time"
-    for one in content.samples.values():
+    assert next(iter(content.columns)) == "time"
+    for one in content.columns.values():
         assert one.unit
         assert one.attributes["long_name"]
         assert one.values.shape == (count,)
         assert np.isfinite(one.values).all()
-    for table in content.tables.values():
-        assert len({one.values.size for one in table.values()}) == 1
-        assert all(one.unit or one.values.dtype.kind == "U" for one in table.values())
+    for table in content.beside.values():
+        assert len({one.values.size for one in table.columns.values()}) == 1
+        assert all(one.unit or one.values.dtype.kind == "U" for one in table.columns.values())
     assert json.loads(json.dumps(content.provenance, allow_nan=False))["software"] == f"rocking {rk.__version__}"
 
 
@@ -64,7 +64,7 @@ def test_csv_is_read_by_pandas(kind, tmp_path):
     found, frame = pandas.read_csv(path, dtype=str), response.to_dataframe()
     assert list(found.columns) == list(frame.columns)
     assert all(heading.endswith("]") for heading in frame.columns)
-    for heading, one in zip(found.columns, response.exported().samples.values(), strict=True):
+    for heading, one in zip(found.columns, response.exported().columns.values(), strict=True):
         assert equal([float(cell) for cell in found[heading]], one.values)
 
 
@@ -73,11 +73,11 @@ def test_mat_is_read_by_scipy(kind, tmp_path):
     """scipy reads samples, tables, units and provenance back from one structure, numbers and words."""
     content = RESPONSES[kind].exported()
     found = loadmat(RESPONSES[kind].to_mat(tmp_path / "out.mat"), simplify_cells=True)["rocking"]
-    for name, one in content.samples.items():
+    for name, one in content.columns.items():
         assert equal(found[name], one.values)
         assert found["units"][name] == one.unit
-    for row, table in content.tables.items():
-        for name, one in table.items():
+    for row, table in content.beside.items():
+        for name, one in table.columns.items():
             assert equal(found[STRUCTS[row]][name], one.values)
             assert not one.unit or found[f"{row}_units"][name] == one.unit
     assert json.loads(found["provenance"]) == content.provenance
@@ -93,15 +93,15 @@ def test_netcdf_is_read_by_xarray(kind, tmp_path):
     with xarray.open_dataset(path, engine="h5netcdf", decode_timedelta=False) as file:
         opened = file.load()
     for found in (opened, RESPONSES[kind].to_xarray()):
-        for name, one in content.samples.items():
+        for name, one in content.columns.items():
             assert found[name].dims == ("time",)
             assert equal(found[name].to_numpy(), one.values)
             assert (found[name].attrs["units"], found[name].attrs["long_name"]) == (
                 one.unit,
                 one.attributes["long_name"],
             )
-        for row, table in content.tables.items():
-            for name, one in table.items():
+        for row, table in content.beside.items():
+            for name, one in table.columns.items():
                 assert found[f"{row}_{name}"].dims == (row,)
                 assert equal(found[f"{row}_{name}"].to_numpy(), one.values)
         for name, value in content.provenance.items():
@@ -111,17 +111,17 @@ def test_netcdf_is_read_by_xarray(kind, tmp_path):
 def test_tables_are_the_response():
     """Impacts and intervals are those of the response, row by row."""
     sliding, corner = RESPONSES["slide and rock"], RESPONSES["corner"]
-    tables = sliding.exported().tables
-    assert tables["impact"]["lost"].values.tolist() == sliding.impacts["lost"].tolist()
-    assert tables["impact"]["slips"].values.astype(bool).tolist() == sliding.impacts["slips"].tolist()
-    assert tables["interval"]["regime"].values.tolist() == sliding.regimes["regime"].tolist()
-    assert {"SLIDE", "SLIDE_ROCK"} & set(tables["interval"]["regime"].values)
-    tables = corner.exported().tables
-    rows = zip(*(one.values.tolist() for one in tables["interval"].values()), strict=True)
+    tables = sliding.exported().beside
+    assert tables["impact"].columns["lost"].values.tolist() == sliding.impacts["lost"].tolist()
+    assert tables["impact"].columns["slips"].values.astype(bool).tolist() == sliding.impacts["slips"].tolist()
+    assert tables["interval"].columns["regime"].values.tolist() == sliding.regimes["regime"].tolist()
+    assert {"SLIDE", "SLIDE_ROCK"} & set(tables["interval"].columns["regime"].values)
+    tables = corner.exported().beside
+    rows = zip(*(one.values.tolist() for one in tables["interval"].columns.values()), strict=True)
     spelt = [(a, b, c.name.lower(), "-".join(map(str, points))) for a, b, c, points in corner.intervals]
     assert list(rows) == spelt
-    assert "vertex" in tables["interval"]["contact"].values
-    assert not RESPONSES["no force"].exported().tables["interval"]["start"].values.size
+    assert "vertex" in tables["interval"].columns["contact"].values
+    assert not RESPONSES["no force"].exported().beside["interval"].columns["start"].values.size
 
 
 def test_direction_is_told_only_where_it_overturned():

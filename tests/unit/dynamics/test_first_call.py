@@ -9,7 +9,7 @@ from rocking.dynamics import engine
 
 NOT_NEEDED = {
     "csv", "json", "scipy", "shapely", "pydantic", "pandas", "xarray", "matplotlib", "rocking.evidence",
-    "rocking.dynamics.reference", "rocking.dynamics.batch", "rocking.dynamics.export", "rocking.dynamics.contact",
+    "rocking.dynamics.reference", "rocking.dynamics.batch", "rocking.tables", "rocking.dynamics.contact",
     "rocking.restitution.plastic_winkler", "rocking.restitution.ledger",
 }  # fmt: skip
 SCRIPT = """

@@ -14,7 +14,7 @@ import numpy as np
 
 from rocking.campaigns.jobs.results import Results
 from rocking.campaigns.jobs.study import TYPES, Coordinate, blocks
-from rocking.dynamics.export import extra
+from rocking.errors import extra
 from rocking.quantities import attributes
 
 # attributes, and what HDF5 needs for itself [bytes]

@@ -10,8 +10,7 @@ import numpy as np
 from rocking.campaigns.jobs.results import Results
 from rocking.campaigns.jobs.study import TYPES, Coordinate
 from rocking.campaigns.jobs.workbook import new_book, save_book
-from rocking.dynamics.export import extra
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.quantities import QUANTITIES
 from rocking.studies.fragility.tables import safe_cell
 

@@ -14,8 +14,7 @@ from rocking.campaigns.jobs.netcdf import netcdf_file, room_of
 from rocking.campaigns.jobs.results import PIECE
 from rocking.campaigns.jobs.rows import MOST_ROWS_OF_EXCEL
 from rocking.campaigns.jobs.workbook import new_book, save_book
-from rocking.dynamics.export import extra
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.studies.fragility.tables import safe_cell
 
 Attributes = Mapping[str, Any]

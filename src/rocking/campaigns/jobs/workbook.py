@@ -5,7 +5,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from rocking.dynamics.export import extra
+from rocking.errors import extra
 
 
 def new_book() -> Any:

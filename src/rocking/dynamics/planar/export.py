@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.exported import Column, Exported, told
+from rocking.dynamics.exportable import motion_provenance, software
+from rocking.tables import Column, Table
 
 if TYPE_CHECKING:
     from rocking.dynamics.planar.response import PlanarResponse
@@ -39,8 +40,6 @@ def columns(response: "PlanarResponse") -> dict[str, FloatArray]:
 
 def provenance(response: "PlanarResponse") -> dict[str, Any]:
     """Return what was computed from what, as plain values."""
-    from rocking.dynamics.export import software
-
     motion, law, footing = response.motion, response.law, response.footing
     imposed = (
         "none: complementarity" if law.restitution is None else "left {:.9g}, right {:.9g}".format(*law.restitution)
@@ -62,13 +61,13 @@ def provenance(response: "PlanarResponse") -> dict[str, Any]:
         "bounce": law.bounce,
         "imposed_restitution": imposed,
         "motion": "none: ground at rest" if motion is None else motion.name,
-        "motion_provenance": told(motion),
+        "motion_provenance": motion_provenance(motion),
         "scale": response.scale,
         **{f"setting_{k}": v for k, v in vars(response.settings).items()},
     }
 
 
-def exported(response: "PlanarResponse") -> Exported:
+def exported(response: "PlanarResponse") -> Table:
     """Return what the files of a response hold.
 
     Returns Samples, impacts, intervals of one regime, and provenance.
@@ -79,6 +78,7 @@ def exported(response: "PlanarResponse") -> Exported:
     blows["feet"] = Column.of("feet", impacts["feet"])
     blows["slips"] = Column.of("slips", impacts["slips"].astype(np.int8))
     intervals = {name: Column.of(name, regimes[name]) for name in ("start", "end", "distance")}
-    intervals["regime"] = Column.said(regimes["regime"], "", "regime")
-    intervals["feet"] = Column.said(regimes["feet"], "", "feet that carry")
-    return Exported(samples, {"impact": blows, "interval": intervals}, provenance(response))
+    intervals["regime"] = Column(regimes["regime"], "", "regime")
+    intervals["feet"] = Column(regimes["feet"], "", "feet that carry")
+    beside = {"impact": Table("impact", blows), "interval": Table("interval", intervals)}
+    return Table("time", samples, provenance(response), beside, no_unit="-")

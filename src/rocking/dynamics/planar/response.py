@@ -23,7 +23,7 @@ from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Regime, Status
 
 if TYPE_CHECKING:
-    from rocking.dynamics.exported import Exported
+    from rocking.tables import Table
 
 _ROUNDING = 1e-9
 
@@ -241,12 +241,12 @@ class PlanarResponse(Exportable):
             raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
         return places_of(self.history, np.clip(given, 0.0, end))
 
-    def exported(self) -> "Exported":
+    def exported(self) -> "Table":
         """Return what the files of this response hold.
 
         Returns
         -------
-        Exported
+        Table
             Samples, impacts, intervals of one regime and provenance, with units.
         """
         from rocking.dynamics.planar.export import exported

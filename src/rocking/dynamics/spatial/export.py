@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.dynamics.exported import Column, Exported
+from rocking.dynamics.exportable import software
+from rocking.tables import Column, Table
 
 if TYPE_CHECKING:
     from rocking.dynamics.spatial.response import SpatialResponse
@@ -32,8 +33,6 @@ def provenance(response: "SpatialResponse") -> dict[str, Any]:
 
     Returns Numbers, words and lists of numbers; ``overturning_direction_rad`` only where it overturned.
     """
-    from rocking.dynamics.export import software
-
     body, direction = response.body, response.overturning_direction
     return {
         "software": software(),
@@ -53,27 +52,26 @@ def provenance(response: "SpatialResponse") -> dict[str, Any]:
     }
 
 
-def exported(response: "SpatialResponse") -> Exported:
+def exported(response: "SpatialResponse") -> Table:
     """Return what the files of a response in space hold.
 
     Returns Samples, impacts, intervals of one contact, and provenance.
     """
     known = ("time", "energy_before", "energy_after", "impulse", "pull")
     impacts = {name: Column.of(name, response.impacts[name]) for name in known}
-    impacts["contact"] = Column.said(response.impacts["contact"], "", "contact that stays")
-    impacts["vertices"] = Column.said(response.impacts["vertices"], "", "vertices that stay on the ground")
+    impacts["contact"] = Column(response.impacts["contact"], "", "contact that stays")
+    impacts["vertices"] = Column(response.impacts["vertices"], "", "vertices that stay on the ground")
     rows = response.intervals
     intervals = {
         "start": Column.of("start", np.array([start for start, _, _, _ in rows], dtype=np.float64)),
         "end": Column.of("end", np.array([end for _, end, _, _ in rows], dtype=np.float64)),
-        "contact": Column.said(
-            np.array([contact.name.lower() for _, _, contact, _ in rows], dtype="U8"), "", "contact"
-        ),
+        "contact": Column(np.array([contact.name.lower() for _, _, contact, _ in rows], dtype="U8"), "", "contact"),
         "vertices": Column.of(
             "vertices", np.array(["-".join(map(str, points)) for _, _, _, points in rows], dtype="U64")
         ),
     }
-    return Exported(columns(response), {"impact": impacts, "interval": intervals}, provenance(response))
+    beside = {"impact": Table("impact", impacts), "interval": Table("interval", intervals)}
+    return Table("time", columns(response), provenance(response), beside, no_unit="-")
 
 
 def _vector(name: str, values: np.ndarray) -> dict[str, np.ndarray]:

@@ -23,9 +23,9 @@ from rocking.outcome import Contact, Outcome, Status
 from rocking.portable import applied, dot, norm
 
 if TYPE_CHECKING:
-    from rocking.dynamics.exported import Exported
     from rocking.dynamics.ledger import ResponseEnergy
     from rocking.dynamics.spatial.states import States
+    from rocking.tables import Table
 
 SPATIAL_IMPACT = np.dtype(
     [
@@ -311,12 +311,12 @@ class SpatialResponse(Exportable):
             raise InvalidValueError(f"time must be in [0, {end:g}] s, where the response is known, got {bad[0]:g}")
         return states_of(self.body, self.trajectory, np.clip(given, 0.0, end))
 
-    def exported(self) -> "Exported":
+    def exported(self) -> "Table":
         """Return what the files of this response hold.
 
         Returns
         -------
-        Exported
+        Table
             Samples, impacts, intervals of one contact and provenance, with units.
         """
         from rocking.dynamics.spatial.export import exported

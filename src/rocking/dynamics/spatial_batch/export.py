@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.dynamics.exported import Column, Exported, told
+from rocking.dynamics.exportable import motion_provenance, software
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
 from rocking.dynamics.spatial_batch.start import SpatialStart
+from rocking.tables import Column, Table
 
 if TYPE_CHECKING:
     from rocking.dynamics.spatial_batch.result import SpatialBatch
@@ -41,7 +42,7 @@ def provenance(
     return {
         "duration_s": "to the end of the motion" if duration is None else float(duration),
         **{f"setting_{name}": value for name, value in vars(settings).items()},
-        "motions": json.dumps([[told(part) for part in _parts(motion)] for motion in motions]),
+        "motions": json.dumps([[motion_provenance(part) for part in _parts(motion)] for motion in motions]),
         "starts": json.dumps(leaning),
         **few,
         "bodies_sha256": hashlib.sha256(spelled.encode()).hexdigest(),
@@ -50,13 +51,11 @@ def provenance(
 
 def stated(batch: "SpatialBatch") -> dict[str, Any]:
     """Return the provenance of a batch with software, engine and refusals."""
-    from rocking.dynamics.export import software
-
     refused = json.dumps({str(number): reason for number, reason in batch.refused.items()})
     return {"software": software(), "engine": batch.engine, "refused": refused, **batch.provenance}
 
 
-def exported(batch: "SpatialBatch") -> Exported:
+def exported(batch: "SpatialBatch") -> Table:
     """Return what the files of a batch hold.
 
     Returns one row a history: numbers of body, motion and start, names of motion and restitution, scale, all results.
@@ -64,14 +63,14 @@ def exported(batch: "SpatialBatch") -> Exported:
     from rocking.dynamics.spatial_batch.result import DIMENSIONS
 
     places = dict(zip(DIMENSIONS, np.unravel_index(np.arange(len(batch)), batch.shape), strict=True))
-    rows = {name: Column.said(places[name], "1", f"number of the {name}") for name in ("body", "motion", "start")}
+    rows = {name: Column(places[name], "1", f"number of the {name}") for name in ("body", "motion", "start")}
     for name in ("motion", "restitution"):
         words = np.array([str(label) for label in batch.labels[name]])
         key = "motion_name" if name == "motion" else name
-        rows[key] = Column.said(words[places[name]], "", f"name of the {name}")
-    rows["scale"] = Column.said(np.array(batch.labels["scale"], dtype=np.float64)[places["scale"]], "1", "factor")
+        rows[key] = Column(words[places[name]], "", f"name of the {name}")
+    rows["scale"] = Column(np.array(batch.labels["scale"], dtype=np.float64)[places["scale"]], "1", "factor")
     rows |= {name: Column.of(name, values) for name, values in batch.results.items()}
-    return Exported(rows, {}, stated(batch))
+    return Table("history", rows, stated(batch), no_unit="-")
 
 
 def _numbers(body: SpatialBody) -> dict[str, Any]:

@@ -7,15 +7,14 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
+from rocking.errors import extra
 from rocking.outcome import of_results, overturned
 from rocking.quantities import attributes
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     import xarray as xr
 
-    from rocking.dynamics.exported import Exported
+    from rocking.tables import Table
 
 DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
 """Axes of the arrays of a batch, in order."""
@@ -103,12 +102,12 @@ class SpatialBatch(Exportable):
         """Direction in which it lies, from x towards y; NaN if it does not [rad]."""
         return self["direction"]
 
-    def exported(self) -> "Exported":
+    def exported(self) -> "Table":
         """Return what the tables and files of this batch hold.
 
         Returns
         -------
-        Exported
+        Table
             One row a history, with units and provenance.
         """
         from rocking.dynamics.spatial_batch.export import exported
@@ -123,7 +122,6 @@ class SpatialBatch(Exportable):
         xarray.Dataset
             Over body, motion, scale, restitution and start.
         """
-        from rocking.dynamics.export import extra
         from rocking.dynamics.spatial_batch.export import stated
 
         xarray = extra("xarray", "a labelled dataset")
@@ -134,20 +132,3 @@ class SpatialBatch(Exportable):
             data, coords={name: (name, row) for name, row in self.labels.items()}, attrs=stated(self)
         )
         return made
-
-    def to_netcdf(self, path: "str | Path") -> "Path":
-        """Write the labelled dataset as netCDF 4, which xarray and MATLAB open.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from rocking.dynamics.export import dataset_to_netcdf
-
-        return dataset_to_netcdf(self.to_xarray(), path)

@@ -9,8 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.export import extra
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.studies.fragility.barely_lifted import LEAST, ClearShare, barely_lifted, clearly_lifted
 from rocking.studies.fragility.fits import fits_of
 from rocking.studies.fragility.regression import Regression, regression

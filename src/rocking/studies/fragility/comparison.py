@@ -9,8 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray
-from rocking.dynamics.export import extra
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.studies.fragility._cloud import CloudAnalysis
 from rocking.studies.fragility._measures import measure
 from rocking.studies.fragility.barely_lifted import LEAST, checked_least, clearly_lifted

@@ -9,8 +9,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.export import extra
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.studies.fragility.agreement import Agreement, Ends, Repeated, agreement_of, repeated_of
 from rocking.studies.fragility.ordered_probit import nested_curves
 from rocking.studies.fragility.subject import Subject, checked_levels

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.dynamics.export import extra
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.studies.fragility.curves import CLAIMS, FragilityModel
 from rocking.studies.fragility.nesting import Crossing, check_crossing
 from rocking.studies.fragility.tables import TABLES, Cell, CellTable, safe_cell, table

@@ -10,7 +10,7 @@ import numpy as np
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.engine import Arrays
-from rocking.dynamics.export import extra
+from rocking.errors import extra
 from rocking.studies.fragility.fits import fits_of
 from rocking.studies.fragility.states import LimitState, Responses, limit_states
 from rocking.studies.fragility.subject import Motions, Progress, Subject, checked_levels, results_of

@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.export import extra
+from rocking.errors import extra
 from rocking.restitution import Ked
 from rocking.studies.impact_laboratory.beds import Laboratory, coefficients
 from rocking.studies.impact_laboratory.dependence import layered

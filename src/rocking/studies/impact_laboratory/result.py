@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING, Any
 
-from rocking.dynamics import export
 from rocking.dynamics.bed import fast
-from rocking.dynamics.exported import Column, Exported
+from rocking.dynamics.exportable import software
 from rocking.quantities import Quantity
+from rocking.tables import Column, Table, dataset_to_netcdf, target_of, to_csv, to_dataframe
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,31 +59,31 @@ class LaboratoryStudy:
         return repr(self.dataset)
 
     @property
-    def exported(self) -> Exported:
+    def exported(self) -> Table:
         """What files hold: the varied quantity first, then every result, with units; and the provenance."""
         names = [*self.dataset.coords, *self.dataset.data_vars]
         samples = {
-            str(name): Column.said(self.dataset[name].values, *(self.dataset[name].attrs.get(a, "") for a in _ABOUT))
+            str(name): Column(self.dataset[name].values, *(self.dataset[name].attrs.get(a, "") for a in _ABOUT))
             for name in names
         }
-        return Exported(samples, provenance=dict(self.dataset.attrs))
+        return Table("value", samples, dict(self.dataset.attrs), no_unit="-")
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Return the study as a table.
 
         Returns A row a value; columns such as ``peak_force [N]``; the provenance in its `attrs`.
         """
-        frame = export.to_dataframe(self.exported)
+        frame = to_dataframe(self.exported)
         frame.attrs.update(self.dataset.attrs)
         return frame
 
     def to_csv(self, path: "str | Path") -> "Path":
         """Write the study as comma-separated values, all digits kept; headings as in `to_dataframe`."""
-        return export.to_csv(self.exported, path)
+        return to_csv(self.exported, target_of(path), blank=False)
 
     def to_netcdf(self, path: "str | Path") -> "Path":
         """Write the study as netCDF 4, with units and provenance, which xarray and MATLAB open."""
-        return export.dataset_to_netcdf(self.dataset, path)
+        return dataset_to_netcdf(self.dataset, target_of(path))
 
 
 def about(name: str, unit: str) -> dict[str, str]:
@@ -94,4 +94,4 @@ def about(name: str, unit: str) -> dict[str, str]:
 def provenance(study: str, laboratory: object) -> dict[str, str]:
     """Return what a study was computed from, and with what."""
     engine = "contact bed, fast" if fast.available() else "contact bed, reference"
-    return {"software": export.software(), "engine": engine, "study": study, "laboratory": repr(laboratory)}
+    return {"software": software(), "engine": engine, "study": study, "laboratory": repr(laboratory)}

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import percent
-from rocking.dynamics.export import extra
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, extra
 from rocking.outcome import Outcome
 from rocking.studies.sensitivity.curves import CurveChange, curve_change
 from rocking.studies.sensitivity.differences import Flips, difference_of, flips_of

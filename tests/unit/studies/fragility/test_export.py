@@ -11,8 +11,7 @@ import pytest
 from scipy.io import loadmat
 
 import rocking as rk
-from rocking.dynamics import export as dynamics_export
-from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.errors import InvalidValueError, MissingExtraError, extra
 from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, model_of
 from rocking.studies.fragility.export import to_csv, to_excel, to_mat, to_netcdf
 from rocking.studies.fragility.nrml import intensity_type, moments_of_lognormal, to_nrml
@@ -125,7 +124,7 @@ def test_excel_without_its_extra_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "openpyxl", None)
     with pytest.raises(MissingExtraError, match=r"Excel needs openpyxl.*\.\[\w+\]"):
         to_excel(model(), tmp_path / "f.xlsx")
-    assert dynamics_export.extra("json", "nothing") is json
+    assert extra("json", "nothing") is json
 
 
 def parsed(path):

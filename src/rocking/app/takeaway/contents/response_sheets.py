@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 from rocking.app.takeaway.sheets import Column, Sheet
-from rocking.dynamics.export import columns
 from rocking.dynamics.response import Response
+from rocking.dynamics.samples import columns
 from rocking.quantities import QUANTITIES
 from rocking.report.facts.response import outcome_facts
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.app.takeaway.plain_text import LONGEST_CELL, plain_line
 from rocking.app.takeaway.sheets.sheet import Column, Sheet
-from rocking.dynamics.export import extra
+from rocking.errors import extra
 
 
 def netcdf_of(sheet: Sheet) -> bytes:

@@ -1,0 +1,264 @@
+"""Files of arrays under names: netCDF, which xarray and MATLAB open, and MATLAB's own of version 5."""
+
+import errno
+import json
+import os
+import re
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.errors import InvalidValueError, extra
+from rocking.quantities import QUANTITIES
+from rocking.tables.table import Column, Grid, Table, blocks
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MOST_BYTES_OF_MATLAB = 2**31 - 1
+"""Largest variable of a MATLAB file of version 5 [bytes]."""
+
+_TEXT = 80  # a text is a matrix of its own there [bytes]
+_MARGIN = 150_000  # attributes, and what HDF5 needs for itself [bytes]
+
+
+def to_dataset(table: Table) -> "xr.Dataset":
+    """Return a table as a labelled dataset.
+
+    Parameters
+    ----------
+    table : Table
+        The table; the column that is called as its rows are is the coordinate.
+
+    Returns
+    -------
+    xarray.Dataset
+        Columns over their rows, those of tables beside it over theirs, with units, meanings, codes and provenance.
+    """
+    xarray = extra("xarray", "a labelled dataset")
+    every = {name: (table.row, each.values, each.attributes) for name, each in table.columns.items()}
+    for row, other in table.beside.items():
+        every |= {f"{row}_{name}": (row, each.values, each.attributes) for name, each in other.columns.items()}
+    coordinates = {name: every.pop(name) for name in (table.row,) if name in every}
+    attributes = {key: int(v) if isinstance(v, bool) else v for key, v in table.provenance.items()}
+    dataset: xr.Dataset = xarray.Dataset(every, coords=coordinates, attrs=attributes)
+    return dataset
+
+
+def dataset_to_netcdf(dataset: "xr.Dataset", path: Path) -> Path:
+    """Write a labelled dataset as netCDF 4, which xarray and MATLAB open.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The dataset.
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    extra("h5py", "netCDF")
+    extra("h5netcdf", "netCDF")
+    dataset.to_netcdf(path, engine="h5netcdf")
+    return path
+
+
+def grid_to_netcdf(grid: Grid, path: Path) -> None:
+    """Write results over dimensions as netCDF 4, piece by piece.
+
+    Parameters
+    ----------
+    grid : Grid
+        The results.
+    path : Path
+        The file.
+    """
+    room = len(grid) * sum(np.dtype(kind).itemsize for kind in grid.results.values())
+    room += sum(_room(each.values) for each in grid.coordinates.values())
+    with _netcdf_file(path, "w", room) as file:
+        file.dimensions = dict(grid.dims)
+        file.attrs.update(grid.provenance)
+        for name, each in grid.coordinates.items():
+            _variable(file, name, each.dims, each)
+        also = " ".join(name for name in grid.coordinates if name not in grid.dims)
+        for name, kind in grid.results.items():
+            variable = file.create_variable(name, tuple(grid.dims), dtype=np.dtype(kind))
+            variable.attrs.update(QUANTITIES[name].attributes)
+            if also:
+                variable.attrs["coordinates"] = also
+        for first, last, arrays in grid.arrays():
+            for name, values in arrays.items():
+                for place, part in blocks(first, last, grid.shape):
+                    shape = tuple(s.stop - s.start for s in place)
+                    file.variables[name][place] = np.asarray(values)[part].reshape(shape)
+
+
+def add_to_netcdf(tables: Mapping[str, Table], path: Path, provenance: Mapping[str, Any]) -> None:
+    """Write tables as variables of a netCDF file, which is made or, where it is there, added to.
+
+    Parameters
+    ----------
+    tables : dict of str to Table
+        The tables.
+    path : Path
+        The file.
+    provenance : dict
+        What was computed from what: attributes of the file.
+    """
+    room = sum(_room(each.values) for table in tables.values() for each in table.columns.values())
+    with _netcdf_file(path, "a", room) as file:
+        file.attrs.update(provenance)
+        for table in tables.values():
+            file.dimensions[table.row] = len(table)
+            for name, each in table.columns.items():
+                _variable(file, each.variable or name, (table.row,), each)
+
+
+def _variable(file: Any, name: str, dims: tuple[str, ...], column: Column) -> None:
+    kind = extra("h5py", "netCDF").string_dtype() if column.is_text else column.values.dtype
+    variable = file.create_variable(name, dims, dtype=kind)
+    if column.values.size:
+        variable[...] = column.values
+    variable.attrs.update(column.attributes)
+
+
+@contextmanager
+def _netcdf_file(path: Path, mode: str, room: int) -> Iterator[Any]:
+    """Open a netCDF file, if the disk has room for it, that is closed whatever happens.
+
+    room: what will be written into it, at least [bytes].
+    """
+    h5netcdf: Any = extra("h5netcdf", "netCDF")
+    # asked before: HDF5 that cannot write tries again when the process ends, and may crash it
+    if shutil.disk_usage(path.parent).free < room + _MARGIN:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    file = h5netcdf.File(path, mode)
+    try:
+        yield file
+        file.close()
+    except BaseException as error:
+        with suppress(OSError):
+            os.truncate(path, 0)  # there is room again for the little that closing writes
+        with suppress(Exception):
+            file.close()
+        cause = re.search(r"errno = (\d+), error message = '([^']*)'", str(error))
+        if cause is None:
+            raise
+        raise OSError(int(cause[1]), cause[2]) from error
+
+
+def _room(values: np.ndarray) -> int:
+    """Room that some values take in a file, at least [bytes]."""
+    return int(values.nbytes if values.dtype.kind in "iufb" else 16 * values.size)
+
+
+def to_mat(structure: Mapping[str, Any], name: str, path: Path) -> Path:
+    """Write a structure as a MATLAB file of version 5.
+
+    Parameters
+    ----------
+    structure : dict
+        Arrays, text, and structures of the same kind.
+    name : str
+        What it is called.
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    from scipy.io import savemat
+
+    savemat(path, {name: structure}, oned_as="column", appendmat=False, long_field_names=True)
+    return path
+
+
+def structure_of(table: Table, *, apart: bool = False) -> dict[str, Any]:
+    """Return a table as a structure of MATLAB's.
+
+    Parameters
+    ----------
+    table : Table
+        The table.
+    apart : bool
+        Whether columns, their full names and meanings have structures of their own.
+
+    Returns
+    -------
+    dict
+        Columns, their units, tables beside them, and provenance.
+
+    Raises
+    ------
+    InvalidValueError
+        If a file of version 5 does not take as many rows.
+    """
+    columns = table.columns.values()
+    if sum(_TEXT * c.values.size if c.is_text else c.values.nbytes for c in columns) > MOST_BYTES_OF_MATLAB:
+        raise InvalidValueError(
+            f"MATLAB files take tables up to 2 GiB, this one has {len(table)} rows; take .nc, which MATLAB reads"
+        )
+    named = {each.variable or name: each for name, each in table.columns.items()}
+    values = {name: each.values for name, each in named.items()}
+    units = {name: each.unit for name, each in named.items()}
+    if apart:
+        meanings = {name: each.meaning for name, each in named.items()}
+        names = dict(zip(named, table.columns, strict=True))
+        provenance = table.provenance["provenance"]
+        return {"columns": values, "names": names, "units": units, "words": meanings, "provenance": provenance}
+    beside = {row: other.columns for row, other in table.beside.items()}
+    return {
+        **values,
+        **{f"{row}s": {name: _double(each) for name, each in other.items()} for row, other in beside.items()},
+        "units": units,
+        **{f"{row}_units": {name: c.unit for name, c in other.items() if c.unit} for row, other in beside.items()},
+        "provenance": json.dumps(table.provenance),
+    }
+
+
+def _double(column: Column) -> np.ndarray:
+    """Numbers as MATLAB's own double; text as a column of cells."""
+    return column.values.astype(object if column.is_text else np.float64)
+
+
+def grid_to_mat(grid: Grid, path: Path) -> None:
+    """Write results as a structure ``campaign``; the last dimension is the last one there.
+
+    Parameters
+    ----------
+    grid : Grid
+        The results.
+    path : Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If a file of version 5 does not take as many.
+    """
+    if 8 * len(grid) > MOST_BYTES_OF_MATLAB:
+        raise InvalidValueError(
+            f"MATLAB files take arrays up to 2 GiB, these are {len(grid)} {grid.row}; take .nc, which MATLAB reads"
+        )
+    whole = {name: np.empty(grid.shape, kind) for name, kind in grid.results.items()}
+    for first, last, arrays in grid.arrays():
+        for name, values in arrays.items():
+            for place, part in blocks(first, last, grid.shape):
+                whole[name][place] = values[part].reshape(whole[name][place].shape)
+    structure = {
+        "dimensions": np.array(list(grid.dims), dtype=object),
+        "coordinates": {name: each.values for name, each in grid.coordinates.items()},
+        "results": whole,
+        "units": {name: QUANTITIES[name].unit for name in grid.results},
+        "provenance": grid.provenance["provenance"],
+    }
+    to_mat(structure, "campaign", path)

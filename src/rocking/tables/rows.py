@@ -1,0 +1,213 @@
+"""Files with a row a line: CSV, Parquet, Excel; written piece by piece, so that they may be larger than the memory."""
+
+import csv
+import json
+from collections.abc import Mapping
+from contextlib import suppress
+from importlib import import_module
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking.errors import InvalidValueError, extra
+from rocking.tables.table import Cell, Column, Grid, Table, safe_cell
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MOST_ROWS_OF_EXCEL = 1_048_575
+"""Rows of a sheet, its header apart."""
+
+_LONGEST_CELL = 32_000
+_LONGEST_TITLE = 31
+_WIDEST = 60
+
+
+def to_dataframe(table: Table) -> "pd.DataFrame":
+    """Return a table as pandas has it.
+
+    Parameters
+    ----------
+    table : Table
+        The table.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns such as ``rotation [rad]``.
+    """
+    pandas = extra("pandas", "a table")
+    frame: pd.DataFrame = pandas.DataFrame(
+        dict(zip(table.header, (each.values for each in table.columns.values()), strict=True))
+    )
+    return frame
+
+
+def to_csv(table: Table | Grid, path: Path, *, blank: bool = True, for_excel: bool = False) -> Path:
+    """Write a table as comma-separated values, all digits kept; units stand in the header.
+
+    Parameters
+    ----------
+    table : Table or Grid
+        The table.
+    path : Path
+        The file.
+    blank : bool
+        Whether cells without a finite number are empty.
+    for_excel : bool
+        Whether a mark before the first line tells Excel that it is UTF-8, and text is quoted: a semicolon separates
+        nothing then, whatever Excel takes for the separator.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    with path.open("w", newline="", encoding="utf-8-sig" if for_excel else "utf-8") as file:
+        writer = csv.writer(file, quoting=csv.QUOTE_NONNUMERIC if for_excel else csv.QUOTE_MINIMAL)
+        writer.writerow(map(safe_cell, table.header))
+        for piece in table.pieces():
+            writer.writerows(piece.cells(blank=blank))
+    return path
+
+
+def to_parquet(table: Table | Grid, path: Path) -> None:
+    """Write a table as Parquet, a group of rows a piece; units are in the metadata of the columns.
+
+    Parameters
+    ----------
+    table : Table or Grid
+        The table.
+    path : Path
+        The file.
+    """
+    pa: Any = extra("pyarrow", "Parquet")
+    parquet: Any = extra("pyarrow.parquet", "Parquet")
+    fields = [
+        pa.field(name, _arrow_type(pa, each), metadata={"units": each.unit, "long_name": each.meaning})
+        for name, each in table.columns.items()
+    ]
+    provenance = {
+        key: value if isinstance(value, str) else json.dumps(value) for key, value in table.provenance.items()
+    }
+    schema = pa.schema(fields, metadata=provenance)
+    with parquet.ParquetWriter(path, schema) as writer:
+        for piece in table.pieces():
+            arrays = [_arrow(pa, column) for column in piece.columns.values()]
+            writer.write_table(pa.table(arrays, schema=schema))
+
+
+def _arrow_type(pa: Any, column: Column) -> Any:
+    if not column.is_text:
+        return pa.from_numpy_dtype(column.values.dtype)
+    return pa.string() if column.index is None else pa.dictionary(pa.int32(), pa.string())
+
+
+def _arrow(pa: Any, column: Column) -> Any:
+    values, index = column.values, column.index
+    if not column.is_text:
+        return pa.array(values if index is None else values[index])
+    text = pa.array(values.tolist(), pa.string())
+    return text if index is None else pa.DictionaryArray.from_arrays(pa.array(index.astype(np.int32)), text)
+
+
+def to_excel(
+    sheets: Mapping[str, Table | Grid], path: Path, provenance: Mapping[str, Any] | None = None, *,
+    others: str = ".parquet or .csv", dressed: bool = False,
+) -> None:  # fmt: skip
+    """Write tables as a workbook, whose text is text and never a formula.
+
+    It is packed in memory: an archive that a full disk cuts off cannot be closed, and complains when it is forgotten.
+
+    Parameters
+    ----------
+    sheets : dict of str to Table or Grid
+        The sheets by their titles.
+    path : Path
+        The file.
+    provenance : dict, optional
+        What the last sheet says; none if not given.
+    others : str
+        The formats that take more rows.
+    dressed : bool
+        Whether headings are bold and stay in sight, columns are as wide as they need, and numbers keep all digits
+        (16 otherwise), which takes longer.
+
+    Raises
+    ------
+    InvalidValueError
+        If a sheet of Excel does not take as many rows.
+    """
+    for table in sheets.values():
+        if len(table) > MOST_ROWS_OF_EXCEL:
+            kind = f" {table.row}" if isinstance(table, Grid) else ""
+            raise InvalidValueError(
+                f"a sheet of Excel has {MOST_ROWS_OF_EXCEL} rows, these are {len(table)}{kind}; take {others}"
+            )
+    book: Any = extra("openpyxl", "Excel").Workbook(write_only=True)
+    titles: list[str] = []
+    for name, table in sheets.items():
+        titles.append(_title(name, titles))
+        page = book.create_sheet(titles[-1])
+        if dressed:
+            _fill(page, table)
+            continue
+        page.append([safe_cell(each) for each in table.header])
+        for piece in table.pieces():
+            for row in piece.cells():
+                page.append(row)
+    if provenance is not None:
+        page = book.create_sheet("provenance")
+        for name, value in provenance.items():
+            page.append([name, safe_cell(str(value)[:_LONGEST_CELL])])
+    whole = BytesIO()
+    try:
+        book.save(whole)
+    except OSError:
+        for page in book.worksheets:
+            with suppress(Exception):
+                page.close()
+        raise
+    path.write_bytes(whole.getbuffer())
+
+
+def _fill(page: Any, table: Table | Grid) -> None:
+    fonts, cells = import_module("openpyxl.styles"), import_module("openpyxl.cell")
+    page.freeze_panes = "A2"
+    letters = import_module("openpyxl.utils").get_column_letter
+    for k, (heading, column) in enumerate(zip(table.header, table.columns.values(), strict=True), start=1):
+        widest = max([len(heading), *map(len, column.values[:200].tolist() if column.is_text else ())])
+        page.column_dimensions[letters(k)].width = min(_WIDEST, widest + 2)
+    head = [_filled(cells.WriteOnlyCell(page), heading) for heading in table.header]
+    for one in head:
+        one.font = fonts.Font(bold=True)
+    page.append(head)
+    for piece in table.pieces():
+        for row in zip(*(_raw(each) for each in piece.columns.values()), strict=True):
+            page.append([None if value is None else _filled(cells.WriteOnlyCell(page), value) for value in row])
+
+
+def _raw(column: Column) -> list[Cell]:
+    """Text as it is: the kind of its cell says that it is no formula."""
+    return column.values.tolist() if column.is_text else column.cells(slice(None))
+
+
+def _filled(cell: Any, value: Cell) -> Any:
+    """Put a value into a cell: text as text whatever it begins with, a number with all its digits."""
+    # left to itself the writer keeps 16 digits
+    cell.value = value if isinstance(value, str) else repr(float(value))  # type: ignore[arg-type]
+    cell.data_type = "s" if isinstance(value, str) else "n"
+    return cell
+
+
+def _title(name: str, taken: list[str]) -> str:
+    """Return a name that Excel allows and that no other sheet has."""
+    words = "".join(each for each in name if each.isprintable() and each not in r"[]:*?/\'").strip() or "table"
+    low = {each.lower() for each in taken}
+    for k in range(1, len(taken) + 2):
+        tail = "" if k == 1 else f" {k}"
+        if (title := words[: _LONGEST_TITLE - len(tail)] + tail).lower() not in low:
+            break
+    return title

@@ -1,0 +1,426 @@
+"""Columns with units, tables of them, and results over dimensions that are handed out piece by piece."""
+
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rocking.errors import InvalidValueError
+from rocking.quantities import QUANTITIES, Quantity
+
+PIECE = 1 << 16
+"""Rows that are in memory at once as Python objects: they take many times the room of their numbers."""
+
+Cell = str | int | float | None
+Arrays = Mapping[str, np.ndarray]
+Block = tuple[tuple[slice, ...], slice]
+
+_FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20", "\t", "\r", "\n")  # the wide ones count too
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Column:
+    """Values of one kind, and what they are.
+
+    Parameters
+    ----------
+    values : ndarray
+        Numbers, NaN where there is nothing, or text.
+    unit : str
+        The unit; ``1`` for numbers without one, or empty.
+    meaning : str
+        What the values are.
+    variable : str, optional
+        The name in netCDF and MATLAB files, where it differs.
+    dims : tuple of str
+        Dimensions of the values, where they are not the rows of a table.
+    codes : dict of int to str
+        What whole numbers stand for.
+    index : ndarray of int, optional
+        Which of the values each row has; the values stand in the order of the rows if not given.
+
+    Examples
+    --------
+    >>> Column.of("rotation", np.zeros(2)).attributes
+    {'units': 'rad', 'long_name': 'rotation theta, positive clockwise'}
+    """
+
+    values: np.ndarray
+    unit: str = "1"
+    meaning: str = ""
+    variable: str | None = None
+    dims: tuple[str, ...] = ()
+    codes: Mapping[int, str] = field(default_factory=dict)
+    index: np.ndarray | None = None
+
+    @classmethod
+    def of(cls, name: str, values: np.ndarray) -> "Column":
+        """Return values of what has an entry in `rocking.quantities`.
+
+        Parameters
+        ----------
+        name : str
+            The entry.
+        values : ndarray
+            The values.
+
+        Returns
+        -------
+        Column
+            With unit, meaning and codes.
+        """
+        entry = QUANTITIES[name]
+        return cls(values, entry.unit, entry.meaning, codes=entry.codes)
+
+    @property
+    def is_text(self) -> bool:
+        """Whether the values are text."""
+        return self.values.dtype.kind not in "iufb"
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Unit, meaning and codes, as xarray and the CF conventions name them."""
+        return Quantity("", self.unit, self.meaning, dict(self.codes)).attributes
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return int(self.values.size if self.index is None else self.index.size)
+
+    def cells(self, rows: slice, *, blank: bool = True) -> list[Cell]:
+        """Return some rows as cells of a file.
+
+        Parameters
+        ----------
+        rows : slice
+            Which rows.
+        blank : bool
+            Whether cells without a finite number are empty.
+
+        Returns
+        -------
+        list
+            Numbers with all digits, text that no spreadsheet takes for a formula, None where there is nothing.
+        """
+        values = self.values[rows] if self.index is None else self.values[self.index[rows]]
+        cells: list[Cell] = values.tolist()
+        if self.is_text:
+            return [safe_cell(cell) if isinstance(cell, str) else cell for cell in cells]
+        if not blank or (finite := np.isfinite(values)).all():
+            return cells
+        return [cell if known else None for cell, known in zip(cells, finite.tolist(), strict=True)]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Table:
+    """Columns of one length, and where they come from.
+
+    Parameters
+    ----------
+    row : str
+        What a row is: the dimension in netCDF files.
+    columns : dict of str to Column
+        The columns by name.
+    provenance : dict
+        What was computed from what: plain values.
+    beside : dict of str to Table
+        Further tables of the same result, by what one of their rows is.
+    no_unit : str
+        What headings say in brackets of numbers without unit; no brackets if empty.
+
+    Examples
+    --------
+    >>> Table("sample", {"rotation": Column.of("rotation", np.zeros(2))}).header
+    ['rotation [rad]']
+    """
+
+    row: str
+    columns: Mapping[str, Column]
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    beside: Mapping[str, "Table"] = field(default_factory=dict)
+    no_unit: str = ""
+
+    @classmethod
+    def of_rows(cls, row: str, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> "Table":
+        """Return a table of cells whose headings say the units already.
+
+        Parameters
+        ----------
+        row : str
+            What the table is called.
+        header : sequence of str
+            Headings, each different.
+        rows : iterable of sequences
+            Text and finite numbers; empty text where there is nothing.
+
+        Returns
+        -------
+        Table
+            The same as columns.
+
+        Raises
+        ------
+        InvalidValueError
+            If a number is not finite.
+        """
+        cells = [list(map(_checked, each)) for each in rows]
+        columns = {name: text_array([each[k] for each in cells]) for k, name in enumerate(header)}
+        return cls(row, {name: Column(values, "") for name, values in columns.items()})
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(next(iter(self.columns.values())))
+
+    @property
+    def header(self) -> list[str]:
+        """Names of the columns with their units."""
+        return _header(self.columns, self.no_unit)
+
+    @property
+    def rows(self) -> list[tuple[Any, ...]]:
+        """All rows, as plain values."""
+        return list(zip(*(column.values.tolist() for column in self.columns.values()), strict=True))
+
+    def cells(self, *, blank: bool = True) -> Iterator[tuple[Cell, ...]]:
+        """Return the rows of a file.
+
+        Parameters
+        ----------
+        blank : bool
+            Whether cells without a finite number are empty.
+
+        Yields
+        ------
+        tuple
+            A row, harmless to spreadsheets.
+        """
+        for first in range(0, len(self), PIECE):
+            part = slice(first, first + PIECE)
+            yield from zip(*(each.cells(part, blank=blank) for each in self.columns.values()), strict=True)
+
+    def pieces(self) -> Iterator["Table"]:
+        """Return the table as a stream of tables.
+
+        Yields
+        ------
+        Table
+            This one.
+        """
+        yield self
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """Results over dimensions that may be larger than the memory: they come piece by piece.
+
+    Parameters
+    ----------
+    row : str
+        What the results are of, in the plural.
+    dims : dict of str to int
+        Length of every dimension; the last one changes fastest.
+    coordinates : dict of str to Column
+        What is known along dimensions: columns with `dims`.
+    results : dict of str to dtype
+        Types of the results, by their names in `rocking.quantities`.
+    arrays : callable
+        Returns an iterator over first row, last row (not included) and arrays of the results between them.
+    provenance : dict
+        What was computed from what: plain values.
+    """
+
+    row: str
+    dims: Mapping[str, int]
+    coordinates: Mapping[str, Column]
+    results: Mapping[str, Any]
+    arrays: Callable[[], Iterator[tuple[int, int, Arrays]]]
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Length of every dimension."""
+        return tuple(self.dims.values())
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return math.prod(self.shape)
+
+    @property
+    def columns(self) -> dict[str, Column]:
+        """Columns of the rows, none of them filled."""
+        return dict(self._piece(0, 0, {name: np.empty(0, kind) for name, kind in self.results.items()}).columns)
+
+    @property
+    def header(self) -> list[str]:
+        """Names of the columns with their units."""
+        return _header(self.columns, "")
+
+    def pieces(self) -> Iterator[Table]:
+        """Return a row for each place, as a stream of tables.
+
+        Yields
+        ------
+        Table
+            The next rows.
+        """
+        for first, last, arrays in self.arrays():
+            yield self._piece(first, last, arrays)
+
+    def _piece(self, first: int, last: int, arrays: Arrays) -> Table:
+        places = dict(zip(self.dims, np.unravel_index(np.arange(first, last, dtype=np.int64), self.shape), strict=True))
+        columns = {}
+        for name, each in self.coordinates.items():
+            index = np.ravel_multi_index(tuple(places[dim] for dim in each.dims), each.values.shape)
+            columns[name] = Column(each.values.ravel(), each.unit, each.meaning, codes=each.codes, index=index)
+        columns |= {name: Column.of(name, np.asarray(values)) for name, values in arrays.items()}
+        return Table(self.row, columns)
+
+
+def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
+    """Return the rectangular blocks of an array that some of its entries, numbered row by row, fill.
+
+    Parameters
+    ----------
+    first, last : int
+        The entries, the last one not included.
+    shape : tuple of int
+        Shape of the array.
+
+    Yields
+    ------
+    tuple
+        Where a block is in the array, and where its entries are among those from first to last.
+
+    Examples
+    --------
+    >>> for place, part in blocks(1, 8, (3, 3)):
+    ...     print([(p.start, p.stop) for p in place], part.start, part.stop)
+    [(0, 1), (1, 3)] 0 2
+    [(1, 2), (0, 3)] 2 5
+    [(2, 3), (0, 2)] 5 7
+    """
+    at = first
+    while at < last:
+        place = [int(i) for i in np.unravel_index(at, shape)]
+        # the longest run that starts here: whole rows of the innermost dimensions, as far as they are at their start
+        axis, width = len(shape) - 1, 1
+        while axis > 0 and place[axis] == 0 and at + width * shape[axis] <= last:
+            width *= shape[axis]
+            axis -= 1
+        run = max(1, min(shape[axis] - place[axis], (last - at) // width))
+        where = [slice(i, i + 1) for i in place]
+        where[axis] = slice(place[axis], place[axis] + run)
+        where[axis + 1 :] = [slice(0, n) for n in shape[axis + 1 :]]
+        yield tuple(where), slice(at - first, at - first + run * width)
+        at += run * width
+
+
+def safe_cell(cell: Cell) -> Cell:
+    """Return a cell that no spreadsheet takes for a formula.
+
+    Parameters
+    ----------
+    cell : str, int, float or None
+        What goes into it.
+
+    Returns
+    -------
+    str, int, float or None
+        Text without control characters, and `escaped`; numbers stay.
+
+    Raises
+    ------
+    InvalidValueError
+        If a number is not finite.
+
+    Examples
+    --------
+    >>> safe_cell("=1+1"), safe_cell(-1.5)
+    ("'=1+1", -1.5)
+    """
+    if isinstance(cell, str):
+        clean = "".join(c if c.isprintable() else " " for c in cell)
+        return f"'{clean}" if escaped(cell) != cell else clean
+    return _checked(cell)
+
+
+def _checked(cell: Cell) -> Cell:
+    if isinstance(cell, float) and not math.isfinite(cell):
+        raise InvalidValueError(f"cells of a table must be finite, got {cell}")
+    return cell
+
+
+def escaped(text: str) -> str:
+    """Return text that no spreadsheet takes for a formula.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+
+    Returns
+    -------
+    str
+        The same, with an apostrophe before it if it starts with ``=``, ``+``, ``-``, ``@``, a tab or a line break.
+
+    Examples
+    --------
+    >>> escaped("=1+1"), escaped("vase")
+    ("'=1+1", 'vase')
+    """
+    return f"'{text}" if text.lstrip(" ").startswith(_FORMULA) else text
+
+
+def target_of(path: str | os.PathLike[str]) -> Path:
+    """Return the path of a file that can be written.
+
+    Parameters
+    ----------
+    path : str or path
+        The file.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no path, or a folder, or its folder is missing.
+    """
+    other: object = path
+    if not isinstance(other, (str, os.PathLike)):
+        raise InvalidValueError(f"path must be the path of a file, got {path!r:.60}")
+    target = Path(path)
+    if target.is_dir():
+        raise InvalidValueError(f"path must be the path of a file, got the folder {target}")
+    if not target.parent.is_dir():
+        raise InvalidValueError(f"no folder {target.parent} to write {target.name} into")
+    return target
+
+
+def text_array(values: Sequence[Any]) -> np.ndarray:
+    """Return text as an array.
+
+    Parameters
+    ----------
+    values : sequence of str
+        The text.
+
+    Returns
+    -------
+    ndarray of object
+        The same.
+    """
+    array = np.empty(len(values), dtype=object)
+    array[:] = values
+    return array
+
+
+def _header(columns: Mapping[str, Column], no_unit: str) -> list[str]:
+    units = {name: no_unit if each.unit in {"1", "-"} else each.unit for name, each in columns.items()}
+    return [f"{name} [{unit}]" if unit else name for name, unit in units.items()]
