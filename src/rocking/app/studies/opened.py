@@ -89,7 +89,7 @@ class OpenStudy:
         label = list(self.job.job.parts.choices)[restitution]
         arrays = {name: (tuple(study.dims), values) for name, values in self.results.items()}
         coordinates = {
-            name: (one.dims, one.values, {"units": one.unit, "long_name": one.words})
+            name: (one.dims, one.values, {"units": one.unit, "long_name": one.meaning})
             for name, one in study.coordinates.items()
         }
         made = xr.Dataset(arrays, coords=coordinates, attrs={**study.attributes, "restitution": label})

@@ -61,7 +61,7 @@ def shares(modes: np.ndarray) -> list[dict[str, Any]]:
 def coordinate(study: OpenStudy, name: str) -> dict[str, Any]:
     """Return what is known of a dimension of a study."""
     found = study.job.job.study.coordinates[name]
-    return {"name": name, "values": plain(found.values), "unit": found.unit, "words": found.words}
+    return {"name": name, "values": plain(found.values), "unit": found.unit, "words": found.meaning}
 
 
 def by_restitution(study: OpenStudy, name: str) -> np.ndarray:
@@ -108,10 +108,10 @@ def tables_of(study: OpenStudy) -> dict[str, Any]:
     """
     return {
         name: [
-            {"name": title, "unit": each.unit, "words": each.words, "values": plain(each.values)}
-            for title, each in sheet.columns.items()
+            {"name": title, "unit": each.unit, "words": each.meaning, "values": plain(each.values)}
+            for title, each in table.columns.items()
         ]
-        for name, sheet in study.answer.sheets.items()
+        for name, table in study.answer.tables.items()
     }
 
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.campaigns.jobs.answer import Column, Sheet, variable_of, words_of
+from rocking.campaigns.jobs.answer import variable_of
 from rocking.campaigns.jobs.findings import analyses, refuse_unfinished
 from rocking.campaigns.jobs.folder import JobFolder
 from rocking.campaigns.jobs.results import Results
@@ -13,6 +13,7 @@ from rocking.dynamics.impact_law import ImpactLaw, RandomRestitution
 from rocking.errors import InvalidValueError, extra
 from rocking.quantities import attributes
 from rocking.studies.sensitivity.comparison import Sensitivity
+from rocking.tables import Column, Table, text_array
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,7 +62,7 @@ def comparison(folder: JobFolder) -> Sensitivity:
     return Sensitivity(results, baseline=next(iter(choices)), drawn=drawn)
 
 
-def comparison_sheet(found: Sensitivity, what: str) -> Sheet:
+def comparison_table(found: Sensitivity, what: str) -> Table:
     """Return a table of a comparison."""
     return _flips(found) if what == "flips" else _differences(found)
 
@@ -88,22 +89,22 @@ def _datasets(folder: JobFolder) -> "dict[str, xr.Dataset]":
     }
 
 
-def _flips(found: Sensitivity) -> Sheet:
+def _flips(found: Sensitivity) -> Table:
     rows = found.summary()
     names = dict.fromkeys(name for row in rows for name in row)
     columns: dict[str, Column] = {}
     for name in names:
         columns[name] = Column(_values([row.get(name) for row in rows]), variable=variable_of(name, columns))
-    return Sheet("choice", columns)
+    return Table("choice", columns)
 
 
 def _values(given: list[Any]) -> np.ndarray:
     if any(isinstance(value, str) for value in given):
-        return words_of(["" if value is None else str(value) for value in given])
+        return text_array(["" if value is None else str(value) for value in given])
     return np.array([np.nan if value is None else value for value in given])
 
 
-def _differences(found: Sensitivity) -> Sheet:
+def _differences(found: Sensitivity) -> Table:
     # analyses call the largest rotation over alpha by its own name
     known = found.datasets[found.baseline]
     verdict, peak = (
@@ -114,9 +115,9 @@ def _differences(found: Sensitivity) -> Sheet:
     for k, name in enumerate(verdict.dims):
         values = np.asarray(verdict[name].values)
         # words are kept once: written out they would take many times the room of the numbers
-        whole = values if values.dtype.kind in "iufb" else words_of([str(value) for value in values])
+        whole = values if values.dtype.kind in "iufb" else text_array([str(value) for value in values])
         shape = [-1 if k == axis else 1 for axis in range(verdict.ndim)]
         columns[str(name)] = Column(np.broadcast_to(whole.reshape(shape), verdict.shape).ravel())
-    columns["verdict"] = Column(verdict.values.ravel(), words=str(verdict.attrs["long_name"]))
-    columns["peak_ratio"] = Column(peak.values.ravel(), words=str(peak.attrs["long_name"]))
-    return Sheet("difference", columns)
+    columns["verdict"] = Column(verdict.values.ravel(), meaning=str(verdict.attrs["long_name"]))
+    columns["peak_ratio"] = Column(peak.values.ravel(), meaning=str(peak.attrs["long_name"]))
+    return Table("difference", columns)

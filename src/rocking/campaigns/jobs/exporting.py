@@ -9,44 +9,60 @@ from typing import Any
 
 from rocking import checks
 from rocking.campaigns import disk
-from rocking.campaigns.jobs.answer import Sheet
-from rocking.campaigns.jobs.comparison import COMPARED, comparable, comparison, comparison_sheet
+from rocking.campaigns.jobs.comparison import COMPARED, comparable, comparison, comparison_table
 from rocking.campaigns.jobs.findings import answer, refuse_unfinished
 from rocking.campaigns.jobs.folder import JobFolder
 from rocking.campaigns.jobs.fragility_export import ANALYSES, fragility_model, write_fragility
-from rocking.campaigns.jobs.matlab import to_matlab
-from rocking.campaigns.jobs.measures import MEASURES, measure_comparison, measures_sheet, told_of
-from rocking.campaigns.jobs.netcdf import to_netcdf
+from rocking.campaigns.jobs.measures import MEASURES, measure_comparison, measures_table, told_of
 from rocking.campaigns.jobs.results import Results
 from rocking.campaigns.jobs.round_status import finished_rounds
-from rocking.campaigns.jobs.rows import to_csv, to_excel, to_parquet
-from rocking.campaigns.jobs.sheets import SHEET_FORMATS, Attributes, sheets_to_netcdf
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.agreement import FEWEST
 from rocking.studies.fragility.nesting import Crossing, check_crossing
+from rocking.tables import (
+    Grid,
+    Table,
+    add_to_netcdf,
+    grid_to_mat,
+    grid_to_netcdf,
+    structure_of,
+    target_of,
+    to_csv,
+    to_excel,
+    to_mat,
+    to_parquet,
+)
 
 MOST_REPETITIONS = 100_000
 """Most repetitions of a bootstrap."""
 
 Progress = Callable[[int], None] | None
 
-FORMATS: dict[str, Callable[[Results, Path], None]] = {
-    ".nc": to_netcdf,
+FORMATS: dict[str, Callable[[Grid, Path], object]] = {
+    ".nc": grid_to_netcdf,
     ".parquet": to_parquet,
     ".csv": to_csv,
-    ".mat": to_matlab,
-    ".xlsx": to_excel,
+    ".mat": grid_to_mat,
+    ".xlsx": lambda grid, path: to_excel({grid.row: grid}, path, grid.provenance, others=".nc, .parquet or .csv"),
 }
 """What writes every history, by the end of the file's name."""
 
+TABLE_FORMATS: dict[str, Callable[[Table, Path], object]] = {
+    ".csv": to_csv,
+    ".parquet": to_parquet,
+    ".mat": lambda table, path: to_mat(structure_of(table, apart=True), "table", path),
+    ".xlsx": lambda table, path: to_excel({table.row: table}, path, table.provenance),
+}
+"""What writes a table, by the end of the file's name."""
+
 SPECIAL: dict[str, tuple[str, ...]] = {
     **ANALYSES,
-    "refined": tuple(SHEET_FORMATS),
-    "boundary": tuple(SHEET_FORMATS),
-    "crossings": (".nc", *SHEET_FORMATS),
-    "minima": (".nc", *SHEET_FORMATS),
-    **dict.fromkeys(COMPARED, (".nc", *SHEET_FORMATS)),
-    MEASURES: (".nc", *SHEET_FORMATS),
+    "refined": tuple(TABLE_FORMATS),
+    "boundary": tuple(TABLE_FORMATS),
+    "crossings": (".nc", *TABLE_FORMATS),
+    "minima": (".nc", *TABLE_FORMATS),
+    **dict.fromkeys(COMPARED, (".nc", *TABLE_FORMATS)),
+    MEASURES: (".nc", *TABLE_FORMATS),
 }
 """What can be exported of some kinds beside their histories, and how."""
 
@@ -123,9 +139,7 @@ def export(
     CampaignIncompleteError
         If the campaign is not finished.
     """
-    from rocking.studies.fragility.export import checked_path
-
-    target = checked_path(path)
+    target = target_of(path)
     what = exports_of(folder)[0] if what is None else what
     _check_what(what, target.suffix.lower(), restitution, crossing, folder)
     _check_bootstrap(what, bootstrap)
@@ -222,18 +236,26 @@ def _tables(results: Results, path: Path, what: str, folder: JobFolder) -> None:
     """Write histories, or the tables of an adaptive study."""
     suffix, several = path.suffix.lower(), folder.job.study.search is not None
     if what in COMPARED:
-        _sheet(comparison_sheet(comparison(folder), what), suffix, path, results.attributes)
+        _table(comparison_table(comparison(folder), what), path, results.attributes)
         return
     if what == "histories":
-        FORMATS[suffix](results, path)
+        FORMATS[suffix](results.grid, path)
     if not several or (what == "histories" and (suffix != ".nc" or folder.job.document.map is None)):
         return
     found = answer(folder)
     attributes = results.attributes | found.attributes
     if suffix == ".nc":
-        sheets_to_netcdf(found.sheets, path, attributes)
+        add_to_netcdf(found.tables, path, attributes)
     else:
-        SHEET_FORMATS[suffix](found.sheets[what], path, attributes)
+        _table(found.tables[what], path, attributes)
+
+
+def _table(table: Table, path: Path, attributes: dict[str, Any]) -> None:
+    suffix = path.suffix.lower()
+    if suffix == ".nc":
+        add_to_netcdf({table.row: table}, path, attributes)
+    else:
+        TABLE_FORMATS[suffix](replace(table, provenance=attributes), path)
 
 
 def _measures(results: Results, path: Path, restitution: str | None, folder: JobFolder) -> Results:
@@ -241,13 +263,5 @@ def _measures(results: Results, path: Path, restitution: str | None, folder: Job
     found = measure_comparison(folder, restitution, results.progress)
     about = told_of(found) | ({} if restitution is None else {"restitution": restitution})
     results = replace(results, provenance=results.provenance | about)
-    sheet, suffix = measures_sheet(found), path.suffix.lower()
-    _sheet(sheet, suffix, path, results.attributes)
+    _table(measures_table(found), path, results.attributes)
     return results
-
-
-def _sheet(sheet: Sheet, suffix: str, path: Path, attributes: Attributes) -> None:
-    if suffix == ".nc":
-        sheets_to_netcdf({sheet.dim: sheet}, path, attributes)
-    else:
-        SHEET_FORMATS[suffix](sheet, path, attributes)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.campaigns.jobs.answer import Column, Sheet, variable_of, words_of
+from rocking.campaigns.jobs.answer import variable_of
 from rocking.campaigns.jobs.findings import analyses, refuse_unfinished
 from rocking.campaigns.jobs.folder import JobFolder
 from rocking.campaigns.jobs.measured import columns_of, measures_of
@@ -13,6 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.barely_lifted import clearly_lifted
 from rocking.studies.fragility.cloud_analysis import CloudAnalysis
 from rocking.studies.fragility.comparison import MeasureComparison, compare_measures
+from rocking.tables import Column, Table, text_array
 
 MEASURES = "measures"
 """What the ranking is called among the exports."""
@@ -100,7 +101,7 @@ class _Told:
         self._told = share
 
 
-def measures_sheet(found: MeasureComparison) -> Sheet:
+def measures_table(found: MeasureComparison) -> Table:
     """Return a ranking as a table.
 
     Returns A row a measure, the most efficient first; a column ``p(name)`` for each column of the metadata. The unit of
@@ -110,10 +111,10 @@ def measures_sheet(found: MeasureComparison) -> Sheet:
     columns: dict[str, Column] = {}
     for name in rows[0]:
         values = [row[name] for row in rows]
-        array = words_of(values) if isinstance(values[0], str) else np.array(values)
-        words = _WORDS.get(name, f"p-value of the residuals over {name[2:-1]}" if name.startswith("p(") else name)
-        columns[name] = Column(array, words=words, variable=variable_of(name, columns))
-    return Sheet("rank", columns)
+        array = text_array(values) if isinstance(values[0], str) else np.array(values)
+        meaning = _WORDS.get(name, f"p-value of the residuals over {name[2:-1]}" if name.startswith("p(") else name)
+        columns[name] = Column(array, meaning=meaning, variable=variable_of(name, columns))
+    return Table("rank", columns)
 
 
 def told_of(found: MeasureComparison) -> dict[str, Any]:

@@ -1,17 +1,16 @@
 """Results of a campaign as its study knows them, piece by piece."""
 
+import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from rocking.campaigns import Campaign
-from rocking.campaigns.jobs.study import Coordinate, Study
+from rocking.campaigns.jobs.study import TYPES, Study
 from rocking.dynamics.engine import Arrays
+from rocking.tables import PIECE, Grid
 
-PIECE = 1 << 16
-"""Histories that are in memory at once when a file is written."""
+_MAIN = ("software", "campaign", "kind", "engine", "histories_key")
 
 
 @dataclass(frozen=True)
@@ -25,10 +24,16 @@ class Results:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Where they come from, as attributes of a file."""
-        from rocking.campaigns.jobs.netcdf import attributes_of
+        """Where they come from, as attributes of a file: the main facts each by itself, and all of it as JSON."""
+        main = {name: self.provenance[name] for name in _MAIN}
+        plain = {k: int(v) if isinstance(v, bool) else v for k, v in self.study.attributes.items() if v is not None}
+        return {**main, **plain, "provenance": json.dumps(self.provenance, sort_keys=True)}
 
-        return attributes_of(self.provenance, self.study.attributes)
+    @property
+    def grid(self) -> Grid:
+        """The results as files take them."""
+        study = self.study
+        return Grid("histories", study.dims, study.coordinates, TYPES, self.pieces, self.attributes)
 
     def pieces(self) -> Iterator[tuple[int, int, Arrays]]:
         """Return the results in the order of the histories.
@@ -42,13 +47,3 @@ class Results:
                 yield first, last, self.study.derived(first, last, part)
                 if self.progress is not None:
                     self.progress(last - first)
-
-    def coordinates(self, first: int, last: int) -> Iterator[tuple[str, Coordinate, np.ndarray]]:
-        """Return what is known of where some histories are, for tables with a row a history.
-
-        Returns Name, coordinate, and the place of each history in its flat values.
-        """
-        places = self.study.places(first, last)
-        for name, coordinate in self.study.coordinates.items():
-            index = tuple(places[dim] for dim in coordinate.dims)
-            yield name, coordinate, np.ravel_multi_index(index, coordinate.values.shape)

@@ -1,6 +1,6 @@
 """A study as a campaign sees it: histories, what they are over, and what is read off their results."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,28 +14,13 @@ from rocking.errors import InvalidValueError
 from rocking.quantities import HISTORY
 from rocking.studies.histories import Histories
 from rocking.studies.question import modes_of, peak_ratio
+from rocking.tables import Column
 
 TYPES: dict[str, Any] = {
     name: np.float64 if name in {"overturned", "still_rocking", "lost_contact"} else RESULTS.get(name, np.float64)
     for name in HISTORY
 } | {"mode": np.int64}
 """Type of what is known of every history."""
-Block = tuple[tuple[slice, ...], slice]
-
-
-@dataclass(frozen=True)
-class Coordinate:
-    """Something that is known along one or more dimensions of a study."""
-
-    dims: tuple[str, ...]  # the dimensions
-    values: np.ndarray  # the values: numbers, or words
-    unit: str = "1"  # unit, words: unit and meaning
-    words: str = ""
-
-    @property
-    def is_words(self) -> bool:
-        """Whether the values are words."""
-        return self.values.dtype.kind not in "iufb"
 
 
 @dataclass(frozen=True)
@@ -44,7 +29,7 @@ class Study:
 
     histories: Histories  # what is computed; the last dimension changes fastest
     dims: dict[str, int]  # length of every dimension, in order
-    coordinates: dict[str, Coordinate]  # what is known along the dimensions
+    coordinates: dict[str, Column]  # what is known along the dimensions: columns with `dims`
     attributes: dict[str, Any] = field(default_factory=dict)  # what the study is, as plain values
     # takes the results of all histories and returns the fragility analysis of each restitution by label
     finish: Callable[[Arrays], dict[str, Any]] | None = None
@@ -73,35 +58,3 @@ class Study:
         ratio = peak_ratio(found["peak_rotation"], sides["alpha_right"], sides["alpha_left"])
         whole = {**found, **flags(found), "mode": modes_of(found), "peak_ratio": ratio}
         return {name: whole[name] for name in HISTORY}
-
-    def places(self, first: int, last: int) -> dict[str, np.ndarray]:
-        """Return where some histories are along every dimension."""
-        found = np.unravel_index(np.arange(first, last, dtype=np.int64), self.shape)
-        return dict(zip(self.dims, found, strict=True))
-
-
-def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
-    """Return the rectangular blocks of an array that some of its entries, numbered row by row, fill.
-
-    Returns where a block is in the array, and where its entries are among those from first to last.
-
-    >>> for place, part in blocks(1, 8, (3, 3)):
-    ...     print([(p.start, p.stop) for p in place], part.start, part.stop)
-    [(0, 1), (1, 3)] 0 2
-    [(1, 2), (0, 3)] 2 5
-    [(2, 3), (0, 2)] 5 7
-    """
-    at = first
-    while at < last:
-        place = [int(i) for i in np.unravel_index(at, shape)]
-        # the longest run that starts here: whole rows of the innermost dimensions, as far as they are at their start
-        axis, width = len(shape) - 1, 1
-        while axis > 0 and place[axis] == 0 and at + width * shape[axis] <= last:
-            width *= shape[axis]
-            axis -= 1
-        run = max(1, min(shape[axis] - place[axis], (last - at) // width))
-        where = [slice(i, i + 1) for i in place]
-        where[axis] = slice(place[axis], place[axis] + run)
-        where[axis + 1 :] = [slice(0, n) for n in shape[axis + 1 :]]
-        yield tuple(where), slice(at - first, at - first + run * width)
-        at += run * width

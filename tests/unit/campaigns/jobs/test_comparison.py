@@ -8,7 +8,7 @@ import pytest
 
 import rocking as rk
 from rocking.campaigns.jobs import Job, JobFolder, export, exports_of
-from rocking.campaigns.jobs.comparison import comparison, comparison_sheet
+from rocking.campaigns.jobs.comparison import comparison, comparison_table
 from rocking.errors import InvalidValueError
 from rocking.studies import map_sensitivity
 
@@ -96,7 +96,7 @@ def test_other_kinds(tmp_path):
     )
     levels = "[fragility]\nmeasure = 'pga'\nlevels = { from = 2, to = 12, count = 6 }\nstates = [0.5]"
     found = finished(tmp_path / "stripes", stripes + levels)
-    sheet = comparison_sheet(comparison(found), "flips")
+    sheet = comparison_table(comparison(found), "flips")
     assert "overturned: median ratio" in sheet.columns
     # KED loses less than Housner, so that its median is lower
     assert sheet.columns["overturned: median ratio"].values[1] < 1.0

@@ -108,12 +108,12 @@ def test_excel(finished, tmp_path):
     [
         (
             ".xlsx",
-            "rocking.campaigns.jobs.rows.MOST_ROWS_OF_EXCEL",
+            "rocking.tables.rows.MOST_ROWS_OF_EXCEL",
             "a sheet of Excel has 10 rows, these are 48 histories",
         ),
         (
             ".mat",
-            "rocking.campaigns.jobs.matlab.MOST_BYTES",
+            "rocking.tables.arrays.MOST_BYTES_OF_MATLAB",
             "MATLAB files take arrays up to 2 GiB, these are 48 histories",
         ),
     ],

@@ -12,7 +12,7 @@ from scipy.io import loadmat
 import rocking as rk
 from rocking.campaigns import CampaignIncompleteError, CampaignInterrupted
 from rocking.campaigns.jobs import Job, JobFolder, analyses, export, exports_of, measure_comparison
-from rocking.campaigns.jobs.measures import measures_sheet
+from rocking.campaigns.jobs.measures import measures_table
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet, cloud, compare_measures
 
@@ -229,7 +229,7 @@ def test_names_that_look_alike(wanted):
     """Columns whose names differ only in signs get variables of their own."""
     scores = [vars(score) | {"sufficiency": {"a b": 0.1, "a_b": 0.2, "a-b": 0.3}} for score in wanted.scores]
     alike = type(wanted)(tuple(type(wanted.scores[0])(**each) for each in scores), {})
-    variables = [each.variable for each in measures_sheet(alike).columns.values()]
+    variables = [each.variable for each in measures_table(alike).columns.values()]
     assert len(set(variables)) == len(variables)
     assert {"p_a_b", "p_a_b_2", "p_a_b_3"} <= set(variables)
-    assert np.isfinite(measures_sheet(alike).columns["p(a-b)"].values).all()
+    assert np.isfinite(measures_table(alike).columns["p(a-b)"].values).all()

@@ -89,11 +89,11 @@ def whole(tmp_path_factory):
 
 def same_sheets(found, wanted):
     """Whether tables have the same bits."""
-    assert list(found.sheets) == list(wanted.sheets)
-    for name, sheet in wanted.sheets.items():
-        assert list(found.sheets[name].columns) == list(sheet.columns)
+    assert list(found.tables) == list(wanted.tables)
+    for name, sheet in wanted.tables.items():
+        assert list(found.tables[name].columns) == list(sheet.columns)
         for column, each in sheet.columns.items():
-            values = found.sheets[name].columns[column].values
+            values = found.tables[name].columns[column].values
             assert np.array_equal(values, each.values, equal_nan=each.values.dtype.kind == "f"), column
 
 
@@ -204,7 +204,7 @@ def test_bodies_that_fail_alone(tmp_path):
     words = text_of("minimum").replace("[minimum]", "[settings]\nmost_impacts = 1\n[minimum]")
     folder = JobFolder.create(tmp_path / "c", Job.of_text(words))
     folder.run(workers=1)
-    columns = answer(folder).sheets["minima"].columns
+    columns = answer(folder).tables["minima"].columns
     assert (columns["failed"].values > 0).any()
     none = columns["failed"].values == columns["samples"].values
     assert np.isnan(columns["minimum"].values[none]).all()

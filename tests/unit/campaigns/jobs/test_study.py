@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.campaigns.jobs import Job, forecast
-from rocking.campaigns.jobs.study import TYPES, Study, blocks
+from rocking.campaigns.jobs.study import TYPES, Study
 from rocking.errors import InvalidValueError
 from rocking.quantities import QUANTITIES
 from rocking.studies import MotionList, Product, SyntheticSet
+from rocking.tables import blocks
 
 
 @given(st.lists(st.integers(1, 5), min_size=1, max_size=4), st.data())

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking.campaigns.jobs.kinds.words import along, of_motions, of_words
 from rocking.campaigns.jobs.measured import check_told
-from rocking.campaigns.jobs.study import Coordinate, Study
+from rocking.campaigns.jobs.study import Study
 from rocking.dynamics.engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.spec.document import FragilityTable
@@ -20,6 +20,7 @@ from rocking.studies.fragility.stripes import stripes_plan
 from rocking.studies.fragility.subject import Subject
 from rocking.studies.histories import Product
 from rocking.studies.sensitivity.sampled import sampled
+from rocking.tables import Column
 
 Finish = Callable[[Arrays], Any]
 
@@ -48,7 +49,7 @@ def fragility_study(parts: Parts) -> Study:
     else:
         coordinates["level"] = along("level", levels, label["units"], label["long_name"])
         scales = np.broadcast_to(merged.scales, (len(parts.motions), levels.size))
-        coordinates["factor"] = Coordinate(("motion", "level"), scales, "1", "factor on the motion")
+        coordinates["factor"] = Column(scales, "1", "factor on the motion", dims=("motion", "level"))
     if len(plans) > 1:
         dims["restitution"] = len(plans)
         coordinates["restitution"] = of_words("restitution", plans, "restitution")

@@ -7,9 +7,9 @@ import numpy as np
 
 from rocking.campaigns.jobs.answer import Answer
 from rocking.campaigns.jobs.asked import Asked, Compute, first_round
-from rocking.campaigns.jobs.kinds.minimum_sheets import sheets_of
+from rocking.campaigns.jobs.kinds.minimum_tables import tables_of
 from rocking.campaigns.jobs.kinds.words import along, of_words
-from rocking.campaigns.jobs.study import Coordinate, Study
+from rocking.campaigns.jobs.study import Study
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.engine import Arrays, empty_results
 from rocking.dynamics.impact_law import ImpactLaw
@@ -22,6 +22,7 @@ from rocking.studies.minimum_search import Cases, Effort, searched
 from rocking.studies.motion_set import MotionList
 from rocking.studies.question import modes_of, peak_ratio, sides_of
 from rocking.studies.sensitivity.sampled import sampled
+from rocking.tables import Column
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class MinimumSearch:
             return {**found, "mode": modes_of(found), "peak_ratio": ratio}
 
         crossings = searched(self.cases, self.effort, run)
-        return Answer(crossings, sheets_of(crossings, self.cases, self.effort, self.shape, self.names))
+        return Answer(crossings, tables_of(crossings, self.cases, self.effort, self.shape, self.names))
 
 
 def minimum_study(parts: Parts) -> Study:
@@ -85,7 +86,7 @@ def minimum_study(parts: Parts) -> Study:
         "motion": of_words("motion", names["motion"], "name of the motion"),
         "restitution": of_words("restitution", names["restitution"], "restitution"),
         "body": along("body", np.arange(len(parts.bodies)), "1", "number of the body in the job"),
-        "scale": Coordinate(tuple(dims), scale, "1", "factor on the motion"),
+        "scale": Column(scale, "1", "factor on the motion", dims=tuple(dims)),
     }
     told = {"points": effort.points, "levels": effort.levels, "tolerance": effort.tolerance}
     bodies = "; ".join(repr(body) for body in parts.bodies)[:4000]

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.campaigns.jobs.answer import Answer, Column, Sheet, words_of
+from rocking.campaigns.jobs.answer import Answer
 from rocking.campaigns.jobs.asked import AskedQuestion, Compute
-from rocking.campaigns.jobs.results import PIECE
 from rocking.campaigns.jobs.study import Study
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.engine import Arrays
@@ -19,6 +18,7 @@ from rocking.studies.lattice import Lattice
 from rocking.studies.plane import Plane
 from rocking.studies.question import modes_of, peak_ratio
 from rocking.studies.refined import Refined, refine
+from rocking.tables import PIECE, Column, Table, text_array
 
 MOST_POINTS = 10_000_000
 """Points of a map that is refined: they take less than 2 GiB of memory."""
@@ -63,9 +63,9 @@ class MapSearch:
         lattice = Lattice(plane, self.levels)
         points, cells = refine(lattice, modes, peaks)
         lines = outlines(lattice, cells, self.by, self.tolerance)
-        sheets = {"refined": _points(points, plane), "boundary": _vertices(lines, plane)}
+        tables = {"refined": _points(points, plane), "boundary": _vertices(lines, plane)}
         told = {"refine": self.levels, "boundary": self.by, "boundary_tolerance": self.tolerance}
-        return Answer((points, lines), sheets, {**told, "polylines": len(lines)})
+        return Answer((points, lines), tables, {**told, "polylines": len(lines)})
 
     def _base(self, found: Arrays) -> tuple[IntArray, FloatArray]:
         """Return modes and relative peaks of the map."""
@@ -80,7 +80,7 @@ class MapSearch:
         return modes, peaks
 
 
-def _points(points: Refined, plane: Plane) -> Sheet:
+def _points(points: Refined, plane: Plane) -> Table:
     x, y = plane.x, plane.y
     mode, ratio = QUANTITIES["mode"], QUANTITIES["peak_ratio"]
     columns = {
@@ -92,17 +92,17 @@ def _points(points: Refined, plane: Plane) -> Sheet:
             points.base.astype(np.int64), "1", "1 for points of the map itself, 0 for new ones", "refined_base"
         ),
     }
-    return Sheet("point", columns)
+    return Table("point", columns)
 
 
-def _vertices(lines: list[Polyline], plane: Plane) -> Sheet:
+def _vertices(lines: list[Polyline], plane: Plane) -> Table:
     x, y = plane.x, plane.y
     sizes = [len(line.points) for line in lines]
     points = np.concatenate([np.empty((0, 2)), *(line.points for line in lines)])
     modes = np.concatenate([np.empty((0, 2), np.int64), *(line.modes for line in lines)])
     number = np.repeat(np.arange(len(lines)), sizes)
     closed = np.repeat(np.array([line.closed for line in lines], np.int64), sizes)
-    regions = words_of([line.region for line in lines for _ in line.points])
+    regions = text_array([line.region for line in lines for _ in line.points])
     unit, meaning = QUANTITIES["mode"].unit, QUANTITIES["mode"].meaning
     columns = {
         "line": Column(number, "1", "number of the polyline", "boundary_line"),
@@ -113,4 +113,4 @@ def _vertices(lines: list[Polyline], plane: Plane) -> Sheet:
         "mode_outside": Column(modes[:, 0], unit, f"outside: {meaning}", "boundary_mode_outside"),
         "mode_inside": Column(modes[:, 1], unit, f"inside: {meaning}", "boundary_mode_inside"),
     }
-    return Sheet("vertex", columns)
+    return Table("vertex", columns)

@@ -7,7 +7,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Block, Body
 from rocking.campaigns.jobs.kinds.words import along, of_motions, of_words
-from rocking.campaigns.jobs.study import Coordinate, Study
+from rocking.campaigns.jobs.study import Study
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.rocker import Rocker
@@ -18,6 +18,7 @@ from rocking.spec.reading import located
 from rocking.studies.histories import Product
 from rocking.studies.question import sides_of
 from rocking.studies.sensitivity.sampled import sampled
+from rocking.tables import Column
 
 _LONGEST = 1e100
 
@@ -57,7 +58,7 @@ def spectrum_study(parts: Parts) -> Study:
         over = (*over, "restitution")
     else:
         coefficient = coefficient[..., 0]
-    coordinates["coefficient"] = Coordinate(over, coefficient, "1", "coefficient of restitution")
+    coordinates["coefficient"] = Column(coefficient, "1", "coefficient of restitution", dims=tuple(over))
     return Study(sampled(histories), dims, coordinates, {"scale": scale})
 
 

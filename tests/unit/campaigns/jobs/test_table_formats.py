@@ -9,9 +9,8 @@ import pytest
 from scipy.io import loadmat
 
 from rocking.campaigns.jobs import Job, JobFolder, export
-from rocking.campaigns.jobs.answer import Column, Sheet, words_of
-from rocking.campaigns.jobs.sheets import SHEET_FORMATS, sheets_to_netcdf
 from rocking.errors import InvalidValueError
+from rocking.tables import Column, Table, add_to_netcdf, structure_of, text_array
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")
@@ -153,9 +152,10 @@ def test_refined_maps(tmp_path, made):
 
 def test_too_large_for_matlab(tmp_path, monkeypatch):
     """A table beyond the format is refused with the format that takes it; the same table fits where words are few."""
-    monkeypatch.setattr("rocking.campaigns.jobs.matlab.MOST_BYTES", 1000)
-    numbers, words = Column(np.arange(20.0)), Column(words_of(["a"] * 20))
-    SHEET_FORMATS[".mat"](Sheet("row", {"x": numbers}), tmp_path / "r.mat", {"provenance": "{}"})
+    monkeypatch.setattr("rocking.tables.arrays.MOST_BYTES_OF_MATLAB", 1000)
+    numbers, words = Column(np.arange(20.0)), Column(text_array(["a"] * 20))
+    structure_of(Table("row", {"x": numbers}))
+    table = Table("row", {"x": numbers, "w": words})
     with pytest.raises(InvalidValueError, match=r"up to 2 GiB, this one has 20 rows; take \.nc"):
-        SHEET_FORMATS[".mat"](Sheet("row", {"x": numbers, "w": words}), tmp_path / "s.mat", {"provenance": "{}"})
-    sheets_to_netcdf({"row": Sheet("row", {"x": numbers, "w": words})}, tmp_path / "s.nc", {})
+        structure_of(table)
+    add_to_netcdf({"row": table}, tmp_path / "s.nc", {})

@@ -7,7 +7,7 @@ import pytest
 
 from rocking import conventions
 from rocking.campaigns.jobs import Job, JobFolder, answer
-from rocking.campaigns.jobs.kinds.minimum_sheets import sheets_of
+from rocking.campaigns.jobs.kinds.minimum_tables import tables_of
 from rocking.studies.crossings import Crossings
 from rocking.studies.minimum_search import Cases, Effort
 from rocking.studies.record_set import SyntheticSet
@@ -91,16 +91,16 @@ def test_every_column_as_written_out():
         {}, np.ones(4), np.array([2.5, 3.0, 3.0, 7.5]), np.array([2.5, 3.5, 4.5, 7.0]),
         np.array([30.0, 31.0, 31.0, 70.0]), record=True,
     )  # fmt: skip
-    sheets = sheets_of([ISLAND, STARTS, NONE, None], cases, EFFORT, (2, 1, 2), NAMES)
+    sheets = tables_of([ISLAND, STARTS, NONE, None], cases, EFFORT, (2, 1, 2), NAMES)
     assert list(sheets) == ["crossings", "minima"]
     for name, dim, wanted in (("crossings", "crossing", CROSSINGS), ("minima", "case", MINIMA)):
         sheet = sheets[name]
-        assert sheet.dim == dim
+        assert sheet.row == dim
         assert list(sheet.columns) == list(wanted)
         for column, values in wanted.items():
             found = sheet.columns[column]
             assert (found.unit, found.variable) == (UNITS.get(column, "1"), f"{dim}_{column}")
-            if found.is_words:
+            if found.is_text:
                 assert found.values.tolist() == values
             else:
                 np.testing.assert_array_equal(found.values, values, err_msg=column)
@@ -111,7 +111,7 @@ def searched(tmp_path_factory):
     """Tables of a small search: two motions, two restitutions, two bodies."""
     folder = JobFolder.create(tmp_path_factory.mktemp("searched") / "c", Job.of_text(JOB))
     folder.run(workers=1)
-    return {name: sheet.columns for name, sheet in answer(folder).sheets.items()}
+    return {name: sheet.columns for name, sheet in answer(folder).tables.items()}
 
 
 def test_crossings_mean_what_they_say(searched):

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from rocking.campaigns.jobs.answer import Column, Sheet, words_of
 from rocking.studies.crossings import Crossings
 from rocking.studies.minimum_search import Cases, Effort
+from rocking.tables import Column, Table, text_array
 
 _MODE = "not lifted -2, survived -1, n >= 0 overturned after n impacts"
 
@@ -34,10 +34,10 @@ _CROSSING = {
 }
 
 
-def sheets_of(
+def tables_of(
     found: Sequence[Crossings | None], cases: Cases, effort: Effort, shape: tuple[int, int, int],
     names: Mapping[str, list[str]],
-) -> dict[str, Sheet]:  # fmt: skip
+) -> dict[str, Table]:  # fmt: skip
     """Return crossings as tables.
 
     Returns ``minima``, a row for each case; ``crossings``, a row for each crossing.
@@ -50,7 +50,7 @@ def sheets_of(
     counts = {
         name: Column(np.array([row[name] for row in rows], np.int64), "1", words) for name, words in _COUNTS.items()
     }
-    minima = Sheet("case", _prefixed("case", _places(np.arange(len(found)), shape, names) | facts | counts))
+    minima = Table("case", _prefixed("case", _places(np.arange(len(found)), shape, names) | facts | counts))
     known = [(k, each) for k, each in enumerate(found) if each is not None and len(each)]
     case = np.repeat(np.array([k for k, _ in known], np.int64), [len(each) for _, each in known])
     columns = _places(case, shape, names)
@@ -59,7 +59,7 @@ def sheets_of(
     modes = np.concatenate([np.empty((0, 2), np.int64), *(c.modes for _, c in known)])
     for place, name in enumerate(("mode_below", "mode_above")):
         columns[name] = Column(modes[:, place], "1", f"just {name[5:]}: {_MODE}")
-    return {"crossings": Sheet("crossing", _prefixed("crossing", columns)), "minima": minima}
+    return {"crossings": Table("crossing", _prefixed("crossing", columns)), "minima": minima}
 
 
 def _row(found: Crossings | None, cases: Cases, effort: Effort, k: int) -> dict[str, Any]:
@@ -74,12 +74,12 @@ def _row(found: Crossings | None, cases: Cases, effort: Effort, k: int) -> dict[
 def _places(case: np.ndarray, shape: tuple[int, int, int], names: Mapping[str, list[str]]) -> dict[str, Column]:
     motion, choice, body = np.unravel_index(case, shape)
     return {
-        "motion": Column(words_of([names["motion"][k] for k in motion]), "1", "name of the motion"),
-        "restitution": Column(words_of([names["restitution"][k] for k in choice]), "1", "restitution"),
+        "motion": Column(text_array([names["motion"][k] for k in motion]), "1", "name of the motion"),
+        "restitution": Column(text_array([names["restitution"][k] for k in choice]), "1", "restitution"),
         "body": Column(np.asarray(body, np.int64), "1", "number of the body in the job"),
     }
 
 
 def _prefixed(prefix: str, columns: Mapping[str, Column]) -> dict[str, Column]:
     """Give the columns names under which both tables fit into one file."""
-    return {name: Column(each.values, each.unit, each.words, f"{prefix}_{name}") for name, each in columns.items()}
+    return {name: Column(each.values, each.unit, each.meaning, f"{prefix}_{name}") for name, each in columns.items()}
