@@ -26,15 +26,15 @@ from rocking.app.schemas.inputs import Inputs
 from rocking.app.settings import Limits
 from rocking.app.takeaway.asked import Asked
 from rocking.app.takeaway.bundle import bundle_of
-from rocking.app.takeaway.contents.body_sheets import body_sheet
-from rocking.app.takeaway.contents.motion_sheets import measures_sheet
+from rocking.app.takeaway.contents.body_tables import body_table
+from rocking.app.takeaway.contents.motion_tables import measures_table
 from rocking.app.takeaway.drawing import drawn
 from rocking.app.takeaway.film import page_of
 from rocking.app.takeaway.inputs_file import inputs_as_toml, inputs_from_toml
 from rocking.app.takeaway.pictures import figure_of, named
 from rocking.app.takeaway.plain_text import plain_line
 from rocking.app.takeaway.report import report_of
-from rocking.app.takeaway.sheets import Column, Sheet, written
+from rocking.app.takeaway.table_files import column, table, written
 from rocking.app.takeaway.tables import table_of
 from rocking.motions.formats import read_motion
 from rocking.motions.motion import GroundMotion
@@ -166,16 +166,16 @@ def test_tables_hold_text_and_no_formula(name):
     asked = Asked(inputs_named(name), None)
     motion = GroundMotion(np.sin(np.arange(50.0)), 0.1, name=name)
     for sheet in (
-        body_sheet(asked.body, 9.80665, name, {"body": name}),
-        measures_sheet(motion, {"motion": name}),
-        Sheet(name, [Column.of("label", "", [name, None]), Column.of("value", "-", [1.5, None])], {name: name}),
+        body_table(asked.body, 9.80665, name, {"body": name}),
+        measures_table(motion, {"motion": name}),
+        table({"label": column("", [name, None]), "value": column("-", [1.5, None])}, {name: name}),
     ):
-        check_csv(written([sheet], "csv"), sheet)
-        check_excel(written([sheet, sheet], "xlsx"), sheet)
-        mat = scipy.io.loadmat(io.BytesIO(written([sheet], "mat")), squeeze_me=True)["rocking"]
-        assert set(mat.dtype.names) >= {column.name for column in sheet.columns}
-        with xarray.open_dataset(io.BytesIO(written([sheet], "nc")), engine="h5netcdf") as data:
-            assert set(data.variables) == {column.name for column in sheet.columns}
+        check_csv(written([(name, sheet)], "csv"), sheet)
+        check_excel(written([(name, sheet), (name, sheet)], "xlsx"), sheet)
+        mat = scipy.io.loadmat(io.BytesIO(written([(name, sheet)], "mat")), squeeze_me=True)["rocking"]
+        assert set(mat.dtype.names) >= set(sheet.columns)
+        with xarray.open_dataset(io.BytesIO(written([(name, sheet)], "nc")), engine="h5netcdf") as data:
+            assert set(data.variables) == set(sheet.columns)
 
 
 def check_csv(data, sheet):
@@ -183,7 +183,7 @@ def check_csv(data, sheet):
     text = data.decode("utf-8-sig")
     rows = list(csv.reader(io.StringIO(text, newline="")))
     assert {len(row) for row in rows} == {len(sheet.columns)}
-    assert len(rows) == sheet.count + 1
+    assert len(rows) == len(sheet) + 1
     for other in csv.reader(io.StringIO(text, newline=""), delimiter=";"):
         assert not re.match(r"[=+@\t\r\uff1d\uff0b\uff20]|-[^0-9]", other[0])
         assert len(other) == 1
@@ -291,7 +291,7 @@ def test_these_checks_find_what_they_look_for():
         check_svg(bad)
     with pytest.raises(AssertionError):
         check_svg(b'<svg xmlns="http://www.w3.org/2000/svg" onload="x()"></svg>')
-    sheet = Sheet("x", [Column.of("label", "", ["=1+1"])])
+    sheet = table({"label": column("", ["=1+1"])}, {})
     with pytest.raises(AssertionError):
         check_csv(b"\xef\xbb\xbflabel\r\n=1+1\r\n", sheet)
     book = openpyxl.Workbook()

@@ -2,7 +2,7 @@
 
 import csv
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
 from io import BytesIO
@@ -114,7 +114,7 @@ def _arrow(pa: Any, column: Column) -> Any:
 
 
 def to_excel(
-    sheets: Mapping[str, Table | Grid], path: Path, provenance: Mapping[str, Any] | None = None, *,
+    sheets: Sequence[tuple[str, Table | Grid]], path: Path, provenance: Mapping[str, Any] | None = None, *,
     others: str = ".parquet or .csv", dressed: bool = False,
 ) -> None:  # fmt: skip
     """Write tables as a workbook, whose text is text and never a formula.
@@ -123,8 +123,8 @@ def to_excel(
 
     Parameters
     ----------
-    sheets : dict of str to Table or Grid
-        The sheets by their titles.
+    sheets : sequence of (str, Table or Grid)
+        The sheets with their titles.
     path : Path
         The file.
     provenance : dict, optional
@@ -140,7 +140,7 @@ def to_excel(
     InvalidValueError
         If a sheet of Excel does not take as many rows.
     """
-    for table in sheets.values():
+    for _, table in sheets:
         if len(table) > MOST_ROWS_OF_EXCEL:
             kind = f" {table.row}" if isinstance(table, Grid) else ""
             raise InvalidValueError(
@@ -148,7 +148,7 @@ def to_excel(
             )
     book: Any = extra("openpyxl", "Excel").Workbook(write_only=True)
     titles: list[str] = []
-    for name, table in sheets.items():
+    for name, table in sheets:
         titles.append(_title(name, titles))
         page = book.create_sheet(titles[-1])
         if dressed:
@@ -191,7 +191,7 @@ def _fill(page: Any, table: Table | Grid) -> None:
 
 def _raw(column: Column) -> list[Cell]:
     """Text as it is: the kind of its cell says that it is no formula."""
-    return column.values.tolist() if column.is_text else column.cells(slice(None))
+    return [text or None for text in column.values.tolist()] if column.is_text else column.cells(slice(None))
 
 
 def _filled(cell: Any, value: Cell) -> Any:

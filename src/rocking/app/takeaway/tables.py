@@ -1,5 +1,6 @@
 """Tables of what the user sees: POST /api/table/{what}.{kind}."""
 
+import codecs
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated, Literal
@@ -12,13 +13,13 @@ from rocking.app.schemas.answers import answered_with_file
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.settings import state_of
 from rocking.app.takeaway.asked import Asked
-from rocking.app.takeaway.contents.body_sheets import body_sheet, coefficient_sheet
-from rocking.app.takeaway.contents.motion_sheets import measures_sheet, motion_sheet, spectrum_sheet
-from rocking.app.takeaway.contents.response_sheets import impacts_sheet, outcomes_sheet, response_sheet
-from rocking.app.takeaway.sheets import MEDIA_TYPES, Sheet, written
-from rocking.app.takeaway.sheets.csv_file import MARK
+from rocking.app.takeaway.contents.body_tables import body_table, coefficient_table
+from rocking.app.takeaway.contents.motion_tables import measures_table, motion_table, spectrum_table
+from rocking.app.takeaway.contents.response_tables import impacts_table, outcomes_table, response_table
+from rocking.app.takeaway.table_files import MEDIA_TYPES, written
 from rocking.app.work import heavy
 from rocking.dynamics.response import Response
+from rocking.tables import Table
 
 What = Literal["body", "coefficients", "measures", "motion", "spectrum", "response", "outcomes", "impacts"]
 Kind = Literal["csv", "xlsx", "mat", "nc"]
@@ -59,19 +60,19 @@ def table_of(what: str, kind: str, asked: Asked, restitution: int | None = None)
     """Return a table as a file."""
     if what == "response":
         return _response(kind, asked, restitution)
-    return written([_sheet(what, asked)], kind)
+    return written([(what, _table(what, asked))], kind)
 
 
-def _sheet(what: str, asked: Asked) -> Sheet:
+def _table(what: str, asked: Asked) -> Table:
     about = asked.about
     if what == "body":
-        return body_sheet(asked.body, asked.gravity, asked.name, about)
+        return body_table(asked.body, asked.gravity, asked.name, about)
     if what == "coefficients":
-        return coefficient_sheet(asked.impact, about)
+        return coefficient_table(asked.impact, about)
     if what in {"impacts", "outcomes"}:
-        make = impacts_sheet if what == "impacts" else outcomes_sheet
+        make = impacts_table if what == "impacts" else outcomes_table
         return make(asked.responses, about)
-    made = {"motion": motion_sheet, "measures": measures_sheet, "spectrum": spectrum_sheet}[what]
+    made = {"motion": motion_table, "measures": measures_table, "spectrum": spectrum_table}[what]
     return made(asked.motion, about)
 
 
@@ -80,10 +81,12 @@ def _response(kind: str, asked: Asked, restitution: int | None) -> bytes:
         return _exported(asked.chosen(restitution), kind)
     if restitution is not None:
         chosen = asked.chosen(restitution)
-        return written([response_sheet(chosen, chosen.rocker.label, asked.about)], kind)
+        return written([(chosen.rocker.label, response_table(chosen, asked.about))], kind)
     about, responses = asked.about, asked.responses
-    samples = [response_sheet(response, label, about) for label, response in responses.items()]
-    return written([outcomes_sheet(responses, about), impacts_sheet(responses, about), *samples], kind)
+    samples = [(label, response_table(response, about)) for label, response in responses.items()]
+    return written(
+        [("outcomes", outcomes_table(responses, about)), ("impacts", impacts_table(responses, about)), *samples], kind
+    )
 
 
 def _exported(response: Response, kind: str) -> bytes:
@@ -91,4 +94,4 @@ def _exported(response: Response, kind: str) -> bytes:
     write = {"csv": response.to_csv, "mat": response.to_mat, "nc": response.to_netcdf}[kind]
     with TemporaryDirectory(prefix="rocking-response-") as folder:
         data = write(Path(folder) / f"response.{kind}").read_bytes()
-    return MARK.encode() + data if kind == "csv" else data
+    return codecs.BOM_UTF8 + data if kind == "csv" else data

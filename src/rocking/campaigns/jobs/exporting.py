@@ -43,7 +43,7 @@ FORMATS: dict[str, Callable[[Grid, Path], object]] = {
     ".parquet": to_parquet,
     ".csv": to_csv,
     ".mat": grid_to_mat,
-    ".xlsx": lambda grid, path: to_excel({grid.row: grid}, path, grid.provenance, others=".nc, .parquet or .csv"),
+    ".xlsx": lambda grid, path: to_excel([(grid.row, grid)], path, grid.provenance, others=".nc, .parquet or .csv"),
 }
 """What writes every history, by the end of the file's name."""
 
@@ -51,7 +51,7 @@ TABLE_FORMATS: dict[str, Callable[[Table, Path], object]] = {
     ".csv": to_csv,
     ".parquet": to_parquet,
     ".mat": lambda table, path: to_mat(structure_of(table, apart=True), "table", path),
-    ".xlsx": lambda table, path: to_excel({table.row: table}, path, table.provenance),
+    ".xlsx": lambda table, path: to_excel([(table.row, table)], path, table.provenance),
 }
 """What writes a table, by the end of the file's name."""
 

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 
-from rocking.app.takeaway.sheets import Column, Sheet
+from rocking.app.takeaway.table_files import column, table
 from rocking.bodies import Body
 from rocking.evidence._coefficient_table import CoefficientRow
 from rocking.report.facts.body import body_facts
 from rocking.report.facts.impact import ImpactAnswer
+from rocking.tables import Table
 
 Fact = tuple[str, str, float, str]
 """Quantity, foot, value, unit."""
@@ -15,40 +16,40 @@ _UNITS = {"m_s2": "m/s2", "rad_s": "rad/s", "rad": "rad", "kg_m2": "kg m2", "kg"
 """Endings of keys; the longer ones come first."""
 
 
-def body_sheet(body: Body, gravity: float, name: str, about: dict[str, str]) -> Sheet:
+def body_table(body: Body, gravity: float, name: str, about: dict[str, str]) -> Table:
     """Return what a body is.
 
     gravity: acceleration of gravity [m/s2].
     """
     facts = _facts(body, gravity)
-    columns = [
-        Column.of("body", "", [name or type(body).__name__] * len(facts)),
-        Column.of("quantity", "", [fact[0] for fact in facts]),
-        Column.of("foot", "", [fact[1] for fact in facts]),
-        Column.of("value", "unit of its row", [fact[2] for fact in facts]),
-        Column.of("unit", "", [fact[3] for fact in facts]),
-    ]
-    return Sheet("body", columns, about)
+    columns = {
+        "body": column("", [name or type(body).__name__] * len(facts)),
+        "quantity": column("", [fact[0] for fact in facts]),
+        "foot": column("", [fact[1] for fact in facts]),
+        "value": column("unit of its row", [fact[2] for fact in facts]),
+        "unit": column("", [fact[3] for fact in facts]),
+    }
+    return table(columns, about)
 
 
-def coefficient_sheet(answer: ImpactAnswer, about: dict[str, str]) -> Sheet:
+def coefficient_table(answer: ImpactAnswer, about: dict[str, str]) -> Table:
     """Return the coefficients of a body under every model."""
-    rows = [(foot, row) for foot, table in answer.tables.items() for row in table]
+    rows = [(foot, row) for foot, each in answer.tables.items() for row in each]
     plain: Sequence[CoefficientRow] = [row for _, row in rows]
-    columns = [
-        Column.of("onto", "", [foot for foot, _ in rows]),
-        Column.of("model", "", [row.name for row in plain]),
-        Column.of("coefficient_of_restitution", "-", [row.coefficient for row in plain]),
-        Column.of("low_95", "-", [row.low for row in plain]),
-        Column.of("high_95", "-", [row.high for row in plain]),
-        Column.of("impulse_ratio_k", "-", [row.implication.impulse_ratio for row in plain]),
-        Column.of("impulse_x", "m", [row.implication.impulse_x for row in plain]),
-        Column.of("energy_loss", "-", [row.implication.energy_loss for row in plain]),
-        Column.of("friction_demand", "-", [row.implication.friction_demand for row in plain]),
-        Column.of("admissible", "1 yes, 0 no", [int(row.implication.admissible) for row in plain]),
-        Column.of("warnings", "", ["; ".join(row.warnings) for row in plain]),
-    ]
-    return Sheet("coefficients", columns, about)
+    columns = {
+        "onto": column("", [foot for foot, _ in rows]),
+        "model": column("", [row.name for row in plain]),
+        "coefficient_of_restitution": column("-", [row.coefficient for row in plain]),
+        "low_95": column("-", [row.low for row in plain]),
+        "high_95": column("-", [row.high for row in plain]),
+        "impulse_ratio_k": column("-", [row.implication.impulse_ratio for row in plain]),
+        "impulse_x": column("m", [row.implication.impulse_x for row in plain]),
+        "energy_loss": column("-", [row.implication.energy_loss for row in plain]),
+        "friction_demand": column("-", [row.implication.friction_demand for row in plain]),
+        "admissible": column("1 yes, 0 no", [int(row.implication.admissible) for row in plain]),
+        "warnings": column("", ["; ".join(row.warnings) for row in plain]),
+    }
+    return table(columns, about)
 
 
 def _facts(body: Body, gravity: float) -> list[Fact]:
