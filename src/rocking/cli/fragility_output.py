@@ -1,6 +1,5 @@
 """Files that `rocking fragility` writes."""
 
-import csv
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,10 +7,10 @@ from typing import TYPE_CHECKING
 from rocking.cli.files_output import check_files
 from rocking.cli.fragility_question import FragilityAnswer, FragilityQuestion
 from rocking.errors import InvalidValueError
+from rocking.tables import Table, to_csv
 
 if TYPE_CHECKING:
     from rocking.studies.fragility.curves import FragilityModel
-    from rocking.studies.fragility.tables import CellTable
 
 _CURVES = ("p58", "nrml", "excel", "mat", "netcdf")
 """Files of the curves of one restitution; they cannot be without a curve."""
@@ -59,8 +58,7 @@ class Files:
         if self.picture is not None:
             _draw(answer, self.picture)
         if self.csv is not None:
-            with self.csv.open("w", newline="", encoding="utf-8") as file:
-                csv.writer(file).writerows(counted(answer).safe())
+            to_csv(counted(answer), self.csv)
         if any(getattr(self, kind) is not None for kind in _CURVES):
             self._write_curves(answer, name)
         return [path for path in vars(self).values() if isinstance(path, Path)]
@@ -95,13 +93,11 @@ class Files:
         return model
 
 
-def counted(answer: FragilityAnswer) -> "CellTable":
+def counted(answer: FragilityAnswer) -> Table:
     """Return what was counted at each level, and the fitted probability beside it.
 
     Returns A row for every restitution and level; the cell of a probability is empty where there is no curve.
     """
-    from rocking.studies.fragility.tables import CellTable
-
     measure, states = answer.found.subject.measure, list(answer.found.counts)
     first = ("restitution", f"{measure.name} [{measure.unit}]", "histories [-]")
     head = (*first, *(f"reached {name} [-]" for name in states), *(f"fitted {name} [-]" for name in states))
@@ -113,7 +109,7 @@ def counted(answer: FragilityAnswer) -> "CellTable":
             reached = [int(result.counts[name][k]) for name in states]
             likely = ["" if values is None else float(values[k]) for values in fitted]
             rows.append((label, level, int(result.trials[k]), *reached, *likely))
-    return CellTable("counted", head, tuple(rows))
+    return Table.of_rows("counted", head, rows)
 
 
 def _draw(answer: FragilityAnswer, path: Path) -> None:

@@ -1,6 +1,5 @@
 """Fragility as files: CSV, Excel, MATLAB and netCDF; OpenQuake's NRML is in a room of its own."""
 
-import csv
 import json
 import os
 from pathlib import Path
@@ -8,11 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from rocking.errors import InvalidValueError, extra
+from rocking.errors import InvalidValueError
 from rocking.studies.fragility.curves import CLAIMS, FragilityModel
 from rocking.studies.fragility.nesting import Crossing, check_crossing
-from rocking.studies.fragility.tables import TABLES, Cell, CellTable, safe_cell, table
+from rocking.studies.fragility.tables import TABLES, table
 from rocking.studies.fragility.variables import variables_of
+from rocking.tables import Table, dataset_to_netcdf, target_of
+from rocking.tables import to_csv as table_to_csv
+from rocking.tables import to_excel as tables_to_excel
+from rocking.tables import to_mat as structure_to_mat
 
 Destination = str | os.PathLike[str]
 
@@ -20,7 +23,7 @@ Destination = str | os.PathLike[str]
 def to_csv(
     model: FragilityModel,
     path: Destination,
-    which: str | CellTable = "parameters",
+    which: str | Table = "parameters",
     *,
     crossing: Crossing = "refuse",
 ) -> Path:
@@ -32,7 +35,7 @@ def to_csv(
         The curves.
     path : str or path
         The file.
-    which : {"parameters", "points", "fema-p58"} or CellTable
+    which : {"parameters", "points", "fema-p58"} or Table
         What to write.
     crossing : {"refuse", "common-dispersion"}
         What to do with curves that cross, in the table of FEMA P-58.
@@ -42,11 +45,8 @@ def to_csv(
     Path
         The file. Words that a spreadsheet would take for a formula start with an apostrophe.
     """
-    target = checked_path(path)
-    cells = which if isinstance(which, CellTable) else table(model, which, crossing=crossing)
-    with target.open("w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows(cells.safe())
-    return target
+    chosen = which if isinstance(which, Table) else table(model, which, crossing=crossing)
+    return table_to_csv(chosen, target_of(path))
 
 
 def to_excel(model: FragilityModel, path: Destination, *, crossing: Crossing = "refuse") -> Path:
@@ -67,32 +67,18 @@ def to_excel(model: FragilityModel, path: Destination, *, crossing: Crossing = "
     Path
         The file. Words are stored as words, never as formulas.
     """
-    openpyxl: Any = extra("openpyxl", "Excel")
-    target = checked_path(path)
-    book = openpyxl.Workbook()
-    book.remove(book.active)
-    for name in TABLES:
-        sheet = book.create_sheet(name)
-        for row, cells in enumerate(_sheet(model, name, crossing), 1):
-            for column, value in enumerate(cells, 1):
-                cell = sheet.cell(row=row, column=column, value=value)
-                if isinstance(value, str):
-                    cell.data_type = "s"
-    sheet = book.create_sheet("provenance")
-    for row, (name, value) in enumerate(model.about.items(), 1):
-        sheet.cell(row=row, column=1, value=name)
-        sheet.cell(row=row, column=2, value=str(value)).data_type = "s"
-    book.save(target)
+    target = target_of(path)
+    tables_to_excel([(name, _sheet(model, name, crossing)) for name in TABLES], target, model.about)
     return target
 
 
-def _sheet(model: FragilityModel, name: str, crossing: Crossing) -> list[list[Cell]]:
-    """Return the cells of a sheet; a refusal to draw up one table does not cost the others."""
+def _sheet(model: FragilityModel, name: str, crossing: Crossing) -> Table:
+    """Return a table; a refusal to draw up one does not cost the others."""
     check_crossing(crossing)
     try:
-        return table(model, name, crossing=crossing).safe()
+        return table(model, name, crossing=crossing)
     except InvalidValueError as error:
-        return [[safe_cell(str(error))]]
+        return Table.of_rows(name, (str(error),), ())
 
 
 def to_mat(model: FragilityModel, path: Destination) -> Path:
@@ -111,9 +97,6 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
         The file, with states, median, dispersion, their intervals (NaN where open), goodness of fit (NaN where there
         is none), bootstrap where it was asked for, levels, trials, exceeded, probability, words and provenance.
     """
-    from scipy.io import savemat
-
-    target = checked_path(path)
     structure = {
         "component": model.name,
         "measure": model.measure,
@@ -131,8 +114,7 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
         "probability": np.array([c.probability(model.levels) for c in model.curves]),
         "provenance": json.dumps(dict(model.about)),
     }
-    savemat(target, {"fragility": structure}, oned_as="column", appendmat=False)
-    return target
+    return structure_to_mat(structure, "fragility", target_of(path))
 
 
 def _evidence(model: FragilityModel) -> dict[str, Any]:
@@ -161,20 +143,4 @@ def to_netcdf(model: FragilityModel, path: Destination) -> Path:
     Path
         The file.
     """
-    extra("h5py", "netCDF")
-    extra("h5netcdf", "netCDF")
-    target = checked_path(path)
-    model.dataset.to_netcdf(target, engine="h5netcdf")
-    return target
-
-
-def checked_path(path: Any) -> Path:
-    """Return a path that a file can be written to."""
-    if not isinstance(path, (str, os.PathLike)):
-        raise InvalidValueError(f"path must be the path of a file, got {path!r:.60}")
-    target = Path(path)
-    if target.is_dir():
-        raise InvalidValueError(f"path must be the path of a file, got the folder {target}")
-    if not target.parent.is_dir():
-        raise InvalidValueError(f"no folder {target.parent} to write {target.name} into")
-    return target
+    return dataset_to_netcdf(model.dataset, target_of(path))

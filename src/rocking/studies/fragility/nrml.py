@@ -9,8 +9,9 @@ from rocking import checks, conventions
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility._measures import spectral_period
 from rocking.studies.fragility.curves import FragilityModel
-from rocking.studies.fragility.export import Destination, checked_path
+from rocking.studies.fragility.export import Destination
 from rocking.studies.fragility.nesting import Crossing, nested
+from rocking.tables import target_of
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 LOSS_CATEGORIES = ("structural", "nonstructural", "contents", "business_interruption", "occupants")
@@ -71,7 +72,7 @@ def to_nrml(
     InvalidValueError
         If OpenQuake does not know the measure or the loss category, a name cannot stand in XML, or curves cross.
     """
-    target = checked_path(path)
+    target = target_of(path)
     if loss_category not in LOSS_CATEGORIES:
         raise InvalidValueError(f"loss_category must be one of {', '.join(LOSS_CATEGORIES)}, got {loss_category!r:.60}")
     imt, unit = intensity_type(model.measure)

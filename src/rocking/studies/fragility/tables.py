@@ -1,7 +1,6 @@
 """Fragility curves as tables of plain cells: parameters, points, and the style of FEMA P-58."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,46 +9,13 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.agreement import STATISTICS, Ends, Repeated
 from rocking.studies.fragility.curves import FragilityCurve, FragilityModel
 from rocking.studies.fragility.nesting import Crossing, nested
+from rocking.tables import Cell, Table
 
 TABLES = ("parameters", "points", "fema-p58")
 """Tables that can be written."""
 
-_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
 
-Cell = str | int | float
-
-
-@dataclass(frozen=True)
-class CellTable:
-    """A table of cells."""
-
-    title: str  # what it shows
-    header: tuple[str, ...]  # names of the columns, with units in brackets
-    rows: tuple[tuple[Cell, ...], ...]  # words and finite numbers; an empty word where there is no number
-
-    def safe(self) -> list[list[Cell]]:
-        """Return header and rows with all words made harmless to spreadsheets."""
-        return [[safe_cell(cell) for cell in row] for row in (self.header, *self.rows)]
-
-
-def safe_cell(cell: Cell) -> Cell:
-    """Return a cell that no spreadsheet takes for a formula.
-
-    Returns A word that starts with ``=``, ``+``, ``-``, ``@``, a tab or a line break gets an apostrophe before it;
-    control characters are taken out; numbers stay.
-
-    >>> safe_cell("=1+1"), safe_cell(-1.5)
-    ("'=1+1", -1.5)
-    """
-    if not isinstance(cell, str):
-        if not math.isfinite(cell):
-            raise InvalidValueError(f"cells of a table must be finite, got {cell}")
-        return cell
-    clean = "".join(c if c.isprintable() else " " for c in cell)
-    return f"'{clean}" if cell.lstrip(" ").startswith(_FORMULA) else clean
-
-
-def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossing = "refuse") -> CellTable:
+def table(model: FragilityModel, which: str = "parameters", *, crossing: Crossing = "refuse") -> Table:
     """Return one of the tables of a model."""
     made = {"parameters": _parameters, "points": _points}
     given: object = which
@@ -62,7 +28,7 @@ def _bracket(model: FragilityModel) -> str:
     return f"[{model.unit}]"
 
 
-def _parameters(model: FragilityModel) -> CellTable:
+def _parameters(model: FragilityModel) -> Table:
     header = (
         "component", "state", "measure", f"median {_bracket(model)}", "dispersion [-]", "method",
         f"lowest level {_bracket(model)}", f"highest level {_bracket(model)}", "histories", "source",
@@ -88,7 +54,7 @@ def _parameters(model: FragilityModel) -> CellTable:
     for state, why in model.without.items():
         cells = {**known, "state": state, "verdict": why}
         rows += (tuple(cells.get(name, "") for name in header),)
-    return CellTable("parameters", header, rows)
+    return Table.of_rows("parameters", header, rows)
 
 
 _AGREEMENT = (*(f"{name}{what} [-]" for name in STATISTICS for what in ("", " p-value")), "agreement")
@@ -111,7 +77,7 @@ def _cells(interval: Ends | None) -> tuple[Cell, Cell]:
     return low, high
 
 
-def _points(model: FragilityModel) -> CellTable:
+def _points(model: FragilityModel) -> Table:
     fitted = {c.state: c.probability(model.levels) for c in model.curves}
     observed = {f"observed {name} [histories]": np.asarray(values) for name, values in model.reached.items()}
     columns = {
@@ -125,7 +91,7 @@ def _points(model: FragilityModel) -> CellTable:
             for end, values in zip(("from", "to"), curve.repeated.band, strict=True):
                 columns[f"bootstrap 95 % {end} {curve.state} [-]"] = values
     rows = tuple(zip(*(values.tolist() for values in columns.values()), strict=True))
-    return CellTable("points", tuple(columns), rows)
+    return Table.of_rows("points", tuple(columns), rows)
 
 
 def fema_p58_table(
@@ -135,7 +101,7 @@ def fema_p58_table(
     quality: str = "Analytical",
     *,
     crossing: Crossing = "refuse",
-) -> CellTable:
+) -> Table:
     """Return the table of a component as FEMA P-58 asks for it, one row a damage state.
 
     Parameters
@@ -154,7 +120,7 @@ def fema_p58_table(
 
     Returns
     -------
-    CellTable
+    Table
         Damage states DS1, DS2, ... from the least to the worst, sequential.
 
     Raises
@@ -186,7 +152,7 @@ def fema_p58_table(
         )
         for k, curve in enumerate(model.curves, 1)
     )  # fmt: skip
-    return CellTable("fema-p58", header, rows)
+    return Table.of_rows("fema-p58", header, rows)
 
 
 def with_added_dispersion(dispersion: float, *others: float) -> float:

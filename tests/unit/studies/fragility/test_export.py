@@ -16,7 +16,8 @@ from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, mod
 from rocking.studies.fragility.export import to_csv, to_excel, to_mat, to_netcdf
 from rocking.studies.fragility.nrml import intensity_type, moments_of_lognormal, to_nrml
 from rocking.studies.fragility.stripes import multiple_stripes
-from rocking.studies.fragility.tables import fema_p58_table, safe_cell, table, with_added_dispersion
+from rocking.studies.fragility.tables import fema_p58_table, table, with_added_dispersion
+from rocking.tables import safe_cell
 
 CURVES = FragilityCurve("rotation > 0.5 alpha", 3.1, 0.25), FragilityCurve("overturned", 4.7, 0.4)
 REACHED = {"overturned": np.array([0, 4, 9])}
