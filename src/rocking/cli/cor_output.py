@@ -1,6 +1,5 @@
 """What `rocking cor` prints, writes and draws."""
 
-import csv
 import json
 import math
 from pathlib import Path
@@ -54,15 +53,15 @@ def as_json(answer: ImpactAnswer) -> str:
 
 def write_csv(answer: ImpactAnswer, path: Path) -> None:
     """Write the tables as one CSV file."""
+    from rocking.tables import Column, Table, text_array, to_csv
+
     records = [
         {"onto": foot, **row.as_dict(), "warnings": "; ".join(row.warnings)}
         for foot, rows in answer.tables.items()
         for row in rows
     ]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=list(records[0]))
-        writer.writeheader()
-        writer.writerows(records)
+    columns = {name: Column(text_array([record[name] for record in records]), "") for name in records[0]}
+    to_csv(Table("coefficient", columns), path)
 
 
 def draw(answer: ImpactAnswer, path: Path) -> None:

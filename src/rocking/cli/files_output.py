@@ -17,21 +17,12 @@ def check_files(picture: Path | None, *others: Path | None) -> None:
 
 def write_csv(path: Path, head: list[str], columns: list[Any]) -> None:
     """Write columns as comma-separated values, all digits kept."""
-    import csv
+    import numpy as np
 
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(head)
-        # floats are written with all their digits
-        writer.writerows(zip(*(values.tolist() for values in columns), strict=True))
+    from rocking.tables import Column, Table, to_csv
 
-
-def write_netcdf(path: Path, dataset: Any) -> None:
-    """Write a dataset as netCDF."""
-    from rocking.errors import extra
-
-    extra("h5netcdf", "a netCDF file")
-    dataset.to_netcdf(path, engine="h5netcdf")
+    table = Table("row", {name: Column(np.asarray(values), "") for name, values in zip(head, columns, strict=True)})
+    to_csv(table, path, blank=False)
 
 
 def plain(values: Any) -> Any:

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 from rocking import checks
 from rocking.bodies import Body
 from rocking.cli import study_output as shared
-from rocking.cli.files_output import write_csv, write_netcdf
+from rocking.cli.files_output import write_csv
 from rocking.cli.simulate_question import restitution_from
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.studies.axis import Axis
+from rocking.tables import dataset_to_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -161,7 +162,7 @@ def write(answer: MapAnswer, picture: Path | None, csv: Path | None, netcdf: Pat
     if csv is not None:
         _write_csv(answer.whole, csv)
     if netcdf is not None:
-        write_netcdf(netcdf, answer.whole)
+        dataset_to_netcdf(answer.whole, netcdf)
     return [path for path in (picture, csv, netcdf) if path is not None]
 
 

@@ -1,6 +1,5 @@
 """What `rocking motion` prints, writes and draws."""
 
-import csv
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -77,6 +76,8 @@ def as_json(answer: MotionAnswer) -> str:
 
 def write_csv(answer: MotionAnswer, path: Path) -> None:
     """Write time, acceleration, velocity and displacement at the samples; of a pulse as its formulas give them."""
+    from rocking.tables import Column, Table, to_csv
+
     motion, samples = answer.motion, answer.samples
     columns: dict[str, FloatArray] = {"time_s": np.asarray(samples.time), "acceleration_m_s2": samples.acceleration}
     if isinstance(motion, GroundMotion):
@@ -86,10 +87,7 @@ def write_csv(answer: MotionAnswer, path: Path) -> None:
     else:
         fine = traces(motion)
         columns |= {"velocity_m_s": fine.velocity, "displacement_m": fine.displacement}
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
+    to_csv(Table("sample", {name: Column(values, "") for name, values in columns.items()}), path, blank=False)
 
 
 def draw(answer: MotionAnswer, path: Path) -> None:

@@ -1,6 +1,5 @@
 """What `rocking cor` prints, writes and draws of a body in space."""
 
-import csv
 import json
 import math
 from pathlib import Path
@@ -67,11 +66,11 @@ def as_json(answer: SolidAnswer) -> str:
 
 def write_csv(answer: SolidAnswer, path: Path) -> None:
     """Write edges and coefficients as one CSV file."""
+    from rocking.tables import Column, Table, text_array, to_csv
+
     records = [_record(edge, name) for edge in answer.edges for name in edge.results]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=list(records[0]))
-        writer.writeheader()
-        writer.writerows(records)
+    columns = {name: Column(text_array([record[name] for record in records]), "") for name in records[0]}
+    to_csv(Table("coefficient", columns), path)
 
 
 def draw(file: SolidFile, path: Path) -> None:

@@ -16,12 +16,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rocking.cli import study_output as shared
-from rocking.cli.files_output import plain, write_csv, write_netcdf
+from rocking.cli.files_output import plain, write_csv
 from rocking.cli.motion_options import motion_from
 from rocking.cli.simulate_question import restitution_from
 from rocking.conventions import FloatArray
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
+from rocking.tables import dataset_to_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -105,7 +106,7 @@ def write(found: "xr.Dataset", picture: Path | None, csv: Path | None, netcdf: P
         head = [f"{name} [{unit}]" if unit else str(name) for name, unit in units.items()]
         write_csv(csv, head, [table[name] for name in table.columns])
     if netcdf is not None:
-        write_netcdf(netcdf, found)
+        dataset_to_netcdf(found, netcdf)
     return [path for path in (picture, csv, netcdf) if path is not None]
 
 

@@ -164,8 +164,10 @@ class Table:
         Raises
         ------
         InvalidValueError
-            If a number is not finite.
+            If a number is not finite, or headings are the same.
         """
+        if len(set(header)) < len(header):
+            raise InvalidValueError(f"headings of a table must differ, got {', '.join(header)}")
         cells = [list(map(_checked, each)) for each in rows]
         columns = {name: text_array([each[k] for each in cells]) for k, name in enumerate(header)}
         return cls(row, {name: Column(values, "") for name, values in columns.items()})
