@@ -4,7 +4,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from rocking.errors import MissingExtraError, how_to_install
+from rocking.errors import extra
 from rocking.studies.inventory.table import HEADER, rows
 from rocking.studies.inventory.verdict import Assessment
 from rocking.studies.inventory.words import LIMITS
@@ -17,7 +17,7 @@ _WIDTHS = {"name": 28, "in words": 70, "what to do": 70, "note": 28, "light": 14
 
 def write_spreadsheet(assessment: Assessment, path: Path) -> None:
     """Write the table as an Excel workbook: the ranking, and the assumptions on a second sheet."""
-    book = _openpyxl().Workbook()
+    book = extra("openpyxl", "the spreadsheet").Workbook()
     sheet = book.active
     sheet.title = "Ranking"
     _fill(sheet, [list(HEADER), *rows(assessment)])
@@ -35,16 +35,6 @@ def write_spreadsheet(assessment: Assessment, path: Path) -> None:
     path.write_bytes(whole.getvalue())
 
 
-def _openpyxl() -> Any:
-    from importlib import import_module
-
-    try:
-        import_module("openpyxl.styles")
-        return import_module("openpyxl")
-    except ImportError as error:
-        raise MissingExtraError(how_to_install("the spreadsheet", "openpyxl", error)) from error
-
-
 def _fill(sheet: Any, lines: list[list[Any]]) -> None:
     for i, line in enumerate(lines, start=1):
         for k, value in enumerate(line, start=1):
@@ -58,7 +48,7 @@ def _fill(sheet: Any, lines: list[list[Any]]) -> None:
 
 
 def _dress(sheet: Any) -> None:
-    styles = _openpyxl().styles
+    styles = extra("openpyxl.styles", "the spreadsheet")
     for k, title in enumerate(HEADER, start=1):
         head = sheet.cell(row=1, column=k)
         head.font = styles.Font(bold=True)

@@ -8,7 +8,6 @@ LONGEST_LINE = 160
 LONGEST_CELL = 2000
 """Characters of a text that are kept in one cell."""
 
-_FORMULA = "=+-@\N{FULLWIDTH EQUALS SIGN}\N{FULLWIDTH PLUS SIGN}\N{FULLWIDTH HYPHEN-MINUS}\N{FULLWIDTH COMMERCIAL AT}"
 _OF_DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\.|$)", re.IGNORECASE)
 _OURS = ("response.toml", "readme.txt")
 _LONGEST_FILE_NAME = 80
@@ -26,18 +25,6 @@ def plain_line(text: str, longest: int = LONGEST_LINE) -> str:
     seen = "".join(each for each in text if each.isprintable() or each.isspace())
     line = " ".join(seen.split())
     return line if len(line) <= longest else f"{line[: longest - 3]}..."
-
-
-def cell_text(text: str) -> str:
-    """Return a text that a spreadsheet takes for text, whatever it begins with.
-
-    Returns with an apostrophe before what would begin a formula.
-
-    >>> cell_text("=1+1"), cell_text("Vase 3")
-    ("'=1+1", 'Vase 3')
-    """
-    line = plain_line(text, LONGEST_CELL)
-    return f"'{line}" if line.startswith(tuple(_FORMULA)) else line
 
 
 def record_file_name(name: str, otherwise: str = "record.txt") -> str:

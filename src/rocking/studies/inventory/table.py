@@ -7,8 +7,7 @@ from typing import Any
 from rocking.conventions import g
 from rocking.studies.inventory.verdict import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.words import LIMITS, advice, model_note, rotation_words, sentence
-
-_DANGEROUS = ("=", "+", "-", "@", "\t", "\r", "\n")
+from rocking.tables import escaped
 
 HEADER = (
     "rank", "light", "name", "count", "row", "worse direction", "uplift acceleration [g]", "motions", "lifted",
@@ -28,15 +27,15 @@ def rows(assessment: Assessment) -> list[list[str | float | int]]:
     for rank, verdict in enumerate(assessment.verdicts, start=1):
         worse, item, (low, high) = verdict.worse, verdict.item, verdict.interval
         lines.append([
-            rank, f"{verdict.light.value} {verdict.light.word}", safe(item.name), item.count, item.row,
+            rank, f"{verdict.light.value} {verdict.light.word}", escaped(item.name), item.count, item.row,
             worse.direction, round(verdict.uplift_acceleration / g, 4), worse.count, worse.lifted, worse.overturned,
             round(100.0 * low, 2), round(100.0 * high, 2), _rounded(worse.median_rotation),
             _rounded(worse.high_rotation), verdict.worse_compared.light.word, sentence(verdict, assessment),
-            _advice(verdict, assessment), safe(item.note),
+            _advice(verdict, assessment), escaped(item.note),
         ])  # fmt: skip
     for refused in assessment.not_assessed:
         line: list[str | float | int] = [""] * len(HEADER)
-        line[1], line[2], line[4] = "not assessed", safe(refused.name), refused.row
+        line[1], line[2], line[4] = "not assessed", escaped(refused.name), refused.row
         line[HEADER.index("in words")] = f"not assessed: {refused.reason}"
         lines.append(line)
     return lines
@@ -90,17 +89,6 @@ def as_plain(assessment: Assessment) -> dict[str, Any]:
         "columns_not_read": list(assessment.ignored),
         "assumptions": list(LIMITS),
     }
-
-
-def safe(text: str) -> str:
-    """Return text that no spreadsheet takes for a formula.
-
-    Returns the text, with an apostrophe before it if it begins as a formula does.
-
-    >>> safe("=1+1"), safe("vase")
-    ("'=1+1", 'vase')
-    """
-    return f"'{text}" if text.lstrip(" ").startswith(_DANGEROUS) else text
 
 
 def _rounded(value: float | None) -> str | float:

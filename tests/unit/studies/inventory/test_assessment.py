@@ -20,7 +20,8 @@ from rocking.studies.inventory.hazard import Hazard, Level
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import InventoryObject
 from rocking.studies.inventory.reading import parse_inventory
-from rocking.studies.inventory.table import HEADER, as_csv, as_plain, rows, safe
+from rocking.studies.inventory.table import HEADER, as_csv, as_plain, rows
+from rocking.tables import escaped
 
 G = 9.80665
 # tan alpha = 1/4 along the width, 1/2 along the depth
@@ -196,7 +197,7 @@ def test_thresholds_of_ones_own(quakes):
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@cmd", "\t=1", " =1", "\r=1"])
 def test_no_cell_is_a_formula(text, quakes):
     """Names and notes that a spreadsheet would run have an apostrophe before them, in good rows and bad ones."""
-    assert safe(text) == "'" + text
+    assert escaped(text) == "'" + text
     good = InventoryObject(name=text, width=0.5, depth=1.0, height=2.0, note=text)
     lines = rows(assess([good], quakes))
     assert lines[0][HEADER.index("name")] == lines[0][HEADER.index("note")] == "'" + text
@@ -204,7 +205,7 @@ def test_no_cell_is_a_formula(text, quakes):
     for line in rows(assess(bad, quakes)):
         assert not any(isinstance(cell, str) and cell.lstrip(" ").startswith(("=", "+", "-", "@")) for cell in line)
     # negative control: words without such a beginning stay as they are
-    assert safe("vase = 3") == "vase = 3"
+    assert escaped("vase = 3") == "vase = 3"
 
 
 def test_table_and_plain_values_agree(quakes):
