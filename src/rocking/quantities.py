@@ -21,6 +21,8 @@ class Quantity:
         What it is.
     codes : dict of int to str
         What whole numbers stand for, where they stand for something.
+    standard_name : str
+        Its name in the table of the CF conventions, where that has it: it knows nothing that rocks.
 
     Examples
     --------
@@ -32,11 +34,12 @@ class Quantity:
     unit: str
     meaning: str
     codes: dict[int, str] = field(default_factory=dict)
+    standard_name: str = ""
 
     @property
     def attributes(self) -> dict[str, Any]:
         """Unit, meaning and codes, as xarray and the CF conventions name them."""
-        made: dict[str, Any] = {"units": self.unit, "long_name": self.meaning}
+        made: dict[str, Any] = {"units": self.unit, "long_name": self.meaning, "standard_name": self.standard_name}
         made = {key: value for key, value in made.items() if value}
         if self.codes:
             made["flag_values"] = list(self.codes)
@@ -73,7 +76,9 @@ _REGIMES = {regime.code: regime.value for regime in Regime}
 _SIDES = {1: "right", -1: "left"}
 _HISTORY = (
     Quantity("outcome", "1", _spelled(_OUTCOMES), _OUTCOMES),
-    Quantity("status", "1", ", ".join(f"{status.code} {status.value}" for status in Status), _words(Status)),
+    Quantity(
+        "status", "1", ", ".join(f"{status.code} {status.value}" for status in Status), _words(Status), "status_flag"
+    ),
     Quantity("overturned", "1", "1 it overturned, 0 it did not, NaN where there is no result: neither"),
     Quantity(
         "mode", "1", "-3 failed, -2 not lifted, -1 rocked and stayed standing, n >= 0 overturned after n impacts"

@@ -15,14 +15,16 @@ def check_files(picture: Path | None, *others: Path | None) -> None:
             raise InvalidValueError(f"no folder {str(path.parent)!r} to write {path.name!r} into")
 
 
-def write_csv(path: Path, head: list[str], columns: list[Any]) -> None:
-    """Write columns as comma-separated values, all digits kept."""
+def write_csv(path: Path, columns: dict[str, tuple[Any, str]]) -> None:
+    """Write values with their units as comma-separated values, all digits kept."""
     import numpy as np
 
+    from rocking.quantities import QUANTITIES
     from rocking.tables import Column, Table, to_csv
 
-    table = Table("row", {name: Column(np.asarray(values), "") for name, values in zip(head, columns, strict=True)})
-    to_csv(table, path, blank=False)
+    codes = {name: QUANTITIES[name].codes if name in QUANTITIES else {} for name in columns}
+    table = {name: Column(np.asarray(v), unit, codes=codes[name]) for name, (v, unit) in columns.items()}
+    to_csv(Table("row", table, no_unit="1"), path, blank=False)
 
 
 def plain(values: Any) -> Any:

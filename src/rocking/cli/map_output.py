@@ -190,9 +190,7 @@ def _write_csv(found: "xr.Dataset", path: Path) -> None:
     cells = found.drop_dims("point", errors="ignore")
     dims = cells["mode"].dims
     grids = np.meshgrid(*(np.asarray(cells[name].values) for name in dims), indexing="ij")
+    columns = dict(zip(dims, grids, strict=True))
+    columns |= {name: np.asarray(cells[name].transpose(*dims).values) for name in cells.data_vars}
     # names of restitutions have no unit
-    units = {name: cells[name].attrs.get("units") for name in (*dims, *cells.data_vars)}
-    head = [f"{name} [{unit}]" if unit else str(name) for name, unit in units.items()]
-    columns = [part.ravel() for part in grids]
-    columns += [np.asarray(cells[name].transpose(*dims).values).ravel() for name in cells.data_vars]
-    write_csv(path, head, columns)
+    write_csv(path, {str(n): (values.ravel(), cells[n].attrs.get("units", "")) for n, values in columns.items()})

@@ -176,10 +176,12 @@ def write(answer: MinimumAnswer, picture: Path | None, csv: Path | None) -> list
         drawn = crossings_picture(found, answer.body, answer.motion, answer.restitution, **answer.settings)
         write_picture(drawn, picture)
     if csv is not None:
-        head = ["acceleration [m/s2]", "acceleration [g]", "ratio [1]", "scale [1]", "width [m/s2]", "mode below [1]",
-                "mode above [1]"]  # fmt: skip
-        values = found.acceleration, found.acceleration / g, found.ratio, found.scale, found.width
-        write_csv(csv, head, [*values, found.modes[:, 0], found.modes[:, 1]])
+        columns = {
+            "acceleration [m/s2]": found.acceleration, "acceleration [g]": found.acceleration / g,
+            "ratio [1]": found.ratio, "scale [1]": found.scale, "width [m/s2]": found.width,
+            "mode below [1]": found.modes[:, 0], "mode above [1]": found.modes[:, 1],
+        }  # fmt: skip
+        write_csv(csv, {name: (values, "") for name, values in columns.items()})
     return [path for path in (picture, csv) if path is not None]
 
 

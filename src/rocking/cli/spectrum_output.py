@@ -102,9 +102,7 @@ def write(found: "xr.Dataset", picture: Path | None, csv: Path | None, netcdf: P
         write_picture(rocking_spectrum_picture(found), picture)
     if csv is not None:
         table = found.to_dataframe().reset_index()
-        units = {name: found[name].attrs.get("units") for name in table.columns}
-        head = [f"{name} [{unit}]" if unit else str(name) for name, unit in units.items()]
-        write_csv(csv, head, [table[name] for name in table.columns])
+        write_csv(csv, {str(name): (table[name], found[name].attrs.get("units", "")) for name in table.columns})
     if netcdf is not None:
         dataset_to_netcdf(found, netcdf)
     return [path for path in (picture, csv, netcdf) if path is not None]

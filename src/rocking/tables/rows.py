@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.errors import InvalidValueError, extra
-from rocking.tables.table import Cell, Column, Grid, Table, safe_cell
+from rocking.tables.table import Cell, Column, Grid, Table, decoded, safe_cell
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,9 +39,8 @@ def to_dataframe(table: Table) -> "pd.DataFrame":
         Columns such as ``rotation [rad]``.
     """
     pandas = extra("pandas", "a table")
-    frame: pd.DataFrame = pandas.DataFrame(
-        dict(zip(table.header, (each.values for each in table.columns.values()), strict=True))
-    )
+    arrays = (each.array for each in decoded(table.columns).values())
+    frame: pd.DataFrame = pandas.DataFrame(dict(zip(table.header, arrays, strict=True)))
     return frame
 
 
@@ -108,7 +107,7 @@ def _arrow_type(pa: Any, column: Column) -> Any:
 def _arrow(pa: Any, column: Column) -> Any:
     values, index = column.values, column.index
     if not column.is_text:
-        return pa.array(values if index is None else values[index])
+        return pa.array(column.array)
     text = pa.array(values.tolist(), pa.string())
     return text if index is None else pa.DictionaryArray.from_arrays(pa.array(index.astype(np.int32)), text)
 
@@ -177,21 +176,21 @@ def _fill(page: Any, table: Table | Grid) -> None:
     fonts, cells = import_module("openpyxl.styles"), import_module("openpyxl.cell")
     page.freeze_panes = "A2"
     letters = import_module("openpyxl.utils").get_column_letter
-    for k, (heading, column) in enumerate(zip(table.header, table.columns.values(), strict=True), start=1):
-        widest = max([len(heading), *map(len, column.values[:200].tolist() if column.is_text else ())])
+    for k, (heading, column) in enumerate(zip(table.header, decoded(table.columns).values(), strict=True), start=1):
+        widest = max([len(heading), *map(len, column.array[:200].tolist() if column.is_text else ())])
         page.column_dimensions[letters(k)].width = min(_WIDEST, widest + 2)
     head = [_filled(cells.WriteOnlyCell(page), heading) for heading in table.header]
     for one in head:
         one.font = fonts.Font(bold=True)
     page.append(head)
     for piece in table.pieces():
-        for row in zip(*(_raw(each) for each in piece.columns.values()), strict=True):
+        for row in zip(*(_raw(each) for each in decoded(piece.columns).values()), strict=True):
             page.append([None if value is None else _filled(cells.WriteOnlyCell(page), value) for value in row])
 
 
 def _raw(column: Column) -> list[Cell]:
     """Text as it is: the kind of its cell says that it is no formula."""
-    return [text or None for text in column.values.tolist()] if column.is_text else column.cells(slice(None))
+    return [text or None for text in column.array.tolist()] if column.is_text else column.cells(slice(None))
 
 
 def _filled(cell: Any, value: Cell) -> Any:

@@ -42,6 +42,8 @@ class Column:
         What whole numbers stand for.
     index : ndarray of int, optional
         Which of the values each row has; the values stand in the order of the rows if not given.
+    standard_name : str
+        The name in the table of the CF conventions, where that has it.
 
     Examples
     --------
@@ -56,6 +58,7 @@ class Column:
     dims: tuple[str, ...] = ()
     codes: Mapping[int, str] = field(default_factory=dict)
     index: np.ndarray | None = None
+    standard_name: str = ""
 
     @classmethod
     def of(cls, name: str, values: np.ndarray) -> "Column":
@@ -74,7 +77,12 @@ class Column:
             With unit, meaning and codes.
         """
         entry = QUANTITIES[name]
-        return cls(values, entry.unit, entry.meaning, codes=entry.codes)
+        return cls(values, entry.unit, entry.meaning, codes=entry.codes, standard_name=entry.standard_name)
+
+    @property
+    def array(self) -> np.ndarray:
+        """The value of each row."""
+        return self.values if self.index is None else self.values[self.index]
 
     @property
     def is_text(self) -> bool:
@@ -84,11 +92,19 @@ class Column:
     @property
     def attributes(self) -> dict[str, Any]:
         """Unit, meaning and codes, as xarray and the CF conventions name them."""
-        return Quantity("", self.unit, self.meaning, dict(self.codes)).attributes
+        return Quantity("", self.unit, self.meaning, dict(self.codes), self.standard_name).attributes
 
     def __len__(self) -> int:
         """Return the number of rows."""
         return int(self.values.size if self.index is None else self.index.size)
+
+    @property
+    def decoded(self) -> "Column":
+        """What the codes of the rows stand for: text, empty where a number is no code."""
+        codes = np.array(sorted(self.codes), dtype=np.float64)
+        place = np.minimum(np.searchsorted(codes, self.values), codes.size - 1)
+        index = np.where(codes[place] == self.values, place, codes.size)
+        return Column(text_array([*(self.codes[code] for code in sorted(self.codes)), ""]), "", index=index)
 
     def cells(self, rows: slice, *, blank: bool = True) -> list[Cell]:
         """Return some rows as cells of a file.
@@ -105,7 +121,7 @@ class Column:
         list
             Numbers with all digits, text that no spreadsheet takes for a formula, None where there is nothing.
         """
-        values = self.values[rows] if self.index is None else self.values[self.index[rows]]
+        values = self.array[rows]
         cells: list[Cell] = values.tolist()
         if self.is_text:
             return [safe_cell(cell) if isinstance(cell, str) else cell for cell in cells]
@@ -178,7 +194,7 @@ class Table:
 
     @property
     def header(self) -> list[str]:
-        """Names of the columns with their units."""
+        """Names of the columns with their units; what codes stand for has a column of its own after them."""
         return _header(self.columns, self.no_unit)
 
     @property
@@ -199,9 +215,10 @@ class Table:
         tuple
             A row, harmless to spreadsheets.
         """
+        columns = decoded(self.columns).values()
         for first in range(0, len(self), PIECE):
             part = slice(first, first + PIECE)
-            yield from zip(*(each.cells(part, blank=blank) for each in self.columns.values()), strict=True)
+            yield from zip(*(each.cells(part, blank=blank) for each in columns), strict=True)
 
     def pieces(self) -> Iterator["Table"]:
         """Return the table as a stream of tables.
@@ -257,7 +274,7 @@ class Grid:
 
     @property
     def header(self) -> list[str]:
-        """Names of the columns with their units."""
+        """Names of the columns with their units; what codes stand for has a column of its own after them."""
         return _header(self.columns, "")
 
     def pieces(self) -> Iterator[Table]:
@@ -423,6 +440,16 @@ def text_array(values: Sequence[Any]) -> np.ndarray:
     return array
 
 
+def decoded(columns: Mapping[str, Column]) -> dict[str, Column]:
+    """Return columns as people read them: after each column of codes one that says what they stand for."""
+    every = {}
+    for name, each in columns.items():
+        every[name] = each
+        if each.codes:
+            every[f"{name}_meaning"] = each.decoded
+    return every
+
+
 def _header(columns: Mapping[str, Column], no_unit: str) -> list[str]:
-    units = {name: no_unit if each.unit in {"1", "-"} else each.unit for name, each in columns.items()}
+    units = {name: no_unit if each.unit in {"1", "-"} else each.unit for name, each in decoded(columns).items()}
     return [f"{name} [{unit}]" if unit else name for name, unit in units.items()]
