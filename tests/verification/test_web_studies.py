@@ -22,7 +22,7 @@ import websockets
 
 from rocking.campaigns.jobs import Job, JobFolder
 from rocking.campaigns.jobs.results import Results
-from rocking.tables import grid_to_netcdf
+from rocking.tables import to_netcdf
 
 Tables = dict[str, Any]
 
@@ -172,7 +172,7 @@ def _same_as_alone(folder: Path, table: bytes) -> None:
 
     alone = JobFolder.create(folder / "alone", Job.read(folder / "job.toml"))
     alone.run(workers=1)
-    grid_to_netcdf(Results(alone.job.study, alone.campaign, alone.job.provenance).grid, folder / "alone.nc")
+    to_netcdf(Results(alone.job.study, alone.campaign, alone.job.provenance).grid, folder / "alone.nc")
     with h5netcdf.File(folder / "server.nc") as mine, h5netcdf.File(folder / "alone.nc") as theirs:
         assert set(mine.variables) == set(theirs.variables)
         for name in theirs.variables:

@@ -13,7 +13,7 @@ from rocking.cli.simulate_question import restitution_from
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.studies.axis import Axis
-from rocking.tables import dataset_to_netcdf
+from rocking.tables import to_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -162,7 +162,7 @@ def write(answer: MapAnswer, picture: Path | None, csv: Path | None, netcdf: Pat
     if csv is not None:
         _write_csv(answer.whole, csv)
     if netcdf is not None:
-        dataset_to_netcdf(answer.whole, netcdf)
+        to_netcdf(answer.whole, netcdf)
     return [path for path in (picture, csv, netcdf) if path is not None]
 
 

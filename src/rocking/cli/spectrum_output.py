@@ -22,7 +22,7 @@ from rocking.cli.simulate_question import restitution_from
 from rocking.conventions import FloatArray
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
-from rocking.tables import dataset_to_netcdf
+from rocking.tables import to_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -104,7 +104,7 @@ def write(found: "xr.Dataset", picture: Path | None, csv: Path | None, netcdf: P
         table = found.to_dataframe().reset_index()
         write_csv(csv, {str(name): (table[name], found[name].attrs.get("units", "")) for name in table.columns})
     if netcdf is not None:
-        dataset_to_netcdf(found, netcdf)
+        to_netcdf(found, netcdf)
     return [path for path in (picture, csv, netcdf) if path is not None]
 
 

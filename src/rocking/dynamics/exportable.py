@@ -95,9 +95,9 @@ class Exportable(ABC):
         Path
             The file.
         """
-        from rocking.tables import structure_of, target_of, to_mat
+        from rocking.tables import target_of, to_mat
 
-        return to_mat(structure_of(self.exported()), "rocking", target_of(path))
+        return to_mat(self.exported(), target_of(path))
 
     def to_netcdf(self, path: "str | Path") -> "Path":
         """Write a netCDF file, which xarray and MATLAB open.
@@ -112,6 +112,6 @@ class Exportable(ABC):
         Path
             The file.
         """
-        from rocking.tables import dataset_to_netcdf, target_of
+        from rocking.tables import target_of, to_netcdf
 
-        return dataset_to_netcdf(self.to_xarray(), target_of(path))
+        return to_netcdf(self.to_xarray(), target_of(path))

@@ -49,13 +49,13 @@ def to_dataset(table: Table) -> "xr.Dataset":
     return dataset
 
 
-def dataset_to_netcdf(dataset: "xr.Dataset", path: Path) -> Path:
-    """Write a labelled dataset as netCDF 4, which xarray and MATLAB open.
+def to_netcdf(content: "xr.Dataset | Grid", path: Path) -> Path:
+    """Write netCDF 4, which xarray and MATLAB open.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        The dataset.
+    content : xarray.Dataset or Grid
+        A labelled dataset, or results that come piece by piece.
     path : Path
         The file.
 
@@ -66,20 +66,14 @@ def dataset_to_netcdf(dataset: "xr.Dataset", path: Path) -> Path:
     """
     extra("h5py", "netCDF")
     extra("h5netcdf", "netCDF")
-    dataset.to_netcdf(path, engine="h5netcdf")
+    if isinstance(content, Grid):
+        _grid_to_netcdf(content, path)
+    else:
+        content.to_netcdf(path, engine="h5netcdf")
     return path
 
 
-def grid_to_netcdf(grid: Grid, path: Path) -> None:
-    """Write results over dimensions as netCDF 4, piece by piece.
-
-    Parameters
-    ----------
-    grid : Grid
-        The results.
-    path : Path
-        The file.
-    """
+def _grid_to_netcdf(grid: Grid, path: Path) -> None:
     room = len(grid) * sum(np.dtype(kind).itemsize for kind in grid.results.values())
     room += sum(_room(each.values) for each in grid.coordinates.values())
     with _netcdf_file(path, "w", room) as file:
@@ -159,49 +153,44 @@ def _room(values: np.ndarray) -> int:
     return int(values.nbytes if values.dtype.kind in "iufb" else 16 * values.size)
 
 
-def to_mat(structure: Mapping[str, Any], name: str, path: Path) -> Path:
-    """Write a structure as a MATLAB file of version 5.
+def to_mat(
+    content: Table | Grid | Mapping[str, Any], path: Path, name: str = "rocking", *, apart: bool = False
+) -> Path:
+    """Write one structure as a MATLAB file of version 5.
 
     Parameters
     ----------
-    structure : dict
-        Arrays, text, and structures of the same kind.
-    name : str
-        What it is called.
+    content : Table, Grid or dict
+        A table, results over dimensions, of which the last one is the last one there, or the structure itself.
     path : Path
         The file.
+    name : str
+        What the structure is called.
+    apart : bool
+        Whether columns of a table, their full names and meanings have structures of their own.
 
     Returns
     -------
     Path
         The file.
-    """
-    from scipy.io import savemat
-
-    savemat(path, {name: structure}, oned_as="column", appendmat=False, long_field_names=True)
-    return path
-
-
-def structure_of(table: Table, *, apart: bool = False) -> dict[str, Any]:
-    """Return a table as a structure of MATLAB's.
-
-    Parameters
-    ----------
-    table : Table
-        The table.
-    apart : bool
-        Whether columns, their full names and meanings have structures of their own.
-
-    Returns
-    -------
-    dict
-        Columns, their units, tables beside them, and provenance.
 
     Raises
     ------
     InvalidValueError
-        If a file of version 5 does not take as many rows.
+        If such a file does not take as much.
     """
+    from scipy.io import savemat
+
+    structure: Any = content
+    if isinstance(content, Grid):
+        structure = _structure_of_grid(content)
+    elif isinstance(content, Table):
+        structure = _structure(content, apart=apart)
+    savemat(path, {name: structure}, oned_as="column", appendmat=False, long_field_names=True)
+    return path
+
+
+def _structure(table: Table, *, apart: bool) -> dict[str, Any]:
     columns = table.columns.values()
     if sum(_TEXT * c.values.size if c.is_text else c.values.nbytes for c in columns) > MOST_BYTES_OF_MATLAB:
         raise InvalidValueError(
@@ -230,21 +219,7 @@ def _double(column: Column) -> np.ndarray:
     return column.values.astype(object if column.is_text else np.float64)
 
 
-def grid_to_mat(grid: Grid, path: Path) -> None:
-    """Write results as a structure ``campaign``; the last dimension is the last one there.
-
-    Parameters
-    ----------
-    grid : Grid
-        The results.
-    path : Path
-        The file.
-
-    Raises
-    ------
-    InvalidValueError
-        If a file of version 5 does not take as many.
-    """
+def _structure_of_grid(grid: Grid) -> dict[str, Any]:
     if 8 * len(grid) > MOST_BYTES_OF_MATLAB:
         raise InvalidValueError(
             f"MATLAB files take arrays up to 2 GiB, these are {len(grid)} {grid.row}; take .nc, which MATLAB reads"
@@ -254,11 +229,10 @@ def grid_to_mat(grid: Grid, path: Path) -> None:
         for name, values in arrays.items():
             for place, part in blocks(first, last, grid.shape):
                 whole[name][place] = values[part].reshape(whole[name][place].shape)
-    structure = {
+    return {
         "dimensions": np.array(list(grid.dims), dtype=object),
         "coordinates": {name: each.values for name, each in grid.coordinates.items()},
         "results": whole,
         "units": {name: QUANTITIES[name].unit for name in grid.results},
         "provenance": grid.provenance["provenance"],
     }
-    to_mat(structure, "campaign", path)

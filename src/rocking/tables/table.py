@@ -301,20 +301,8 @@ class Grid:
 def blocks(first: int, last: int, shape: tuple[int, ...]) -> Iterator[Block]:
     """Return the rectangular blocks of an array that some of its entries, numbered row by row, fill.
 
-    Parameters
-    ----------
-    first, last : int
-        The entries, the last one not included.
-    shape : tuple of int
-        Shape of the array.
+    Returns where a block is in the array, and where its entries are among those from first to last.
 
-    Yields
-    ------
-    tuple
-        Where a block is in the array, and where its entries are among those from first to last.
-
-    Examples
-    --------
     >>> for place, part in blocks(1, 8, (3, 3)):
     ...     print([(p.start, p.stop) for p in place], part.start, part.stop)
     [(0, 1), (1, 3)] 0 2

@@ -13,13 +13,13 @@ from rocking.tables import (
     Column,
     Grid,
     Table,
-    grid_to_mat,
-    grid_to_netcdf,
     safe_cell,
     text_array,
     to_csv,
     to_dataframe,
     to_excel,
+    to_mat,
+    to_netcdf,
     to_parquet,
 )
 
@@ -76,8 +76,8 @@ def test_a_grid_is_the_same_in_every_format(tmp_path):
     wanted = np.where(np.arange(12) == 5, np.nan, np.arange(12) / 7.0)
     to_parquet(grid(), tmp_path / "g.parquet")
     to_excel([("histories", grid())], tmp_path / "g.xlsx", {"a": "=1"})
-    grid_to_mat(grid(), tmp_path / "g.mat")
-    grid_to_netcdf(grid(), tmp_path / "g.nc")
+    to_mat(grid(), tmp_path / "g.mat", "campaign")
+    to_netcdf(grid(), tmp_path / "g.nc")
     table = parquet.read_table(tmp_path / "g.parquet")
     assert table["motion"].to_pylist() == ["a"] * 4 + ["=b()"] * 4 + ["c"] * 4
     assert np.array_equal(table["peak_rotation"].to_numpy(), wanted, equal_nan=True)

@@ -15,13 +15,12 @@ from rocking.tables import (
     Cell,
     Column,
     Table,
-    dataset_to_netcdf,
-    structure_of,
     text_array,
     to_csv,
     to_dataset,
     to_excel,
     to_mat,
+    to_netcdf,
 )
 
 MEDIA_TYPES = {
@@ -68,10 +67,10 @@ def written(sheets: Sequence[tuple[str, Table]], kind: str) -> bytes:
             _check_cells([one for _, one in sheets])
             to_excel([(plain_line(name), one) for name, one in sheets], path, others="csv or mat", dressed=True)
         elif kind == "mat":
-            to_mat(structure_of(_doubles(first)), "rocking", path)
+            to_mat(_doubles(first), path)
         else:
             units = {name: replace(each, unit=each.unit or "1") for name, each in _doubles(first).columns.items()}
-            dataset_to_netcdf(to_dataset(replace(first, columns=units)), path)
+            to_netcdf(to_dataset(replace(first, columns=units)), path)
         return path.read_bytes()
 
 

@@ -23,13 +23,11 @@ from rocking.tables import (
     Grid,
     Table,
     add_to_netcdf,
-    grid_to_mat,
-    grid_to_netcdf,
-    structure_of,
     target_of,
     to_csv,
     to_excel,
     to_mat,
+    to_netcdf,
     to_parquet,
 )
 
@@ -39,10 +37,10 @@ MOST_REPETITIONS = 100_000
 Progress = Callable[[int], None] | None
 
 FORMATS: dict[str, Callable[[Grid, Path], object]] = {
-    ".nc": grid_to_netcdf,
+    ".nc": to_netcdf,
     ".parquet": to_parquet,
     ".csv": to_csv,
-    ".mat": grid_to_mat,
+    ".mat": lambda grid, path: to_mat(grid, path, "campaign"),
     ".xlsx": lambda grid, path: to_excel([(grid.row, grid)], path, grid.provenance, others=".nc, .parquet or .csv"),
 }
 """What writes every history, by the end of the file's name."""
@@ -50,7 +48,7 @@ FORMATS: dict[str, Callable[[Grid, Path], object]] = {
 TABLE_FORMATS: dict[str, Callable[[Table, Path], object]] = {
     ".csv": to_csv,
     ".parquet": to_parquet,
-    ".mat": lambda table, path: to_mat(structure_of(table, apart=True), "table", path),
+    ".mat": lambda table, path: to_mat(table, path, "table", apart=True),
     ".xlsx": lambda table, path: to_excel([(table.row, table)], path, table.provenance),
 }
 """What writes a table, by the end of the file's name."""

@@ -12,10 +12,11 @@ from rocking.studies.fragility.curves import CLAIMS, FragilityModel
 from rocking.studies.fragility.nesting import Crossing, check_crossing
 from rocking.studies.fragility.tables import TABLES, table
 from rocking.studies.fragility.variables import variables_of
-from rocking.tables import Table, dataset_to_netcdf, target_of
+from rocking.tables import Table, target_of
 from rocking.tables import to_csv as table_to_csv
 from rocking.tables import to_excel as tables_to_excel
 from rocking.tables import to_mat as structure_to_mat
+from rocking.tables import to_netcdf as dataset_to_netcdf
 
 Destination = str | os.PathLike[str]
 
@@ -114,7 +115,7 @@ def to_mat(model: FragilityModel, path: Destination) -> Path:
         "probability": np.array([c.probability(model.levels) for c in model.curves]),
         "provenance": json.dumps(dict(model.about)),
     }
-    return structure_to_mat(structure, "fragility", target_of(path))
+    return structure_to_mat(structure, target_of(path), "fragility")
 
 
 def _evidence(model: FragilityModel) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 from rocking.dynamics.bed import fast
 from rocking.dynamics.exportable import software
 from rocking.quantities import Quantity
-from rocking.tables import Column, Table, dataset_to_netcdf, target_of, to_csv, to_dataframe
+from rocking.tables import Column, Table, target_of, to_csv, to_dataframe, to_netcdf
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -83,7 +83,7 @@ class LaboratoryStudy:
 
     def to_netcdf(self, path: "str | Path") -> "Path":
         """Write the study as netCDF 4, with units and provenance, which xarray and MATLAB open."""
-        return dataset_to_netcdf(self.dataset, target_of(path))
+        return to_netcdf(self.dataset, target_of(path))
 
 
 def about(name: str, unit: str) -> dict[str, str]:

@@ -14,7 +14,7 @@ from rocking.campaigns.jobs.study import TYPES, Study
 from rocking.errors import InvalidValueError
 from rocking.quantities import QUANTITIES
 from rocking.studies import MotionList, Product, SyntheticSet
-from rocking.tables import blocks
+from rocking.tables.table import blocks
 
 
 @given(st.lists(st.integers(1, 5), min_size=1, max_size=4), st.data())

@@ -10,7 +10,7 @@ from scipy.io import loadmat
 
 from rocking.campaigns.jobs import Job, JobFolder, export
 from rocking.errors import InvalidValueError
-from rocking.tables import Column, Table, add_to_netcdf, structure_of, text_array
+from rocking.tables import Column, Table, add_to_netcdf, text_array, to_mat
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")
@@ -154,8 +154,8 @@ def test_too_large_for_matlab(tmp_path, monkeypatch):
     """A table beyond the format is refused with the format that takes it; the same table fits where words are few."""
     monkeypatch.setattr("rocking.tables.arrays.MOST_BYTES_OF_MATLAB", 1000)
     numbers, words = Column(np.arange(20.0)), Column(text_array(["a"] * 20))
-    structure_of(Table("row", {"x": numbers}))
+    to_mat(Table("row", {"x": numbers}), tmp_path / "r.mat")
     table = Table("row", {"x": numbers, "w": words})
     with pytest.raises(InvalidValueError, match=r"up to 2 GiB, this one has 20 rows; take \.nc"):
-        structure_of(table)
+        to_mat(table, tmp_path / "s.mat")
     add_to_netcdf({"row": table}, tmp_path / "s.nc", {})
