@@ -143,5 +143,5 @@ lock: $(VENV)/created
 		-o requirements/mutants.lock
 
 clean:
-	rm -rf src/rocking/dynamics/_*.so src/rocking/motions/_*.so
+	rm -rf src/rocking/dynamics/_*.so src/rocking/restitution/_*.so src/rocking/motions/_*.so
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage $(OUT) gallery-output

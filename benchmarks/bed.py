@@ -14,7 +14,8 @@ from benchmarks import table
 from benchmarks.table import Row
 from benchmarks.timing import cpu_seconds
 from rocking.bodies import Block
-from rocking.dynamics.bed import (
+from rocking.restitution import model
+from rocking.restitution.bed import (
     BedImpacts,
     ContactBed,
     Coulomb,
@@ -24,8 +25,7 @@ from rocking.dynamics.bed import (
     bed_impacts,
     setup_of,
 )
-from rocking.dynamics.bed.tables import Setup
-from rocking.restitution import model
+from rocking.restitution.bed.tables import Setup
 
 POINTS = 41
 COUNT = 10_000

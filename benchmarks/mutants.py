@@ -38,7 +38,7 @@ CORE = {
     "plane": ("dynamics/*.py",),
     "contact": ("dynamics/planar/*.py",),
     "space": ("dynamics/spatial/*.py", "dynamics/spatial_batch/*.py"),
-    "contact bed": ("dynamics/bed/*.py",),
+    "contact bed": ("restitution/bed/*.py",),
     "motions": ("motions/*.py", "motions/synthetic/*.py"),
     "readers": ("motions/formats/*.py",),
     "fragility": ("studies/fragility/*.py",),

@@ -3,6 +3,8 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from rocking.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from rocking import bodies, conventions, dynamics, errors, evidence, motions, plots, report, restitution, studies
     from rocking.bodies import Block, Body, MassPoints, Region, Section, Side, shapes, solid
@@ -18,19 +20,17 @@ if TYPE_CHECKING:
         simulate,
         simulate_many,
     )
-    from rocking.dynamics.bed import ContactBed, bed_impact
     from rocking.dynamics.planar import PlanarResponse, simulate_with_contact
     from rocking.dynamics.spatial import SpatialBody, SpatialResponse, free_rocking_spatial, simulate_spatial
     from rocking.dynamics.spatial_batch import SpatialBatch, simulate_spatial_batch
     from rocking.motions import GroundMotion, pulses, synthetic
     from rocking.motions.formats import read_motion
     from rocking.restitution import RestitutionModel, coefficient_of_restitution
+    from rocking.restitution.bed import ContactBed, bed_impact
     from rocking.restitution.spatial import edge_coefficient, impact_in_space
     from rocking.studies._overturning_map import overturning_map
     from rocking.studies._rocking_spectrum import rocking_spectrum
     from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Block",
@@ -90,7 +90,7 @@ _HOME = {
     "Block": "rocking.bodies",
     "Body": "rocking.bodies",
     "Campaign": "rocking.campaigns",
-    "ContactBed": "rocking.dynamics.bed",
+    "ContactBed": "rocking.restitution.bed",
     "GroundMotion": "rocking.motions",
     "MassPoints": "rocking.bodies",
     "Outcome": "rocking.dynamics",
@@ -107,7 +107,7 @@ _HOME = {
     "SpatialBody": "rocking.dynamics.spatial",
     "SpatialResponse": "rocking.dynamics.spatial",
     "SpeedRestitution": "rocking.dynamics",
-    "bed_impact": "rocking.dynamics.bed",
+    "bed_impact": "rocking.restitution.bed",
     "coefficient_of_restitution": "rocking.restitution",
     "edge_coefficient": "rocking.restitution.spatial",
     "free_rocking": "rocking.dynamics",

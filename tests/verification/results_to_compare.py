@@ -14,10 +14,10 @@ import numpy as np
 
 import rocking as rk
 from rocking.dynamics import engine as plane_engine
-from rocking.dynamics.bed import ContactBed, KelvinVoigt
 from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial_batch import SpatialStart, simulate_spatial_batch
 from rocking.dynamics.spatial_batch import engine as space_engine
+from rocking.restitution.bed import ContactBed, KelvinVoigt
 
 STEP = 0.015625
 PEDESTAL = rk.Section([rk.Region([(-0.45, 0.0), (0.55, 0.0), (0.4, 2.5), (-0.15, 2.2)], density=2400.0)])

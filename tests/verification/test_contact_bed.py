@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from rocking.bodies import Block
-from rocking.dynamics.bed import (
+from rocking.errors import InvalidValueError
+from rocking.restitution.bed import (
     BedImpact,
     BedStatus,
     ContactBed,
@@ -27,11 +28,10 @@ from rocking.dynamics.bed import (
     reference,
     setup_of,
 )
-from rocking.dynamics.bed.friction import BaseFriction
-from rocking.dynamics.bed.impact import MOST_STEPS
-from rocking.dynamics.bed.law import ContactLaw, LawNumbers
-from rocking.dynamics.bed.tables import RESULTS, Setup
-from rocking.errors import InvalidValueError
+from rocking.restitution.bed.friction import BaseFriction
+from rocking.restitution.bed.impact import MOST_STEPS
+from rocking.restitution.bed.law import ContactLaw, LawNumbers
+from rocking.restitution.bed.tables import RESULTS, Setup
 
 pytestmark = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
 

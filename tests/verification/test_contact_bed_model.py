@@ -9,9 +9,9 @@ import pytest
 
 from rocking.bodies import Block
 from rocking.conventions import FloatArray, Foot
-from rocking.dynamics.bed import fast
 from rocking.errors import InvalidValueError
 from rocking.restitution import model
+from rocking.restitution.bed import fast
 from rocking.restitution.bed_table import BANDS, POINTS, STEP, BedTable, bed_table, nodes, stated_error
 from rocking.restitution.contact_bed import ContactBedModel, Source
 from rocking.studies.impact_laboratory.beds import Laboratory, hardness_of

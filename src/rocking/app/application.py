@@ -15,7 +15,6 @@ from starlette.middleware import Middleware
 from starlette.responses import FileResponse
 from starlette.staticfiles import StaticFiles
 
-from rocking import __version__
 from rocking.app.answers import JsonAnswer, error_answer, refusal
 from rocking.app.api import body, impact, info, motion, records, response
 from rocking.app.errors import kind_of_status
@@ -32,6 +31,7 @@ from rocking.app.takeaway import documents, pictures, tables
 from rocking.app.work import WaitingLine
 from rocking.bodies.formats.words import sentence
 from rocking.errors import RockingError
+from rocking.version import __version__
 
 _SAME_AS = {"model_attributes_type": "model_type", "int_parsing": "int_type", "float_parsing": "float_type"}
 _WORDS = {404: "there is no such thing here", 405: "this takes another method"}

@@ -11,11 +11,12 @@ from rocking.campaigns import disk, reading
 from rocking.campaigns.chunks import Plan
 from rocking.campaigns.disk import NAME as LOCK
 from rocking.campaigns.disk import CampaignMismatchError, FolderLock, holder
-from rocking.campaigns.executors import Executor, chosen
+from rocking.campaigns.executors import Executor
 from rocking.campaigns.forecast import Forecast, forecast
 from rocking.campaigns.identity import NAME, SHARDS, Identity
 from rocking.campaigns.ledger import NAME as LEDGER
 from rocking.campaigns.ledger import Ledger
+from rocking.campaigns.processes import chosen
 from rocking.campaigns.running import run
 from rocking.campaigns.status import Progress, Status, Summary
 from rocking.dynamics.engine import Arrays

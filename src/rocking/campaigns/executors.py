@@ -252,24 +252,6 @@ def cannot_be_sent(error: Exception) -> str:
     return f"the histories cannot be sent to a process: {error}; lambdas and local functions cannot, named ones can"
 
 
-def chosen(executor: "str | Executor", workers: int | None, start_method: str | None) -> Executor:
-    """Return the executor that was asked for."""
-    given: object = executor
-    if given != "processes" and start_method is not None:
-        raise InvalidValueError(f'start_method={start_method!r} goes with executor="processes" only')
-    if isinstance(given, Executor):
-        if workers is not None:
-            raise InvalidValueError(f"workers={workers!r} goes with the name of an executor; the object has its own")
-        return given
-    if given == "serial":
-        return Serial(workers)
-    if given == "processes":
-        from rocking.campaigns.processes import Processes
-
-        return Processes(workers, start_method or "spawn")
-    raise InvalidValueError(f'executor must be "serial", "processes" or an Executor, got {given!r:.60}')
-
-
 def whole(name: str, value: object, high: int = 4096) -> int:
     """Return a whole number of things of which there is at least one."""
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= high:

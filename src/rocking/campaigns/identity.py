@@ -180,9 +180,9 @@ def usual_chunk(histories: Histories) -> int:
 
 def software() -> str:
     """Return the version of this package."""
-    from rocking import __version__
+    from rocking.version import __version__
 
-    return str(__version__)
+    return __version__
 
 
 def _decoded(text: bytes) -> Any:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, NoReturn
 
 from rocking.campaigns.chunks import Chunk
 from rocking.campaigns.disk import CampaignWorkerError
-from rocking.campaigns.executors import Done, Executor, Job, cannot_be_sent, whole
+from rocking.campaigns.executors import Done, Executor, Job, Serial, cannot_be_sent, whole
 from rocking.errors import InvalidValueError
 
 _WATCH = 0.5
@@ -232,3 +232,19 @@ def _processors() -> int:
         return len(os.sched_getaffinity(0))
     except AttributeError:
         return os.cpu_count() or 1
+
+
+def chosen(executor: str | Executor, workers: int | None, start_method: str | None) -> Executor:
+    """Return the executor that was asked for."""
+    given: object = executor
+    if given != "processes" and start_method is not None:
+        raise InvalidValueError(f'start_method={start_method!r} goes with executor="processes" only')
+    if isinstance(given, Executor):
+        if workers is not None:
+            raise InvalidValueError(f"workers={workers!r} goes with the name of an executor; the object has its own")
+        return given
+    if given == "serial":
+        return Serial(workers)
+    if given == "processes":
+        return Processes(workers, start_method or "spawn")
+    raise InvalidValueError(f'executor must be "serial", "processes" or an Executor, got {given!r:.60}')

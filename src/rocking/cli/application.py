@@ -15,6 +15,7 @@ from rocking.cli.paper import paper
 from rocking.cli.serve import serve
 from rocking.cli.simulate import simulate
 from rocking.cli.spectrum import spectrum
+from rocking.version import SOFTWARE
 
 
 def application() -> typer.Typer:
@@ -36,9 +37,7 @@ def application() -> typer.Typer:
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from rocking import __version__
-
-        print(f"rocking {__version__}")
+        print(SOFTWARE)
         raise typer.Exit
 
 

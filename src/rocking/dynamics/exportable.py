@@ -12,13 +12,6 @@ if TYPE_CHECKING:
     from rocking.tables import Table
 
 
-def software() -> str:
-    """Return name and version of this package."""
-    from rocking import __version__
-
-    return f"rocking {__version__}"
-
-
 def motion_provenance(motion: Any) -> str:
     """Return where a motion comes from.
 

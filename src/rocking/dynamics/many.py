@@ -19,6 +19,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.outcome import overturned
+from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -113,8 +114,6 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     dims = ("body", "motion", "scale", "restitution")
     results |= flags(results)
     data = {name: (dims, values.reshape(shape), quantities.attributes(name)) for name, values in results.items()}
-    from rocking import __version__
-
     first = [row[0].right for row in rockers]
     made: xr.Dataset = xarray.Dataset(
         data,
@@ -130,7 +129,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
             ],
         },
         attrs={
-            "software": f"rocking {__version__}",
+            "software": SOFTWARE,
             "engine": f"fast ({instruction_set()})" if work else "reference",
             "contact": contact_words(results["lost_contact"]),
             "seed": getattr(law, "seed", 0),

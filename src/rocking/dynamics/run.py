@@ -2,16 +2,19 @@
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rocking.dynamics import engine as fast_engine
-from rocking.dynamics.response import Response
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.dynamics.trajectory import Trajectory
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
+
+if TYPE_CHECKING:
+    from rocking.dynamics.response import Response
 
 _ORDER = 8
 
@@ -48,7 +51,7 @@ def run(
     return run_fast(rocker, segments, settings, scale=scale, key=key, rotation=rotation, velocity=velocity)
 
 
-def rerun_finer(response: Response) -> float:
+def rerun_finer(response: "Response") -> float:
     """Return how much a response changes when every step is halved.
 
     Where the steps of the fast engine are as short as they may be, the reference engine stands in for shorter ones.

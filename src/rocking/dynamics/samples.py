@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.exportable import motion_provenance, software
+from rocking.dynamics.exportable import motion_provenance
 from rocking.tables import Column, Table
+from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
     from rocking.dynamics.response import Response
@@ -42,7 +43,7 @@ def provenance(response: "Response") -> dict[str, Any]:
         for name in ("slenderness_angle", "frequency_parameter", "semi_diagonal", "coefficient")
     }
     return {
-        "software": software(),
+        "software": SOFTWARE,
         "engine": response.engine,
         "outcome": response.outcome.name,
         "status": response.status.name,

@@ -145,7 +145,7 @@ def bed_table() -> BedTable:
 
     Returns the table, its positions stored as whole multiples of `STEP`.
     """
-    with files("rocking.restitution").joinpath("data", "contact_bed.npy").open("rb") as file:
+    with files(__package__).joinpath("data", "contact_bed.npy").open("rb") as file:
         stored = np.load(file, allow_pickle=False)
     return BedTable(*nodes(), stored.astype(np.float64) * STEP)
 

@@ -1,10 +1,8 @@
 """Contact bed: what emerges from an impact that takes time, on springs and dashpots along the base."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from importlib import import_module
 from typing import cast
 
 import numpy as np
@@ -17,8 +15,6 @@ from rocking.restitution.bed_table import DAMPING, HARDNESS, POINTS, bed_table, 
 from rocking.restitution.impact import ImpactGeometry
 from rocking.restitution.model import InertiaModel, Restitution
 
-# impacts in time belong to the layer above, which is asked for by name and only where the table ends
-_RESOLVER = ("rocking.dynamics.bed.model_impacts", "model_coefficients")
 _NEARLY = 1.02  # friction this much above the need: the base sticks through the whole impact
 
 
@@ -87,7 +83,7 @@ class ContactBedModel(InertiaModel):
     name = "contact-bed"
     title = "what emerges from an impact resolved in time on springs and dashpots along the base"
     reference = (
-        "derived in this project (the contact bed of rocking.dynamics.bed); beds of two springs and of Winkler "
+        "derived in this project (the contact bed of rocking.restitution.bed); beds of two springs and of Winkler "
         "springs go back to Psycharis & Jennings 1983"
     )
     assumptions = (
@@ -198,14 +194,16 @@ class ContactBedModel(InertiaModel):
         return np.asarray(np.where(after > 0.0, (gyration - arm * old) / np.where(after > 0.0, after, 1.0), most))
 
     def _resolved(self, geometry: ImpactGeometry, where: BoolArray) -> FloatArray:
+        from rocking.restitution.bed.scaled import ScaledImpact, resolved_coefficients
+
         half = 0.5 * (geometry.old_lever + geometry.new_lever)
         flatness = _flatness(geometry)
         share = geometry.height**2 / geometry.base_gyration
         bodies = np.stack([flatness, geometry.old_lever / half - 1.0, share], axis=-1)[where]
-        place, name = _RESOLVER
-        resolver: Callable[..., FloatArray] = getattr(import_module(place), name)
         bed = (self.points, float(self.damping), float(self.hardness), float(self.friction))
-        return resolver(np.atleast_2d(bodies), bed)
+        return resolved_coefficients(
+            [ScaledImpact(flat, offset, *bed, height_share=height) for flat, offset, height in bodies.tolist()]
+        )
 
 
 def _flatness(geometry: ImpactGeometry) -> FloatArray:

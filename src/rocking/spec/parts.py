@@ -88,12 +88,12 @@ def _drawn(
 
 def _posterior(table: "RandomTable", seed: int, bodies: Sequence[Body]) -> tuple[Any, str]:
     """Return the law that the measurements make of the body: all quantiles, or a sample of so many values."""
-    from rocking.studies.sensitivity.posterior import posterior
+    from rocking.evidence._restitution_distribution import restitution_distribution
 
     if len(bodies) != 1:
         told = f"{len(bodies)} bodies: make a job of each" if bodies else "no [body]; give values instead"
         raise InvalidValueError(f"distribution.posterior is of one body, and the job has {told}")
-    found = posterior(bodies[0])
+    found = restitution_distribution(bodies[0])
     words = "posterior of the measurements"
     if found.extrapolated:
         words += " (extrapolated in slenderness)"

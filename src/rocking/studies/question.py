@@ -21,6 +21,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
 from rocking.studies.histories import part
+from rocking.version import SOFTWARE
 
 UNLIFTED, SURVIVED, FAILED = -2, -1, -3
 """Modes beside the number of impacts before overturning: never lifted; rocked and stayed standing; no result."""
@@ -101,11 +102,9 @@ class Question:
 
     def attributes(self, work: dict[str, int]) -> dict[str, Any]:
         """Return what was computed from what and how, as plain values."""
-        from rocking import __version__
-
         motion = self.motion
         return {
-            "software": f"rocking {__version__}",
+            "software": SOFTWARE,
             "engine": f"fast ({instruction_set()})" if work else "reference",
             "body": repr(self.body),
             "motion": motion.name,

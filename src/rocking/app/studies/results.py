@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from rocking import __version__
 from rocking.app.answers import JsonAnswer
 from rocking.app.studies.opened import OpenStudy
 from rocking.app.studies.study_folder import StudyFolder
@@ -14,6 +13,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.lost_contact import contact_words, lost_contact
 from rocking.errors import InvalidValueError
 from rocking.studies.contours import chains, edge_numbers, segments
+from rocking.version import __version__
 
 MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact"}
 """Ways to end in words; n > 0 overturns after n impacts."""

@@ -21,11 +21,12 @@ from rocking.campaigns import (
     disk,
 )
 from rocking.campaigns.disk import FolderLock
-from rocking.campaigns.executors import Interruption, Job, chosen
+from rocking.campaigns.executors import Interruption, Job
 from rocking.campaigns.identity import NAME, SHARDS, Identity
 from rocking.campaigns.jobs.answer import Answer
 from rocking.campaigns.jobs.asked import Compute, first_round
 from rocking.campaigns.jobs.round_status import FINISHED, finished_rounds, resume, round_folder, way_out
+from rocking.campaigns.processes import chosen
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.studies.histories import Histories
 

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.exportable import motion_provenance, software
+from rocking.dynamics.exportable import motion_provenance
 from rocking.tables import Column, Table
+from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
     from rocking.dynamics.planar.response import PlanarResponse
@@ -45,7 +46,7 @@ def provenance(response: "PlanarResponse") -> dict[str, Any]:
         "none: complementarity" if law.restitution is None else "left {:.9g}, right {:.9g}".format(*law.restitution)
     )
     return {
-        "software": software(),
+        "software": SOFTWARE,
         "engine": "planar: Taylor series with events and complementarity",
         "outcome": response.outcome.name,
         "status": response.status.name,

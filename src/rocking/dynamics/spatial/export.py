@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rocking.dynamics.exportable import software
 from rocking.tables import Column, Table
+from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
     from rocking.dynamics.spatial.response import SpatialResponse
@@ -35,7 +35,7 @@ def provenance(response: "SpatialResponse") -> dict[str, Any]:
     """
     body, direction = response.body, response.overturning_direction
     return {
-        "software": software(),
+        "software": SOFTWARE,
         "engine": response.trajectory.engine,
         "outcome": response.outcome.name,
         "status": response.status.name,

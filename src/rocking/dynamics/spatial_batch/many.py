@@ -9,9 +9,9 @@ from rocking import checks, conventions, plausibility
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial_batch import engine as engines
-from rocking.dynamics.spatial_batch.export import provenance
 from rocking.dynamics.spatial_batch.ground import joined
 from rocking.dynamics.spatial_batch.laws import batch_law
+from rocking.dynamics.spatial_batch.provenance import provenance
 from rocking.dynamics.spatial_batch.result import SpatialBatch
 from rocking.dynamics.spatial_batch.rows import RowTable
 from rocking.dynamics.spatial_batch.run import run_compiled, run_reference

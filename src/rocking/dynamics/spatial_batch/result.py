@@ -1,5 +1,6 @@
 """What a batch in space hands back: arrays over body, motion, scale, restitution and start."""
 
+import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -10,11 +11,11 @@ from rocking.dynamics.exportable import Exportable
 from rocking.errors import extra
 from rocking.outcome import of_results, overturned
 from rocking.quantities import attributes
+from rocking.tables import Column, Table
+from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from rocking.tables import Table
 
 DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
 """Axes of the arrays of a batch, in order."""
@@ -102,7 +103,12 @@ class SpatialBatch(Exportable):
         """Direction in which it lies, from x towards y; NaN if it does not [rad]."""
         return self["direction"]
 
-    def exported(self) -> "Table":
+    @property
+    def _stated(self) -> dict[str, Any]:
+        refused = json.dumps({str(number): reason for number, reason in self.refused.items()})
+        return {"software": SOFTWARE, "engine": self.engine, "refused": refused, **self.provenance}
+
+    def exported(self) -> Table:
         """Return what the tables and files of this batch hold.
 
         Returns
@@ -110,9 +116,15 @@ class SpatialBatch(Exportable):
         Table
             One row a history, with units and provenance.
         """
-        from rocking.dynamics.spatial_batch.export import exported
-
-        return exported(self)
+        places = dict(zip(DIMENSIONS, np.unravel_index(np.arange(len(self)), self.shape), strict=True))
+        rows = {name: Column(places[name], "1", f"number of the {name}") for name in ("body", "motion", "start")}
+        for name in ("motion", "restitution"):
+            words = np.array([str(label) for label in self.labels[name]])
+            key = "motion_name" if name == "motion" else name
+            rows[key] = Column(words[places[name]], "", f"name of the {name}")
+        rows["scale"] = Column(np.array(self.labels["scale"], dtype=np.float64)[places["scale"]], "1", "factor")
+        rows |= {name: Column.of(name, values) for name, values in self.results.items()}
+        return Table("history", rows, self._stated, no_unit="-")
 
     def to_xarray(self) -> "xr.Dataset":
         """Return the results as a labelled dataset with units and provenance.
@@ -122,13 +134,11 @@ class SpatialBatch(Exportable):
         xarray.Dataset
             Over body, motion, scale, restitution and start.
         """
-        from rocking.dynamics.spatial_batch.export import stated
-
         xarray = extra("xarray", "a labelled dataset")
         data = {
             name: (DIMENSIONS, values.reshape(self.shape), attributes(name)) for name, values in self.results.items()
         }
         made: xr.Dataset = xarray.Dataset(
-            data, coords={name: (name, row) for name, row in self.labels.items()}, attrs=stated(self)
+            data, coords={name: (name, row) for name, row in self.labels.items()}, attrs=self._stated
         )
         return made

@@ -21,6 +21,7 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility._measures import IntensityMeasure, RockingScale, measure
 from rocking.studies.histories import Histories, Product, Table
 from rocking.studies.motion_set import MotionList, MotionSet, digest
+from rocking.version import SOFTWARE
 
 Motions = MotionSet | Motion | Sequence[Motion]
 Progress = Callable[[int], None] | None
@@ -140,11 +141,9 @@ class Subject:
 
     def about(self) -> dict[str, Any]:
         """Return what was asked about, as plain values for the attributes of a file."""
-        from rocking import __version__
-
         sides = {f"body_{name}": value for name, value in self._sides.items()}
         return {
-            "software": f"rocking {__version__}",
+            "software": SOFTWARE,
             "measure": self.measure.name,
             "measure_words": self.measure.words,
             "measure_unit": self.measure.unit,

@@ -10,9 +10,9 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Block
 from rocking.conventions import FloatArray
-from rocking.dynamics.bed import BaseFriction, BedImpacts, ContactBed, KelvinVoigt, Sticking, bed_impacts, setup_of
-from rocking.dynamics.bed.tables import Setup
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed import BaseFriction, BedImpacts, ContactBed, KelvinVoigt, Sticking, bed_impacts, setup_of
+from rocking.restitution.bed.tables import Setup
 
 
 @dataclass(frozen=True)

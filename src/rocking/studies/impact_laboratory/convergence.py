@@ -8,8 +8,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.bed import ContactBed, KelvinVoigt, bed_impacts, setup_of
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_impacts, setup_of
 from rocking.studies.impact_laboratory.beds import Laboratory, coefficients
 
 

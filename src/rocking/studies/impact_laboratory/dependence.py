@@ -7,8 +7,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.bed import Coulomb
 from rocking.errors import InvalidValueError, extra
+from rocking.restitution.bed import Coulomb
 from rocking.studies.impact_laboratory.beds import Laboratory, hardness_of, measured
 from rocking.studies.impact_laboratory.result import LaboratoryStudy, about, provenance
 

@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING, Any
 
-from rocking.dynamics.bed import fast
-from rocking.dynamics.exportable import software
 from rocking.quantities import Quantity
+from rocking.restitution.bed import fast
 from rocking.tables import Column, Table, target_of, to_csv, to_dataframe, to_netcdf
+from rocking.version import SOFTWARE
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -94,4 +94,4 @@ def about(name: str, unit: str) -> dict[str, str]:
 def provenance(study: str, laboratory: object) -> dict[str, str]:
     """Return what a study was computed from, and with what."""
     engine = "contact bed, fast" if fast.available() else "contact bed, reference"
-    return {"software": software(), "engine": engine, "study": study, "laboratory": repr(laboratory)}
+    return {"software": SOFTWARE, "engine": engine, "study": study, "laboratory": repr(laboratory)}

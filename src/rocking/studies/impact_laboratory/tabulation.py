@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.bed.scaled import ScaledImpact, resolved_coefficients
+from rocking.restitution.bed.scaled import ScaledImpact, resolved_coefficients
 from rocking.restitution.bed_table import POINTS, STEP, BedTable, nodes
 
 

@@ -10,7 +10,6 @@ from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence import restitution_distribution
 from rocking.spec.response import ResponseJob
 from rocking.studies import overturning_map
-from rocking.studies.sensitivity import posterior as asked
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 AXES = ("frequency_ratio", np.linspace(2.0, 8.0, 9)), ("amplitude_ratio", np.linspace(1.0, 9.0, 8))
@@ -152,10 +151,3 @@ def test_the_label_says_what_is_cut_off():
         InvalidValueError, match=r"restitution: the coefficient .* right foot .* 100 % of the distribution"
     ):
         job_of("mean = 0.99\ndeviation = 0.001", "histories", body=text, rest="")
-
-
-def test_asked_by_name():
-    """What is asked for by name is there, and keeps what the job needs of it."""
-    found = asked.posterior(BLOCK)
-    assert np.array_equal(found.quantiles, restitution_distribution(BLOCK).quantiles)
-    assert found.extrapolated is False

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from rocking.dynamics.bed import fast
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed import fast
 from rocking.studies.impact_laboratory.beds import Laboratory
 from rocking.studies.impact_laboratory.dependence import slenderness_study, velocity_study
 from rocking.studies.impact_laboratory.large_bodies import large_bodies_study

@@ -7,8 +7,8 @@ import pytest
 
 import rocking as rk
 from rocking.bodies import Block
-from rocking.dynamics.bed import fast
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed import fast
 from rocking.studies.impact_laboratory.beds import Laboratory, coefficients
 from rocking.studies.impact_laboratory.convergence import points_convergence, step_convergence
 from rocking.studies.impact_laboratory.dependence import (

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from rocking.dynamics.bed import fast
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed import fast
 from rocking.studies.impact_laboratory.beds import Laboratory
 from rocking.studies.impact_laboratory.dependence import points_study
 from rocking.studies.impact_laboratory.profiles import profile, profile_study, random_profiles

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.bed.settlement import settlement
-from rocking.dynamics.bed.tables import COUNTS, RESULTS, Setup
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed.settlement import settlement
+from rocking.restitution.bed.tables import COUNTS, RESULTS, Setup
 
 
 class BedStatus(Enum):

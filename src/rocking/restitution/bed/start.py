@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking import checks
-from rocking.dynamics.bed.law import LawNumbers, depth_absorbing
-from rocking.dynamics.bed.rigid import RigidRocking
-from rocking.dynamics.bed.settlement import settlement
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed.law import LawNumbers, depth_absorbing
+from rocking.restitution.bed.rigid import RigidRocking
+from rocking.restitution.bed.settlement import settlement
 
 
 @dataclass(frozen=True)

@@ -7,14 +7,14 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.bed import fast, reference
-from rocking.dynamics.bed.contact_bed import ContactBed
-from rocking.dynamics.bed.emergent import BedStatus, status_of
-from rocking.dynamics.bed.impact import MOST_STEPS, setup_of
-from rocking.dynamics.bed.law import LawKind
-from rocking.dynamics.bed.rigid import RigidRocking
-from rocking.dynamics.bed.tables import RESULTS, Setup
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed import fast, reference
+from rocking.restitution.bed.contact_bed import ContactBed
+from rocking.restitution.bed.emergent import BedStatus, status_of
+from rocking.restitution.bed.impact import MOST_STEPS, setup_of
+from rocking.restitution.bed.law import LawKind
+from rocking.restitution.bed.rigid import RigidRocking
+from rocking.restitution.bed.tables import RESULTS, Setup
 
 _MOST_RUNS = 50
 _AT_REST = 1e-3
@@ -74,7 +74,7 @@ def bed_free_rocking(
     Examples
     --------
     >>> from rocking import Block
-    >>> from rocking.dynamics.bed import ContactBed, KelvinVoigt, bed_free_rocking
+    >>> from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_free_rocking
     >>> block = Block(width=0.2, height=0.4)
     >>> bed = ContactBed.uniform(block, 2, KelvinVoigt(1e9, damping_ratio=1.0))
     >>> bed_free_rocking(block, bed, rotation=0.2, peaks=3).coefficients.round(2).tolist()

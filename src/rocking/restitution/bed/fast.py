@@ -7,13 +7,13 @@ from types import ModuleType
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.bed.tables import COUNTS, RESULTS, Setup, choices_of, numbers_of
+from rocking.restitution.bed.tables import COUNTS, RESULTS, Setup, choices_of, numbers_of
 
 
 @cache
 def _module() -> ModuleType | None:
     try:
-        from rocking.dynamics import _bed
+        from rocking.restitution import _bed
     except ImportError:
         return None
     return _bed

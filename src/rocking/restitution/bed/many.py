@@ -7,11 +7,11 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.bed import fast, reference
-from rocking.dynamics.bed.emergent import BedStatus, Emergent, emergent_of, status_of
-from rocking.dynamics.bed.impact import MOST_STEPS
-from rocking.dynamics.bed.tables import COUNTS, RESULTS, Setup
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed import fast, reference
+from rocking.restitution.bed.emergent import BedStatus, Emergent, emergent_of, status_of
+from rocking.restitution.bed.impact import MOST_STEPS
+from rocking.restitution.bed.tables import COUNTS, RESULTS, Setup
 
 _NONE = Emergent(float("nan"), float("nan"), float("nan"), stopped=False)
 
@@ -100,7 +100,7 @@ def bed_impacts(setups: Iterable[Setup], *, threads: int = 1) -> BedImpacts:
     Examples
     --------
     >>> from rocking import Block
-    >>> from rocking.dynamics.bed import ContactBed, KelvinVoigt, bed_impacts, setup_of
+    >>> from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_impacts, setup_of
     >>> block = Block(width=0.2, height=0.4)
     >>> bed = ContactBed.uniform(block, 2, KelvinVoigt(1e9, damping_ratio=1.0))
     >>> impacts = bed_impacts([setup_of(block, bed, angular_velocity=v) for v in (0.5, 1.0)])

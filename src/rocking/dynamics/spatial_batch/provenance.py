@@ -1,20 +1,16 @@
-"""What the files of a batch in space hold: one row a history, its labels, its results, what was computed from what."""
+"""Of what a batch of bodies in space was computed."""
 
 import hashlib
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from rocking.dynamics.exportable import motion_provenance, software
+from rocking.dynamics.exportable import motion_provenance
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
 from rocking.dynamics.spatial_batch.start import SpatialStart
-from rocking.tables import Column, Table
-
-if TYPE_CHECKING:
-    from rocking.dynamics.spatial_batch.result import SpatialBatch
 
 _FEW = 100
 """Up to so many bodies are spelled out; of more of them the digest alone is kept."""
@@ -47,30 +43,6 @@ def provenance(
         **few,
         "bodies_sha256": hashlib.sha256(spelled.encode()).hexdigest(),
     }
-
-
-def stated(batch: "SpatialBatch") -> dict[str, Any]:
-    """Return the provenance of a batch with software, engine and refusals."""
-    refused = json.dumps({str(number): reason for number, reason in batch.refused.items()})
-    return {"software": software(), "engine": batch.engine, "refused": refused, **batch.provenance}
-
-
-def exported(batch: "SpatialBatch") -> Table:
-    """Return what the files of a batch hold.
-
-    Returns one row a history: numbers of body, motion and start, names of motion and restitution, scale, all results.
-    """
-    from rocking.dynamics.spatial_batch.result import DIMENSIONS
-
-    places = dict(zip(DIMENSIONS, np.unravel_index(np.arange(len(batch)), batch.shape), strict=True))
-    rows = {name: Column(places[name], "1", f"number of the {name}") for name in ("body", "motion", "start")}
-    for name in ("motion", "restitution"):
-        words = np.array([str(label) for label in batch.labels[name]])
-        key = "motion_name" if name == "motion" else name
-        rows[key] = Column(words[places[name]], "", f"name of the {name}")
-    rows["scale"] = Column(np.array(batch.labels["scale"], dtype=np.float64)[places["scale"]], "1", "factor")
-    rows |= {name: Column.of(name, values) for name, values in batch.results.items()}
-    return Table("history", rows, stated(batch), no_unit="-")
 
 
 def _numbers(body: SpatialBody) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from rocking import checks
-from rocking.dynamics.bed.law import ContactLaw, LawKind, LawNumbers
+from rocking.restitution.bed.law import ContactLaw, LawKind, LawNumbers
 
 
 @dataclass(frozen=True)

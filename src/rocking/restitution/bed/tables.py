@@ -6,9 +6,9 @@ from typing import Final
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.bed.law import LawNumbers
-from rocking.dynamics.bed.rigid import RigidRocking
-from rocking.dynamics.bed.start import Start
+from rocking.restitution.bed.law import LawNumbers
+from rocking.restitution.bed.rigid import RigidRocking
+from rocking.restitution.bed.start import Start
 
 END_AT_PEAK, END_AT_PARTING = 0, 1
 

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from rocking.dynamics.bed.law import LawNumbers, depth_under, stored
-from rocking.dynamics.bed.rigid import RigidRocking
 from rocking.portable import dot
+from rocking.restitution.bed.law import LawNumbers, depth_under, stored
+from rocking.restitution.bed.rigid import RigidRocking
 
 
 def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: float) -> tuple[float, float]:

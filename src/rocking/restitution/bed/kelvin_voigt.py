@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Self
 
 from rocking import checks
-from rocking.dynamics.bed.law import ContactLaw, LawKind, LawNumbers
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed.law import ContactLaw, LawKind, LawNumbers
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,14 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.bed import fast, reference
-from rocking.dynamics.bed.contact_bed import ContactBed
-from rocking.dynamics.bed.emergent import BedStatus, Emergent, emergent_of, status_of
-from rocking.dynamics.bed.law import LawKind
-from rocking.dynamics.bed.rigid import RigidRocking
-from rocking.dynamics.bed.start import start_of
-from rocking.dynamics.bed.tables import COUNTS, RESULTS, SAMPLES, Setup
 from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.restitution.bed import fast, reference
+from rocking.restitution.bed.contact_bed import ContactBed
+from rocking.restitution.bed.emergent import BedStatus, Emergent, emergent_of, status_of
+from rocking.restitution.bed.law import LawKind
+from rocking.restitution.bed.rigid import RigidRocking
+from rocking.restitution.bed.start import start_of
+from rocking.restitution.bed.tables import COUNTS, RESULTS, SAMPLES, Setup
 
 BedEngine = Literal["auto", "fast", "reference"]
 ENGINES: tuple[BedEngine, ...] = ("auto", "fast", "reference")
@@ -181,7 +181,7 @@ def bed_impact(
     Examples
     --------
     >>> from rocking import Block
-    >>> from rocking.dynamics.bed import ContactBed, KelvinVoigt, bed_impact
+    >>> from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_impact
     >>> block = Block(width=0.2, height=0.4)
     >>> law = KelvinVoigt(block.mass * (2 * 3.141592653589793 * 400) ** 2, damping_ratio=1.0)
     >>> impact = bed_impact(block, ContactBed.uniform(block, 2, law), angular_velocity=1.0)

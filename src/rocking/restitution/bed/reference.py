@@ -11,10 +11,10 @@ from typing import Any, Literal
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.bed.friction import FrictionKind
-from rocking.dynamics.bed.law import LawKind, force, stored
-from rocking.dynamics.bed.tables import END_AT_PEAK, Setup
 from rocking.portable import dot
+from rocking.restitution.bed.friction import FrictionKind
+from rocking.restitution.bed.law import LawKind, force, stored
+from rocking.restitution.bed.tables import END_AT_PEAK, Setup
 
 Method = Literal["DOP853", "LSODA"]
 Event = Callable[[float, FloatArray], float]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rocking.bodies import Block
-from rocking.dynamics.bed import ContactBed, KelvinVoigt, bed_impact, setup_of
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed import ContactBed, KelvinVoigt, bed_impact, setup_of
 
 BODY = Block(width=0.2, height=0.4).with_feet(0.02, 0.2)
 BED = ContactBed.uniform(BODY, 2, KelvinVoigt(1e9, damping_ratio=1.0))

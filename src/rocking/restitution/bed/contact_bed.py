@@ -8,9 +8,9 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, Foot
-from rocking.dynamics.bed.friction import BaseFriction, Sticking
-from rocking.dynamics.bed.law import ContactLaw
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed.friction import BaseFriction, Sticking
+from rocking.restitution.bed.law import ContactLaw
 from rocking.restitution.contact import contact_of
 
 Kinematics = Literal["exact", "small"]
@@ -45,7 +45,7 @@ class ContactBed:
     Examples
     --------
     >>> from rocking import Block
-    >>> from rocking.dynamics.bed import KelvinVoigt
+    >>> from rocking.restitution.bed import KelvinVoigt
     >>> bed = ContactBed.uniform(Block(width=0.2, height=0.4), 5, KelvinVoigt(1e8, damping_ratio=0.3))
     >>> bed.positions.round(3).tolist()
     [-0.1, -0.05, 0.0, 0.05, 0.1]

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from rocking.bodies import Block, Region, Section
-from rocking.dynamics.bed import (
+from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.restitution.bed import (
     ContactBed,
     Coulomb,
     Hertz,
@@ -20,10 +21,9 @@ from rocking.dynamics.bed import (
     fast,
     setup_of,
 )
-from rocking.dynamics.bed import law as laws
-from rocking.dynamics.bed.reference import Field
-from rocking.dynamics.bed.rigid import RigidRocking
-from rocking.errors import InvalidValueError, MissingExtraError
+from rocking.restitution.bed import law as laws
+from rocking.restitution.bed.reference import Field
+from rocking.restitution.bed.rigid import RigidRocking
 
 BLOCK = Block(width=0.2, height=0.4)
 LAW = KelvinVoigt(1e8, damping_ratio=0.5)

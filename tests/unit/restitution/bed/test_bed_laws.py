@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from rocking.bodies import Block
-from rocking.dynamics.bed import ContactBed, KelvinVoigt
-from rocking.dynamics.bed.impact import setup_of
-from rocking.dynamics.bed.law import LawKind, LawNumbers, force, stored
 from rocking.errors import InvalidValueError
+from rocking.restitution.bed import ContactBed, KelvinVoigt
+from rocking.restitution.bed.impact import setup_of
+from rocking.restitution.bed.law import LawKind, LawNumbers, force, stored
 
 K, C, CHI, N = 3.0e5, 700.0, 1.7, 1.5
 LAWS = {

@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.bed.contact_bed import ContactBed
+from rocking.restitution.bed.contact_bed import ContactBed
 
 
 @dataclass(frozen=True)

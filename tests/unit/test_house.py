@@ -1,0 +1,56 @@
+"""No module imports a room above its own, none imports itself by a detour: within functions and by strings too."""
+
+import pytest
+from benchmarks import house
+
+
+def test_no_circle_and_no_arrow_upward():
+    arrows = house.imports(house.SOURCE)
+    assert house.circles(arrows) == []
+    assert house.upward(arrows) == []
+
+
+def test_every_room_has_its_floor():
+    """A room that the plan does not name would be looked at by nobody."""
+    planned = {room for rooms in house.FLOORS for room in rooms}
+    assert {name.split(".")[1] for name in house.trees(house.SOURCE) if "." in name} == planned - {
+        "statistics",
+        "reports",
+    }
+
+
+LOWER = {
+    "top": "from rocking.studies.map import drawn",
+    "within a function": "def late():\n    from rocking.studies import map\n    return map",
+    "the module": "def late():\n    import rocking.studies.map",
+    "by a string": "import importlib\nfound = importlib.import_module('rocking.studies.map')",
+    "by a package that hands it on": "from rocking.studies import drawn",
+}
+
+
+@pytest.mark.parametrize("way", LOWER)
+def test_every_way_to_import_is_seen(way, tmp_path):
+    """Negative control: a house in which a lower room reaches into a higher one, which builds on it."""
+    house_of = {
+        "__init__.py": "",
+        "dynamics/__init__.py": "",
+        "dynamics/engine.py": LOWER[way],
+        "studies/__init__.py": "from rocking.studies.map import drawn",
+        "studies/map.py": "from rocking.dynamics import engine\ndef drawn():\n    return engine",
+    }
+    for name, text in house_of.items():
+        path = tmp_path / "rocking" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, "utf-8")
+    arrows = house.imports(tmp_path / "rocking")
+    assert house.circles(arrows) == [["rocking.dynamics.engine", "rocking.studies.map"]]
+    assert house.upward(arrows) == [("rocking.dynamics.engine", "rocking.studies.map")]
+
+
+def test_what_only_the_checker_of_types_reads_is_no_arrow(tmp_path):
+    (tmp_path / "rocking").mkdir()
+    text = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from rocking.other import Name"
+    (tmp_path / "rocking" / "__init__.py").write_text("", "utf-8")
+    (tmp_path / "rocking" / "one.py").write_text(text, "utf-8")
+    (tmp_path / "rocking" / "other.py").write_text("from rocking.one import x\nclass Name: ...", "utf-8")
+    assert house.circles(house.imports(tmp_path / "rocking")) == []
