@@ -148,4 +148,4 @@ def test_batches_say_what_is_still_rocking():
         assert short.overturned.ravel().tolist() == [False, False, True]
     long = simulate_spatial_batch(tower, None, "ked-3d", start=starts[0])
     assert not long.still_rocking.item()
-    assert "did not yet rest" in long.exported().samples["still_rocking"].attributes["long_name"]
+    assert "did not yet rest" in long.exported().columns["still_rocking"].attributes["long_name"]
