@@ -23,13 +23,13 @@ from benchmarks.engine_batch import STEP, histories
 from benchmarks.engine_growth import _forget_peak, _peak
 from benchmarks.table import Row
 from rocking.campaigns import Campaign, Progress
-from rocking.studies import MotionList, Product, Table
+from rocking.studies import HistoryTable, MotionList, Product
 
 RECORDS = 200
 MEMORY_GOAL = 2 << 30
 
 
-def records(count: int) -> Table:
+def records(count: int) -> HistoryTable:
     """Blocks under records of 8 to 40 s, as in the benchmark of the engine."""
     batch = histories(RECORDS)
     number = np.arange(count)
@@ -37,7 +37,7 @@ def records(count: int) -> Table:
     values = {f"{name}_{s}": getattr(batch, name)[body] for name in ("alpha", "p", "r") for s in ("right", "left")}
     values["scale"] = batch.scale[motion] * np.tan(batch.alpha[body]) / np.tan(batch.alpha[motion])
     motions = [rk.GroundMotion(record, STEP) for record in batch.records]
-    return Table(MotionList(motions), motion, values)
+    return HistoryTable(MotionList(motions), motion, values)
 
 
 def pulses(count: int) -> Product:
@@ -120,7 +120,7 @@ def one(count: int, folder: str) -> None:
     shutil.rmtree(folder)
 
 
-def _working(work: Table, workers: int) -> float:
+def _working(work: HistoryTable, workers: int) -> float:
     """Wall seconds a chunk, without the start of the processes."""
     seen: list[tuple[float, int]] = []
 

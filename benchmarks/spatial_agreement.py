@@ -8,7 +8,7 @@ from benchmarks import spatial_bullet, spatial_mujoco
 from benchmarks.spatial_cases import Case
 from benchmarks.spatial_friction import demands
 from benchmarks.spatial_tracks import Measures, Track, Windows, measured, track_of, windows
-from rocking.dynamics.spatial import Contact, SpatialResponse
+from rocking.dynamics.spatial import ContactMode, SpatialResponse
 
 FLOOR = {"landing": 1e-3, "kept": 2e-3, "peak": 5e-3, "lost": 1e-2, "direction": 0.5}
 """What the reading itself may cost, beside a peer's own spread: landings last up to 4 steps and energies are read two
@@ -90,7 +90,10 @@ def reason(peer: Peer, response: SpatialResponse, when: Windows) -> str:
     if peer.convex and any(each.slope < peer.friction for each in asked):
         return f"a corner leaves at slope {min(each.slope for each in asked):.2f}: convex friction holds it"
     released = any(
-        a[2] is Contact.EDGE and b[2] is Contact.VERTEX and a[1] < when.third and a[1] not in response.impacts["time"]
+        a[2] is ContactMode.EDGE
+        and b[2] is ContactMode.VERTEX
+        and a[1] < when.third
+        and a[1] not in response.impacts["time"]
         for a, b in zip(response.intervals, response.intervals[1:], strict=False)
     )
     return "the end of an edge slides before it lifts, as friction is finite" if released else ""

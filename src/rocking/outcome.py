@@ -64,7 +64,7 @@ class Regime(Enum):
         return list(Regime).index(self)
 
 
-class Contact(Enum):
+class ContactMode(Enum):
     """On what a body in space stands."""
 
     REST = "at rest on its whole base"
@@ -75,7 +75,7 @@ class Contact(Enum):
     @property
     def code(self) -> int:
         """Number of the regime in arrays."""
-        return list(Contact).index(self)
+        return list(ContactMode).index(self)
 
 
 def overturned(outcome: Any) -> FloatArray:

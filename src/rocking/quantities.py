@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from rocking.outcome import Contact, Outcome, Regime, Status
+from rocking.outcome import ContactMode, Outcome, Regime, Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ def _spelled(codes: dict[int, str]) -> str:
     return ", ".join(f"{code} {word}" for code, word in codes.items())
 
 
-_OUTCOMES, _CONTACTS = _words(Outcome), _words(Contact)
+_OUTCOMES, _CONTACTS = _words(Outcome), _words(ContactMode)
 _REGIMES = {regime.code: regime.value for regime in Regime}
 _SIDES = {1: "right", -1: "left"}
 _HISTORY = (

@@ -373,9 +373,9 @@ def test_impacts_flash_unless_less_motion_is_wanted(answered: Callable[..., Any]
 
 def test_bodies_turn_as_in_python(page: Any) -> None:
     """The points of a turned body are those of the package itself, for both feet; with the other sign they are not."""
-    from rocking.plots.animation_scene import Shape
+    from rocking.plots.animation_scene import DrawnShape
 
-    shape = Shape.of(Block(width=0.5, height=2.0))
+    shape = DrawnShape.of(Block(width=0.5, height=2.0))
     corners = shape.corners
     script = """async ([corners, rotation, feet]) => {
       const { turned } = await import("/scene/geometry.js");

@@ -54,12 +54,12 @@ def application(folder: Path) -> Iterator[Any]:
     import warnings
 
     from rocking.app.application import create_app
-    from rocking.app.settings import Settings
+    from rocking.app.settings import ServerSettings
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         from fastapi.testclient import TestClient
-    settings = Settings(folder=folder, workers=1)
+    settings = ServerSettings(folder=folder, workers=1)
     app = create_app(settings)
     head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
     with TestClient(app, base_url=settings.origin, headers=head) as client:

@@ -124,7 +124,11 @@ def test_feet_and_units(value):
 
 def test_one_family():
     """Every error is a RockingError, and what Python would have raised for the like."""
-    family = [k for k in vars(errors).values() if getattr(k, "__module__", "") == errors.__name__ and isinstance(k, type) and not issubclass(k, Warning)]
+    family = [
+        k
+        for k in vars(errors).values()
+        if getattr(k, "__module__", "") == errors.__name__ and isinstance(k, type) and not issubclass(k, Warning)
+    ]
     assert all(issubclass(kind, errors.RockingError) for kind in family)
     assert issubclass(errors.GeometryError, InvalidValueError)
     assert issubclass(InvalidValueError, ValueError)

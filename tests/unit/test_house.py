@@ -1,4 +1,4 @@
-"""No module imports a room above its own, none imports itself by a detour: within functions and by strings too."""
+"""No module imports a room above its own, none imports itself by a detour, within functions and by strings too; one class name, one meaning."""
 
 import pytest
 from benchmarks import house
@@ -17,6 +17,11 @@ def test_every_room_has_its_floor():
         "statistics",
         "reports",
     }
+
+
+def test_no_class_name_stands_twice():
+    """Content hashes and readers know a class of ours by its name alone."""
+    assert [name for name, count in house.classes(house.SOURCE).items() if count > 1] == []
 
 
 LOWER = {

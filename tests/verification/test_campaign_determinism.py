@@ -16,7 +16,7 @@ from rocking.campaigns import Campaign, CampaignInterrupted, Progress
 from rocking.dynamics import engine
 from rocking.dynamics.engine import Arrays
 from rocking.dynamics.impact_law import RandomRestitution
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 sys.path.insert(0, str(Path(__file__).parent / "durability"))
 from workload import histories
@@ -30,12 +30,12 @@ unforked = pytest.mark.skipif(os.name == "nt", reason="this system does not fork
 
 
 @pytest.fixture(scope="module")
-def work() -> Table:
+def work() -> HistoryTable:
     return histories(COUNT)
 
 
 @pytest.fixture(scope="module")
-def bare(work: Table) -> Arrays:
+def bare(work: HistoryTable) -> Arrays:
     """What the engine gives without any campaign."""
     found = work.run(0, COUNT, threads=1)
     assert min(np.bincount(found["outcome"], minlength=3)[:3]) > COUNT / 20  # worth it: all three outcomes
@@ -62,7 +62,9 @@ def same(campaign: Campaign, bare: Arrays) -> bool:
 @unforked
 @pytest.mark.parametrize("workers", [1, 2, 4, 8])
 @pytest.mark.parametrize("chunk", [7, 64, 1000])
-def test_workers_and_chunks_do_not_matter(tmp_path: Path, work: Table, bare: Arrays, workers: int, chunk: int) -> None:
+def test_workers_and_chunks_do_not_matter(
+    tmp_path: Path, work: HistoryTable, bare: Arrays, workers: int, chunk: int
+) -> None:
     """1, 2, 4 and 8 workers, chunks of 7, 64 and 1000, each in an order of its own: the bits of a bare run."""
     campaign = Campaign.create(tmp_path / "c", work, chunk)
     campaign.run(**FORK, workers=workers, order_seed=workers)
@@ -90,7 +92,9 @@ def test_hash_does_not_depend_on_the_size(tmp_path: Path, chunk: int) -> None:
 
 
 @pytest.mark.parametrize("start_method", ["spawn", "fork", "forkserver"])
-def test_start_of_processes_does_not_matter(tmp_path: Path, work: Table, bare: Arrays, start_method: str) -> None:
+def test_start_of_processes_does_not_matter(
+    tmp_path: Path, work: HistoryTable, bare: Arrays, start_method: str
+) -> None:
     """Spawned, forked, and forked from a server."""
     if os.name == "nt" and start_method != "spawn":
         pytest.skip("this system does not fork")
@@ -99,7 +103,7 @@ def test_start_of_processes_does_not_matter(tmp_path: Path, work: Table, bare: A
     assert same(campaign, bare)
 
 
-def test_interruptions_do_not_matter(tmp_path: Path, work: Table, bare: Arrays) -> None:
+def test_interruptions_do_not_matter(tmp_path: Path, work: HistoryTable, bare: Arrays) -> None:
     """Stopped after every third chunk, and gone on with by changing executors and orders."""
     campaign = Campaign.create(tmp_path / "c", work, 100)
     runs: list[dict[str, Any]] = [{"workers": 1}, {"workers": 2, "order_seed": 7}]
@@ -125,7 +129,7 @@ SELECTION: list[Case] = [
 ]
 
 
-def of_case(folder: Path, case: Case, work: Table) -> Campaign:
+def of_case(folder: Path, case: Case, work: HistoryTable) -> Campaign:
     """Run a campaign in one of the ways: start method, workers, chunk, shuffled or not, resumed or not."""
     method, workers, chunk, shuffled, resumed = case
     campaign = Campaign.create(folder, work, chunk)
@@ -139,14 +143,14 @@ def of_case(folder: Path, case: Case, work: Table) -> Campaign:
 
 
 @pytest.fixture(scope="module")
-def by_chunk() -> dict[int, tuple[Table, Arrays]]:
+def by_chunk() -> dict[int, tuple[HistoryTable, Arrays]]:
     """Histories for each size of chunks, two chunks or more of each, and what the engine gives of them."""
     made = {count: histories(count) for count in (60, 1200)}
     found = {count: (work, work.run(0, count, threads=1)) for count, work in made.items()}
     return {chunk: found[60 if chunk < 60 else 1200] for chunk in CHUNKS}
 
 
-def check(folder: Path, cases: list[Case], by_chunk: dict[int, tuple[Table, Arrays]]) -> None:
+def check(folder: Path, cases: list[Case], by_chunk: dict[int, tuple[HistoryTable, Arrays]]) -> None:
     for k, case in enumerate(cases):
         work, bare = by_chunk[case[2]]
         assert same(of_case(folder / f"{k}", case, work), bare), case
@@ -164,7 +168,7 @@ def test_the_selection_holds_every_value_and_every_pair() -> None:
 
 @unforked
 @pytest.mark.parametrize("method", METHODS)
-def test_selection_of_the_matrix(tmp_path: Path, by_chunk: dict[int, tuple[Table, Arrays]], method: str) -> None:
+def test_selection_of_the_matrix(tmp_path: Path, by_chunk: dict[int, tuple[HistoryTable, Arrays]], method: str) -> None:
     """Workers, chunks, start, order and resume, each value at least once: the bits of a bare run."""
     check(tmp_path, [case for case in SELECTION if case[0] == method], by_chunk)
 
@@ -174,13 +178,13 @@ def test_selection_of_the_matrix(tmp_path: Path, by_chunk: dict[int, tuple[Table
 @pytest.mark.parametrize("workers", WORKERS)
 @pytest.mark.parametrize("method", METHODS)
 def test_the_whole_matrix(
-    tmp_path: Path, by_chunk: dict[int, tuple[Table, Arrays]], method: str, workers: int
+    tmp_path: Path, by_chunk: dict[int, tuple[HistoryTable, Arrays]], method: str, workers: int
 ) -> None:  # fmt: skip
     """Every combination of workers, chunks, start, order and resume: the bits of a bare run."""
     check(tmp_path, [case for case in PRODUCT if case[:2] == (method, workers)], by_chunk)
 
 
-def test_negative_control(tmp_path: Path, work: Table, bare: Arrays) -> None:
+def test_negative_control(tmp_path: Path, work: HistoryTable, bare: Arrays) -> None:
     """The comparison sees a law with another seed: it is not the case that anything passes."""
     law = RandomRestitution.normal(0.95, 0.02, seed=4)
     campaign = Campaign.create(tmp_path / "c", dataclasses.replace(work, law=law), 1000)

@@ -13,7 +13,7 @@ from rocking.errors import InvalidValueError
 from rocking.restitution import model
 from rocking.restitution.bed import fast
 from rocking.restitution.bed_table import BANDS, POINTS, STEP, BedTable, bed_table, nodes, stated_error
-from rocking.restitution.contact_bed import ContactBedModel, Source
+from rocking.restitution.contact_bed import CoefficientSource, ContactBedModel
 from rocking.studies.impact_laboratory.beds import Laboratory, hardness_of
 from rocking.studies.impact_laboratory.tabulation import impulse_position, resolved
 
@@ -158,7 +158,7 @@ def test_two_points_are_housner_for_a_plumb_line_off_the_middle(onto: Foot) -> N
         housner = (over_base - old * new) / (over_base + new**2)
         bed = model("contact-bed", points=2, hardness=1000.0)
         assert isinstance(bed, ContactBedModel)
-        assert bed.evaluate(body, onto).source is Source.TABLE
+        assert bed.evaluate(body, onto).source is CoefficientSource.TABLE
         expected = min(housner, math.sqrt((over_base + old**2) / (over_base + new**2)))
         assert bed.coefficient(body, onto) == pytest.approx(expected, abs=3e-3)
 
@@ -199,10 +199,10 @@ def test_outside_the_table_it_is_resolved() -> None:
     block = setup_block(2.0)
     read_off = ContactBedModel(points=41, damping=1.0).evaluate(block)
     resolved_too = ContactBedModel(points=41, damping=1.0, allowed_error=0.0).evaluate(block)
-    assert (read_off.source, resolved_too.source) == (Source.TABLE, Source.RESOLVED)
+    assert (read_off.source, resolved_too.source) == (CoefficientSource.TABLE, CoefficientSource.RESOLVED)
     assert read_off.coefficient == pytest.approx(resolved_too.coefficient, abs=read_off.stated_error)
     for bed in ({"points": 7}, {"damping": 9.0}, {"hardness": 3000.0}, {"damping": 0.2}, {"friction": 0.25}):
-        assert ContactBedModel(**bed).evaluate(block).source is Source.RESOLVED
+        assert ContactBedModel(**bed).evaluate(block).source is CoefficientSource.RESOLVED
     # two points are Housner's impact on any bed that is hard and damped (physics.md 1.1)
     beyond = ContactBedModel(points=2, damping=8.0, hardness=3000.0).evaluate(block)
     assert beyond.coefficient == pytest.approx(0.7, abs=1e-3)
@@ -216,11 +216,11 @@ def test_friction_below_the_need_slides(points: int, ratio: float) -> None:
     block, need = setup_block(ratio), 3.0 * ratio / (1.0 + 4.0 * ratio**2)
     sticks = ContactBedModel(points=points, damping=2.0)
     enough = ContactBedModel(points=points, damping=2.0, friction=1.03 * need)
-    assert enough.evaluate(block).source is Source.TABLE
+    assert enough.evaluate(block).source is CoefficientSource.TABLE
     assert enough.coefficient(block) == sticks.coefficient(block)
     resolved_too = ContactBedModel(points=points, damping=2.0, friction=1.03 * need, allowed_error=0.0)
     assert resolved_too.coefficient(block) == pytest.approx(sticks.coefficient(block), abs=1e-3)
     # negative control: 10 % below the need it slides
     slides = ContactBedModel(points=points, damping=2.0, friction=0.9 * need)
-    assert slides.evaluate(block).source is Source.RESOLVED
+    assert slides.evaluate(block).source is CoefficientSource.RESOLVED
     assert slides.coefficient(block) < sticks.coefficient(block) - 0.02

@@ -13,7 +13,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import norm
 
 from rocking.studies.fragility.constraints import FractileConstraint, SlopeConstraint
-from rocking.studies.fragility.estimate import Scale, find_curves, log_dispersion, log_fractile, standard_errors
+from rocking.studies.fragility.estimate import LogScale, find_curves, log_dispersion, log_fractile, standard_errors
 from rocking.studies.fragility.likelihood import Probit
 from rocking.studies.fragility.lognormal import fit_lognormal
 from rocking.studies.fragility.profile import Profile
@@ -84,7 +84,7 @@ def _clouds(studies, seed=22):
 
 def _profile_ends(levels, failures, trials, parameter, width=1.0):
     """Return profile intervals of many studies at once, by the code that one study uses."""
-    scale = Scale.of(fit_lognormal(levels, failures[0], trials).counts)
+    scale = LogScale.of(fit_lognormal(levels, failures[0], trials).counts)
     number = np.broadcast_to(np.asarray(trials, dtype=float), failures.shape)
     curves = find_curves(levels, scale, failures.astype(float), number)
     assert curves.found.all()
@@ -177,7 +177,7 @@ def test_recovers_known_parameters():
 def test_standard_errors_are_those_of_repeated_studies():
     """The spread of estimates over many studies is the mean standard error, within Monte Carlo error."""
     levels, failures = _stripes(8000, seed=9)
-    scale = Scale.of(fit_lognormal(levels, failures[0], [40] * 8).counts)
+    scale = LogScale.of(fit_lognormal(levels, failures[0], [40] * 8).counts)
     curves = find_curves(levels, scale, failures.astype(float), np.full(failures.shape, 40.0))
     for variate, value in ((0.0, log_fractile(curves.theta, scale, 0.0)), (None, log_dispersion(curves.theta, scale))):
         error = standard_errors(curves.theta, curves.curvature, scale, variate)

@@ -14,7 +14,7 @@ import rocking as rk
 from rocking.dynamics import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.outcome import Outcome
-from rocking.studies.histories import Table
+from rocking.studies.histories import HistoryTable
 from rocking.studies.motion_set import MotionList
 from rocking.studies.sensitivity import (
     SampledHistories,
@@ -70,7 +70,7 @@ def drawn(count, law, pieces=1):
     values = {f"{name}_{foot}": value for name, value in names.items() for foot in ("right", "left")}
     amplitude = LOWER[3][0] * rk.conventions.g * side.slenderness_angle
     pulse = rk.pulses.sine(amplitude, 2.0 * np.pi / (3.0 * side.frequency_parameter))
-    table = Table(MotionList(pulse), np.zeros(count, np.int64), values, settings=Settings(linear=True))
+    table = HistoryTable(MotionList(pulse), np.zeros(count, np.int64), values, settings=Settings(linear=True))
     edges = np.linspace(0, count, pieces + 1).astype(int)
     made = SampledHistories.of(table, law)
     return np.concatenate([made.run(int(a), int(b))["outcome"] for a, b in pairwise(edges)])

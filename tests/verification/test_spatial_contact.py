@@ -14,14 +14,14 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.dynamics.spatial import (
-    Contact,
+    ContactMode,
     SpatialBody,
     events,
     free_rocking_spatial,
     simulate_spatial,
 )
 from rocking.dynamics.spatial.impact import law_of
-from rocking.dynamics.spatial.selection import State, of_impact
+from rocking.dynamics.spatial.selection import SpatialState, of_impact
 from rocking.outcome import Outcome, Status
 
 TIMES = 10 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1
@@ -45,7 +45,7 @@ def test_nothing_ever_enters_the_ground_and_energy_adds_up(azimuth, tilt, spin):
     assert run.energy.closure < 1e-9
     assert (run.impacts["energy_after"] <= run.impacts["energy_before"] * (1.0 + 1e-12)).all()
     if run.outcome is Outcome.ROCKED:
-        assert run.contact[-1] == Contact.REST.code
+        assert run.contact[-1] == ContactMode.REST.code
 
 
 def test_without_watching_the_neighbours_a_body_enters_the_ground(monkeypatch):
@@ -60,7 +60,7 @@ def test_an_impact_without_complementarity_is_rejected():
     """Negative control: staying on the old corner, or on the edge, contradicts gaps or impulses."""
     omega = np.array([-0.6, 0.8, 0.0])
     omega *= -np.sign(np.cross(omega, SQUARE.vertices[1] - SQUARE.vertices[0])[2])
-    state = State(SQUARE.vertices[0], omega, UP, -G * UP)
+    state = SpatialState(SQUARE.vertices[0], omega, UP, -G * UP)
     (choice,) = of_impact(SQUARE, state, (0, 1), law_of("housner-3d"))
     assert choice.stance.points == (1,)
     leaves = np.cross(choice.velocity, SQUARE.vertices[0] - SQUARE.vertices[1])[2]
@@ -111,7 +111,7 @@ def test_an_edge_becomes_a_vertex_where_the_reaction_reaches_its_end():
     along = rk.GroundMotion(np.concatenate([np.zeros(20), np.linspace(0.0, 4.5, 30), np.zeros(5)]), 0.01)
     run = simulate_spatial(body, rk.pulses.half_sine(amplitude=3.5, period=1.2), along, gravity=G)
     start, end, contact, ends = run.intervals[1]
-    assert (contact, ends, run.intervals[2][2:]) == (Contact.EDGE, (3, 0), (Contact.VERTEX, (0,)))
+    assert (contact, ends, run.intervals[2][2:]) == (ContactMode.EDGE, (3, 0), (ContactMode.VERTEX, (0,)))
     assert run.trajectory.held == 0.0
 
     def pressure(time):

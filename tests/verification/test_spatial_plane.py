@@ -10,13 +10,13 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics.spatial import (
-    Contact,
+    ContactMode,
     SpatialBody,
     free_rocking_spatial,
     simulate_spatial,
 )
 from rocking.dynamics.spatial.impact import law_of
-from rocking.dynamics.spatial.selection import State, of_impact
+from rocking.dynamics.spatial.selection import SpatialState, of_impact
 from rocking.outcome import Outcome
 
 G = 9.81
@@ -95,14 +95,14 @@ def test_the_period_about_an_edge_is_the_elliptic_integral(share, period):
     """A quarter of the exact period to the first impact, REF 3.2, to 1e-10."""
     found = free_rocking_spatial(TOWER, share * ALPHA, gravity=G, duration=0.3 * period)
     assert 4.0 * found.impacts["time"][0] == pytest.approx(period, abs=1e-9 if share > 0.99 else 1e-10)
-    assert found.intervals[0][2] is Contact.EDGE
+    assert found.intervals[0][2] is ContactMode.EDGE
 
 
 def test_a_slender_body_goes_on_and_a_squat_one_stops():
     """Complementarity finds the limit 1 / sqrt 2 of section 1.2: below it both edges push and the body stops."""
-    for ratio, contact in ((0.70, Contact.REST), (0.715, Contact.EDGE)):
+    for ratio, contact in ((0.70, ContactMode.REST), (0.715, ContactMode.EDGE)):
         body = SpatialBody.box(1.0, 1.0, ratio)
-        state = State(body.vertices[0], -body.edges[0], UP, -G * UP)
+        state = SpatialState(body.vertices[0], -body.edges[0], UP, -G * UP)
         (choice,) = of_impact(body, state, (0, 1, 2, 3), law_of("housner-3d"))
         assert choice.stance.contact is contact
         assert choice.supports.min() > 0.0

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.dynamics.spatial import (
-    Contact,
+    ContactMode,
     SpatialBody,
     attitude,
     free_rocking_spatial,
@@ -71,7 +71,7 @@ def test_equal_components_move_a_square_body_along_its_diagonal():
     run = simulate_spatial(SQUARE, pulse, pulse)
     assert run.impacts.size > 10
     np.testing.assert_allclose(run.centre[:, 0], run.centre[:, 1], atol=1e-11)
-    assert {contact for _, _, contact, _ in run.intervals} == {Contact.REST, Contact.VERTEX}
+    assert {contact for _, _, contact, _ in run.intervals} == {ContactMode.REST, ContactMode.VERTEX}
 
 
 @pytest.mark.parametrize("size", [1.0 / 256.0, 256.0])
@@ -84,6 +84,6 @@ def test_similar_bodies_rock_alike(size, azimuth):
         for s in (1.0, size)
     )
     assert [interval[2:] for interval in other.intervals] == [interval[2:] for interval in first.intervals]
-    assert first.contact[-1] == Contact.REST.code
+    assert first.contact[-1] == ContactMode.REST.code
     assert first.impacts.size > 6
     np.testing.assert_allclose(other.impacts["time"] / math.sqrt(size), first.impacts["time"], rtol=1e-9)

@@ -21,8 +21,8 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
     from fastapi.testclient import TestClient
 
 from rocking.app.application import create_app
-from rocking.app.settings import Settings
-from rocking.plots.animation_scene import Shape
+from rocking.app.settings import ServerSettings
+from rocking.plots.animation_scene import DrawnShape
 from rocking.plots.lying import fall_of
 
 STATUE = [[0.0, 0.0], [0.5, 0.0], [0.5, 0.6], [0.4, 0.6], [0.3, 1.9], [0.15, 1.9], [0.1, 0.6], [0.0, 0.6]]
@@ -113,7 +113,7 @@ def record(tmp_path_factory):
 @pytest.fixture(scope="module")
 def inside(tmp_path_factory):
     """The application in this process."""
-    settings = Settings(folder=tmp_path_factory.mktemp("data"))
+    settings = ServerSettings(folder=tmp_path_factory.mktemp("data"))
     app = create_app(settings)
     head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
     with TestClient(app, base_url=settings.origin, headers=head) as client:
@@ -242,7 +242,7 @@ def test_three_doors_agree_to_the_last_digit(case, inside, record, tmp_path):
     for answer, response in zip(answers.values(), in_python(case, record), strict=True):
         assert numbers_in(answer) == numbers_of(response)
         assert answer["outcome"] == response.outcome.name.lower()
-        lying = Shape.of(response.body).lying
+        lying = DrawnShape.of(response.body).lying
         fall = fall_of(response, lying)
         # drawn, as the series are, and not among the facts that the command prints
         assert answer.pop("fall") == {

@@ -16,7 +16,7 @@ from rocking.app.application import create_app
 from rocking.app.security import bodies as limits
 from rocking.app.security import gate
 from rocking.app.security.sessions import Sessions
-from rocking.app.settings import Limits, Settings
+from rocking.app.settings import Limits, ServerSettings
 
 with warnings.catch_warnings():  # it says that another client than httpx is coming
     warnings.simplefilter("ignore")
@@ -195,7 +195,7 @@ class Page:
 
     def __init__(self, folder: Path, **changed: Any) -> None:
         folder.mkdir(exist_ok=True)
-        self.app = create_app(Settings(folder=folder, limits=dataclasses.replace(Limits(), **changed)))
+        self.app = create_app(ServerSettings(folder=folder, limits=dataclasses.replace(Limits(), **changed)))
         self.client = TestClient(self.app, base_url=OWN)
         self.sessions: Sessions = self.app.state.rocking.sessions
         value = self.sessions.sign_in(self.sessions.first_link())

@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 import pytest
 
 from rocking.app.application import create_app
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 
 with warnings.catch_warnings():  # it says that another client than httpx is coming
     warnings.simplefilter("ignore")
@@ -38,7 +38,7 @@ def secret(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> TestClient:
-    settings = Settings(folder=tmp_path_factory.mktemp("data"))
+    settings = ServerSettings(folder=tmp_path_factory.mktemp("data"))
     app = create_app(settings)
     head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
     return TestClient(app, base_url=settings.origin, headers=head)

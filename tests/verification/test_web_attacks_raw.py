@@ -18,7 +18,7 @@ import uvicorn
 
 from rocking.app import server
 from rocking.app.application import create_app
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 
 SECRET = "root:x:"
 GONE = 0
@@ -195,7 +195,7 @@ def impatient(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Targe
     monkeypatch.setattr(server, "_HEAD_SECONDS", 1.0)
     with socket.create_server(("127.0.0.1", 0)) as door:
         port = door.getsockname()[1]
-        app = create_app(Settings(folder=tmp_path, port=port))
+        app = create_app(ServerSettings(folder=tmp_path, port=port))
         served = uvicorn.Server(server._config(app))
         thread = threading.Thread(target=served.run, kwargs={"sockets": [door]})
         thread.start()

@@ -8,7 +8,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from rocking.app.application import create_app
 from rocking.app.security import gate
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 
 with warnings.catch_warnings():  # it says that another client than httpx is coming
     warnings.simplefilter("ignore")
@@ -21,7 +21,7 @@ class Page:
     """Our own page in a browser that is signed in, and what an attacker may know of it."""
 
     def __init__(self, folder: Path) -> None:
-        self.app = create_app(Settings(folder=folder))
+        self.app = create_app(ServerSettings(folder=folder))
         self.client = TestClient(self.app, base_url=OWN)
         sessions = self.app.state.rocking.sessions
         value = sessions.sign_in(sessions.first_link())

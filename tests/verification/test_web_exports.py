@@ -24,7 +24,7 @@ from rocking.app.errors import Refused
 from rocking.app.records import RecordStore
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.settings import Limits
-from rocking.app.takeaway.asked import Asked
+from rocking.app.takeaway.asked import Evaluation
 from rocking.app.takeaway.bundle import bundle_of
 from rocking.app.takeaway.contents.body_tables import body_table
 from rocking.app.takeaway.contents.motion_tables import measures_table
@@ -38,9 +38,9 @@ from rocking.app.takeaway.table_files import column, table, written
 from rocking.app.takeaway.tables import table_of
 from rocking.motions.formats import read_motion
 from rocking.motions.motion import GroundMotion
-from rocking.report.document import Paragraph, Table, cell
+from rocking.report.document import Paragraph, ReportTable, cell
 from rocking.report.response_blocks import Image as Picture
-from rocking.report.response_blocks import Listing, Pages, Pair, Part
+from rocking.report.response_blocks import Listing, PagePart, Pages, Pair
 from rocking.report.response_pdf import response_pdf
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -140,7 +140,7 @@ class Tags(HTMLParser):
 @names
 def test_pictures_show_a_name_and_nothing_else(name):
     """A picture with a hostile name has the elements of a drawing alone, and the name as its text."""
-    asked = Asked(inputs_named(name), None)
+    asked = Evaluation(inputs_named(name), None)
     text = check_svg(drawn(lambda: named(figure_of("body", asked), "body", asked.name), "svg"))
     assert "".join(plain_line(name, 80).split()) in "".join(text.split())
 
@@ -149,7 +149,7 @@ def test_pictures_show_a_name_and_nothing_else(name):
 def test_titles_of_motions_and_responses_are_text(name):
     """Names that a record file brings along are text in the pictures of motion and response."""
     wave = GroundMotion(4.0 * np.sin(0.0628 * np.arange(200)), 0.01, name=name, provenance=(name,))
-    asked = Asked(inputs_named("x"), None)
+    asked = Evaluation(inputs_named("x"), None)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("rocking.app.takeaway.asked.motion_from", lambda chosen, records: wave)
         patch.setattr("rocking.app.question.motion_from", lambda chosen, records: wave)
@@ -163,7 +163,7 @@ def test_titles_of_motions_and_responses_are_text(name):
 @names
 def test_tables_hold_text_and_no_formula(name):
     """In CSV and Excel no hostile name begins a formula, opens a row or a column; MATLAB and netCDF hold it."""
-    asked = Asked(inputs_named(name), None)
+    asked = Evaluation(inputs_named(name), None)
     motion = GroundMotion(np.sin(np.arange(50.0)), 0.1, name=name)
     for sheet in (
         body_table(asked.body, 9.80665, name, {"body": name}),
@@ -224,7 +224,7 @@ def test_files_of_inputs_keep_the_name_and_nothing_of_it_runs(name, records):
     assert all(line.startswith("# ") and line.isprintable() for line in head if line)
     record = records.add(WAVE, name or "x").record
     moved = inputs_named(name, record=record, units="m/s2", file_name=name[:200])
-    with zipfile.ZipFile(io.BytesIO(bundle_of(Asked(moved, records)))) as archive:
+    with zipfile.ZipFile(io.BytesIO(bundle_of(Evaluation(moved, records)))) as archive:
         first, second, third = archive.namelist()
         assert (first, third) == ("response.toml", "README.txt")
         assert re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9._-]{0,90}", second)
@@ -245,10 +245,10 @@ def test_names_of_files_are_harmless(name):
 def test_the_report_sets_a_name_as_it_is(name):
     """In the report a name is text wherever it stands: title, line, cell, caption, listing."""
     shown = plain_line(name, 60)
-    table = Table(shown, [shown, "v"], [[cell(shown), cell("1.0")]], shown)
+    table = ReportTable(shown, [shown, "v"], [[cell(shown), cell("1.0")]], shown)
     picture = Picture("body", shown)
     blocks = [Paragraph(shown, shown, "fair"), table, picture, Pair(picture, table), Listing(shown, shown)]
-    pages = Pages(shown or "-", shown, [Paragraph(shown)], [Part(shown or "-", blocks)], shown)
+    pages = Pages(shown or "-", shown, [Paragraph(shown)], [PagePart(shown or "-", blocks)], shown)
     empty = b'<svg xmlns="http://www.w3.org/2000/svg" width="10" height="10"><rect width="9" height="9"/></svg>'
     assert_says(response_pdf(pages, {"body": empty}), shown)
 
@@ -265,7 +265,7 @@ def assert_says(data, words):
 @pytest.mark.parametrize("name", [NAMES[26]])
 def test_the_whole_report_with_a_hostile_name(name):
     """The report from end to end says the name as it is."""
-    assert_says(report_of(Asked(inputs_named(name), None), "21 November 2026"), plain_line(name, 60))
+    assert_says(report_of(Evaluation(inputs_named(name), None), "21 November 2026"), plain_line(name, 60))
 
 
 @names
@@ -274,7 +274,7 @@ def test_the_page_of_the_animation_gains_no_element(name):
 
     def page(word):
         wave = GroundMotion(4.0 * np.sin(0.0628 * np.arange(200)), 0.01, name=word)
-        asked = Asked(inputs_named(word), None)
+        asked = Evaluation(inputs_named(word), None)
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("rocking.app.question.motion_from", lambda chosen, records: wave)
             return Tags(page_of(asked.chosen(None)).decode())
@@ -308,7 +308,7 @@ def test_the_archive_gives_the_same_numbers_on_the_command_line(tmp_path, record
     """`rocking simulate response.toml` in the unpacked archive prints the numbers of Python, to the last digit."""
     record = records.add(WAVE, "wave 1.txt").record
     inputs = inputs_named("x", record=record, units="m/s2", file_name="wave-1.txt", scale=1.1)
-    with zipfile.ZipFile(io.BytesIO(bundle_of(Asked(inputs, records)))) as archive:
+    with zipfile.ZipFile(io.BytesIO(bundle_of(Evaluation(inputs, records)))) as archive:
         archive.extractall(tmp_path)
     command = [sys.executable, "-m", "rocking", "simulate", "response.toml", "--json"]
     said = subprocess.run(command, cwd=tmp_path, capture_output=True, check=True, text=True)

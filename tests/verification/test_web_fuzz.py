@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from rocking.app.application import create_app
-from rocking.app.settings import Limits, Settings
+from rocking.app.settings import Limits, ServerSettings
 
 schemathesis = pytest.importorskip("schemathesis")
 with warnings.catch_warnings():  # it says that another client than httpx is coming
@@ -54,7 +54,7 @@ ODD = [
 @pytest.fixture
 def script(tmp_path: Path) -> Iterator[TestClient]:
     """Return a script with the key, and an application with small limits."""
-    told = Settings(folder=tmp_path, limits=Limits(histories=2000, studies_waiting=2, upload_bytes=1 << 20))
+    told = ServerSettings(folder=tmp_path, limits=Limits(histories=2000, studies_waiting=2, upload_bytes=1 << 20))
     app = create_app(told)
     head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": told.origin}
     with TestClient(app, base_url=told.origin, headers=head, raise_server_exceptions=False) as client:

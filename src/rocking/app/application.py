@@ -24,7 +24,7 @@ from rocking.app.security import sessions as session
 from rocking.app.security.bodies import BodyLimits
 from rocking.app.security.gate import Failures, Gate, SafeHeaders
 from rocking.app.security.sessions import Sessions
-from rocking.app.settings import AppState, Settings
+from rocking.app.settings import AppState, ServerSettings
 from rocking.app.studies import router as studies
 from rocking.app.studies.manager import StudyManager
 from rocking.app.takeaway import documents, pictures, tables
@@ -108,7 +108,7 @@ def _handler(answer: Callable[[Any], JsonAnswer]) -> Callable[[Request, Exceptio
     return handle
 
 
-def create_app(settings: Settings) -> FastAPI:
+def create_app(settings: ServerSettings) -> FastAPI:
     """Return the application.
 
     Returns every page and every endpoint, behind the gate.
@@ -157,7 +157,7 @@ def _add_endpoints(app: FastAPI) -> None:
     describe_api(app)
 
 
-def _state(settings: Settings) -> AppState:
+def _state(settings: ServerSettings) -> AppState:
     limits = settings.limits
     store = RecordStore(settings.folder, limits)
     return AppState(

@@ -20,7 +20,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from rocking.app.application import create_app
 from rocking.app.folder import DataFolder
-from rocking.app.settings import DEFAULT_PORT, LOOPBACK, Settings
+from rocking.app.settings import DEFAULT_PORT, LOOPBACK, ServerSettings
 from rocking.app.work import WaitingLine
 from rocking.errors import InvalidValueError, RockingError
 
@@ -155,7 +155,7 @@ class Started:
         return f"{self.url}/#token={self.token}"
 
 
-def serve(settings: Settings, started: Callable[[Started], None], *, port: int | None = None) -> None:
+def serve(settings: ServerSettings, started: Callable[[Started], None], *, port: int | None = None) -> None:
     """Serve until the process is told to stop."""
     check_host(settings.host, allow_remote=settings.allow_remote)
     with DataFolder(settings.folder) as folder:
@@ -174,7 +174,7 @@ def _end_at_once() -> None:
 
 
 def _run(
-    settings: Settings, folder: DataFolder, door: socket.socket, started: Callable[[Started], None]
+    settings: ServerSettings, folder: DataFolder, door: socket.socket, started: Callable[[Started], None]
 ) -> WaitingLine:
     app = create_app(settings)
     sessions = app.state.rocking.sessions

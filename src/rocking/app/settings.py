@@ -53,7 +53,7 @@ def default_folder() -> Path:
 
 
 @dataclass(frozen=True)
-class Settings:
+class ServerSettings:
     """What the server is told when it starts."""
 
     host: str = "127.0.0.1"  # address to listen on
@@ -74,7 +74,7 @@ class Settings:
 class AppState:
     """What the endpoints share."""
 
-    settings: Settings  # what the server was told
+    settings: ServerSettings  # what the server was told
     records: "RecordStore"  # uploaded records
     studies: "StudyManager"  # campaigns that run, wait or are done
     sessions: "Sessions"  # who is signed in

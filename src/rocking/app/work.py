@@ -12,7 +12,7 @@ from starlette.requests import HTTPConnection
 
 from rocking.app.errors import Busy, Ending
 from rocking.app.schemas.inputs import size_of
-from rocking.bodies.formats.body_schema import Document
+from rocking.bodies.formats.body_schema import BodyFile
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -98,7 +98,7 @@ class Remembered(Generic[T]):
 
 
 async def sized(
-    request: HTTPConnection, body: Document, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs
+    request: HTTPConnection, body: BodyFile, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs
 ) -> T:
     """Compute in a thread; a large body waits in line with other long computations."""
     if size_of(body) <= _SMALL:

@@ -14,8 +14,8 @@ from rocking.campaigns.disk import (
 )
 from rocking.campaigns.executors import Executor, Serial
 from rocking.campaigns.forecast import Forecast
-from rocking.campaigns.reading import Piece, Verification
-from rocking.campaigns.status import Estimate, Progress, Status, Summary
+from rocking.campaigns.reading import HistoryRange, Verification
+from rocking.campaigns.status import CampaignStatus, Estimate, Progress, Summary
 
 __all__ = [
     "Campaign",
@@ -25,16 +25,16 @@ __all__ = [
     "CampaignIncompleteError",
     "CampaignInterrupted",
     "CampaignMismatchError",
+    "CampaignStatus",
     "CampaignStorageError",
     "CampaignWorkerError",
     "DaskExecutor",
     "Estimate",
     "Executor",
     "Forecast",
-    "Piece",
+    "HistoryRange",
     "Progress",
     "Serial",
-    "Status",
     "Summary",
     "Verification",
 ]

@@ -18,7 +18,7 @@ from rocking.campaigns.ledger import NAME as LEDGER
 from rocking.campaigns.ledger import Ledger
 from rocking.campaigns.processes import chosen
 from rocking.campaigns.running import run
-from rocking.campaigns.status import Progress, Status, Summary
+from rocking.campaigns.status import CampaignStatus, Progress, Summary
 from rocking.dynamics.engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories
@@ -102,7 +102,7 @@ class Campaign:
         return cls(path, histories, identity)
 
     @staticmethod
-    def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> Status:
+    def status_of(folder: str | os.PathLike[str], *, verify: bool = True) -> CampaignStatus:
         """Return how far a campaign is, without its histories and while another process may run it.
 
         Parameters
@@ -121,7 +121,7 @@ class Campaign:
         with disk.guarded(path):
             plan = Identity.read(path).plan
             running = holder(path)
-            nothing = Status(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software, None)
+            nothing = CampaignStatus(path, plan.count, 0, plan.chunks, 0, running, 0.0, 0, (), plan.software, None)
             if not (path / LEDGER).exists():
                 return nothing
             with Ledger(path) as ledger, ledger.instant():
@@ -135,7 +135,7 @@ class Campaign:
                 found = reading.verified(path)
                 chunks, histories, broken = found.chunks, found.verified, found.damaged
             numbers = (plan.count, histories, plan.chunks, chunks)
-            return Status(path, *numbers, running, *effort, damaged, plan.software, work, broken)
+            return CampaignStatus(path, *numbers, running, *effort, damaged, plan.software, work, broken)
 
     @property
     def plan(self) -> Plan:
@@ -147,7 +147,7 @@ class Campaign:
         """Name of the histories: 64 hexadecimal digits."""
         return self.identity.plan.key
 
-    def status(self, *, verify: bool = True) -> Status:
+    def status(self, *, verify: bool = True) -> CampaignStatus:
         """Return how far it is.
 
         Parameters
@@ -229,7 +229,7 @@ class Campaign:
         self.identity.refuse_other(self.folder, self.histories)
         return run(self.folder, self.identity, self.histories, who, order_seed, progress)
 
-    def pieces(self) -> Iterator[reading.Piece]:
+    def pieces(self) -> Iterator[reading.HistoryRange]:
         """Return the results in the order of the histories, one chunk in memory at a time.
 
         Yields

@@ -11,7 +11,7 @@ from typing import Any
 
 from rocking.campaigns.chunks import Chunk
 from rocking.campaigns.disk import CampaignWorkerError
-from rocking.campaigns.executors import Done, Executor, Job, cannot_be_sent, whole
+from rocking.campaigns.executors import Done, Executor, WorkerTask, cannot_be_sent, whole
 from rocking.errors import InvalidValueError, MissingExtraError, how_to_install
 
 _LOOK = 0.2
@@ -43,7 +43,7 @@ class DaskExecutor(Executor):
         self.address, self.ahead, self.timeout = address, whole("ahead", ahead), timeout
 
     def run(
-        self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
+        self, job: WorkerTask, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
     ) -> Iterator[Done]:
         """Compute chunks.
 
@@ -82,7 +82,7 @@ class DaskExecutor(Executor):
 class _Window:
     """Chunks that are on the cluster, never many."""
 
-    def __init__(self, dask: ModuleType, client: Any, job: Job, executor: DaskExecutor) -> None:
+    def __init__(self, dask: ModuleType, client: Any, job: WorkerTask, executor: DaskExecutor) -> None:
         self._dask, self._client, self._job, self._executor = dask, client, job, executor
         # a task and not scattered data: when the worker that holds it dies, another one makes it again
         self._loaded = client.submit(pickle.loads, _pickled(job), pure=False)
@@ -146,14 +146,14 @@ class _Window:
         self._submit(chunk, attempts + 1)
 
 
-def _pickled(job: Job) -> bytes:
+def _pickled(job: WorkerTask) -> bytes:
     try:
         return pickle.dumps(job)
     except (AttributeError, TypeError, pickle.PicklingError) as error:
         raise CampaignWorkerError(cannot_be_sent(error)) from error
 
 
-def _compute(job: Job, chunk: Chunk) -> tuple[bytes, float, str]:
+def _compute(job: WorkerTask, chunk: Chunk) -> tuple[bytes, float, str]:
     start = time.perf_counter()
     data = job.compute(chunk)
     return (

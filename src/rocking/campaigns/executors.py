@@ -142,7 +142,7 @@ class Done(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class WorkerTask:
     """What workers need: it can be pickled."""
 
     histories: Histories  # what to compute
@@ -224,7 +224,7 @@ class Executor(ABC):
 
     @abstractmethod
     def run(
-        self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
+        self, job: WorkerTask, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
     ) -> Iterator[Done]:
         """Compute chunks, taking no more of them than are being computed or about to be.
 
@@ -276,7 +276,7 @@ class Serial(Executor):
         self._threads = None if threads is None else whole("workers", threads)
 
     def run(
-        self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
+        self, job: WorkerTask, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Callable[[Chunk, str], None]
     ) -> Iterator[Done]:
         """Compute chunks.
 
@@ -314,7 +314,7 @@ class Serial(Executor):
 class _Ahead:
     """The thread that computes, one chunk at a time."""
 
-    def __init__(self, job: Job, threads: int | None, stop: Callable[[], bool]) -> None:
+    def __init__(self, job: WorkerTask, threads: int | None, stop: Callable[[], bool]) -> None:
         self._job, self._threads, self._stop = job, threads, stop
         self._over = Event()
         self._pool = ThreadPoolExecutor(1, "campaign")

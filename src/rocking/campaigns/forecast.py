@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking.campaigns.chunks import Plan
 from rocking.campaigns.disk import CampaignStorageError
-from rocking.campaigns.status import NOISE, Estimate, Status
+from rocking.campaigns.status import NOISE, CampaignStatus, Estimate
 from rocking.dynamics.engine import RESULTS
 from rocking.studies.histories import Histories
 
@@ -41,7 +41,7 @@ class Forecast:
     free: int
 
 
-def forecast(status: Status, plan: Plan, histories: Histories) -> Forecast:
+def forecast(status: CampaignStatus, plan: Plan, histories: Histories) -> Forecast:
     """Compute a sample of the histories, and compare the room on the disk with what is needed."""
     left, chunks = status.histories - status.histories_done, status.chunks - status.chunks_done
     work = trial(histories).at(1.0 / left) if left else Estimate(0.0, 0.0, 0.0)

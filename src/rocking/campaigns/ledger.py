@@ -29,7 +29,7 @@ CREATE TABLE IF NOT EXISTS events (
 """
 
 
-class Record(NamedTuple):
+class LedgerEntry(NamedTuple):
     """A finished chunk, or a piece of one."""
 
     number: int
@@ -72,18 +72,18 @@ class Ledger:
         finally:
             self._database.execute("COMMIT")
 
-    def record(self, record: Record) -> None:
+    def record(self, record: LedgerEntry) -> None:
         """Acknowledge a chunk, which takes the place of its pieces; on return this is on disk."""
         with self._database:
             self._database.execute("BEGIN")
             self._insert("chunks", record)
             self._database.execute("DELETE FROM pieces WHERE number = ?", (record.number,))
 
-    def record_piece(self, record: Record) -> None:
+    def record_piece(self, record: LedgerEntry) -> None:
         """Acknowledge a piece of a chunk; on return this is on disk."""
         self._insert("pieces", record)
 
-    def _insert(self, table: str, record: Record) -> None:
+    def _insert(self, table: str, record: LedgerEntry) -> None:
         row = (*record, _sum(record))
         self._database.execute(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(row))})", row)
 
@@ -99,23 +99,23 @@ class Ledger:
             (what, number, detail),
         )
 
-    def records(self) -> Iterator[Record]:
+    def records(self) -> Iterator[LedgerEntry]:
         """Return the finished chunks, in order.
 
         Returns one after another; none that was changed behind the ledger's back.
         """
         return self._records("SELECT * FROM chunks ORDER BY number")
 
-    def pieces(self) -> Iterator[Record]:
+    def pieces(self) -> Iterator[LedgerEntry]:
         """Return the finished pieces of chunks that are not whole yet, in order.
 
         Returns one after another; none that was changed behind the ledger's back.
         """
         return self._records("SELECT * FROM pieces ORDER BY first")
 
-    def _records(self, asked: str) -> Iterator[Record]:
+    def _records(self, asked: str) -> Iterator[LedgerEntry]:
         for *values, checked in self._database.execute(asked):
-            record = Record(*values)
+            record = LedgerEntry(*values)
             if _sum(record) != checked:
                 raise CampaignDamagedError(ledger_damaged(self._folder, f"row {record.number!r:.20} has changed"))
             yield record
@@ -214,5 +214,5 @@ def _connected(address: str) -> sqlite3.Connection:
     return database
 
 
-def _sum(record: Record) -> str:
+def _sum(record: LedgerEntry) -> str:
     return hashlib.sha256(repr(tuple(record)).encode()).hexdigest()[:32]

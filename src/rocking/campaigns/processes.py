@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, NoReturn
 
 from rocking.campaigns.chunks import Chunk
 from rocking.campaigns.disk import CampaignWorkerError
-from rocking.campaigns.executors import Done, Executor, Job, Serial, cannot_be_sent, whole
+from rocking.campaigns.executors import Done, Executor, Serial, WorkerTask, cannot_be_sent, whole
 from rocking.errors import InvalidValueError
 
 _WATCH = 0.5
@@ -35,7 +35,7 @@ class Failure(NamedTuple):
     number: int | None
 
 
-def serve(job: Job, connection: Connection) -> None:
+def serve(job: WorkerTask, connection: Connection) -> None:
     """Compute chunks until told to end, or the campaign's process is gone."""
     orphaned = _orphaned()
     # Ctrl-C goes to all processes of a terminal: the campaign's process decides what it means
@@ -48,7 +48,7 @@ def serve(job: Job, connection: Connection) -> None:
         return
 
 
-def answer(job: Job, chunk: Chunk, stop: Callable[[], bool] = lambda: False) -> Done | Failure:
+def answer(job: WorkerTask, chunk: Chunk, stop: Callable[[], bool] = lambda: False) -> Done | Failure:
     """Return what became of a chunk; nothing that goes wrong with it ends the worker."""
     start = time.perf_counter()
     try:
@@ -88,7 +88,9 @@ class Processes(Executor):
         self.at_once = _processors() if workers is None else whole("workers", workers)
         self.start_method = start_method
 
-    def run(self, job: Job, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Retried) -> Iterator[Done]:
+    def run(
+        self, job: WorkerTask, chunks: Iterator[Chunk], stop: Callable[[], bool], retried: Retried
+    ) -> Iterator[Done]:
         """Compute chunks.
 
         Returns in the order in which they finish.
@@ -106,7 +108,7 @@ class Processes(Executor):
 class _Member:
     """A worker, and the chunks that were sent to it with the number of attempts; the first one is at work."""
 
-    def __init__(self, context: Any, job: Job) -> None:
+    def __init__(self, context: Any, job: WorkerTask) -> None:
         self.connection, theirs = context.Pipe()
         self.tasks: deque[tuple[Chunk, int]] = deque()
         self.process: BaseProcess = context.Process(target=serve, args=(job, theirs), daemon=True)
@@ -146,7 +148,7 @@ class _Member:
 class _Crew:
     """The workers of a run."""
 
-    def __init__(self, wanted: int, start_method: str, job: Job, retried: Retried) -> None:
+    def __init__(self, wanted: int, start_method: str, job: WorkerTask, retried: Retried) -> None:
         self._wanted, self._job, self._retried = wanted, job, retried
         self._context = multiprocessing.get_context(start_method)
         self._members: list[_Member] = []

@@ -16,12 +16,12 @@ from rocking.campaigns.chunks import Chunk, Plan
 from rocking.campaigns.disk import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.executors import PIECES, SUFFIX, path_of
 from rocking.campaigns.identity import SHARDS, Identity
-from rocking.campaigns.ledger import NAME, Ledger, Record
+from rocking.campaigns.ledger import NAME, Ledger, LedgerEntry
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 
 
-class Piece(NamedTuple):
+class HistoryRange(NamedTuple):
     """Results of some histories.
 
     Parameters
@@ -37,14 +37,14 @@ class Piece(NamedTuple):
     results: Arrays
 
 
-def pieces(folder: Path, plan: Plan) -> Iterator[Piece]:
+def pieces(folder: Path, plan: Plan) -> Iterator[HistoryRange]:
     """Return the results of a finished campaign in the order of the histories, one chunk in memory at a time."""
     seals = _seals(folder, plan)
     if len(seals) < plan.chunks:
         raise CampaignIncompleteError(f"{folder}: {len(seals)} of {plan.chunks} chunks are finished; run the campaign")
     for number in range(plan.chunks):
         chunk = plan.chunk(number)
-        yield Piece(chunk.first, chunk.last, _read(folder, chunk, seals[number]))
+        yield HistoryRange(chunk.first, chunk.last, _read(folder, chunk, seals[number]))
 
 
 def results(folder: Path, plan: Plan, names: Collection[str] = ()) -> Arrays:
@@ -76,7 +76,7 @@ def _check_name(name: str) -> None:
         raise InvalidValueError(f"column must be one of {', '.join(RESULTS)}, got {name!r:.60}")
 
 
-def digest(found: Iterator[Piece]) -> str:
+def digest(found: Iterator[HistoryRange]) -> str:
     """Return the hash of results: it does not depend on how they are cut.
 
     Returns SHA-256, 64 hexadecimal digits, of names, types and the hashes of the columns.
@@ -184,7 +184,7 @@ def _read(folder: Path, chunk: Chunk, sealed: str) -> Arrays:
 
 
 @dataclass
-class Found:
+class EarlierRun:
     """What an earlier run has left."""
 
     finished: np.ndarray  # for every chunk, whether it is
@@ -195,11 +195,11 @@ class Found:
     pieces: dict[int, list[Chunk]] = field(default_factory=dict)
 
 
-def recover(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[], bool] = lambda: False) -> Found:
+def recover(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[], bool] = lambda: False) -> EarlierRun:
     """Check all shards, take back what the ledger has of damaged ones, adopt what it does not know."""
     for each in (folder, folder.with_name(PIECES)):
         disk.remove_unfinished(each)
-    found = Found(np.zeros(plan.chunks, bool))
+    found = EarlierRun(np.zeros(plan.chunks, bool))
     known = np.zeros(plan.chunks, bool)
     for record in ledger.records():
         if stop():
@@ -217,7 +217,7 @@ def recover(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[], bool] =
     return found
 
 
-def _recover_pieces(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[], bool], found: Found) -> None:
+def _recover_pieces(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[], bool], found: EarlierRun) -> None:
     """Check the pieces of chunks that are not finished, adopt what the ledger does not know; the others may go."""
     known: set[str] = set()
     for record in list(ledger.pieces()):
@@ -238,7 +238,7 @@ def _recover_pieces(folder: Path, plan: Plan, ledger: Ledger, stop: Callable[[],
         pieces.sort()
 
 
-def _adopt_piece(path: Path, plan: Plan, ledger: Ledger, found: Found) -> bool:
+def _adopt_piece(path: Path, plan: Plan, ledger: Ledger, found: EarlierRun) -> bool:
     """Record a piece that is there and whole, and whose histories are not there yet."""
     try:
         first, last = shard.range_of(path.read_bytes())
@@ -274,7 +274,7 @@ def now() -> str:
     return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
 
 
-def _recall(folder: Path, chunk: Chunk, sealed: str, ledger: Ledger, found: Found) -> bool:
+def _recall(folder: Path, chunk: Chunk, sealed: str, ledger: Ledger, found: EarlierRun) -> bool:
     """See whether a recorded shard is still what it was."""
     path = path_of(folder, chunk)
     try:
@@ -289,13 +289,13 @@ def _recall(folder: Path, chunk: Chunk, sealed: str, ledger: Ledger, found: Foun
     return True
 
 
-def _take_back(ledger: Ledger, chunk: Chunk, found: Found, why: str) -> None:
+def _take_back(ledger: Ledger, chunk: Chunk, found: EarlierRun, why: str) -> None:
     ledger.forget(chunk.name)
     ledger.note("damaged", chunk.number, why)
     found.set_aside.append(why)
 
 
-def _adopt(folder: Path, chunk: Chunk, ledger: Ledger, found: Found) -> bool:
+def _adopt(folder: Path, chunk: Chunk, ledger: Ledger, found: EarlierRun) -> bool:
     """Record a shard that is there and whole."""
     path = path_of(folder, chunk)
     data = path.read_bytes()
@@ -308,7 +308,7 @@ def _adopt(folder: Path, chunk: Chunk, ledger: Ledger, found: Found) -> bool:
         found.set_aside.append(why)
         return False
     disk.sync_folder(path.parent)  # it was perhaps renamed in the last instant before a kill
-    record = Record(*chunk[:4], shard.seal(data), len(data), 1, 0.0, "an earlier run", now())
+    record = LedgerEntry(*chunk[:4], shard.seal(data), len(data), 1, 0.0, "an earlier run", now())
     (ledger.record_piece if chunk.of else ledger.record)(record)
     found.adopted += 1
     return True

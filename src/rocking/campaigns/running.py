@@ -12,10 +12,10 @@ from rocking.campaigns import chunks as shard
 from rocking.campaigns import disk
 from rocking.campaigns.chunks import Chunk, Plan
 from rocking.campaigns.disk import CampaignDamagedError, CampaignInterrupted, FolderLock
-from rocking.campaigns.executors import PIECE, PIECES, Done, Executor, Interruption, Job, Pace, path_of
+from rocking.campaigns.executors import PIECE, PIECES, Done, Executor, Interruption, Pace, WorkerTask, path_of
 from rocking.campaigns.identity import SHARDS, Identity
-from rocking.campaigns.ledger import Ledger, Record
-from rocking.campaigns.reading import Found, now, recover, set_aside_if_damaged
+from rocking.campaigns.ledger import Ledger, LedgerEntry
+from rocking.campaigns.reading import EarlierRun, now, recover, set_aside_if_damaged
 from rocking.campaigns.status import Costs, Meter, Progress, Summary
 from rocking.dynamics.engine import empty_results
 from rocking.studies.histories import Histories
@@ -164,8 +164,8 @@ def run(
             found = recover(folder / SHARDS, identity.plan, ledger, interruption.asked)
             before = ledger.finished()[0]
             meter.begin(before, ((record.first, record.last) for record in (*ledger.records(), *ledger.pieces())))
-            job = Job(histories, identity.plan.engine, identity.plan.software, folder / SHARDS)
-            run = _Run(job, identity.plan, ledger, meter, found)
+            job = WorkerTask(histories, identity.plan.engine, identity.plan.software, folder / SHARDS)
+            run = _CampaignRun(job, identity.plan, ledger, meter, found)
             run.merge_all()
             remaining = Remaining(
                 identity.plan, np.flatnonzero(~found.finished), found.pieces, histories.together, meter.costs,
@@ -182,17 +182,17 @@ def run(
 
 
 @dataclass
-class _Run:
+class _CampaignRun:
     """Records what is finished; the record is what makes it finished. Pieces that are a whole chunk become its shard.
 
     The shards of a finished campaign are the same files whatever the pieces were.
     """
 
-    job: Job
+    job: WorkerTask
     plan: Plan
     ledger: Ledger
     meter: Meter
-    found: Found
+    found: EarlierRun
 
     def compute(self, executor: Executor, remaining: Remaining, stop: Callable[[], bool]) -> None:
         def retried(chunk: Chunk, why: str) -> None:
@@ -240,5 +240,5 @@ class _Run:
         return True
 
 
-def _record(done: Done) -> Record:
-    return Record(*done.chunk[:4], done.seal, done.size, done.attempts, done.seconds, done.worker, now())
+def _record(done: Done) -> LedgerEntry:
+    return LedgerEntry(*done.chunk[:4], done.seal, done.size, done.attempts, done.seconds, done.worker, now())

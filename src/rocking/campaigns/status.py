@@ -133,7 +133,7 @@ class Costs:
 
 
 @dataclass(frozen=True)
-class Status:
+class CampaignStatus:
     """How far a campaign is, as its folder says.
 
     Parameters

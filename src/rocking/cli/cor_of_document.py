@@ -9,7 +9,7 @@ from rocking.errors import InvalidValueError
 from rocking.spec.document import SettingsTable
 from rocking.spec.fields import JobTable
 from rocking.spec.parts import body_of
-from rocking.spec.reading import Inputs, located, read_text, validated
+from rocking.spec.reading import InputFiles, located, read_text, validated
 
 
 class BodyOfDocument(JobTable):
@@ -33,7 +33,7 @@ def body_and_gravity(path: Path, size: dict[str, object]) -> tuple[Body, float |
     with located(str(path)):
         document = validated(BodyOfDocument, read_text(path))
         with located("body"):
-            body = body_of(document.body, Inputs(path.parent))
+            body = body_of(document.body, InputFiles(path.parent))
     return body, document.settings.gravity
 
 

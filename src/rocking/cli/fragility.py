@@ -105,7 +105,7 @@ def fragility(
     size = {"width": width, "height": height, "depth": depth, "density": density}
     sized = any(one is not None for one in (width, height, angle, semi_diagonal))
     file, records = body_and_records(body, motions or [], sized=sized)
-    files = fragility_output.Files(picture, csv, p58, nrml, excel, mat, netcdf, common_dispersion)
+    files = fragility_output.FragilityFiles(picture, csv, p58, nrml, excel, mat, netcdf, common_dispersion)
     question = FragilityQuestion.of(
         body_from(file, **size, angle=angle, semi_diagonal=semi_diagonal, unit=unit),
         {"analysis": analysis, "measure": measure, "levels": levels, "states": states, "factor": factor},

@@ -20,7 +20,7 @@ MOST_CHOICES = 6
 
 
 @dataclass(frozen=True)
-class Files:
+class FragilityFiles:
     """Files that were asked for."""
 
     picture: Path | None = None  # picture, csv, p58, nrml, excel, mat, netcdf: where each goes

@@ -9,7 +9,7 @@ from rocking.cli import shared_options as shared
 
 if TYPE_CHECKING:
     from rocking.app.server import Started
-    from rocking.app.settings import Settings
+    from rocking.app.settings import ServerSettings
 
 
 def serve(
@@ -24,9 +24,9 @@ def serve(
     as_json: shared.AsJson = False,
 ) -> None:
     """Open the application: draw a body, drop a record, see it rock. Everything stays on this machine."""
-    from rocking.app.settings import Settings, default_folder
+    from rocking.app.settings import ServerSettings, default_folder
 
-    settings = Settings(
+    settings = ServerSettings(
         host=host,
         folder=(data or default_folder()).expanduser().absolute(),
         allow_remote=allow_remote,
@@ -35,7 +35,7 @@ def serve(
     _serve(settings, port, quiet=no_browser or as_json, as_json=as_json)
 
 
-def _serve(settings: "Settings", port: int | None, *, quiet: bool, as_json: bool) -> None:
+def _serve(settings: "ServerSettings", port: int | None, *, quiet: bool, as_json: bool) -> None:
     from rocking.errors import MissingExtraError, how_to_install
 
     try:
@@ -78,7 +78,7 @@ def _open(link: str) -> None:
     threading.Thread(target=webbrowser.open, args=(link,), daemon=True).start()
 
 
-def _join(settings: "Settings", *, quiet: bool) -> bool:
+def _join(settings: "ServerSettings", *, quiet: bool) -> bool:
     """Open the server that has the data folder already, if it answers."""
     import json
     from urllib.request import Request, urlopen

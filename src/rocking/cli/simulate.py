@@ -76,11 +76,11 @@ def simulate(
 ) -> None:
     """Print how a body rocks under a ground motion, whether it overturns, and whether the model of impact decides."""
     from rocking.cli import simulate_of_contact, simulate_of_pure_rocking, simulate_of_solid
-    from rocking.cli.simulate_asked import Asked
-    from rocking.cli.simulate_output import Files
+    from rocking.cli.simulate_asked import SimulateOptions
+    from rocking.cli.simulate_output import ResponseFiles
 
-    asked = Asked.of(context)
-    files = Files(picture, animation, csv, mat, netcdf)
+    asked = SimulateOptions.of(context)
+    files = ResponseFiles(picture, animation, csv, mat, netcdf)
     if asked.solid is not None:
         simulate_of_solid.answer(asked, files, as_json=as_json)
     elif contact:

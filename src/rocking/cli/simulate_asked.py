@@ -20,7 +20,7 @@ _SPACE = ("motion_y", "motion_z", "component_y", "component_z")
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class SimulateOptions:
     """The options of one call."""
 
     values: dict[str, Any]  # parameter of the command to its value
@@ -28,7 +28,7 @@ class Asked:
     document: Path | None  # the file that says everything, if the first word is one
 
     @classmethod
-    def of(cls, context: typer.Context) -> "Asked":
+    def of(cls, context: typer.Context) -> "SimulateOptions":
         """Return what was typed."""
         document = simulate_document.path_of(context)
         typed = frozenset(name for name in context.params if simulate_document.typed(context, name))

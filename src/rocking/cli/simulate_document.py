@@ -4,7 +4,7 @@ from pathlib import Path
 
 import typer
 
-from rocking.cli.simulate_output import Answer
+from rocking.cli.simulate_output import ResponseComparison
 from rocking.errors import InvalidValueError
 
 _OUTPUTS = {"body", "picture", "animation", "csv", "mat", "netcdf", "as_json"}
@@ -27,14 +27,14 @@ def path_of(context: typer.Context) -> Path | None:
     return Path(word)
 
 
-def answer_of(path: Path) -> Answer:
+def answer_of(path: Path) -> ResponseComparison:
     """Return the answer to what a file asks.
 
     Returns the response with the first restitution, and with the others that the file lists.
     """
     from rocking.spec.response import ResponseJob
 
-    return Answer.of_choices(ResponseJob.read(path).question)
+    return ResponseComparison.of_choices(ResponseJob.read(path).question)
 
 
 def typed(context: typer.Context, name: str) -> bool:

@@ -5,11 +5,11 @@
 
 import json
 
-from rocking.cli.simulate_output import Answer
+from rocking.cli.simulate_output import ResponseComparison
 from rocking.report.facts.response import other_facts, response_facts
 
 
-def as_json(answer: Answer) -> str:
+def as_json(answer: ResponseComparison) -> str:
     """Return everything as JSON.
 
     Returns one object; SI units, null where something does not exist.

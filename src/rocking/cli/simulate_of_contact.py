@@ -4,14 +4,14 @@ from typing import Any
 
 from rocking.cli import contact_page
 from rocking.cli.files_output import check_files
-from rocking.cli.simulate_asked import Asked
-from rocking.cli.simulate_output import Files
+from rocking.cli.simulate_asked import SimulateOptions
+from rocking.cli.simulate_output import ResponseFiles
 from rocking.cli.solid_options import refuse
 from rocking.dynamics.planar import PlanarResponse
 from rocking.errors import InvalidValueError
 
 
-def answer(asked: Asked, files: Files, *, as_json: bool) -> None:
+def answer(asked: SimulateOptions, files: ResponseFiles, *, as_json: bool) -> None:
     """Print, write and draw what a plane body does that may slide and hop."""
     if asked.document is not None:
         raise InvalidValueError(f"{asked.document} has a table [response] and says everything itself: no --contact")

@@ -7,8 +7,8 @@ from rocking import checks
 from rocking.bodies.solid import Solid
 from rocking.cli import spatial_page
 from rocking.cli.files_output import check_files
-from rocking.cli.simulate_asked import Asked
-from rocking.cli.simulate_output import Files
+from rocking.cli.simulate_asked import SimulateOptions
+from rocking.cli.simulate_output import ResponseFiles
 from rocking.cli.solid_options import refuse, solid_from
 from rocking.cli.spatial_motion import components
 from rocking.conventions import g
@@ -24,7 +24,7 @@ _RECORD = ("format", "units", "time_step", "component", "vertical", "vertical_fi
 _MESH = ("unit", "density", "up", "fill_holes", "base_tolerance")
 
 
-def answer(asked: Asked, files: Files, *, as_json: bool) -> None:
+def answer(asked: SimulateOptions, files: ResponseFiles, *, as_json: bool) -> None:
     """Print, write and draw how a body in space rocks."""
     refuse("a body in space has an engine of its own", asked.only_typed((*_PLANE, "engine", "animation")))
     check_files(files.picture, files.csv, files.mat, files.netcdf)

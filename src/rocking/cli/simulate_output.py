@@ -15,7 +15,7 @@ from rocking.outcome import Outcome
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class ResponseComparison:
     """A response, and what the other models of impact make of the same question."""
 
     response: Response  # with the restitution asked for
@@ -23,14 +23,14 @@ class Answer:
     others: dict[str, Response | str]  # by model: the response, or why the model has none for this body
 
     @classmethod
-    def of(cls, question: Question, restitution: str) -> "Answer":
+    def of(cls, question: Question, restitution: str) -> "ResponseComparison":
         """Compute the response, and what every model that needs no value makes of the same question."""
         response = _computed(question, restitution_from(restitution))
         rivals = {model.label: model for model in default_models() if model.label != response.rocker.label}
         return cls(response, question.friction, {name: _tried(question, model) for name, model in rivals.items()})
 
     @classmethod
-    def of_choices(cls, question: Question) -> "Answer":
+    def of_choices(cls, question: Question) -> "ResponseComparison":
         """Compute the response with the first restitution of a question, and with all others that it lists."""
         (_, first), *rest = question.choices.items()
         response = _computed(question, first)
@@ -52,7 +52,7 @@ def _tried(question: Question, restitution: Any) -> Response | str:
 
 
 @dataclass(frozen=True, slots=True)
-class Files:
+class ResponseFiles:
     """Files to write."""
 
     picture: Path | None  # picture, animation, csv, mat, netcdf: where each goes, if it was asked for
@@ -66,7 +66,7 @@ class Files:
         if self.animation is not None and self.animation.suffix.lower() not in {".html", ".gif"}:
             raise RockingError(f"an animation is .html or .gif, got {self.animation.name!r}")
 
-    def write(self, answer: Answer) -> list[Path]:
+    def write(self, answer: ResponseComparison) -> list[Path]:
         """Write what was asked for."""
         written = self.written(answer.response, lambda: _drawn(answer))
         if self.animation is not None:
@@ -89,7 +89,7 @@ class Files:
         return [path for path in (self.picture, self.animation, self.csv, self.mat, self.netcdf) if path is not None]
 
 
-def _drawn(answer: Answer) -> Any:
+def _drawn(answer: ResponseComparison) -> Any:
     from rocking.plots.response import response_picture
 
     return response_picture(answer.response, answer.friction)

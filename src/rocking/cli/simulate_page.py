@@ -5,12 +5,12 @@ from typing import Any
 
 from rocking.cli.body_options import body_words
 from rocking.cli.shared_options import in_unit
-from rocking.cli.simulate_output import Answer
+from rocking.cli.simulate_output import ResponseComparison
 from rocking.conventions import given_or_assumed
 from rocking.dynamics.response import Response
 from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
-from rocking.report.facts.verdict import Verdict
+from rocking.report.facts.verdict import ModelAgreement
 
 _FIRST = 10
 """Impacts that are printed."""
@@ -18,7 +18,7 @@ _FIRST = 10
 _IN_PYTHON = "simulate_with_contact(body, motion, friction=...)"
 
 
-def show(answer: Answer, length: str = "m", acceleration: str = "m/s2") -> None:
+def show(answer: ResponseComparison, length: str = "m", acceleration: str = "m/s2") -> None:
     """Print body, motion, outcome, impacts, doubts, and what other models say."""
     from rich.console import Console
 
@@ -83,7 +83,7 @@ def _impacts(response: Response) -> Any:
     return table
 
 
-def _measures(answer: Answer) -> list[tuple[str, str]]:
+def _measures(answer: ResponseComparison) -> list[tuple[str, str]]:
     response = answer.response
     contact, error = response.contact, response.error_estimate
     fell = response.outcome is Outcome.OVERTURNED
@@ -103,7 +103,7 @@ def _measures(answer: Answer) -> list[tuple[str, str]]:
     ]
 
 
-def _rivals(answer: Answer) -> Any:
+def _rivals(answer: ResponseComparison) -> Any:
     table = _table(("model", "r", "outcome", "peak deg", "/ alpha", "impacts"), left=("model", "outcome"))
     chosen = answer.response.rocker.label
     for name, found in {chosen: answer.response, **answer.others}.items():
@@ -118,10 +118,10 @@ def _rivals(answer: Answer) -> Any:
     return table
 
 
-def _verdict(answer: Answer) -> str:
+def _verdict(answer: ResponseComparison) -> str:
     found = {answer.response.rocker.label: answer.response}
     found |= {name: one for name, one in answer.others.items() if isinstance(one, Response)}
-    return Verdict.of(found).sentence
+    return ModelAgreement.of(found).sentence
 
 
 def _short(response: Response) -> str:

@@ -8,7 +8,7 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, Foot, opposite
 from rocking.dynamics import equations
-from rocking.dynamics.intervals import Intervals
+from rocking.dynamics.intervals import DenseOutput
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
 
@@ -20,7 +20,7 @@ _FOLLOWS = "simulate_with_contact(body, motion, friction=...) follows it"
 
 
 @dataclass(frozen=True)
-class Contact:
+class GroundForces:
     """Forces of the ground at the samples, and the friction that rocking without slip takes."""
 
     time: FloatArray  # times of the samples, and of the fall if it comes after the last of them [s]
@@ -72,8 +72,8 @@ class Contact:
 
 
 def contact_of(
-    trajectory: Trajectory, intervals: Intervals, time: FloatArray, body: Body, settings: Settings
-) -> Contact:
+    trajectory: Trajectory, intervals: DenseOutput, time: FloatArray, body: Body, settings: Settings
+) -> GroundForces:
     """Return the forces of the ground on a body during a response.
 
     time: times of the samples, and of a fall after the last of them [s].
@@ -85,7 +85,7 @@ def contact_of(
     standing[0, 0] = True
     place = intervals.places(time[1:])
     mass = body.mass
-    return Contact(
+    return GroundForces(
         time=time,
         horizontal=mass * np.concatenate([[f_x[0, 0]], f_x[place, 1]]),
         vertical=mass * np.concatenate([[f_z[0, 0]], f_z[place, 1]]),
@@ -95,7 +95,7 @@ def contact_of(
     )
 
 
-def forces(intervals: Intervals, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def forces(intervals: DenseOutput, gravity: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the forces of the ground at both ends of the intervals of a response.
 
     gravity: acceleration of gravity [m/s2]. Returns horizontal, vertical: over the mass [N/kg] (shape (n, 2)); demand:

@@ -22,8 +22,8 @@ def hash_of(values: np.ndarray) -> str:
 
 
 def full_name(kind: type) -> str:
-    """Return the name of a class with its module: two classes of the same name are not the same."""
-    module = kind.__module__.replace("campaigns.jobs", "studies.job")  # where it stood when keys were kept
+    """Return the name of a class: ours alone, since no two share one; of others with its module, where two may."""
+    module = "rocking" if kind.__module__.startswith("rocking.") else kind.__module__
     return f"{module}.{kind.__qualname__}"
 
 

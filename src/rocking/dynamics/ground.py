@@ -28,7 +28,7 @@ class Window:
     steepness: float  # bound on the change of the moments with the rotation [1/rad]
 
 
-class Ground:
+class RestoringMoments:
     """What holds a body down, stretch by stretch."""
 
     def __init__(self, rocker: Rocker, push: Push, *, linear: bool) -> None:

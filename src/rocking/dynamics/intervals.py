@@ -23,7 +23,7 @@ _POINTS, _WEIGHTS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
 
 
 @dataclass(frozen=True)
-class Intervals:
+class DenseOutput:
     """Intervals between consecutive samples, events and states added inside long steps and falls, in order of time."""
 
     start: FloatArray  # start, end: times [s]; shape (n,)
@@ -46,7 +46,7 @@ class Intervals:
     @classmethod
     def of(
         cls, trajectory: Trajectory, segments: Segments, rocker: Rocker, settings: Settings, scale: float
-    ) -> "Intervals":
+    ) -> "DenseOutput":
         """Return the intervals of a trajectory.
 
         segments: its motion [m/s2]; scale: factor on the motion [-].

@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics import equations
-from rocking.dynamics.intervals import Intervals
+from rocking.dynamics.intervals import DenseOutput
 from rocking.dynamics.settings import Settings
 
 
@@ -34,7 +34,7 @@ class ResponseEnergy:
         return float(np.max(np.abs(self.gap))) / max(scale if scale > 1e-9 * fallen else fallen, 1e-300)
 
 
-def energy_of(intervals: Intervals, time: FloatArray, mass: float, settings: Settings) -> ResponseEnergy:
+def energy_of(intervals: DenseOutput, time: FloatArray, mass: float, settings: Settings) -> ResponseEnergy:
     """Return the energy of a response.
 
     time: times of the samples, the first one zero, and of a fall after the last of them [s]; mass: mass of the body
@@ -56,7 +56,7 @@ def energy_of(intervals: Intervals, time: FloatArray, mass: float, settings: Set
 
 
 def energies(
-    intervals: Intervals, mass: float, settings: Settings
+    intervals: DenseOutput, mass: float, settings: Settings
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return the energy of a response at both ends of its intervals.
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics import equations
-from rocking.dynamics.ground import Ground, Push
+from rocking.dynamics.ground import Push, RestoringMoments
 from rocking.dynamics.resting import NOTHING, comes_to_rest
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
@@ -54,7 +54,7 @@ class Reference:
             )
         self.push = Push(segments.step, segments.horizontal * over_g, vertical * over_g)
         self.rocker, self.settings, self.key, self.to_the_ground = rocker, settings, key, to_the_ground
-        self.ground = Ground(rocker, self.push, linear=settings.linear)
+        self.ground = RestoringMoments(rocker, self.push, linear=settings.linear)
         self.count = segments.count
         self.rotations = np.zeros(self.count + 1)
         self.velocities = np.zeros(self.count + 1)

@@ -21,8 +21,8 @@ from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 
 if TYPE_CHECKING:
-    from rocking.dynamics.contact import Contact
-    from rocking.dynamics.intervals import Intervals
+    from rocking.dynamics.contact import GroundForces
+    from rocking.dynamics.intervals import DenseOutput
     from rocking.dynamics.ledger import ResponseEnergy
     from rocking.dynamics.planar import PlanarResponse
     from rocking.tables import Table
@@ -276,11 +276,11 @@ class Response(Exportable):
         return np.append(self.time, fall) if fall > last + _ROUNDING * self.segments.step else self.time
 
     @cached_property
-    def intervals(self) -> "Intervals":
+    def intervals(self) -> "DenseOutput":
         """The response between its samples and events."""
-        from rocking.dynamics.intervals import Intervals
+        from rocking.dynamics.intervals import DenseOutput
 
-        return Intervals.of(self.trajectory, self.segments, self.rocker, self.settings, self.scale)
+        return DenseOutput.of(self.trajectory, self.segments, self.rocker, self.settings, self.scale)
 
     @cached_property
     def energy(self) -> "ResponseEnergy":
@@ -290,7 +290,7 @@ class Response(Exportable):
         return energy_of(self.intervals, self._covered, self.body.mass, self.settings)
 
     @cached_property
-    def contact(self) -> "Contact":
+    def contact(self) -> "GroundForces":
         """Forces of the ground, friction demand and loss of contact."""
         from rocking.dynamics.contact import contact_of
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
-from rocking.plots.animation_scene import Scene, Shape, scene_of
+from rocking.plots.animation_scene import DrawnShape, Scene, scene_of
 from rocking.plots.response_curves import motion_curves, over_slenderness
 from rocking.plots.style import GREY, INK, PALE, in_journal_style
 
@@ -121,7 +121,7 @@ def _ground(view: "Axes", scene: Scene, moved: "Affine2D", wide: float) -> None:
     )
 
 
-def _body(view: "Axes", shape: Shape, turned: "Affine2D") -> None:
+def _body(view: "Axes", shape: DrawnShape, turned: "Affine2D") -> None:
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Outline
 

@@ -21,7 +21,7 @@ _LEVEL = 1e-9
 
 
 @dataclass(frozen=True)
-class Shape:
+class DrawnShape:
     """A body with its ground at y = 0 and the middle between its feet at x = 0."""
 
     # density over the largest one, and rings: the outline and its holes [m]
@@ -32,7 +32,7 @@ class Shape:
     centre: tuple[float, float]  # centre of mass [m]
 
     @classmethod
-    def of(cls, body: Body) -> "Shape":
+    def of(cls, body: Body) -> "DrawnShape":
         """Return the shape of a body.
 
         Returns moved to the middle between its feet.
@@ -87,7 +87,7 @@ class Shape:
 class Scene:
     """A response at equal steps of time, and the window through which it is seen."""
 
-    shape: Shape  # the body
+    shape: DrawnShape  # the body
     time: FloatArray = field(repr=False)  # Equal steps from zero to the end of what is shown [s]
     rotation: FloatArray = field(repr=False)  # rotation, velocity: theta [rad] and theta' [rad/s]
     velocity: FloatArray = field(repr=False)
@@ -104,7 +104,7 @@ def scene_of(response: Response, step: float | None = None) -> Scene:
     step: step of time; if not given, 120 samples a second or fewer [s]. Returns from its start to where nothing happens
     any more, or to where the body lies.
     """
-    shape = Shape.of(response.body)
+    shape = DrawnShape.of(response.body)
     fall = fall_of(response, shape.lying)
     end = scene_until(response, fall)
     if step is None:
@@ -128,11 +128,13 @@ def scene_until(response: Response, fall: Fall | None = None) -> float:
 
     Returns time [s].
     """
-    fall = fall_of(response, Shape.of(response.body).lying) if fall is None else fall
+    fall = fall_of(response, DrawnShape.of(response.body).lying) if fall is None else fall
     return float(fall.time[-1]) if fall.time.size else shown_until(response)
 
 
-def _window(shape: Shape, rotation: FloatArray, ground: FloatArray) -> tuple[bool, tuple[float, float, float, float]]:
+def _window(
+    shape: DrawnShape, rotation: FloatArray, ground: FloatArray
+) -> tuple[bool, tuple[float, float, float, float]]:
     corners = shape.corners
     poses = np.unique(np.linspace(0, rotation.size - 1, _POSES).astype(np.int64))
     # with the two ends of the swing, which fall between the poses of a long history

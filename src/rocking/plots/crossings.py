@@ -29,7 +29,7 @@ _MOST_POINTS = 100_000
 
 
 @dataclass(frozen=True)
-class _Run:
+class _AmplitudeRun:
     """A stretch of amplitudes that overturn in one class, with the modes of its samples [m/s2, -]."""
 
     low: float
@@ -139,7 +139,7 @@ def _shade(axes: "Axes", found: Crossings, place: FloatArray, modes: IntArray) -
     from matplotlib.patches import Patch
 
     last = _shown_until(found)
-    widest: dict[str, _Run] = {}
+    widest: dict[str, _AmplitudeRun] = {}
     runs = [run for low, high in found.overturning_intervals for run in _runs(place, modes, low, min(high, last))]
     for run in sorted(runs, key=lambda run: run.high / run.low):
         # above the dashed line of alpha, which says nothing of what overturns
@@ -154,7 +154,7 @@ def _shade(axes: "Axes", found: Crossings, place: FloatArray, modes: IntArray) -
         axes.figure.legend(handles=small, loc="outside lower center", ncols=2, fontsize=6.5, handlelength=1.2)
 
 
-def _runs(place: FloatArray, modes: IntArray, low: float, high: float) -> list[_Run]:
+def _runs(place: FloatArray, modes: IntArray, low: float, high: float) -> list[_AmplitudeRun]:
     """Return the stretches of one class within an interval; between two samples the change is drawn halfway."""
     inside = (place > low) & (place < high) & (modes >= 0)
     if not inside.any():
@@ -165,10 +165,10 @@ def _runs(place: FloatArray, modes: IntArray, low: float, high: float) -> list[_
     ends = [low, *(0.5 * (place[changes] + place[changes + 1])).tolist(), high]
     parts = np.split(modes, changes + 1)
     firsts = kinds[np.append(0, changes + 1)].tolist()
-    return [_Run(ends[k], ends[k + 1], kind, parts[k]) for k, kind in enumerate(firsts)]
+    return [_AmplitudeRun(ends[k], ends[k + 1], kind, parts[k]) for k, kind in enumerate(firsts)]
 
 
-def _name(axes: "Axes", run: _Run) -> None:
+def _name(axes: "Axes", run: _AmplitudeRun) -> None:
     axes.text(
         np.sqrt(run.low * run.high) / g, 0.5, run.words, transform=axes.get_xaxis_transform(), rotation=90, ha="center",
         va="center", fontsize=7, color="white" if run.kind == FIRST else INK, zorder=5,

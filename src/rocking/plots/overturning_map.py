@@ -8,7 +8,7 @@ import numpy as np
 from rocking.conventions import BoolArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.plots.contour_labels import labelled_contours
-from rocking.plots.region_labels import Place, place_in, rastered
+from rocking.plots.region_labels import LabelPlace, place_in, rastered
 from rocking.plots.study_words import axis_label, geometric, note, plain, plain_log
 from rocking.plots.style import INK, SINGLE, in_journal_style, new_figure
 
@@ -171,7 +171,7 @@ def _labels(axes: "Axes", found: "xr.Dataset", kinds: IntArray, bands: IntArray)
         axes.figure.legend(handles=small, loc="outside lower center", ncols=2, fontsize=6.5, handlelength=1.2)
 
 
-def _place(regions: Sequence[BoolArray], kind: int) -> Place | None:
+def _place(regions: Sequence[BoolArray], kind: int) -> LabelPlace | None:
     """Return where the words of a class fit best, in one line if they can."""
     for words in (CLASSES[kind][0], _SHORT.get(kind, "")):
         found = [place for region in regions if words and (place := place_in(region, words, _PANEL)) is not None]

@@ -11,7 +11,7 @@ FINE = (240, 300)
 
 
 @dataclass(frozen=True)
-class Place:
+class LabelPlace:
     """Where some words fit."""
 
     x: float  # x, y: centre, in shares of the panel [-]
@@ -37,7 +37,7 @@ def _nearest(values: FloatArray, count: int) -> IntArray:
     return np.asarray(np.searchsorted(edges, pixels), dtype=np.int64)
 
 
-def place_in(region: BoolArray, words: str, panel: tuple[float, float], size: float = 7.0) -> Place | None:
+def place_in(region: BoolArray, words: str, panel: tuple[float, float], size: float = 7.0) -> LabelPlace | None:
     """Return where words fit into a region, as far from its border as they can.
 
     panel: width and height of the panel [in]; size: size of the letters [pt].
@@ -55,7 +55,7 @@ def place_in(region: BoolArray, words: str, panel: tuple[float, float], size: fl
         inside = ndimage.minimum_filter(region, size=(rows, columns), mode="constant", cval=0)
         if inside.any():
             row, column = np.unravel_index(np.argmax(np.where(inside, away, -1.0)), FINE)
-            return Place((float(column) + 0.5) / FINE[1], (float(row) + 0.5) / FINE[0], told)
+            return LabelPlace((float(column) + 0.5) / FINE[1], (float(row) + 0.5) / FINE[0], told)
     return None
 
 

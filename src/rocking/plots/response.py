@@ -9,7 +9,7 @@ from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
-from rocking.plots.response_curves import Curves, ground_curve, motion_curves, over_slenderness, shown_until
+from rocking.plots.response_curves import MotionCurves, ground_curve, motion_curves, over_slenderness, shown_until
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def _ground(axes: "Axes", response: Response) -> None:
     axes.set_ylabel("ground\nacceleration\n[m/s$^2$]")
 
 
-def _rotation(axes: "Axes", response: Response, curves: Curves) -> None:
+def _rotation(axes: "Axes", response: Response, curves: MotionCurves) -> None:
     values = over_slenderness(response, curves.rotation)
     axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     axes.plot(curves.time, values, color=_ROTATION, linewidth=1.0, zorder=3)
@@ -124,7 +124,7 @@ def _reach(values: FloatArray, falls: bool) -> tuple[float, float]:
     return 1.15 * low, 1.15 * high
 
 
-def _velocity(axes: "Axes", response: Response, curves: Curves) -> None:
+def _velocity(axes: "Axes", response: Response, curves: MotionCurves) -> None:
     axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     axes.plot(curves.time, curves.velocity, color=_VELOCITY, linewidth=0.9)
     _limits(axes, response, curves.time, [curves.velocity])

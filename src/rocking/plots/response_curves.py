@@ -16,7 +16,7 @@ _REST = 0.06
 
 
 @dataclass(frozen=True, eq=False)
-class Curves:
+class MotionCurves:
     """Rotation and velocity at many instants, with both values where the velocity jumps."""
 
     time: FloatArray  # instants, never decreasing; an impact is there twice [s]
@@ -24,12 +24,12 @@ class Curves:
     velocity: FloatArray  # theta' [rad/s]
 
 
-def motion_curves(response: Response) -> Curves:
+def motion_curves(response: Response) -> MotionCurves:
     """Return rotation and velocity of a response with every jump upright."""
     intervals = response.intervals
     rotation, velocity = intervals.inside(_INSIDE)
     time = intervals.start[:, None] + _INSIDE * intervals.length[:, None]
-    return Curves(time.ravel(), rotation.ravel(), velocity.ravel())
+    return MotionCurves(time.ravel(), rotation.ravel(), velocity.ravel())
 
 
 def velocity_at(response: Response, time: Any) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial.response import SpatialResponse
-from rocking.outcome import Contact, Outcome
+from rocking.outcome import ContactMode, Outcome
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
 
 if TYPE_CHECKING:
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _COLOURS = {
-    Contact.REST: PALE,
-    Contact.EDGE: "#0072B2",
-    Contact.VERTEX: "#E69F00",
-    Contact.ROLLING: "#009E73",
+    ContactMode.REST: PALE,
+    ContactMode.EDGE: "#0072B2",
+    ContactMode.VERTEX: "#E69F00",
+    ContactMode.ROLLING: "#009E73",
 }
 _IMPACT, _TOP = "#D55E00", "#0072B2"
 _WIDTH = 88
@@ -122,7 +122,7 @@ def _direction(axes: "Axes", response: SpatialResponse) -> None:
 
 
 def _contact(axes: "Axes", response: SpatialResponse) -> None:
-    seen: set[Contact] = set()
+    seen: set[ContactMode] = set()
     for start, end, contact, _ in response.intervals:
         last = min(end, float(response.time[-1]))
         if last <= start:

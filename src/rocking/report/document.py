@@ -25,7 +25,7 @@ class Paragraph:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class ReportTable:
     """A table with a caption."""
 
     caption: str  # what it shows
@@ -44,11 +44,11 @@ class Picture:
     wide: bool = True  # whether it needs the full width
 
 
-Block = Paragraph | Table | Picture
+Block = Paragraph | ReportTable | Picture
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
+class ReportSection:
     """A section of the report."""
 
     title: str
@@ -76,14 +76,14 @@ class Document:
     title: str
     subtitle: str
     look_at: Sequence[tuple[str, str]]
-    sections: Sequence[Section]
+    sections: Sequence[ReportSection]
     provenance: dict[str, str] = field(default_factory=dict)
 
     @property
-    def tables(self) -> list[Table]:
+    def tables(self) -> list[ReportTable]:
         """Every table with a file name, in order."""
         blocks = (block for section in self.sections for block in section.blocks)
-        return [block for block in blocks if isinstance(block, Table) and block.stem]
+        return [block for block in blocks if isinstance(block, ReportTable) and block.stem]
 
 
 def cell(text: object, mark: str = "plain") -> Cell:

@@ -2,7 +2,7 @@
 
 from rocking.evidence.agreement import concordance, correlation, relative_error, zone
 from rocking.evidence.measurements import datasets
-from rocking.report.document import Cell, Paragraph, Table, cell
+from rocking.report.document import Cell, Paragraph, ReportTable, cell
 from rocking.restitution import Housner, Ked
 
 PRINTED_CORRELATION = {"table2": "0.946", "S": "0.998", "M": "0.996", "L": "0.998"}
@@ -12,7 +12,7 @@ _TITLES = {"table2": "Table 2", "S": "Table 3, S", "M": "Table 3, M", "L": "Tabl
 _MODELS = (("Housner", Housner()), ("KED", Ked()))
 
 
-def error_blocks() -> list[Paragraph | Table]:
+def error_blocks() -> list[Paragraph | ReportTable]:
     """Return correlations, concordances and zones as report blocks.
 
     Returns one table of measures, one of relative errors.
@@ -22,13 +22,13 @@ def error_blocks() -> list[Paragraph | Table]:
             "Relative errors are |r_e - r| / r_e, as in the paper; zone I is below 1 %, II from 1 to 5 %, III above. "
             "The true r_H are used. Pearson's correlation hardly tells the models apart; Lin's concordance does."
         ),
-        Table(
+        ReportTable(
             "Correlation, concordance and zones",
             ["data", "model", "correlation printed", "correlation", "Lin", "zone I", "zone II", "zone III", "largest"],
             [_measures(name, word, model) for name in _TITLES for word, model in _MODELS],
             stem="correlations_and_zones",
         ),
-        Table(
+        ReportTable(
             "Relative errors and zones of Figures 6 and 7",
             ["data", "block or interface", "h/b", "Housner", "zone", "KED", "zone"],
             [row for name in _TITLES for row in _rows(name)],

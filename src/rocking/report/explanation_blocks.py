@@ -1,10 +1,10 @@
 """The section of the report that says what explains the measurements."""
 
 from rocking.evidence.explanation import Explanation, Ranked
-from rocking.report.document import Cell, Paragraph, Picture, Table, cell
+from rocking.report.document import Cell, Paragraph, Picture, ReportTable, cell
 
 
-def explanation_blocks(found: Explanation) -> list[Paragraph | Table | Picture]:
+def explanation_blocks(found: Explanation) -> list[Paragraph | ReportTable | Picture]:
     """Return the section."""
     return [
         *(Paragraph(sentence) for sentence in found.verdict),
@@ -15,7 +15,7 @@ def explanation_blocks(found: Explanation) -> list[Paragraph | Table | Picture]:
             "left-out score is the sum over the measurements of the logarithm of the probability of each by a fit that "
             "has not seen it."
         ),
-        Table(
+        ReportTable(
             "Explanations of the measurements by the contact bed",
             [
                 "explanation",

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rocking.errors import MissingExtraError, RockingError
-from rocking.report.document import Document, Table
+from rocking.report.document import Document, ReportTable
 from rocking.report.html import render_html
 from rocking.report.paper_document import paper_document
 from rocking.report.pdf import render_pdf
@@ -114,7 +114,7 @@ def _draw(result: Reproduction, folder: Path, step: Step) -> None:
         save(draw(result.league, result.calibration), folder, stem)
 
 
-def _write_table(table: Table, path: Path) -> None:
+def _write_table(table: ReportTable, path: Path) -> None:
     with path.open("w", newline="", encoding="utf-8-sig") as file:
         writer = csv.writer(file)
         writer.writerow(table.header)

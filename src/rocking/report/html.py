@@ -19,7 +19,7 @@ def render_html(content: Document, pictures: Path) -> str:
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.tests["paragraph"] = lambda block: isinstance(block, document.Paragraph)
-    environment.tests["table"] = lambda block: isinstance(block, document.Table)
+    environment.tests["table"] = lambda block: isinstance(block, document.ReportTable)
     return environment.from_string(template).render(document=content, svg=lambda stem: _inline(pictures, stem))
 
 

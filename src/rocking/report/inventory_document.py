@@ -1,7 +1,7 @@
 """The report of an inventory: the ranked table with its lights, and what they do and do not say."""
 
 from rocking.conventions import g
-from rocking.report.document import Cell, Document, Paragraph, Section, Table, cell
+from rocking.report.document import Cell, Document, Paragraph, ReportSection, ReportTable, cell
 from rocking.report.provenance import made_with
 from rocking.studies.inventory.lights import Light, percent, share_interval
 from rocking.studies.inventory.verdict import Assessment, DirectionResult, Verdict
@@ -58,11 +58,11 @@ def _look_at(assessment: Assessment) -> list[tuple[str, str]]:
     return [*lines, ("Not covered", SLIDING)]
 
 
-def _ranking(assessment: Assessment) -> Section:
+def _ranking(assessment: Assessment) -> ReportSection:
     rows = [_ranked(rank, verdict, assessment) for rank, verdict in enumerate(assessment.verdicts, start=1)]
     header = ["", "light", "object", "what it does", "what to do"]
-    table = Table("The worst first", header, rows, stem="ranking")
-    return Section("The objects", [table] if rows else [Paragraph("No row could be assessed.", mark="bad")])
+    table = ReportTable("The worst first", header, rows, stem="ranking")
+    return ReportSection("The objects", [table] if rows else [Paragraph("No row could be assessed.", mark="bad")])
 
 
 def _ranked(rank: int, verdict: Verdict, assessment: Assessment) -> list[Cell]:
@@ -73,19 +73,19 @@ def _ranked(rank: int, verdict: Verdict, assessment: Assessment) -> list[Cell]:
     return [cell(rank), light, cell(name), cell(sentence(verdict, assessment)), cell(what_to_do)]
 
 
-def _not_assessed(assessment: Assessment) -> Section:
+def _not_assessed(assessment: Assessment) -> ReportSection:
     rows = [[cell(each.row or ""), cell(each.name), cell(each.reason)] for each in assessment.not_assessed]
     count = len(rows)
     lead = Paragraph(
         f"{count} row{'' if count == 1 else 's'} of the list could not be assessed; the others are not affected.",
         mark="bad",
     )
-    return Section(
-        "Not assessed", [lead, Table("Rows and reasons", ["line", "object", "why"], rows, stem="not_assessed")]
+    return ReportSection(
+        "Not assessed", [lead, ReportTable("Rows and reasons", ["line", "object", "why"], rows, stem="not_assessed")]
     )
 
 
-def _numbers(assessment: Assessment) -> Section:
+def _numbers(assessment: Assessment) -> ReportSection:
     header = [
         "object", "along", "light", "stays still up to [g]", "lifted [%]", "overturned", "95 % interval [%]",
         "median", "84 %", f"light by {assessment.comparison}",
@@ -100,8 +100,8 @@ def _numbers(assessment: Assessment) -> Section:
         "rotation over the slenderness angle; beyond 1 the centre of mass has passed the foot. Interval: Clopper and "
         f"Pearson's, of the share that overturns. Impacts by {assessment.restitution}; both directions are given."
     )
-    return Section(
-        "The numbers", [Table("Every object in both directions", header, rows, note, "numbers")] if rows else []
+    return ReportSection(
+        "The numbers", [ReportTable("Every object in both directions", header, rows, note, "numbers")] if rows else []
     )
 
 
@@ -122,14 +122,14 @@ def _numbered(verdict: Verdict, one: DirectionResult, two: DirectionResult, asse
     ]
 
 
-def _meaning(assessment: Assessment) -> Section:
+def _meaning(assessment: Assessment) -> ReportSection:
     sentences = assessment.thresholds.sentences().items()
     lights = [Paragraph(words, f"{light_words(light)}.", MARKS[light]) for light, words in sentences]
     end = Paragraph("These thresholds are a convention of this report, not of a code of practice.")
-    return Section("What the lights mean", [*lights, end])
+    return ReportSection("What the lights mean", [*lights, end])
 
 
-def _shaking(assessment: Assessment) -> Section:
+def _shaking(assessment: Assessment) -> ReportSection:
     hazard = assessment.hazard
     low, high = hazard.velocity()
     blocks = [
@@ -147,8 +147,8 @@ def _shaking(assessment: Assessment) -> Section:
         blocks.insert(1, Paragraph(f"{origin} The same family, count and seed give the same motions."))
     if assessment.ignored:
         blocks.append(Paragraph(", ".join(assessment.ignored), "Columns of the list that were not read:"))
-    return Section("The shaking", blocks)
+    return ReportSection("The shaking", blocks)
 
 
-def _limits() -> Section:
-    return Section("What is not covered", [Paragraph(each) for each in LIMITS])
+def _limits() -> ReportSection:
+    return ReportSection("What is not covered", [Paragraph(each) for each in LIMITS])

@@ -7,7 +7,7 @@ from rocking.evidence._league import LeagueRow
 from rocking.evidence.explanation import explanation
 from rocking.evidence.measurements import BANDS, GROUPS
 from rocking.evidence.tables import Entry, TableRow
-from rocking.report.document import Cell, Document, Paragraph, Picture, Section, Table, cell
+from rocking.report.document import Cell, Document, Paragraph, Picture, ReportSection, ReportTable, cell
 from rocking.report.error_tables import error_blocks
 from rocking.report.explanation_blocks import explanation_blocks
 from rocking.report.provenance import made_with
@@ -52,15 +52,15 @@ def paper_document(result: Reproduction) -> Document:
         "doi:10.3390/buildings14072119, and all models against its 39 measurements",
         look_at(result),
         [
-            Section("Verdict", [Paragraph(sentence) for sentence in result.verdict]),
-            Section("Claims", _claims(result.claims)),
-            Section("League table", _league(result)),
-            Section("What explains the measurements", explanation_blocks(explanation())),
-            Section("Calibrated default", _calibration(result)),
-            Section("Tables", [_paper_table(title, rows) for title, rows in result.tables.items()]),
-            Section("Figures", [Paragraph(NO_FIGURE_4), *(Picture(*figure) for figure in FIGURES)]),
-            Section("Correlations and error zones", error_blocks()),
-            Section("Errata", _errata(result)),
+            ReportSection("Verdict", [Paragraph(sentence) for sentence in result.verdict]),
+            ReportSection("Claims", _claims(result.claims)),
+            ReportSection("League table", _league(result)),
+            ReportSection("What explains the measurements", explanation_blocks(explanation())),
+            ReportSection("Calibrated default", _calibration(result)),
+            ReportSection("Tables", [_paper_table(title, rows) for title, rows in result.tables.items()]),
+            ReportSection("Figures", [Paragraph(NO_FIGURE_4), *(Picture(*figure) for figure in FIGURES)]),
+            ReportSection("Correlations and error zones", error_blocks()),
+            ReportSection("Errata", _errata(result)),
         ],
         made_with(),
     )
@@ -89,7 +89,7 @@ def look_at(result: Reproduction) -> list[tuple[str, str]]:
     ]
 
 
-def _claims(found: Sequence[Claim]) -> list[Table]:
+def _claims(found: Sequence[Claim]) -> list[ReportTable]:
     rows = [
         [
             cell(claim.section),
@@ -100,10 +100,14 @@ def _claims(found: Sequence[Claim]) -> list[Table]:
         ]
         for claim in found
     ]
-    return [Table("Claims of sections 3 and 4", ["section", "claim", "verdict", "number", "test"], rows, stem="claims")]
+    return [
+        ReportTable(
+            "Claims of sections 3 and 4", ["section", "claim", "verdict", "number", "test"], rows, stem="claims"
+        )
+    ]
 
 
-def _errata(result: Reproduction) -> list[Paragraph | Table]:
+def _errata(result: Reproduction) -> list[Paragraph | ReportTable]:
     rows = [
         [
             cell(each.name),
@@ -115,11 +119,11 @@ def _errata(result: Reproduction) -> list[Paragraph | Table]:
     ]
     return [
         Paragraph("Each was found by computation on the printed tables; nothing is corrected in the data."),
-        Table("Errata", ["where", "what", "numbers", ""], rows, stem="errata"),
+        ReportTable("Errata", ["where", "what", "numbers", ""], rows, stem="errata"),
     ]
 
 
-def _paper_table(title: str, rows: Sequence[TableRow]) -> Table:
+def _paper_table(title: str, rows: Sequence[TableRow]) -> ReportTable:
     keys = list(rows[0].entries)
     header = ["block or interface", "h/b", "r_e"]
     for key in keys:
@@ -133,7 +137,7 @@ def _paper_table(title: str, rows: Sequence[TableRow]) -> Table:
     differing = sum(not entry.agrees for row in rows for entry in row.entries.values())
     total = len(rows) * len(keys)
     note = f"{total - differing} of {total} printed values agree in all their digits; the others are marked."
-    return Table(f"{title}, printed beside recomputed", header, cells, note, title.lower().replace(" ", "_"))
+    return ReportTable(f"{title}, printed beside recomputed", header, cells, note, title.lower().replace(" ", "_"))
 
 
 def _pair(entry: Entry) -> list[Cell]:
@@ -146,7 +150,7 @@ def _pair(entry: Entry) -> list[Cell]:
     ]
 
 
-def _league(result: Reproduction) -> list[Paragraph | Table | Picture]:
+def _league(result: Reproduction) -> list[Paragraph | ReportTable | Picture]:
     rows = result.league
     return [
         Paragraph(
@@ -154,7 +158,7 @@ def _league(result: Reproduction) -> list[Paragraph | Table | Picture]:
             "Lin's concordance; leave-one-out (LOO) and leave-one-data-set-out (LOG) RMSE; BIC with the rounding in "
             "the likelihood and a scatter that grows with the loss (lower is better)."
         ),
-        Table(
+        ReportTable(
             "All models, all 39 measurements",
             [
                 "model",
@@ -173,7 +177,7 @@ def _league(result: Reproduction) -> list[Paragraph | Table | Picture]:
             "Bootstrap: 4000 resamples of specimens within their data sets, fixed seed; fitted values are kept.",
             "league",
         ),
-        Table(
+        ReportTable(
             "RMSE of r by data set and slenderness band",
             [
                 "model",
@@ -209,7 +213,7 @@ def _split_row(row: LeagueRow) -> list[Cell]:
     return [cell(row.name), *(cell(f"{value:.4f}") for value in values), cell(f"{low:+.4f} to {high:+.4f}", mark)]
 
 
-def _calibration(result: Reproduction) -> list[Paragraph | Table | Picture]:
+def _calibration(result: Reproduction) -> list[Paragraph | ReportTable | Picture]:
     facts = result.calibration.summary
     words = {
         "eta": "interface factor",
@@ -227,6 +231,6 @@ def _calibration(result: Reproduction) -> list[Paragraph | Table | Picture]:
             "interval is the posterior predictive one for a single measured body, with a scatter s (1 - r)^gamma. "
             f"{result.coverage.sentence}"
         ),
-        Table("Posterior", ["parameter", "meaning", "mean", "sd", "2.5 %", "97.5 %"], rows, stem="calibration"),
+        ReportTable("Posterior", ["parameter", "meaning", "mean", "sd", "2.5 %", "97.5 %"], rows, stem="calibration"),
         Picture("calibration", "Posterior of eta and k, and the predictive band with all measurements."),
     ]

@@ -5,7 +5,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from rocking.errors import MissingExtraError, how_to_install
-from rocking.report.document import Document, Paragraph, Picture, Section, Table
+from rocking.report.document import Document, Paragraph, Picture, ReportSection, ReportTable
 
 
 def render_pdf(content: Document, pictures: Path, path: Path) -> None:
@@ -34,11 +34,11 @@ def _plain(content: Document) -> dict[str, object]:
     }
 
 
-def _section(section: Section) -> dict[str, object]:
+def _section(section: ReportSection) -> dict[str, object]:
     return {"title": section.title, "blocks": [_block(block) for block in section.blocks]}
 
 
-def _block(block: Paragraph | Table | Picture) -> dict[str, object]:
+def _block(block: Paragraph | ReportTable | Picture) -> dict[str, object]:
     if isinstance(block, Paragraph):
         return {"kind": "paragraph", "lead": block.lead, "text": block.text, "mark": block.mark}
     if isinstance(block, Picture):

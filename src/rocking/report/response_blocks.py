@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from rocking.report.document import Cell, Paragraph, Table
+from rocking.report.document import Cell, Paragraph, ReportTable
 
 _NUMBER = frozenset("+-\N{MINUS SIGN}0123456789")
 
@@ -23,7 +23,7 @@ class Pair:
     """A picture, and a table to its right."""
 
     left: Image  # the picture
-    right: Table
+    right: ReportTable
     share: int = 40  # share of the picture in the width [%]
 
 
@@ -35,11 +35,11 @@ class Listing:
     lead: str = ""  # words before it
 
 
-Block = Paragraph | Table | Image | Pair | Listing
+Block = Paragraph | ReportTable | Image | Pair | Listing
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class PagePart:
     """A section."""
 
     title: str
@@ -53,7 +53,7 @@ class Pages:
     title: str  # title, subtitle: title, and a line below it
     subtitle: str
     verdict: Sequence[Paragraph]  # what matters most
-    parts: Sequence[Part]  # the content
+    parts: Sequence[PagePart]  # the content
     footer: str = field(default="")  # small print of every page
 
     def plain(self) -> dict[str, Any]:

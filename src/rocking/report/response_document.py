@@ -9,12 +9,12 @@ from rocking.conventions import FEET, g
 from rocking.dynamics.response import Motion, Response
 from rocking.motions.intensity import Measure
 from rocking.outcome import Outcome
-from rocking.report.document import Paragraph, Table, cell
+from rocking.report.document import Paragraph, ReportTable, cell
 from rocking.report.facts.body import side_facts
 from rocking.report.facts.impact import ImpactAnswer
-from rocking.report.facts.verdict import Verdict
+from rocking.report.facts.verdict import ModelAgreement
 from rocking.report.facts.words import restitution_words
-from rocking.report.response_blocks import Block, Image, Listing, Pages, Pair, Part
+from rocking.report.response_blocks import Block, Image, Listing, PagePart, Pages, Pair
 from rocking.report.response_tables import (
     coefficients_table,
     impacts_table,
@@ -28,7 +28,7 @@ _LONGEST_LISTING = 12_000
 
 
 @dataclass(frozen=True)
-class Asked:
+class ReportSubject:
     """What a report is about."""
 
     name: str  # what the user calls the body; perhaps empty
@@ -40,7 +40,7 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Found:
+class ReportResults:
     """What was computed."""
 
     impact: ImpactAnswer  # body and coefficients
@@ -55,24 +55,24 @@ PICTURES = ("body", "coefficients", "motion", "response")
 """Stems of the pictures of a report; ``motion`` is left out for free rocking."""
 
 
-def response_pages(asked: Asked, found: Found) -> Pages:
+def response_pages(asked: ReportSubject, found: ReportResults) -> Pages:
     """Return the report."""
     body = found.impact.body
     title = asked.name or _KINDS.get(type(body).__name__, "A rocking body")
     parts = [
-        Part(
+        PagePart(
             "The body", [Pair(Image("body", "The body on its feet O and O', with its centre of mass C"), _body(found))]
         ),
-        Part("What an impact costs", _impact(found)),
-        Part("The ground", _ground(found)),
-        Part("The response", _response(found)),
-        Part("To do it again", _again(asked, next(iter(found.responses.values())))),
+        PagePart("What an impact costs", _impact(found)),
+        PagePart("The ground", _ground(found)),
+        PagePart("The response", _response(found)),
+        PagePart("To do it again", _again(asked, next(iter(found.responses.values())))),
     ]
     about = f"{asked.software}, inputs {asked.fingerprint[:16]}"
     return Pages(title, _subtitle(asked, found), _verdict(found), parts, about)
 
 
-def _subtitle(asked: Asked, found: Found) -> str:
+def _subtitle(asked: ReportSubject, found: ReportResults) -> str:
     first = next(iter(found.responses.values()))
     ground = "let go, the ground at rest" if found.motion is None else f"under {found.motion.name}"
     if first.scale != 1.0:
@@ -80,17 +80,17 @@ def _subtitle(asked: Asked, found: Found) -> str:
     return ground[:1].upper() + ground[1:] + (f". {asked.date}" if asked.date else "")
 
 
-def _verdict(found: Found) -> list[Paragraph]:
+def _verdict(found: ReportResults) -> list[Paragraph]:
     label, first = next(iter(found.responses.items()))
     words = first.summary[:1].upper() + first.summary[1:] + "."
     made = [Paragraph(words, f"With {restitution_words(label)}:", _MARKS.get(first.outcome, "plain"))]
-    verdict = Verdict.of({restitution_words(label): one for label, one in found.responses.items()})
+    verdict = ModelAgreement.of({restitution_words(label): one for label, one in found.responses.items()})
     if len(found.responses) > 1:
         made.append(Paragraph(verdict.sentence, "", "fair" if verdict.decides else "plain"))
     return made
 
 
-def _body(found: Found) -> Table:
+def _body(found: ReportResults) -> ReportTable:
     body, gravity = found.impact.body, found.impact.gravity
     x, y = body.centre
     rows = [
@@ -102,7 +102,7 @@ def _body(found: Found) -> Table:
         *_sides(body, gravity),
         ("gravity", f"{gravity:.6g} m/s\N{SUPERSCRIPT TWO}"),
     ]
-    return Table("", ["quantity", "value"], [[cell(name), cell(value)] for name, value in rows])
+    return ReportTable("", ["quantity", "value"], [[cell(name), cell(value)] for name, value in rows])
 
 
 def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:
@@ -121,7 +121,7 @@ def _sides(body: Body, gravity: float) -> list[tuple[str, str]]:
     return rows
 
 
-def _impact(found: Found) -> list[Block]:
+def _impact(found: ReportResults) -> list[Block]:
     tables = [coefficients_table(found.impact, foot) for foot in found.impact.tables]
     rows = [row for table in found.impact.tables.values() for row in table]
     said = dict.fromkeys(f"{restitution_words(row.name)}: {warning}" for row in rows for warning in row.warnings)
@@ -129,14 +129,14 @@ def _impact(found: Found) -> list[Block]:
     return [picture, *tables, *(Paragraph(words, "", "fair") for words in said)]
 
 
-def _ground(found: Found) -> list[Block]:
+def _ground(found: ReportResults) -> list[Block]:
     if found.motion is None:
         return [Paragraph("Free rocking: the body is let go, and the ground stays at rest.")]
     caption = "Acceleration, velocity and displacement of the ground, and the response spectrum for 5 % damping"
     return [Image("motion", caption, 74), measures_table(found.measures)]
 
 
-def _response(found: Found) -> list[Block]:
+def _response(found: ReportResults) -> list[Block]:
     several = len(found.responses) > 1
     caption = "The models over one another" if several else "Rotation, velocity, energy and the friction that is taken"
     first_label, first = next(iter(found.responses.items()))
@@ -149,7 +149,7 @@ def _response(found: Found) -> list[Block]:
     return [*blocks, impacts_table(first_label, first)] if first.impacts.size else blocks
 
 
-def _again(asked: Asked, first: Response) -> list[Block]:
+def _again(asked: ReportSubject, first: Response) -> list[Block]:
     toml = asked.toml
     if len(toml) > _LONGEST_LISTING:
         toml = toml[:_LONGEST_LISTING] + "\n# ... cut off here: the file itself has all of it"

@@ -8,7 +8,7 @@ from rocking.dynamics.response import Response
 from rocking.evidence._coefficient_table import CALIBRATED, CoefficientRow
 from rocking.motions.intensity import Measure
 from rocking.outcome import Outcome
-from rocking.report.document import Cell, Table, cell
+from rocking.report.document import Cell, ReportTable, cell
 from rocking.report.facts.impact import ImpactAnswer
 from rocking.report.facts.response import outcome_facts
 from rocking.report.facts.words import restitution_words
@@ -20,7 +20,7 @@ _MARKS = {Outcome.OVERTURNED: "bad", Outcome.ROCKED: "good", Outcome.NO_UPLIFT: 
 _SHORT = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Outcome.NO_UPLIFT: "is never lifted"}
 
 
-def coefficients_table(answer: ImpactAnswer, foot: Foot) -> Table:
+def coefficients_table(answer: ImpactAnswer, foot: Foot) -> ReportTable:
     """Return the coefficients of a body under every model."""
     header = ["model", "r [-]", "95 % interval", "impulse k [-]", "energy lost", "friction needed [-]", "notes"]
     rows = [_coefficient(row) for row in answer.tables[foot]]
@@ -29,16 +29,16 @@ def coefficients_table(answer: ImpactAnswer, foot: Foot) -> Table:
         "model's misfit to the published measurements. k: place of the impulse over half the base."
     )
     where = f", landing on the {foot} foot" if len(answer.tables) > 1 else ""
-    return Table(f"Coefficient of restitution{where}", header, rows, note)
+    return ReportTable(f"Coefficient of restitution{where}", header, rows, note)
 
 
-def measures_table(measures: Mapping[str, Measure]) -> Table:
+def measures_table(measures: Mapping[str, Measure]) -> ReportTable:
     """Return intensity measures."""
     rows = [[cell(one.name), cell(f"{one.value:.5g}"), cell(one.unit), cell(_in_g(one))] for one in measures.values()]
-    return Table("Intensity of the motion", ["measure", "value", "unit", "in g"], rows)
+    return ReportTable("Intensity of the motion", ["measure", "value", "unit", "in g"], rows)
 
 
-def outcomes_table(responses: Mapping[str, Response], friction: float) -> Table:
+def outcomes_table(responses: Mapping[str, Response], friction: float) -> ReportTable:
     """Return how the body ends under every restitution.
 
     friction: coefficient of friction between body and ground [-].
@@ -53,10 +53,10 @@ def outcomes_table(responses: Mapping[str, Response], friction: float) -> Table:
         "horizontal to vertical force while the body stands on one foot; "
         f"{friction:g} was {given_or_assumed(friction)}."
     )
-    return Table("How it ends", header, rows, note)
+    return ReportTable("How it ends", header, rows, note)
 
 
-def impacts_table(label: str, response: Response) -> Table:
+def impacts_table(label: str, response: Response) -> ReportTable:
     """Return the impacts of a response.
 
     Returns one impact a row, at most 24.
@@ -69,7 +69,7 @@ def impacts_table(label: str, response: Response) -> Table:
     ]
     rest = response.impacts.size - len(shown)
     note = f"{rest} more, smaller and smaller; the table of impacts has them all." if rest > 0 else ""
-    return Table(f"Impacts with {restitution_words(label)}", header, rows, note)
+    return ReportTable(f"Impacts with {restitution_words(label)}", header, rows, note)
 
 
 def _coefficient(row: CoefficientRow) -> list[Cell]:

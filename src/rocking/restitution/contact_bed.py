@@ -18,7 +18,7 @@ from rocking.restitution.model import InertiaModel, Restitution
 _NEARLY = 1.02  # friction this much above the need: the base sticks through the whole impact
 
 
-class Source(Enum):
+class CoefficientSource(Enum):
     """Where a coefficient of the contact bed comes from; the value is the sentence a user reads."""
 
     TABLE = "read from the table of resolved impacts, within its stated error"
@@ -29,7 +29,7 @@ class Source(Enum):
 class BedRestitution(Restitution):
     """A coefficient of restitution that says whether it was read or resolved."""
 
-    source: Source = Source.TABLE  # Table, or an impact resolved in time
+    source: CoefficientSource = CoefficientSource.TABLE  # Table, or an impact resolved in time
     stated_error: float = 0.0  # error stated for it: of the table, or of the impact's steps [-]
 
 
@@ -148,7 +148,9 @@ class ContactBedModel(InertiaModel):
         found = super().evaluate(body, onto)
         geometry = ImpactGeometry.of_body(body, onto)
         read = bool(self._read(geometry))
-        source, error = (Source.TABLE, float(self._error(geometry))) if read else (Source.RESOLVED, 1e-6)
+        source, error = (
+            (CoefficientSource.TABLE, float(self._error(geometry))) if read else (CoefficientSource.RESOLVED, 1e-6)
+        )
         return BedRestitution(found.model, found.raw, found.coefficient, found.flags, source, error)
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:

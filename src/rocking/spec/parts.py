@@ -19,7 +19,7 @@ from rocking.motions.formats.reader import read_motion
 from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
-from rocking.spec.reading import Inputs, located
+from rocking.spec.reading import InputFiles, located
 from rocking.studies.motion_set import MotionList, MotionSet
 from rocking.studies.record_set import SyntheticSet
 
@@ -34,7 +34,7 @@ _OUTSIDE = ("units", "name", "note")
 
 
 def choices_of(
-    table: "RestitutionTable", seed: int, bodies: Sequence[Body] = (), inputs: Inputs | None = None
+    table: "RestitutionTable", seed: int, bodies: Sequence[Body] = (), inputs: InputFiles | None = None
 ) -> dict[str, Any]:
     """Return the restitutions that a table describes.
 
@@ -57,14 +57,14 @@ def choices_of(
         return dict(pairs)
 
 
-def _model(word: str, inputs: Inputs | None) -> RestitutionModel:
+def _model(word: str, inputs: InputFiles | None) -> RestitutionModel:
     """Return a model by name, or one of the user's own, whose file is then an input of the job."""
     name = file_of(word) if inputs is not None else None
     return model(word) if inputs is None or name is None else model_in_file(word, inputs.file(name))
 
 
 def _drawn(
-    table: "RandomTable", seed: int, bodies: Sequence[Body], inputs: Inputs | None
+    table: "RandomTable", seed: int, bodies: Sequence[Body], inputs: InputFiles | None
 ) -> tuple[str, Any]:  # fmt: skip
     from rocking.studies.sensitivity.sampled import SampledRestitution
 
@@ -113,12 +113,12 @@ class Parts:
     motions: MotionSet
     choices: dict[str, Any]  # restitutions by label
     settings: Settings  # how to integrate
-    inputs: Inputs  # the files that were read
+    inputs: InputFiles  # the files that were read
 
     @classmethod
     def of(cls, document: "CampaignDocument", folder: Path) -> "Parts":
         """Return the parts that tables describe."""
-        inputs = Inputs(folder)
+        inputs = InputFiles(folder)
         with located("settings"):
             told = document.settings.model_dump(exclude={"engine"}, exclude_none=True)
             settings = Settings(**told)
@@ -143,7 +143,7 @@ class Parts:
         return next(iter(self.choices.values()))
 
 
-def _bodies(tables: list[dict[str, Any]], inputs: Inputs) -> list[Body]:
+def _bodies(tables: list[dict[str, Any]], inputs: InputFiles) -> list[Body]:
     many = len(tables) > 1
     made = []
     for k, table in enumerate(tables):
@@ -152,7 +152,7 @@ def _bodies(tables: list[dict[str, Any]], inputs: Inputs) -> list[Body]:
     return made
 
 
-def body_of(table: dict[str, Any], inputs: Inputs | None) -> Body:
+def body_of(table: dict[str, Any], inputs: InputFiles | None) -> Body:
     """Return the body that a table describes."""
     if "file" in table:
         return _body_in_file(table, inputs)
@@ -170,7 +170,7 @@ def body_of(table: dict[str, Any], inputs: Inputs | None) -> Body:
         raise InvalidValueError(str(error).removeprefix(f"{_INLINE}: ")) from error
 
 
-def _body_in_file(table: dict[str, Any], inputs: Inputs | None) -> Body:
+def _body_in_file(table: dict[str, Any], inputs: InputFiles | None) -> Body:
     odd = sorted(set(table) - {"file"})
     if odd:
         raise InvalidValueError(f"file stands alone, without {', '.join(odd)}")
@@ -184,7 +184,7 @@ def _body_in_file(table: dict[str, Any], inputs: Inputs | None) -> Body:
     return body_from_toml(text, name=name, folder=folder)
 
 
-def _note_outlines(text: str, folder: str, inputs: Inputs) -> None:
+def _note_outlines(text: str, folder: str, inputs: InputFiles) -> None:
     """Note the files of outlines that a body file names; what is wrong with it is said when it is read."""
     try:
         regions = tomllib.loads(text).get("section", {}).get("region", [])
@@ -213,7 +213,7 @@ def _as_toml(value: Any) -> str:
         return str(value)  # dates: the body reader refuses them by name
 
 
-def motions_of(tables: "list[MotionTable]", inputs: Inputs) -> MotionSet:
+def motions_of(tables: "list[MotionTable]", inputs: InputFiles) -> MotionSet:
     """Return the motions that tables describe.
 
     Returns A `SyntheticSet` where there is one family and nothing else; otherwise a `MotionList`.
@@ -235,7 +235,7 @@ def _all(motions: list[Motion] | SyntheticSet) -> Iterator[Motion]:
     return (motions[k] for k in range(len(motions)))
 
 
-def _some(table: "MotionTable", inputs: Inputs) -> list[Motion] | SyntheticSet:
+def _some(table: "MotionTable", inputs: InputFiles) -> list[Motion] | SyntheticSet:
     if table.synthetic is not None:
         assert table.count is not None  # the table refuses to be without
         levels = {"pga": table.pga, "pgv": table.pgv, "time_step": table.time_step}
@@ -244,7 +244,7 @@ def _some(table: "MotionTable", inputs: Inputs) -> list[Motion] | SyntheticSet:
     return made if table.scale == 1.0 else [motion.scaled(table.scale) for motion in made]
 
 
-def _records(table: "MotionTable", inputs: Inputs) -> list[Motion]:
+def _records(table: "MotionTable", inputs: InputFiles) -> list[Motion]:
     names = [name for pattern in table.records or [] for name in inputs.named(pattern)]
     twice = sorted({name for name in names if names.count(name) > 1}) if len(names) < 1000 else []
     if twice:

@@ -38,7 +38,7 @@ class InputFile:
 
 
 @dataclass
-class Inputs:
+class InputFiles:
     """The files that a job names, hashed when they are asked for."""
 
     folder: Path  # folder of the job file

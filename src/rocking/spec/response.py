@@ -16,7 +16,7 @@ from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.formats.reader import read_motion
 from rocking.motions.pulses import pulse
 from rocking.spec.parts import body_of, choices_of
-from rocking.spec.reading import Inputs, located, read_text, validated
+from rocking.spec.reading import InputFiles, located, read_text, validated
 from rocking.studies.record_set import SyntheticSet
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class ResponseJob:
 
     document: "ResponseDocument"  # its tables
     question: ResponseQuestion  # body, motion, restitutions and settings
-    inputs: Inputs  # the files that were read, with their hashes
+    inputs: InputFiles  # the files that were read, with their hashes
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> "ResponseJob":
@@ -93,7 +93,7 @@ class ResponseJob:
         from rocking.spec.document import ResponseDocument
 
         document = validated(ResponseDocument, text)
-        inputs = Inputs(Path(folder))
+        inputs = InputFiles(Path(folder))
         with located("body"):
             body = body_of(document.body, inputs)
         motion = None
@@ -142,7 +142,7 @@ def made_motion(table: "OneMotionTable") -> Motion:
     return made[member]
 
 
-def _motion(table: "OneMotionTable", inputs: Inputs) -> Motion:
+def _motion(table: "OneMotionTable", inputs: InputFiles) -> Motion:
     if table.record is None:
         return made_motion(table)
     path = inputs.file(table.record)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
         incremental,
         multiple_stripes,
     )
-    from rocking.studies.histories import Histories, Product, Table
+    from rocking.studies.histories import Histories, HistoryTable, Product
     from rocking.studies.islands import Island, Islands, safe_beyond_overturning, safe_islands
     from rocking.studies.minimum_acceleration import (
         minimum_overturning_acceleration,
@@ -43,6 +43,7 @@ __all__ = [
     "Campaign",
     "Crossings",
     "Histories",
+    "HistoryTable",
     "Island",
     "Islands",
     "LognormalFit",
@@ -55,7 +56,6 @@ __all__ = [
     "SampledRestitution",
     "Sensitivity",
     "SyntheticSet",
-    "Table",
     "axes",
     "boundary",
     "cloud",
@@ -94,7 +94,7 @@ __getattr__, __dir__ = exports(
         "SampledRestitution": "rocking.studies.sensitivity",
         "Sensitivity": "rocking.studies.sensitivity",
         "SyntheticSet": "rocking.studies.record_set",
-        "Table": "rocking.studies.histories",
+        "HistoryTable": "rocking.studies.histories",
         "axes": "rocking.studies._axes",
         "boundary": "rocking.studies._boundary",
         "cloud": "rocking.studies.fragility",

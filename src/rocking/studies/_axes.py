@@ -6,7 +6,7 @@ from typing import Any
 from rocking import checks
 from rocking.errors import InvalidValueError
 from rocking.studies.axis import Axis
-from rocking.studies.body_axes import Height, Restitution, SemiDiagonal, SlendernessAngle, SlendernessRatio, Width
+from rocking.studies.body_axes import Height, RestitutionAxis, SemiDiagonal, SlendernessAngle, SlendernessRatio, Width
 from rocking.studies.motion_axes import (
     AmplitudeRatio,
     Duration,
@@ -19,7 +19,7 @@ from rocking.studies.motion_axes import (
 
 _ALL: tuple[type[Axis], ...] = (
     FrequencyRatio, AmplitudeRatio, Scale, PeakAcceleration, PeakVelocity, Period, Duration,
-    SemiDiagonal, SlendernessRatio, SlendernessAngle, Width, Height, Restitution,
+    SemiDiagonal, SlendernessRatio, SlendernessAngle, Width, Height, RestitutionAxis,
 )  # fmt: skip
 
 

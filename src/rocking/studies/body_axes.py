@@ -67,7 +67,7 @@ class Height(_BlockAxis):
     name, unit, words, sets = "height", "m", "height of the block", "height"
 
 
-class Restitution(Axis):
+class RestitutionAxis(Axis):
     """A coefficient of restitution, the same for both sides."""
 
     name, unit, words = "restitution", "1", "coefficient of restitution, ratio of velocities"

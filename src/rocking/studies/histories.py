@@ -20,7 +20,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.studies.motion_set import MotionSet
 
-__all__ = ["Histories", "Product", "Table", "described_law", "hash_of", "part"]
+__all__ = ["Histories", "HistoryTable", "Product", "described_law", "hash_of", "part"]
 
 _ROWS_AT_ONCE = 32768
 MOTIONS_AT_ONCE = 128
@@ -225,7 +225,7 @@ def part(rows: Rows, first: int, last: int) -> Rows:
 
 
 @dataclass(frozen=True, eq=False)
-class Table(Histories):
+class HistoryTable(Histories):
     """Histories given one by one.
 
     Parameters

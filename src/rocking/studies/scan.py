@@ -57,7 +57,7 @@ class Samples:
 
 
 @dataclass
-class Brackets:
+class ScaleBrackets:
     """Pairs of scales between which something changes."""
 
     body: IntArray  # number of the body
@@ -65,7 +65,7 @@ class Brackets:
     modes: IntArray  # modes there; shape (n, 2)
 
     @classmethod
-    def between(cls, samples: Samples, changes: BoolArray) -> "Brackets":
+    def between(cls, samples: Samples, changes: BoolArray) -> "ScaleBrackets":
         """Return brackets between neighbouring samples."""
         low, high = (np.flatnonzero(changes) + k for k in (0, 1))
         ends = np.stack([samples.scale[low], samples.scale[high]], axis=1)
@@ -122,7 +122,7 @@ class Scan:
         s = self.samples.good
         ways = 2 * s.mode + (s.side > 0)
         changes = s.same_body & s.falls[1:] & s.falls[:-1] & (ways[1:] != ways[:-1])
-        pairs, lower = Brackets.between(s, changes), ways[:-1][changes]
+        pairs, lower = ScaleBrackets.between(s, changes), ways[:-1][changes]
         lost = np.zeros(lower.size, dtype=np.bool_)
         for _ in range(_MOST_ROUNDS):
             rows = pairs.wide(_GIVEN_UP)
@@ -134,14 +134,14 @@ class Scan:
             self.samples = self.samples.joined(middle.where(~middle.falls))
             pairs.move(rows, 2 * middle.mode + (middle.side > 0) != lower[rows], middle)
 
-    def brackets(self, tolerance: float) -> Brackets:
+    def brackets(self, tolerance: float) -> ScaleBrackets:
         """Return all changes of verdict between neighbouring samples, bisected together.
 
         tolerance: relative width of the last brackets [-]. Returns sorted by body and scale; one whose middle failed
         stays as wide as it was.
         """
         s = self.samples.good
-        found = Brackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
+        found = ScaleBrackets.between(s, s.same_body & (s.falls[1:] != s.falls[:-1]))
         stuck = np.zeros(found.body.size, dtype=np.bool_)
         for _ in range(_MOST_ROUNDS):
             rows = found.wide(tolerance)

@@ -8,7 +8,7 @@ import pytest
 from fastapi import FastAPI
 
 from rocking.app.application import create_app
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 
 with warnings.catch_warnings():  # it says that another client than httpx is coming
     warnings.simplefilter("ignore")
@@ -16,18 +16,18 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
-    return Settings(folder=tmp_path / "data")
+def settings(tmp_path: Path) -> ServerSettings:
+    return ServerSettings(folder=tmp_path / "data")
 
 
 @pytest.fixture
-def app(settings: Settings) -> FastAPI:
+def app(settings: ServerSettings) -> FastAPI:
     settings.folder.mkdir()
     return create_app(settings)
 
 
 @pytest.fixture
-def client(app: FastAPI, settings: Settings) -> Iterator[TestClient]:
+def client(app: FastAPI, settings: ServerSettings) -> Iterator[TestClient]:
     """Return a script that has the key and names its origin."""
     head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
     with TestClient(app, base_url=settings.origin, headers=head) as script:
@@ -35,7 +35,7 @@ def client(app: FastAPI, settings: Settings) -> Iterator[TestClient]:
 
 
 @pytest.fixture
-def stranger(app: FastAPI, settings: Settings) -> Iterator[TestClient]:
+def stranger(app: FastAPI, settings: ServerSettings) -> Iterator[TestClient]:
     """Return somebody who comes to the right address and is not signed in."""
     with TestClient(app, base_url=settings.origin) as somebody:
         yield somebody

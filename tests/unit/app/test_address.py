@@ -9,7 +9,7 @@ import pytest
 
 from rocking.app.folder import DataFolder, FolderInUseError, write_private
 from rocking.app.server import check_host, listen
-from rocking.app.settings import Settings, default_folder
+from rocking.app.settings import ServerSettings, default_folder
 from rocking.errors import InvalidValueError
 
 
@@ -104,5 +104,5 @@ def test_default_folder_follows_the_system(monkeypatch: pytest.MonkeyPatch, tmp_
 
 def test_origin_of_the_page() -> None:
     """The address of the page, with brackets where the address has colons."""
-    assert Settings().origin == "http://127.0.0.1:8765"
-    assert Settings(host="::1", port=9).origin == "http://[::1]:9"
+    assert ServerSettings().origin == "http://127.0.0.1:8765"
+    assert ServerSettings(host="::1", port=9).origin == "http://[::1]:9"

@@ -18,7 +18,7 @@ from rocking.app import server
 from rocking.app.application import create_app
 from rocking.app.folder import write_private
 from rocking.app.server import listen
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 
 playwright = pytest.importorskip("playwright.sync_api")
 
@@ -26,7 +26,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 @pytest.fixture
 def served(tmp_path: Path) -> Iterator[tuple[FastAPI, str]]:
     with listen("127.0.0.1", 0, search=False) as door:
-        settings = Settings(folder=tmp_path, port=door.getsockname()[1])
+        settings = ServerSettings(folder=tmp_path, port=door.getsockname()[1])
         app = create_app(settings)
         write_private(tmp_path / "api-key", app.state.rocking.sessions.key)
         running = uvicorn.Server(server._config(app))

@@ -6,7 +6,7 @@ from fastapi.testclient import TestClient
 
 from rocking.app.errors import BadRequest, NotAllowed, NotFound, WrongContent, WrongMethod
 from rocking.app.security.requests import (
-    Asked,
+    RequestHead,
     TooLong,
     check_content,
     check_host,
@@ -16,20 +16,22 @@ from rocking.app.security.requests import (
     check_target,
     own_hosts,
 )
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 
-OWN = own_hosts(Settings())
+OWN = own_hosts(ServerSettings())
 
 
-def asked(method: str = "GET", target: str = "/api/info", query: str = "", **headers: str) -> Asked:
-    return Asked(method, target, query, "http", {name.replace("_", "-"): value for name, value in headers.items()})
+def asked(method: str = "GET", target: str = "/api/info", query: str = "", **headers: str) -> RequestHead:
+    return RequestHead(
+        method, target, query, "http", {name.replace("_", "-"): value for name, value in headers.items()}
+    )
 
 
 def test_own_hosts_are_loopback_and_the_given_address() -> None:
     """The server's names: three of loopback, the address it was given, and the bare names on port 80 only."""
-    assert own_hosts(Settings()) == {"127.0.0.1:8765", "localhost:8765", "[::1]:8765"}
-    assert "[fd00::1]:8765" in own_hosts(Settings(host="fd00::1"))
-    assert "localhost" in own_hosts(Settings(port=80))
+    assert own_hosts(ServerSettings()) == {"127.0.0.1:8765", "localhost:8765", "[::1]:8765"}
+    assert "[fd00::1]:8765" in own_hosts(ServerSettings(host="fd00::1"))
+    assert "localhost" in own_hosts(ServerSettings(port=80))
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1:8765", "LOCALHOST:8765", "[::1]:8765"])
@@ -138,7 +140,7 @@ def test_header_twice_is_refused() -> None:
         "headers": [(b"host", b"a"), (b"Host", b"b")],
     }
     with pytest.raises(BadRequest):
-        Asked.of(scope)
+        RequestHead.of(scope)
 
 
 def test_without_a_session_only_the_door_is_open(app: FastAPI, stranger: TestClient) -> None:

@@ -10,28 +10,28 @@ import pytest
 import rocking as rk
 from rocking.campaigns import Campaign
 from rocking.dynamics.impact_law import RandomRestitution
-from rocking.studies import MotionList, Table
+from rocking.studies import HistoryTable, MotionList
 
 RANGES = {"alpha": (0.08, 0.5), "p": (0.9, 5.0), "r": (0.5, 0.95)}
 
 
-def made(count: int = 300, seed: int = 5) -> Table:
+def made(count: int = 300, seed: int = 5) -> HistoryTable:
     """Random blocks and coefficients under four pulses."""
     random = np.random.default_rng(seed)
     motions = MotionList([rk.pulses.sine(a, period) for a in (3.0, 8.0) for period in (0.4, 1.1)])
     values = {f"{n}_{side}": random.uniform(*RANGES[n], count) for n in RANGES for side in ("right", "left")}
     law = RandomRestitution.normal(0.95, 0.02, seed=3)
-    return Table(motions, random.integers(0, len(motions), count), values, law=law)
+    return HistoryTable(motions, random.integers(0, len(motions), count), values, law=law)
 
 
 @pytest.fixture
-def work() -> Table:
+def work() -> HistoryTable:
     """300 histories."""
     return made()
 
 
 @pytest.fixture
-def make() -> Callable[..., Table]:
+def make() -> Callable[..., HistoryTable]:
     """As many histories as wanted, of a seed."""
     return made
 

@@ -9,7 +9,7 @@ import numpy as np
 
 import rocking as rk
 from rocking.dynamics.engine import Arrays
-from rocking.studies import MotionSet, Product, Table
+from rocking.studies import HistoryTable, MotionSet, Product
 
 
 class Motions(MotionSet):
@@ -43,7 +43,7 @@ def product(motions: MotionSet, each: int = 12) -> Product:
     return Product(motions, sides, np.linspace(0.5, 4.0, each // 2))
 
 
-class Costly(Table):
+class Costly(HistoryTable):
     """Histories whose cost depends on their number, and is slept."""
 
     def cost(self, share: np.ndarray) -> np.ndarray:
@@ -55,7 +55,7 @@ class Costly(Table):
         return super().run(first, last, threads=threads)
 
 
-def costly(table: Table, costs: Any, spend: Any = time.sleep) -> Costly:
+def costly(table: HistoryTable, costs: Any, spend: Any = time.sleep) -> Costly:
     """Give histories a cost."""
     made = Costly(table.motions, table.motion, table.values, law=table.law)
     object.__setattr__(made, "costs", costs)

@@ -10,7 +10,7 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignWorkerError, DaskExecutor, Progress
 from rocking.errors import InvalidValueError
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("default")  # those of the cluster are not ours
@@ -28,7 +28,7 @@ def cluster() -> Iterator[Any]:
 
 
 def test_cluster_gives_the_same_files(
-    cluster: Any, finished: Campaign, tmp_path: Path, work: Table, shards: Any
+    cluster: Any, finished: Campaign, tmp_path: Path, work: HistoryTable, shards: Any
 ) -> None:
     """Three workers, shuffled: byte by byte the shards of a serial run."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
@@ -45,7 +45,7 @@ def test_cluster_gives_the_same_files(
     ],
 )
 def test_worker_of_other_bits_is_refused(
-    cluster: Any, tmp_path: Path, work: Table, where: str, name: str, value: str, words: str
+    cluster: Any, tmp_path: Path, work: HistoryTable, where: str, name: str, value: str, words: str
 ) -> None:
     """A worker with another version, or of other last digits, is told so, and writes nothing."""
     from distributed import Client
@@ -80,7 +80,7 @@ def test_worker_that_dies_costs_nothing(cluster: Any, tmp_path: Path, make: Any)
     assert all(found[name].tobytes() == bare[name].tobytes() for name in bare)
 
 
-def test_histories_that_cannot_be_sent_are_refused(cluster: Any, tmp_path: Path, work: Table) -> None:
+def test_histories_that_cannot_be_sent_are_refused(cluster: Any, tmp_path: Path, work: HistoryTable) -> None:
     """What cannot be pickled has the sentence that processes have."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     object.__setattr__(work, "listener", nameless)
@@ -88,7 +88,7 @@ def test_histories_that_cannot_be_sent_are_refused(cluster: Any, tmp_path: Path,
         campaign.run(DaskExecutor(cluster.scheduler_address))
 
 
-def test_no_scheduler_has_a_sentence(tmp_path: Path, work: Table) -> None:
+def test_no_scheduler_has_a_sentence(tmp_path: Path, work: HistoryTable) -> None:
     """An address where nobody answers, and what is no address."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     with pytest.raises(CampaignWorkerError, match="no Dask scheduler answers at"):

@@ -7,10 +7,10 @@ import pytest
 
 from rocking.campaigns import Campaign, DaskExecutor
 from rocking.errors import MissingExtraError
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 
-def test_missing_dask_has_a_sentence(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_dask_has_a_sentence(tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch) -> None:
     """The extra is named."""
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(MissingExtraError, match=r"needs distributed: pip install '\.\[dask\]'"):

@@ -10,7 +10,7 @@ from rocking.campaigns import Campaign, CampaignMismatchError
 from rocking.campaigns import identity as fingerprint
 from rocking.dynamics import engine
 from rocking.dynamics.batch import Batch
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 pytestmark = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
 
@@ -27,7 +27,9 @@ def test_fingerprints_tell_the_bits_apart(make: Any, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.skipif(len(engine.instruction_sets() if engine.available() else []) < 2, reason="one instruction set only")
-def test_another_instruction_set_is_refused(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_instruction_set_is_refused(
+    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A campaign begun with one set is neither opened nor run with another one, and is finished with the first."""
     monkeypatch.delenv("ROCKING_ISA", raising=False)
     campaign = Campaign.create(tmp_path / "c", work, 50)

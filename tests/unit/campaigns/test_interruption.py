@@ -12,7 +12,7 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignInterrupted, Progress
 from rocking.campaigns.executors import Interruption
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 RUN = """
 import sys
@@ -30,7 +30,7 @@ if __name__ == "__main__":
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_stop_records_what_is_finished(tmp_path: Path, work: Table, number: signal.Signals) -> None:
+def test_stop_records_what_is_finished(tmp_path: Path, work: HistoryTable, number: signal.Signals) -> None:
     """A signal in the middle: the exception says what is safe, later runs go on, old handlers are back."""
     whole = Campaign.create(tmp_path / "whole", work, 50)
     whole.run(workers=1)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from rocking.campaigns import Campaign, CampaignDamagedError
-from rocking.campaigns.ledger import Ledger, Record
+from rocking.campaigns.ledger import Ledger, LedgerEntry
 from rocking.campaigns.status import Meter
 
 FLIPS = 400
@@ -24,7 +24,7 @@ def flip(path: Path, bit: int) -> None:
     path.write_bytes(data)
 
 
-def records(campaign: Campaign) -> list[Record]:
+def records(campaign: Campaign) -> list[LedgerEntry]:
     with Ledger(campaign.folder) as ledger:
         ledger.check(campaign.plan)
         return list(ledger.records())
@@ -138,11 +138,11 @@ def test_what_is_read_is_of_one_instant(tmp_path: Path, work: Any) -> None:
     with Ledger(campaign.folder, writable=True) as writer, Ledger(campaign.folder) as reader:
 
         def becomes_whole() -> None:
-            writer.record(Record(whole.number, whole.first, whole.last, whole.name, *rest))
+            writer.record(LedgerEntry(whole.number, whole.first, whole.last, whole.name, *rest))
 
         def in_pieces() -> None:
             writer.forget(whole.name)
-            writer.record_piece(Record(half.number, half.first, half.last, half.name, *rest))
+            writer.record_piece(LedgerEntry(half.number, half.first, half.last, half.name, *rest))
 
         in_pieces()
         with reader.instant():

@@ -12,7 +12,7 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignBusyError
 from rocking.campaigns.disk import FolderLock, holder
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 HOLD = """
 import sys, time
@@ -71,7 +71,7 @@ def test_forked_child_does_not_hold_on(tmp_path: Path) -> None:
         os.waitpid(child, 0)
 
 
-def test_creation_is_exclusive(tmp_path: Path, work: Table) -> None:
+def test_creation_is_exclusive(tmp_path: Path, work: HistoryTable) -> None:
     """Nobody can create a campaign in a folder where one is being made."""
     (tmp_path / "c").mkdir()
     with FolderLock(tmp_path / "c"), pytest.raises(CampaignBusyError):

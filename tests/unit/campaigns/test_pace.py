@@ -11,14 +11,14 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignInterrupted
 from rocking.campaigns.chunks import DEFAULT_CHUNK
-from rocking.campaigns.executors import Job
+from rocking.campaigns.executors import WorkerTask
 from rocking.dynamics.engine import Arrays
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 pytestmark = pytest.mark.timed
 
 
-class Watched(Table):
+class Watched(HistoryTable):
     """Histories that may be slow, and remember the pieces that were asked for."""
 
     pause = 0.0
@@ -36,7 +36,7 @@ class Slow(Watched):
     pause = 0.002
 
 
-def as_(kind: type[Table], table: Table, **changed: Any) -> Any:
+def as_(kind: type[HistoryTable], table: HistoryTable, **changed: Any) -> Any:
     return kind(table.motions, table.motion, table.values, law=table.law, **changed)
 
 
@@ -83,7 +83,7 @@ def test_workers_ask_within_a_chunk(tmp_path: Path, make: Any) -> None:
     work = as_(Slow, make(5000))
     plan = Campaign.create(tmp_path / "c", work, 5000).plan
     start = time.perf_counter()
-    job = Job(work, plan.engine, plan.software, tmp_path)
+    job = WorkerTask(work, plan.engine, plan.software, tmp_path)
     assert job.compute(plan.chunk(0), 1, lambda: time.perf_counter() - start > 0.5) is None
     assert time.perf_counter() - start < 2.0  # 0.8 s, and more on a busy machine
 
@@ -91,13 +91,13 @@ def test_workers_ask_within_a_chunk(tmp_path: Path, make: Any) -> None:
 def test_default_chunk_follows_the_engine(tmp_path: Path, make: Any) -> None:
     """65536 histories of the fast engine, 256 of the reference engine, whatever is asked for if it is."""
     assert Campaign.create(tmp_path / "a", make(70_000)).plan.size == 65536
-    reference = as_(Table, make(300), engine="reference")
+    reference = as_(HistoryTable, make(300), engine="reference")
     assert Campaign.create(tmp_path / "b", reference).plan.size == 256
     assert Campaign.create(tmp_path / "c", reference, 17).plan.size == 17
 
 
-@pytest.mark.parametrize(("kind", "count"), [(Table, 200_000), (Slow, 1200)])
-def test_forecast_is_near(tmp_path: Path, make: Any, kind: type[Table], count: int) -> None:
+@pytest.mark.parametrize(("kind", "count"), [(HistoryTable, 200_000), (Slow, 1200)])
+def test_forecast_is_near(tmp_path: Path, make: Any, kind: type[HistoryTable], count: int) -> None:
     """What a run takes is within a factor of 2 of the forecast: the machine is busy with other things now and then."""
     campaign = Campaign.create(tmp_path / "c", as_(kind, make(count)))
     told = campaign.check().work.seconds

@@ -15,11 +15,11 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignInterrupted, Progress, executors
 from rocking.campaigns.chunks import Chunk, Plan
-from rocking.campaigns.executors import Job
+from rocking.campaigns.executors import WorkerTask
 from rocking.campaigns.ledger import Ledger
 from rocking.campaigns.running import Remaining
 from rocking.campaigns.status import Costs
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 sys.path.insert(0, str(Path(__file__).parent))  # for the processes, too
 from slow import Motions, product
@@ -80,7 +80,7 @@ def test_count_moves_within_seconds_and_a_kill_costs_one(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("seed", [None, 3])
 def test_files_are_the_same_however_it_is_cut(
-    tmp_path: Path, work: Table, finished: Campaign, short: None, shards: Any, seed: int | None
+    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any, seed: int | None
 ) -> None:
     """Chunks in pieces of seven, stopped and gone on with: byte by byte the shards of an undisturbed campaign."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
@@ -97,7 +97,7 @@ def test_files_are_the_same_however_it_is_cut(
 
 @pytest.mark.skipif(os.name == "nt", reason="this system does not fork")
 def test_pieces_of_processes_are_the_same_files(
-    tmp_path: Path, work: Table, finished: Campaign, short: None, shards: Any
+    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any
 ) -> None:
     """Two processes share one chunk, and chunks, in pieces."""
     for name, chunk in (("c", 50), ("d", 300)):
@@ -108,7 +108,7 @@ def test_pieces_of_processes_are_the_same_files(
             assert shards(campaign) == shards(finished)
 
 
-def test_ledger_of_an_earlier_version_is_not_read(tmp_path: Path, work: Table) -> None:
+def test_ledger_of_an_earlier_version_is_not_read(tmp_path: Path, work: HistoryTable) -> None:
     """Its rows have other columns, and it is told apart from a damaged one."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     stopped_after(campaign, 3)
@@ -120,7 +120,7 @@ def test_ledger_of_an_earlier_version_is_not_read(tmp_path: Path, work: Table) -
 
 @pytest.mark.parametrize("harm", ["flip", "cut", "lose", "swap"])
 def test_damaged_pieces_are_named_and_computed_again(
-    tmp_path: Path, work: Table, finished: Campaign, short: None, shards: Any, harm: str
+    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any, harm: str
 ) -> None:
     """A piece whose bits flipped, that was cut short, lost, or has the bytes of another one: not counted, mended."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
@@ -142,7 +142,9 @@ def test_damaged_pieces_are_named_and_computed_again(
     assert shards(campaign) == shards(finished)
 
 
-def test_pieces_make_the_ledger_anew(tmp_path: Path, work: Table, finished: Campaign, short: None, shards: Any) -> None:
+def test_pieces_make_the_ledger_anew(
+    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any
+) -> None:
     """Without its ledger a campaign adopts whole pieces, and throws away what does not belong to it."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     stopped_after(campaign, 4)
@@ -155,7 +157,7 @@ def test_pieces_make_the_ledger_anew(tmp_path: Path, work: Table, finished: Camp
 
 
 def test_killed_before_pieces_are_joined(
-    tmp_path: Path, work: Table, finished: Campaign, short: None, shards: Any, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, work: HistoryTable, finished: Campaign, short: None, shards: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All pieces of a chunk are there, and it is not: the next run joins them; after it is, the leftovers go."""
     from rocking.campaigns import running
@@ -176,7 +178,7 @@ def test_killed_before_pieces_are_joined(
     assert not (campaign.folder / "pieces").exists()
 
 
-def test_rows_of_pieces_that_were_meddled_with_are_refused(tmp_path: Path, work: Table, short: None) -> None:
+def test_rows_of_pieces_that_were_meddled_with_are_refused(tmp_path: Path, work: HistoryTable, short: None) -> None:
     """An edited row, and pieces that overlap, are damage."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     stopped_after(campaign, 3)
@@ -212,7 +214,7 @@ def test_scattered_motions_are_kept(tmp_path: Path) -> None:
     values = {
         f"{n}_{side}": np.array([v]) for n, v in (("alpha", 0.3), ("p", 2.0), ("r", 0.9)) for side in ("right", "left")
     }
-    work = Table(motions, np.random.default_rng(1).integers(0, 40, 600), values)
+    work = HistoryTable(motions, np.random.default_rng(1).integers(0, 40, 600), values)
     for first in range(0, 600, 10):
         work.run(first, first + 10, threads=1)
     assert max(Counter(motions.made()).values()) == 1
@@ -265,11 +267,11 @@ def test_pieces_end_between_motions() -> None:
     assert {end % 12 for end in ends - {1000}} == {0}
 
 
-def test_custom_executors_need_not_cut(tmp_path: Path, work: Table, short: None, finished: Campaign) -> None:
+def test_custom_executors_need_not_cut(tmp_path: Path, work: HistoryTable, short: None, finished: Campaign) -> None:
     """Whoever computes a piece and keeps it has done what an executor must."""
 
     class Mine(executors.Executor):
-        def run(self, job: Job, chunks: Any, stop: Any, retried: Any) -> Any:
+        def run(self, job: WorkerTask, chunks: Any, stop: Any, retried: Any) -> Any:
             while (chunk := next(chunks, None)) is not None:
                 data = job.compute(chunk, 1, stop)
                 assert data is not None

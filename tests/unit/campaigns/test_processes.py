@@ -16,9 +16,9 @@ import pytest
 from rocking.campaigns import Campaign, CampaignWorkerError, Progress, identity
 from rocking.campaigns import identity as fingerprint
 from rocking.campaigns.chunks import Chunk
-from rocking.campaigns.executors import Job
+from rocking.campaigns.executors import WorkerTask
 from rocking.dynamics import engine
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="workers are forked, so that they can be made to fail")
 nameless = lambda: 0  # noqa: E731 (pickle refuses it in another way than a local one)
@@ -27,16 +27,18 @@ FORK: dict[str, Any] = {"executor": "processes", "start_method": "fork"}
 
 def breaking(monkeypatch: pytest.MonkeyPatch, what: Callable[[Chunk], None]) -> None:
     """Have workers do something bad before a chunk."""
-    compute = Job.compute
+    compute = WorkerTask.compute
 
-    def broken(self: Job, chunk: Chunk, *args: Any) -> Any:
+    def broken(self: WorkerTask, chunk: Chunk, *args: Any) -> Any:
         what(chunk)
         return compute(self, chunk, *args)
 
-    monkeypatch.setattr(Job, "compute", broken)
+    monkeypatch.setattr(WorkerTask, "compute", broken)
 
 
-def test_worker_that_dies_once_costs_nothing(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_worker_that_dies_once_costs_nothing(
+    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """kill -9 in the middle of a chunk: it is computed again by another worker, which is told and recorded."""
     marker = tmp_path / "died"
 
@@ -56,7 +58,9 @@ def test_worker_that_dies_once_costs_nothing(tmp_path: Path, work: Table, monkey
     assert all(campaign.results()[name].tobytes() == bare[name].tobytes() for name in bare)
 
 
-def test_chunk_that_kills_every_worker_is_named(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_chunk_that_kills_every_worker_is_named(
+    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Three deaths of the same chunk end the run with its histories; the others that were done are safe."""
     breaking(monkeypatch, lambda chunk: os.kill(os.getpid(), signal.SIGTERM) if chunk.number == 4 else None)
     campaign = Campaign.create(tmp_path / "c", work, 50)
@@ -67,7 +71,7 @@ def test_chunk_that_kills_every_worker_is_named(tmp_path: Path, work: Table, mon
     assert campaign.run(workers=1).computed < 6
 
 
-def test_error_in_a_worker_is_told(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_error_in_a_worker_is_told(tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch) -> None:
     """What a worker raises is raised where the campaign runs, with the histories, and is not tried again."""
 
     def fail(_: Chunk) -> None:
@@ -79,7 +83,9 @@ def test_error_in_a_worker_is_told(tmp_path: Path, work: Table, monkeypatch: pyt
         campaign.run(**FORK, workers=1)
 
 
-def test_worker_without_the_engine_is_refused(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_worker_without_the_engine_is_refused(
+    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Results of two engines are never mixed."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     breaking(monkeypatch, lambda _: setattr(engine, "chosen", lambda *_: "reference"))
@@ -95,7 +101,7 @@ def test_worker_without_the_engine_is_refused(tmp_path: Path, work: Table, monke
     ],
 )
 def test_worker_of_other_bits_is_refused(
-    tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, value: Any, words: str
+    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, value: Any, words: str
 ) -> None:
     """Another version, or an engine of other last digits, writes nothing into chunks that are named for this one."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
@@ -105,7 +111,7 @@ def test_worker_of_other_bits_is_refused(
     assert not list((campaign.folder / "shards").iterdir())
 
 
-def test_histories_that_cannot_be_sent_are_refused(tmp_path: Path, work: Table) -> None:
+def test_histories_that_cannot_be_sent_are_refused(tmp_path: Path, work: HistoryTable) -> None:
     """What cannot be pickled has a sentence."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     for unsendable in (threading.Lock(), nameless, lambda: 0):
@@ -115,7 +121,7 @@ def test_histories_that_cannot_be_sent_are_refused(tmp_path: Path, work: Table) 
 
 
 @pytest.mark.parametrize("start_method", ["fork", "forkserver"])
-def test_idle_workers_stay(tmp_path: Path, work: Table, start_method: str) -> None:
+def test_idle_workers_stay(tmp_path: Path, work: HistoryTable, start_method: str) -> None:
     """Workers that wait for more than their patience are still there: under a fork server, too."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     summary = campaign.run(
@@ -164,7 +170,7 @@ def alive(process: int) -> bool:
         return False
 
 
-def test_no_worker_stays(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_worker_stays(tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch) -> None:
     """After a run, one that failed, and one that was interrupted, all processes are gone."""
     Campaign.create(tmp_path / "c", work, 50).run(**FORK, workers=3)
     assert multiprocessing.active_children() == []
@@ -177,7 +183,7 @@ def test_no_worker_stays(tmp_path: Path, work: Table, monkeypatch: pytest.Monkey
     assert multiprocessing.active_children() == []
 
 
-def test_work_is_taken_as_it_is_needed(tmp_path: Path, work: Table) -> None:
+def test_work_is_taken_as_it_is_needed(tmp_path: Path, work: HistoryTable) -> None:
     """However many chunks there are, few are waiting: two a worker."""
     from rocking.campaigns.processes import Processes
 
@@ -190,7 +196,7 @@ def test_work_is_taken_as_it_is_needed(tmp_path: Path, work: Table) -> None:
             taken += 1
             yield campaign.plan.chunk(k)
 
-    job = Job(work, campaign.plan.engine, campaign.plan.software, campaign.folder / "shards")
+    job = WorkerTask(work, campaign.plan.engine, campaign.plan.software, campaign.folder / "shards")
     for _ in Processes(2, "fork").run(job, chunks(), lambda: False, lambda *_: None):
         finished += 1
         most = max(most, taken - finished)

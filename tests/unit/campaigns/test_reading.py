@@ -11,10 +11,10 @@ from rocking.campaigns import Campaign, CampaignStorageError, Progress, forecast
 from rocking.campaigns.status import Estimate
 from rocking.dynamics.engine import RESULTS
 from rocking.errors import InvalidValueError
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 
-def test_results_are_those_of_the_engine(finished: Campaign, work: Table) -> None:
+def test_results_are_those_of_the_engine(finished: Campaign, work: HistoryTable) -> None:
     """Whole, in pieces and by column: bit by bit what a bare run gives, with several outcomes."""
     bare = work.run(0, work.count, threads=1)
     whole = finished.results()
@@ -30,14 +30,14 @@ def test_results_are_those_of_the_engine(finished: Campaign, work: Table) -> Non
         next(finished.column("height"))
 
 
-def test_hash_is_what_it_says(finished: Campaign, work: Table) -> None:
+def test_hash_is_what_it_says(finished: Campaign, work: HistoryTable) -> None:
     """The hash of the results, computed here from a bare run by its description."""
     bare = work.run(0, work.count, threads=1)
     lines = [f"{k} {np.dtype(RESULTS[k]).name} {hashlib.sha256(bare[k].tobytes()).hexdigest()}\n" for k in RESULTS]
     assert finished.sha256() == hashlib.sha256("".join(lines).encode()).hexdigest()
 
 
-def test_progress_counts_up(tmp_path: Path, work: Table) -> None:
+def test_progress_counts_up(tmp_path: Path, work: HistoryTable) -> None:
     """The first report is what was there, the last one is everything; time left is told when all parts were seen."""
     new = Campaign.create(tmp_path / "c", work, 64)
     seen: list[Progress] = []
@@ -52,7 +52,7 @@ def test_progress_counts_up(tmp_path: Path, work: Table) -> None:
     assert [p.chunks_done for p in seen] == [5]
 
 
-def test_status_needs_no_histories(finished: Campaign, tmp_path: Path, work: Table) -> None:
+def test_status_needs_no_histories(finished: Campaign, tmp_path: Path, work: HistoryTable) -> None:
     """The folder alone tells how far it is, before, during and after."""
     status = Campaign.status_of(finished.folder)
     assert (status.histories_done, status.chunks_done, status.complete, status.running) == (300, 6, True, None)
@@ -76,7 +76,7 @@ def test_status_writes_nothing(finished: Campaign) -> None:
     assert look() == before
 
 
-def test_check_looks_ahead(tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_check_looks_ahead(tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch) -> None:
     """The forecast has room for what is written, and a disk that is too small is refused before the work."""
     new = Campaign.create(tmp_path / "c", work, 50)
     ahead = new.check()

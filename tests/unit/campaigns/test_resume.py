@@ -11,7 +11,7 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignDamagedError, CampaignIncompleteError, CampaignMismatchError, identity
 from rocking.errors import InvalidValueError
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 DISK_FLIPS = 200
 Shards = Callable[[Campaign], dict[str, str]]
@@ -62,7 +62,9 @@ def test_missing_shard_is_mended(finished: Campaign, shards: Shards) -> None:
     assert shards(finished) == before
 
 
-def test_shards_that_nobody_recorded_are_adopted_or_set_aside(finished: Campaign, tmp_path: Path, work: Table) -> None:
+def test_shards_that_nobody_recorded_are_adopted_or_set_aside(
+    finished: Campaign, tmp_path: Path, work: HistoryTable
+) -> None:
     """Killed between writing and recording: whole shards count, broken ones and unfinished ones do not."""
     other = Campaign.create(tmp_path / "other", work, 50)
     mine, theirs = paths(other), paths(finished)
@@ -75,7 +77,7 @@ def test_shards_that_nobody_recorded_are_adopted_or_set_aside(finished: Campaign
     assert other.sha256() == finished.sha256()
 
 
-def test_identity_that_changed_is_refused(finished: Campaign, work: Table) -> None:
+def test_identity_that_changed_is_refused(finished: Campaign, work: HistoryTable) -> None:
     """No bit of campaign.json may change: 300 flips, each with a sentence and a way out."""
     path = finished.folder / "campaign.json"
     good = path.read_bytes()
@@ -93,7 +95,7 @@ def test_identity_that_changed_is_refused(finished: Campaign, work: Table) -> No
     assert Campaign.open(finished.folder, work).key == finished.key
 
 
-def test_way_out_of_a_damaged_identity_works(finished: Campaign, tmp_path: Path, work: Table) -> None:
+def test_way_out_of_a_damaged_identity_works(finished: Campaign, tmp_path: Path, work: HistoryTable) -> None:
     """A new campaign of the same histories adopts the shards of one whose campaign.json is lost."""
     other = Campaign.create(tmp_path / "other", work, 50)
     for path in paths(finished):
@@ -102,7 +104,7 @@ def test_way_out_of_a_damaged_identity_works(finished: Campaign, tmp_path: Path,
     assert other.sha256() == finished.sha256()
 
 
-def test_other_histories_are_refused_by_name(finished: Campaign, work: Table, make: Any) -> None:
+def test_other_histories_are_refused_by_name(finished: Campaign, work: HistoryTable, make: Any) -> None:
     """What differs is named: settings, the law, the arrays."""
     settings = dataclasses.replace(work.settings, linear=True)
     with pytest.raises(CampaignMismatchError, match=r"settings\.linear was False, is True"):
@@ -113,14 +115,14 @@ def test_other_histories_are_refused_by_name(finished: Campaign, work: Table, ma
         Campaign.open(finished.folder, make(301))
 
 
-def test_other_versions_are_refused(finished: Campaign, work: Table, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_versions_are_refused(finished: Campaign, work: HistoryTable, monkeypatch: pytest.MonkeyPatch) -> None:
     """Results of two versions of the package, or of two engines, are not mixed."""
     monkeypatch.setattr(identity, "software", lambda: "9.9")
     with pytest.raises(CampaignMismatchError, match=r"begun with software .*, this is 9\.9"):
         Campaign.open(finished.folder, work)
 
 
-def test_histories_that_changed_are_refused_by_a_run(tmp_path: Path, work: Table) -> None:
+def test_histories_that_changed_are_refused_by_a_run(tmp_path: Path, work: HistoryTable) -> None:
     """Between creating and running, somebody writes into an array or a law: no chunk is computed of it."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     work.values["scale"] = 2.0 * work.values["scale"]
@@ -133,7 +135,7 @@ def test_histories_that_changed_are_refused_by_a_run(tmp_path: Path, work: Table
     assert campaign.status().chunks_done == 0
 
 
-def test_folders_are_refused(finished: Campaign, tmp_path: Path, work: Table) -> None:
+def test_folders_are_refused(finished: Campaign, tmp_path: Path, work: HistoryTable) -> None:
     """No campaign, one that is there already, other things in the folder, a file in the way."""
     with pytest.raises(CampaignMismatchError, match="no campaign here"):
         Campaign.open(tmp_path, work)
@@ -164,7 +166,7 @@ def test_refusals_of_arguments(finished: Campaign, tmp_path: Path) -> None:
     assert not (tmp_path / "new").exists()
 
 
-def test_unfinished_campaigns_give_no_numbers(tmp_path: Path, work: Table) -> None:
+def test_unfinished_campaigns_give_no_numbers(tmp_path: Path, work: HistoryTable) -> None:
     """Results exist when all of them exist; there are no fill values."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     for read in (campaign.results, campaign.sha256, lambda: next(campaign.pieces())):

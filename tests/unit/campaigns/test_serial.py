@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 
 from rocking.campaigns import Campaign, CampaignInterrupted, Executor, Progress, Serial
-from rocking.campaigns.executors import Done, Job
+from rocking.campaigns.executors import Done, WorkerTask
 from rocking.dynamics.engine import Arrays
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 LONG = 20.0
 
 
-class Hooked(Table):
+class Hooked(HistoryTable):
     """Histories that call a function with their first number before they are computed, if they are given one."""
 
     def run(self, first: int, last: int, *, threads: int | None = None) -> Arrays:
@@ -31,7 +31,7 @@ class Hooked(Table):
 class Plain(Executor):
     """Computes, writes and hands over one chunk after another: what overlaps must do the same."""
 
-    def run(self, job: Job, chunks: Iterator[Any], stop: Callable[[], bool], retried: object) -> Iterator[Done]:
+    def run(self, job: WorkerTask, chunks: Iterator[Any], stop: Callable[[], bool], retried: object) -> Iterator[Done]:
         for chunk in chunks:
             data = job.compute(chunk, 1, stop)
             if data is None:
@@ -40,7 +40,7 @@ class Plain(Executor):
 
 
 @pytest.fixture
-def hooked(work: Table) -> Callable[[Callable[[int], object]], Hooked]:
+def hooked(work: HistoryTable) -> Callable[[Callable[[int], object]], Hooked]:
     """The 300 histories with a hook."""
 
     def give(hook: Callable[[int], object]) -> Hooked:
@@ -79,7 +79,7 @@ def _no_thread_is_left() -> Iterator[None]:
 
 @pytest.mark.parametrize("seed", [None, 4])
 def test_shards_and_ledger_are_those_of_a_plain_loop(
-    tmp_path: Path, work: Table, shards: Callable[..., dict[str, str]], seed: int | None
+    tmp_path: Path, work: HistoryTable, shards: Callable[..., dict[str, str]], seed: int | None
 ) -> None:
     """The bytes of every shard, and all of the ledger but its times, in whatever order; uneven chunks."""
     both = [Campaign.create(tmp_path / name, work, 70) for name in ("overlapping", "plain")]
@@ -98,14 +98,14 @@ def test_next_chunk_is_computed_while_one_is_written(
     """A chunk is written only once the next one is at work, which goes on only once it is recorded; none beyond it."""
     begun = [threading.Event() for _ in range(7)]
     recorded = [threading.Event() for _ in range(7)]
-    keep, ahead = Job.keep, []
+    keep, ahead = WorkerTask.keep, []
 
     def note(first: int) -> None:
         begun[first // 50].set()
         if first:
             soon(recorded[first // 50 - 1])
 
-    def careful(self: Job, chunk: Any, *rest: Any) -> Done:
+    def careful(self: WorkerTask, chunk: Any, *rest: Any) -> Done:
         if chunk.number < 5:
             soon(begun[chunk.number + 1])
         ahead.append(sum(event.is_set() for event in begun) - chunk.number)
@@ -115,7 +115,7 @@ def test_next_chunk_is_computed_while_one_is_written(
         if progress.chunks_done:
             recorded[progress.chunks_done - 1].set()
 
-    monkeypatch.setattr(Job, "keep", careful)
+    monkeypatch.setattr(WorkerTask, "keep", careful)
     campaign = Campaign.create(tmp_path / "c", hooked(note), 50)
     assert campaign.run(workers=1, progress=tell).computed == 6
     assert ahead == [2, 2, 2, 2, 2, 1]
@@ -206,7 +206,7 @@ def test_second_ctrl_c_is_raised_where_the_campaign_runs(tmp_path: Path, hooked:
 @pytest.mark.timed
 @pytest.mark.parametrize("where", ["listener", "disk"])
 def test_error_beside_a_long_chunk_is_raised_soon(
-    tmp_path: Path, make: Callable[..., Table], monkeypatch: pytest.MonkeyPatch, where: str
+    tmp_path: Path, make: Callable[..., HistoryTable], monkeypatch: pytest.MonkeyPatch, where: str
 ) -> None:
     """The next chunk, of 10 s, is left at its next piece when the one before it cannot be told or written."""
     plain = make(4000)
@@ -220,7 +220,7 @@ def test_error_beside_a_long_chunk_is_raised_soon(
             raise ZeroDivisionError(where)
 
     if where == "disk":
-        monkeypatch.setattr(Job, "keep", fail)
+        monkeypatch.setattr(WorkerTask, "keep", fail)
     start = time.perf_counter()
     with pytest.raises(ZeroDivisionError, match=where):
         campaign.run(workers=1, progress=fail if where == "listener" else None)
@@ -247,7 +247,7 @@ def test_executor_that_is_closed_early_waits_for_its_thread(tmp_path: Path, hook
             drew.append(threading.current_thread())
             yield plan.chunk(number)
 
-    job = Job(work, plan.engine, plan.software, tmp_path)
+    job = WorkerTask(work, plan.engine, plan.software, tmp_path)
     finished: Any = Serial(1).run(job, chunks(), lambda: False, lambda chunk, why: None)
     assert next(finished).chunk == plan.chunk(0)
     soon(second)

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from rocking.campaigns import Campaign, CampaignStorageError, disk
-from rocking.studies import Table
+from rocking.studies import HistoryTable
 
 TRY = """
 import sys
@@ -53,7 +53,11 @@ def can_mount(folder: Path) -> bool:
 
 @pytest.mark.parametrize("call", range(1, 8))
 def test_disk_full_at_any_file(
-    tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch, call: int, shards: Callable[..., dict[str, str]]
+    tmp_path: Path,
+    work: HistoryTable,
+    monkeypatch: pytest.MonkeyPatch,
+    call: int,
+    shards: Callable[..., dict[str, str]],
 ) -> None:
     """Whichever write is the first to fail, what was recorded before stays, and a later run finishes the same bytes."""
     whole = Campaign.create(tmp_path / "whole", work, 50)
@@ -84,7 +88,7 @@ def test_disk_full_at_any_file(
 
 @pytest.mark.parametrize("code", [errno.EROFS, errno.EACCES, errno.EDQUOT, errno.EIO, errno.EFBIG])
 def test_disk_that_refuses_from_workers(
-    tmp_path: Path, work: Table, monkeypatch: pytest.MonkeyPatch, code: int
+    tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch, code: int
 ) -> None:
     """What goes wrong in a worker process is said where the campaign runs."""
 
@@ -97,7 +101,7 @@ def test_disk_that_refuses_from_workers(
         campaign.run("processes", workers=2, start_method="fork")
 
 
-def test_file_size_limit_of_the_system(tmp_path: Path, work: Table) -> None:
+def test_file_size_limit_of_the_system(tmp_path: Path, work: HistoryTable) -> None:
     """A limit that the system enforces: files may not grow beyond 40 kB, as on a quota."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
@@ -161,7 +165,7 @@ def refused_as_nobody(finished: Campaign) -> int:
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can become somebody else")
-def test_folder_of_somebody_else(work: Table) -> None:
+def test_folder_of_somebody_else(work: HistoryTable) -> None:
     """A user who may not write the folder is told so; status and results can still be had."""
     with tempfile.TemporaryDirectory() as room:  # the test's own folder is closed to others
         Path(room).chmod(0o755)

@@ -12,7 +12,7 @@ from PIL import Image
 import rocking as rk
 from rocking.cli import main
 from rocking.cli.simulate_json import as_json
-from rocking.cli.simulate_output import Answer
+from rocking.cli.simulate_output import ResponseComparison
 from rocking.cli.simulate_page import show
 from rocking.dynamics import engine as fast_engine
 from rocking.evidence._coefficient_table import default_models
@@ -228,7 +228,7 @@ def test_warnings_are_in_plain_words(capsys):
 
 def test_a_model_that_does_not_fit_says_why(capsys):
     """Where a model has no coefficient for a body, the row and the JSON say so, and the verdict leaves it out."""
-    answer = Answer(rk.free_rocking(BLOCK, 0.1), 0.5, {"odd": "the impact would create energy"})
+    answer = ResponseComparison(rk.free_rocking(BLOCK, 0.1), 0.5, {"odd": "the impact would create energy"})
     show(answer)
     out = capsys.readouterr().out
     assert "not for this body" in out

@@ -10,7 +10,7 @@ import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import Outcome, Rocker, RockingSide, engine
 from rocking.dynamics.fast import run_fast
-from rocking.dynamics.ground import Ground, Push
+from rocking.dynamics.ground import Push, RestoringMoments
 from rocking.dynamics.impact_law import ConstantRestitution, SpeedRestitution
 from rocking.dynamics.reference import Reference
 from rocking.dynamics.resting import comes_to_rest
@@ -29,13 +29,13 @@ def rocker(r: float = 0.8, left: float = ALPHA) -> Rocker:
     return Rocker(RockingSide(ALPHA, P, 1.8, r), RockingSide(left, P, 1.8, r), ConstantRestitution(), "")
 
 
-def ground(horizontal: Any, vertical: Any = None, left: float = ALPHA) -> Ground:
+def ground(horizontal: Any, vertical: Any = None, left: float = ALPHA) -> RestoringMoments:
     x = np.array(horizontal, dtype=float)
     z = np.zeros_like(x) if vertical is None else np.array(vertical)
-    return Ground(rocker(left=left), Push(0.1, x, z), linear=True)
+    return RestoringMoments(rocker(left=left), Push(0.1, x, z), linear=True)
 
 
-def uplift(where: Ground, stretch: int = 0, tau: float = 0.0) -> Any:
+def uplift(where: RestoringMoments, stretch: int = 0, tau: float = 0.0) -> Any:
     return where.next_uplift(stretch, tau)
 
 
@@ -126,7 +126,7 @@ def test_impacts_that_end(after: float, horizontal: Any, r: float, expected: boo
     one flight turns the body so far that it could be lifted."""
     x = np.array(horizontal)
     body = rocker(r)
-    where = Ground(body, Push(0.1, x, np.zeros_like(x)), linear=True)
+    where = RestoringMoments(body, Push(0.1, x, np.zeros_like(x)), linear=True)
     # v / p alpha times 2 alpha / p is a flight: 2.5e-3 s, and 1 / (1 - r) of them follow
     assert comes_to_rest(body, where, 1, after, 0, 0.2, 0.01) is expected
 
@@ -137,7 +137,8 @@ def test_nothing_is_rest_whatever_the_rest_speed(speed: Any) -> None:
     nothing is where the ground lifts."""
     body, none = rocker(1.0), 1e-9 * P * ALPHA
     holds, lifts = (
-        Ground(body, Push(0.1, x, np.zeros_like(x)), linear=True) for x in np.array([[[0.2, 0.0]], [[-0.3, 0.0]]])
+        RestoringMoments(body, Push(0.1, x, np.zeros_like(x)), linear=True)
+        for x in np.array([[[0.2, 0.0]], [[-0.3, 0.0]]])
     )
     assert comes_to_rest(body, holds, 1, speed(none), 0, 0.0, 0.0) is True
     assert comes_to_rest(body, holds, 1, speed(2.0 * none), 0, 0.0, 0.0) is False
@@ -202,7 +203,7 @@ def test_the_proof_of_rest_is_as_sharp_as_the_series(sign: int, share: float, ex
     first, second = (2.0 / (side.frequency_parameter**2 * side.slenderness_angle) for side in sides)
     series = (first + sides[1].coefficient * second) / (1.0 - sides[0].coefficient * sides[1].coefficient)
     x = np.array([[0.0, 0.0]] * 12 + [[0.6, 0.0]])
-    where = Ground(UNEVEN, Push(0.01, x, np.zeros_like(x)), linear=True)
+    where = RestoringMoments(UNEVEN, Push(0.01, x, np.zeros_like(x)), linear=True)
     assert comes_to_rest(UNEVEN, where, sign, share * 0.12 / series, 0, 0.0, 0.02) is expected
 
 
@@ -263,7 +264,7 @@ def test_the_proof_of_rest_under_changing_moments() -> None:
         x, z = size * 0.25 * random.uniform(-1.0, 1.0, 36), size * random.uniform(-1.0, 1.0, 36)
         lines = [np.stack([each[:-1], np.diff(each)], axis=1) for each in (x, z)]
         push = Push(step, np.vstack([lines[0], [[0.6, 0.0]]]), np.vstack([lines[1], [[z[-1], 0.0]]]))
-        where = Ground(UNEVEN, push, linear=True)
+        where = RestoringMoments(UNEVEN, push, linear=True)
         low, high = 0.0, 0.02
         for _ in range(40):
             speed = 0.5 * (low + high)
@@ -281,7 +282,7 @@ def test_heights_of_flights_bound_what_is_put_to_rest(sign: int) -> None:
     add 2.2 d (1 + r_2^2) / (1 - r_1^2 r_2^2) = 0.1 to the logarithm of its gain: theory, Rest."""
     body = Rocker(RockingSide(0.25, 2.0, 1.8, 0.9), RockingSide(0.40, 2.5, 1.8, 0.7), ConstantRestitution(), "")
     still = Push(0.1, np.zeros((500, 2)), np.zeros((500, 2)))
-    where = Ground(body, still, linear=True)
+    where = RestoringMoments(body, still, linear=True)
     low, high = 0.0, 1.0
     for _ in range(40):
         speed = 0.5 * (low + high)
@@ -308,7 +309,7 @@ def test_what_holds_over_stretches_of_a_smooth_motion(sign: int, linear: bool) -
     -0.04, least moments, sums of rises and jumps, and steepness are those of these numbers."""
     x = sign * np.array([[0.02, 0.03, 0.01], [0.08, 0.02, 0.0]])
     z = np.array([[-0.10, 0.05, 0.02], [-0.05, 0.01, 0.0]])
-    where = Ground(rocker(left=0.4), Push(0.1, x, z), linear=linear)
+    where = RestoringMoments(rocker(left=0.4), Push(0.1, x, z), linear=linear)
     held = where.window(0, 0.0, 2)
     assert held is not None
     sine, cosine = (

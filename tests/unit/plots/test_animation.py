@@ -17,7 +17,7 @@ from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine
 from rocking.plots.animation import animate_gif, animate_html, page, page_data, slowest_speed
-from rocking.plots.animation_scene import Shape, scene_of
+from rocking.plots.animation_scene import DrawnShape, scene_of
 
 BLOCK = Block(width=0.5, height=2.0)
 ALPHA = math.atan(0.25)
@@ -161,14 +161,14 @@ def test_overturning_and_rest_are_told():
 
 def test_outlines_are_those_of_the_bodies():
     """A block is its rectangle, a hole is a second ring, mass points keep their shares, all about their feet."""
-    block = Shape.of(BLOCK)
+    block = DrawnShape.of(BLOCK)
     ((shade, (ring,)),) = block.regions
     assert shade == 1.0
     assert {tuple(row) for row in ring.tolist()} == {(-0.25, 0.0), (0.25, 0.0), (0.25, 2.0), (-0.25, 2.0)}
     assert (block.feet, block.centre) == ((-0.25, 0.25), (0.0, 1.0))
-    ((_, rings),) = Shape.of(HOLLOW).regions
+    ((_, rings),) = DrawnShape.of(HOLLOW).regions
     assert [sorted(map(tuple, ring.tolist()))[0] for ring in rings] == [(-1.0, 0.0), (-0.5, 1.0)]
-    points = Shape.of(LOLLIPOP)
+    points = DrawnShape.of(LOLLIPOP)
     np.testing.assert_allclose(points.points, [[0.1, 2.0, 1.0 / 3.0], [-0.1, 0.5, 1.0]], atol=1e-15)
     np.testing.assert_allclose(points.feet, [-0.6, 0.6])
     np.testing.assert_allclose(points.centre, [-0.05, 0.875])
@@ -177,7 +177,7 @@ def test_outlines_are_those_of_the_bodies():
 @pytest.mark.parametrize("theta", [0.3, -0.3])
 def test_body_turns_about_the_foot_it_stands_on(theta):
     """Turned clockwise the right foot stays and the left one rises by 2 b sin(theta); no corner sinks."""
-    shape = Shape.of(BLOCK)
+    shape = DrawnShape.of(BLOCK)
     left, right = shape.turned(np.array([[-0.25, 0.0], [0.25, 0.0]]), theta)
     stays, rises = (right, left) if theta > 0.0 else (left, right)
     np.testing.assert_allclose(stays, [math.copysign(0.25, theta), 0.0], atol=1e-15)

@@ -10,7 +10,7 @@ from rocking.bodies.shapes import trapezoid
 from rocking.dynamics.histories import free_rocking, simulate
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import sine
-from rocking.plots.animation_scene import Shape, scene_of
+from rocking.plots.animation_scene import DrawnShape, scene_of
 from rocking.plots.lying import fall_of
 
 BODIES = {
@@ -31,7 +31,7 @@ def falling(body, side, **more):
 @pytest.mark.parametrize("side", [-1, 1], ids=["left", "right"])
 def test_the_body_ends_on_the_ground_and_never_in_it(name, side):
     """At the end a corner beside the foot stands on the ground, and before no corner is below it."""
-    shape = Shape.of(BODIES[name])
+    shape = DrawnShape.of(BODIES[name])
     scene = scene_of(falling(BODIES[name], side, duration=0.3))
     corners = np.unique(shape.corners, axis=0)
     lowest = [shape.turned(corners, theta)[:, 1] for theta in scene.rotation]
@@ -49,7 +49,7 @@ def test_a_free_fall_keeps_its_energy_and_takes_the_time_of_its_integral(name, s
     Negative control: a fall at the speed with which it begins, as was drawn before, takes a fifth longer.
     """
     body = BODIES[name]
-    fall = fall_of(falling(body, side, duration=0.3), Shape.of(body).lying)
+    fall = fall_of(falling(body, side, duration=0.3), DrawnShape.of(body).lying)
     about = body.side("right" if side > 0 else "left")
     alpha, p = about.slenderness_angle, about.frequency_parameter
     size, rate = np.abs(fall.rotation), np.abs(fall.velocity)
@@ -72,7 +72,7 @@ def test_a_fall_that_was_cut_is_that_of_the_longer_history():
     cut = simulate(body, motion, "ked", duration=motion.duration)
     assert cut.time[-1] < whole.time[-1]
     assert abs(cut.rotation[-1]) < 1.2 < abs(whole.intervals.rotation[-1, 1])
-    fall = fall_of(cut, Shape.of(body).lying)
+    fall = fall_of(cut, DrawnShape.of(body).lying)
     known = fall.time < whole.intervals.end[-1]
     assert known.sum() > 10
     np.testing.assert_allclose(fall.rotation[known], whole.at(fall.time[known]), atol=1e-8)
@@ -84,7 +84,7 @@ def test_a_ground_that_goes_on_goes_on_in_the_fall():
     time = step * np.arange(3000)
     motion = GroundMotion(9.0 * np.sin(5.0 * time), step, vertical=3.9 * np.cos(3.0 * time))
     response = simulate(body, motion, 0.9)
-    fall = fall_of(response, Shape.of(body).lying)
+    fall = fall_of(response, DrawnShape.of(body).lying)
     assert abs(fall.rotation[0]) >= 0.5 * math.pi - 1e-9
     assert fall.time.size > 10
     middle = 0.5 * (fall.time[1:-1] + fall.time[:-2])
@@ -104,7 +104,7 @@ def test_a_body_that_ends_on_its_way_over_the_other_foot_lands_on_it_first():
     cut = free_rocking(body, rotation=rotation, angular_velocity=velocity, restitution="ked", duration=0.01)
     whole = free_rocking(body, rotation=rotation, angular_velocity=velocity, restitution="ked", duration=3.0)
     assert (cut.impacts.size, whole.impacts.size, cut.outcome) == (0, 1, whole.outcome)
-    fall = fall_of(cut, Shape.of(body).lying)
+    fall = fall_of(cut, DrawnShape.of(body).lying)
     known = fall.time < whole.intervals.end[-1]
     np.testing.assert_allclose(fall.rotation[known], whole.at(fall.time[known]), atol=1e-8)
     assert fall.rotation[-1] < -1.4
@@ -119,6 +119,8 @@ def test_what_stands_does_not_fall():
 
 def test_where_bodies_lie():
     """A block lies after a quarter turn, a body that leans out by 45 degrees on one side after an eighth there."""
-    assert Shape.of(Block(width=0.5, height=2.0)).lying == pytest.approx((-0.5 * math.pi, 0.5 * math.pi), abs=1e-12)
+    assert DrawnShape.of(Block(width=0.5, height=2.0)).lying == pytest.approx(
+        (-0.5 * math.pi, 0.5 * math.pi), abs=1e-12
+    )
     leans = Section([Region([(-0.25, 0.0), (0.25, 0.0), (1.25, 1.0), (-0.75, 1.0)])])
-    assert Shape.of(leans).lying == pytest.approx((-math.atan(2.0), 0.25 * math.pi), abs=1e-12)
+    assert DrawnShape.of(leans).lying == pytest.approx((-math.atan(2.0), 0.25 * math.pi), abs=1e-12)

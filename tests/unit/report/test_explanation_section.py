@@ -5,7 +5,7 @@ import pytest
 
 from rocking.evidence.explanation import explanation
 from rocking.plots.laboratory import bed_dependence_figure, explanations_figure, residuals_figure
-from rocking.report.document import Paragraph, Picture, Table
+from rocking.report.document import Paragraph, Picture, ReportTable
 from rocking.report.explanation_blocks import explanation_blocks
 
 
@@ -13,7 +13,7 @@ def test_numbers_of_the_table():
     """Every row has the name, BIC and error of its explanation, best first; the verdict comes before."""
     found = explanation()
     blocks = explanation_blocks(found)
-    (table,) = [block for block in blocks if isinstance(block, Table)]
+    (table,) = [block for block in blocks if isinstance(block, ReportTable)]
     assert [row[0].text for row in table.rows] == [each.name for each in found.ranked]
     assert [float(row[4].text) for row in table.rows] == pytest.approx([e.fit.rmse for e in found.ranked], abs=5e-5)
     assert [float(row[5].text) for row in table.rows] == pytest.approx([e.fit.bic for e in found.ranked], abs=0.05)

@@ -7,7 +7,7 @@ import pytest
 
 from rocking.plots import figure_3
 from rocking.report import folder
-from rocking.report.document import Document, Paragraph, Picture, Section, Table, cell
+from rocking.report.document import Document, Paragraph, Picture, ReportSection, ReportTable, cell
 from rocking.report.html import render_html
 from rocking.report.pdf import render_pdf
 
@@ -22,11 +22,11 @@ def document():
     """A report with every kind of block and hostile words."""
     blocks = [
         Paragraph(WORDS, WORDS, "bad"),
-        Table(WORDS, [WORDS, "b"], [[cell(WORDS, "good"), cell(1)]], WORDS, "t"),
+        ReportTable(WORDS, [WORDS, "b"], [[cell(WORDS, "good"), cell(1)]], WORDS, "t"),
         Picture("one", WORDS),
         Picture("two", WORDS, wide=False),
     ]
-    return Document(WORDS, WORDS, [(WORDS, WORDS)], [Section(WORDS, blocks)], {"made with": WORDS})
+    return Document(WORDS, WORDS, [(WORDS, WORDS)], [ReportSection(WORDS, blocks)], {"made with": WORDS})
 
 
 def test_html_escapes_and_keeps_ids_apart(tmp_path):

@@ -11,7 +11,7 @@ from rocking.dynamics.engine import RESULTS
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse
 from rocking.restitution import model
-from rocking.studies import Histories, MotionList, MotionSet, Product, SampledRestitution, Table, histories
+from rocking.studies import Histories, HistoryTable, MotionList, MotionSet, Product, SampledRestitution, histories
 from rocking.studies.motion_set import digest
 
 
@@ -150,7 +150,7 @@ def test_table_equals_product():
     """Histories given one by one are those of the product."""
     made = product()
     rows = made.rows(0, made.count)
-    table = Table(made.motions, rows.motion, rows.values)
+    table = HistoryTable(made.motions, rows.motion, rows.values)
     assert same(made.run(0, made.count), table.run(0, table.count))
     assert table.run(17, 19)["peak_rotation"].tolist() == made.run(17, 19)["peak_rotation"].tolist()
 
@@ -232,7 +232,7 @@ def test_arrays_are_not_shared_with_the_caller():
     rows = whole.rows(0, whole.count)
     values, motion = {name: array.copy() for name, array in rows.values.items()}, rows.motion.copy()
     sides, scales = {name: array.copy() for name, array in whole.sides.items()}, whole.scales.copy()
-    table, made = Table(whole.motions, motion, values), Product(whole.motions, sides, scales)
+    table, made = HistoryTable(whole.motions, motion, values), Product(whole.motions, sides, scales)
     keys, results = (table.key(), made.key()), made.run(0, made.count)
     for array in (*values.values(), *sides.values(), scales):
         np.multiply(array, 0.5, out=array)
@@ -264,8 +264,8 @@ def test_few_motions_are_held_at_once(monkeypatch):
     rows = product().rows(0, 120)
     values = {name: random.permutation(np.tile(array, 10)) for name, array in rows.values.items()}
     law = RandomRestitution.normal(0.9, 0.05, seed=3)
-    made = Table(Many(), random.integers(0, 500, 1200), values, law=law)
-    held = Table(MotionList([Many()[k] for k in range(500)]), made.motion, made.values, law=law)
+    made = HistoryTable(Many(), random.integers(0, 500, 1200), values, law=law)
+    held = HistoryTable(MotionList([Many()[k] for k in range(500)]), made.motion, made.values, law=law)
     laid, batch = [], histories.Batch
 
     def watched(motions, *others):
@@ -330,7 +330,7 @@ def test_bad_products_are_refused():
     with pytest.raises(InvalidValueError, match="scales must be"):
         Product(base.motions, base.sides, np.ones((4, 2)))
     with pytest.raises(InvalidValueError, match="missing or unknown"):
-        Table(base.motions, np.zeros(3), {"p": np.ones(3)})
+        HistoryTable(base.motions, np.zeros(3), {"p": np.ones(3)})
 
 
 def test_a_bad_row_is_reported_alone():
@@ -339,7 +339,7 @@ def test_a_bad_row_is_reported_alone():
     rows = made.rows(0, made.count)
     values = {name: array.copy() for name, array in rows.values.items()}
     values["p_right"][11] = np.nan
-    bad = Table(made.motions, rows.motion, values).run(0, made.count)
+    bad = HistoryTable(made.motions, rows.motion, values).run(0, made.count)
     good = made.run(0, made.count)
     others = np.arange(made.count) != 11
     assert bad["outcome"][11] == rk.Outcome.FAILED.code

@@ -229,7 +229,7 @@ def tell_records(told: int) -> None:
     """Have every record told right after its commit."""
     for name in ("record", "record_piece"):
 
-        def record(self: ledger.Ledger, row: ledger.Record, commit: object = getattr(ledger.Ledger, name)) -> None:
+        def record(self: ledger.Ledger, row: ledger.LedgerEntry, commit: object = getattr(ledger.Ledger, name)) -> None:
             commit(self, row)
             os.write(told, f"{row.number} {row.first} {row.last} {row.seal}\n".encode())
 
@@ -244,17 +244,19 @@ def break_on_purpose(variant: str) -> None:
         kept: list[tuple[Path, bytes]] = []
         commit = ledger.Ledger.record
 
-        def keep(self: executors.Job, chunk: object, data: bytes, seconds: float, worker: str = "") -> executors.Done:
+        def keep(
+            self: executors.WorkerTask, chunk: object, data: bytes, seconds: float, worker: str = ""
+        ) -> executors.Done:
             kept.append((self.folder / f"{chunk.name}.shard", data))
             return executors.Done(chunk, shard.seal(data), len(data), seconds, "careless")
 
-        def record(self: ledger.Ledger, row: ledger.Record) -> None:
+        def record(self: ledger.Ledger, row: ledger.LedgerEntry) -> None:
             commit(self, row)
             for path, data in kept:
                 path.write_bytes(data)
             kept.clear()
 
-        executors.Job.keep, ledger.Ledger.record = keep, record
+        executors.WorkerTask.keep, ledger.Ledger.record = keep, record
 
 
 def write_in_place(path: Path, data: bytes) -> None:

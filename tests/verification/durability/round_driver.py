@@ -144,7 +144,7 @@ def tell_records(told: int) -> None:
     """Have a byte told right after every commit."""
     commit = ledger.Ledger.record
 
-    def record(self: ledger.Ledger, row: ledger.Record) -> None:
+    def record(self: ledger.Ledger, row: ledger.LedgerEntry) -> None:
         commit(self, row)
         os.write(told, b".")
 

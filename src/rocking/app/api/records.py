@@ -49,7 +49,7 @@ Word = Annotated[str | None, Query(min_length=1, max_length=200)]
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class RecordOptions:
     """What a user says about a file."""
 
     format: str | None = None  # format, units: name of the format and unit of acceleration
@@ -66,7 +66,7 @@ class Looked:
     message: str = ""  # why, in the reader's words
 
     @classmethod
-    def at(cls, content: bytes, name: str, told: Told) -> "Looked":
+    def at(cls, content: bytes, name: str, told: RecordOptions) -> "Looked":
         """Look at a file."""
         check_record(content)
         with TemporaryDirectory(prefix="rocking-") as folder:
@@ -76,7 +76,7 @@ class Looked:
             return cls._of(path, told)
 
     @classmethod
-    def _of(cls, path: Path, told: Told) -> "Looked":
+    def _of(cls, path: Path, told: RecordOptions) -> "Looked":
         given: dict[str, Any] = {"format": told.format, "units": told.units, "time_step": told.time_step}
         needs: list[str] = []
         reasons: list[str] = []
@@ -165,7 +165,7 @@ async def add_record(
 
     time_step: step between samples, where the file does not state it [s].
     """
-    content, told = await request.body(), Told(format, units, time_step)
+    content, told = await request.body(), RecordOptions(format, units, time_step)
     return JsonAnswer(await heavy(request, _added, state_of(request).records, content, name, told))
 
 
@@ -199,7 +199,7 @@ async def look_at_record(
 
     time_step: step between samples, where the file does not state it [s].
     """
-    told = Told(format, units, time_step)
+    told = RecordOptions(format, units, time_step)
     return JsonAnswer(await heavy(request, _looked, state_of(request).records, record, told))
 
 
@@ -218,18 +218,18 @@ def delete_record(
     return JsonAnswer({"deleted": record})
 
 
-def _added(records: RecordStore, content: bytes, name: str, told: Told) -> dict[str, Any]:
+def _added(records: RecordStore, content: bytes, name: str, told: RecordOptions) -> dict[str, Any]:
     records.check_upload(content)
     looked = _read(content, name, told)
     return {**asdict(records.add(content, name)), **looked.facts()}
 
 
-def _looked(records: RecordStore, record: str, told: Told) -> dict[str, Any]:
+def _looked(records: RecordStore, record: str, told: RecordOptions) -> dict[str, Any]:
     stored = records.get(record)
     return {**asdict(stored), **_read(records.content(record), stored.file_name, told).facts()}
 
 
-def _read(content: bytes, name: str, told: Told) -> Looked:
+def _read(content: bytes, name: str, told: RecordOptions) -> Looked:
     if _STATIONS in content[:4096]:
         raise RecordError(
             f"{name}: this is a StationXML file, which describes an instrument and holds no motion; {_WAY}"

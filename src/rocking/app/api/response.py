@@ -18,18 +18,18 @@ from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.contact import forces
-from rocking.dynamics.intervals import Intervals
+from rocking.dynamics.intervals import DenseOutput
 from rocking.dynamics.ledger import energies
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
 from rocking.motions.kinematics import ground_displacement
 from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
-from rocking.plots.animation_scene import Shape
+from rocking.plots.animation_scene import DrawnShape
 from rocking.plots.lying import fall_of
 from rocking.report.facts.body import body_facts, outline_facts
 from rocking.report.facts.response import finite, moved_facts, response_facts
-from rocking.report.facts.verdict import Verdict
+from rocking.report.facts.verdict import ModelAgreement
 
 router = APIRouter(prefix="/api", tags=["response"])
 _ABOUT = """\
@@ -96,7 +96,7 @@ class ResponseAnswers:
 
         window: the part of the time that is drawn [s].
         """
-        asked, verdict = self.question, Verdict.of(self.responses)
+        asked, verdict = self.question, ModelAgreement.of(self.responses)
         return {
             "answers": [
                 {"label": label, "error": one}
@@ -173,7 +173,7 @@ def fall_series(response: Response) -> dict[str, Any]:
     Returns ``time`` [s] and ``rotation`` [rad], empty if there is no more to fall; ``lying``: the rotations at which
     the body lies on its left and on its right side [rad].
     """
-    lying = Shape.of(response.body).lying
+    lying = DrawnShape.of(response.body).lying
     fall = fall_of(response, lying)
     return {"time": fall.time[1:].tolist(), "rotation": fall.rotation[1:].tolist(), "lying": list(lying)}
 
@@ -200,7 +200,7 @@ def _states(response: Response) -> tuple[FloatArray, dict[str, FloatArray]]:
     return time, columns
 
 
-def _at_both_ends(response: Response, intervals: Intervals) -> dict[str, FloatArray]:
+def _at_both_ends(response: Response, intervals: DenseOutput) -> dict[str, FloatArray]:
     """Return every curve at the start and at the end of every interval."""
     mass, settings = response.body.mass, response.settings
     kinetic, potential, work, lost = energies(intervals, mass, settings)
@@ -218,7 +218,7 @@ def _at_both_ends(response: Response, intervals: Intervals) -> dict[str, FloatAr
     }
 
 
-def _turns(intervals: Intervals) -> tuple[np.ndarray, FloatArray]:
+def _turns(intervals: DenseOutput) -> tuple[np.ndarray, FloatArray]:
     """Return in which intervals the body turns round, and where within them, from 0 to 1."""
     at = np.flatnonzero(intervals.velocity[:, 0] * intervals.velocity[:, 1] < 0.0)
     c, (start, end) = intervals.quintics()[at], intervals.velocity[at].T

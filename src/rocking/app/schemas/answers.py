@@ -365,7 +365,7 @@ class UnitNames(Answer):
     acceleration: list[str]
 
 
-class Quantity(Answer):
+class QuantityAnswer(Answer):
     """An intensity measure, or an axis of a map."""
 
     name: str
@@ -391,15 +391,15 @@ class Info(Answer):
     families: list[FamilyFacts]
     formats: list[FormatFacts]
     units: UnitNames
-    measures: list[Quantity]
-    axes: list[Quantity]
+    measures: list[QuantityAnswer]
+    axes: list[QuantityAnswer]
     study_kinds: list[KindOfStudy]
     limits: dict[str, float] = Field(
         description="how much one server takes; the names say what: bytes [B], seconds [s], counts"
     )
 
 
-class Told(BaseModel):
+class ErrorDetail(BaseModel):
     """What went wrong."""
 
     model_config = ConfigDict(extra="forbid")
@@ -417,7 +417,7 @@ class ErrorAnswer(BaseModel):
         json_schema_extra={"examples": [{"error": {"kind": "not-found", "message": "there is no such thing here"}}]},
     )
 
-    error: Told
+    error: ErrorDetail
 
 
 _WORDS = {

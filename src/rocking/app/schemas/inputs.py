@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from rocking.app.errors import Refused, TooLarge
 from rocking.bodies import Body
-from rocking.bodies.formats.body_schema import BODIES, Document, Positive
+from rocking.bodies.formats.body_schema import BODIES, BodyFile, Positive
 from rocking.spec.document import OneMotionTable, ResponseTables, SettingsTable, check_start
 from rocking.spec.fields import JobTable, Words, refused
 
@@ -65,7 +65,7 @@ _DEEPEST = 32
 _LARGEST = 2**63
 
 
-class BodyInput(Document):
+class BodyInput(BodyFile):
     """A unit of length, and one table that says what the body is, or width and height."""
 
     width: Positive | None = None
@@ -130,7 +130,7 @@ def refuse_more(count: int, most: int, what: str, way_out: str = "") -> None:
         raise TooLarge(f"{what.format(most=most)}, got {count}" + (f"; {way_out}" if way_out else ""))
 
 
-def check_size(given: Document) -> None:
+def check_size(given: BodyFile) -> None:
     """Refuse a body that is too large, before anything is made of it."""
     regions, holes, vertices = _polygons(given)
     refuse_more(regions, MOST_REGIONS, "a section holds up to {most} regions", "join those of one density")
@@ -188,12 +188,12 @@ def check_contact(body: Body) -> Body:
     return body
 
 
-def size_of(given: Document) -> int:
+def size_of(given: BodyFile) -> int:
     """Return how much there is to compute with."""
     return _polygons(given)[-1] + (len(given.mass_points.points) if given.mass_points else 0)
 
 
-def _polygons(given: Document) -> tuple[int, int, int]:
+def _polygons(given: BodyFile) -> tuple[int, int, int]:
     regions = holes = vertices = 0
     for region in given.section.region if given.section else ():
         words = region.wkt or ""

@@ -7,7 +7,7 @@ from pydantic import Field
 from rocking.app.schemas.answers import Answer, DrawnBody, Foot
 
 
-class RockingSide(Answer):
+class RockingSideAnswer(Answer):
     """One side of the body as its equation of motion has it."""
 
     slenderness_angle_rad: float = Field(description="alpha [rad]")
@@ -19,8 +19,8 @@ class RockingSide(Answer):
 class RockingSides(Answer):
     """One entry for each foot."""
 
-    left: RockingSide
-    right: RockingSide
+    left: RockingSideAnswer
+    right: RockingSideAnswer
 
 
 class RockingBody(Answer):
@@ -90,7 +90,7 @@ class ResponseSeries(Answer):
     of: int = Field(description="states of the response: samples, events, and where it turns round")
 
 
-class Fall(Answer):
+class FallAnswer(Answer):
     """How a fall goes on after the curves end, by the same equation of motion, until a corner meets the ground."""
 
     time: list[float] = Field(description="[s]")
@@ -125,7 +125,7 @@ class ResponseFacts(Answer):
     least_vertical_force: float = Field(alias="least_vertical_force_N", description="of the ground on the body [N]")
     warnings: list[str] = Field(description="sentences; none if pure rocking is credible")
     series: ResponseSeries
-    fall: Fall
+    fall: FallAnswer
 
 
 class NoResponse(Answer):

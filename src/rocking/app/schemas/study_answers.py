@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from rocking.app.schemas.answers import Answer, Quantity
+from rocking.app.schemas.answers import Answer, QuantityAnswer
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.schemas.response_answers import ResponseFacts
 
@@ -86,7 +86,7 @@ class CurveOfState(Answer):
     band: str = Field(description="what the band is, or why there is none")
 
 
-class Regression(Answer):
+class RegressionAnswer(Answer):
     """The line of a cloud analysis, in logarithms."""
 
     slope: float = Field(description="[-]")
@@ -133,7 +133,7 @@ class AnalysisFacts(Answer):
     fits: dict[str, FitFacts] = Field(description="by state")
     curves: dict[str, CurveOfState] = Field(description="by state")
     sentences: list[str]
-    regression: Regression | None = Field(None, description="of a cloud")
+    regression: RegressionAnswer | None = Field(None, description="of a cloud")
     regression_words: str | None = Field(None, description="why a cloud has no line")
     cloud: CloudPoints | None = None
     definitions: dict[str, str] | None = Field(None, description="of an incremental analysis")
@@ -149,7 +149,7 @@ class FragilityResult(Result):
     """Fragility curves."""
 
     kind: Literal["stripes", "cloud", "incremental"]
-    measure: Quantity
+    measure: QuantityAnswer
     motions: Coordinate
     definition: str
     uplift_threshold: float | None = Field(
@@ -158,7 +158,7 @@ class FragilityResult(Result):
     analyses: list[AnalysisFacts]
 
 
-class Column(Answer):
+class ColumnAnswer(Answer):
     """A column of a table."""
 
     name: str
@@ -191,7 +191,7 @@ class MapResult(Result):
     contours: list[list[list[tuple[float, float]]]] = Field(description="lines x, y around what overturns, in units")
     body: str
     motion: str
-    tables: dict[str, list[Column]] = Field(description="points and boundary of a refined map; else empty")
+    tables: dict[str, list[ColumnAnswer]] = Field(description="points and boundary of a refined map; else empty")
 
 
 class SpectrumCurve(Answer):
@@ -250,7 +250,7 @@ class MinimumResult(Result):
     kind: Literal["minimum-acceleration"]
     motions: Coordinate
     bodies: Coordinate
-    tables: dict[str, list[Column]]
+    tables: dict[str, list[ColumnAnswer]]
 
 
 StudyResult = Annotated[
@@ -300,7 +300,7 @@ class StoredHistory(Answer):
     overturning_time_s: float | None = Field(description="null if it stands [s]")
 
 
-class Cell(Answer):
+class HistoryAnswer(Answer):
     """The history behind a point of the picture of a study."""
 
     stored: StoredHistory

@@ -10,7 +10,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from rocking.app.answers import refusal
 from rocking.app.errors import Busy, Problem, Refused, TooLarge
-from rocking.app.security.requests import BYTES, SAFE, Asked, content_type
+from rocking.app.security.requests import BYTES, SAFE, RequestHead, content_type
 from rocking.app.settings import MEBIBYTE, Limits
 
 _DRAINED = 64 * MEBIBYTE
@@ -44,7 +44,7 @@ class BodyLimits:
             return
         body = bytearray()
         try:
-            await self._read(Asked.of(scope), receive, body)
+            await self._read(RequestHead.of(scope), receive, body)
         except Problem as problem:
             await refusal(problem, close=True)(scope, receive, send)
         except Gone:
@@ -54,7 +54,7 @@ class BodyLimits:
         finally:
             self._held -= len(body)
 
-    async def _read(self, asked: Asked, receive: Receive, body: bytearray) -> None:
+    async def _read(self, asked: RequestHead, receive: Receive, body: bytearray) -> None:
         is_file = content_type(asked) == BYTES
         most = self._limits.upload_bytes if is_file else self._limits.json_bytes
         try:
@@ -69,7 +69,7 @@ class BodyLimits:
         else:
             check_json(bytes(body), self._limits.json_depth)
 
-    async def _fill(self, asked: Asked, receive: Receive, body: bytearray, most: int) -> None:
+    async def _fill(self, asked: RequestHead, receive: Receive, body: bytearray, most: int) -> None:
         declared, pieces = asked.headers.get("content-length", "0"), _Pieces(receive)
         length = float(declared) if declared.isdecimal() else math.inf
         if length > most:

@@ -10,7 +10,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from rocking.app.answers import error_answer, refusal
 from rocking.app.errors import INTERNAL, Problem
 from rocking.app.security.requests import (
-    Asked,
+    RequestHead,
     check_content,
     check_host,
     check_method,
@@ -20,9 +20,9 @@ from rocking.app.security.requests import (
     own_hosts,
 )
 from rocking.app.security.sessions import check_session
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 
-Check = Callable[["Gate", Asked, HTTPConnection], None]
+Check = Callable[["Gate", RequestHead, HTTPConnection], None]
 CHECKS: dict[str, Check] = {
     "method": lambda gate, asked, request: check_method(asked),
     "target": lambda gate, asked, request: check_target(asked, gate.settings.limits.target_bytes),
@@ -65,10 +65,10 @@ _LOG = logging.getLogger("rocking.app")
 class Gate:
     """Let pass what our own page or a script with the key asks, and nothing else."""
 
-    settings: Settings
+    settings: ServerSettings
     own: frozenset[str]
 
-    def __init__(self, app: ASGIApp, settings: Settings) -> None:
+    def __init__(self, app: ASGIApp, settings: ServerSettings) -> None:
         self._app = app
         self.settings = settings
         self.own = own_hosts(settings)
@@ -77,7 +77,7 @@ class Gate:
         """Check a connection and hand it on, or refuse it."""
         if scope["type"] != "lifespan":
             try:
-                asked = Asked.of(scope)
+                asked = RequestHead.of(scope)
                 for check in CHECKS.values():
                     check(self, asked, HTTPConnection(scope))
             except Problem as problem:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rocking.app.errors import BadRequest, NotAllowed, NotFound, Problem, WrongContent, WrongMethod
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 
 _MOST_HEADERS = 100
 _MOST_BYTES = 1 << 14
@@ -40,7 +40,7 @@ class TooManyHeaders(Problem):
 
 
 @dataclass(frozen=True)
-class Asked:
+class RequestHead:
     """The head of a request or of a websocket handshake."""
 
     method: str  # in capitals; "WEBSOCKET" for a handshake
@@ -50,7 +50,7 @@ class Asked:
     headers: Mapping[str, str]  # lower-case name -> value
 
     @classmethod
-    def of(cls, scope: Mapping[str, Any]) -> "Asked":
+    def of(cls, scope: Mapping[str, Any]) -> "RequestHead":
         """Return the head of an ASGI connection."""
         pairs = scope["headers"]
         if len(pairs) > _MOST_HEADERS or sum(len(name) + len(value) for name, value in pairs) > _MOST_BYTES:
@@ -96,7 +96,7 @@ class TooLong(Problem):
     kind = "too-large"
 
 
-def check_method(asked: Asked) -> None:
+def check_method(asked: RequestHead) -> None:
     """Refuse methods that nothing here takes; OPTIONS too, as no other site may ask."""
     if asked.method not in _METHODS:
         raise WrongMethod("the method must be GET, HEAD, POST or DELETE")
@@ -104,7 +104,7 @@ def check_method(asked: Asked) -> None:
         raise BadRequest(f"a {asked.method} request has no body")
 
 
-def check_target(asked: Asked, most: int) -> None:
+def check_target(asked: RequestHead, most: int) -> None:
     """Refuse paths with anything but plain letters, digits, dots, dashes and slashes.
 
     most: longest path and query [bytes].
@@ -115,7 +115,7 @@ def check_target(asked: Asked, most: int) -> None:
         raise NotFound("there is no such page: its path has characters that none here has")
 
 
-def own_hosts(settings: Settings) -> frozenset[str]:
+def own_hosts(settings: ServerSettings) -> frozenset[str]:
     """Return every Host header that is the server's own."""
     given = f"[{settings.host}]" if ":" in settings.host else settings.host
     names = {*_ALWAYS, given.lower()}
@@ -123,7 +123,7 @@ def own_hosts(settings: Settings) -> frozenset[str]:
     return frozenset(with_port | names if settings.port == 80 else with_port)
 
 
-def check_host(asked: Asked, own: frozenset[str]) -> None:
+def check_host(asked: RequestHead, own: frozenset[str]) -> None:
     """Refuse a request that was sent to another name."""
     if asked.headers.get("host", "").lower() not in own:
         raise NotAllowed(
@@ -131,7 +131,7 @@ def check_host(asked: Asked, own: frozenset[str]) -> None:
         )
 
 
-def check_origin(asked: Asked, own: frozenset[str]) -> None:
+def check_origin(asked: RequestHead, own: frozenset[str]) -> None:
     """Refuse a request of another page; one that may change something must say where it comes from."""
     origin = asked.headers.get("origin")
     if origin is None:
@@ -142,7 +142,7 @@ def check_origin(asked: Asked, own: frozenset[str]) -> None:
         raise NotAllowed("the Origin header names another page than this server's own")
 
 
-def check_site(asked: Asked) -> None:
+def check_site(asked: RequestHead) -> None:
     """Refuse what a browser sends on behalf of another site, but for somebody following a link to a page."""
     site = asked.headers.get("sec-fetch-site")
     if site is None or site in _OWN_SITES:
@@ -154,7 +154,7 @@ def check_site(asked: Asked) -> None:
         raise NotAllowed("another site asks for this")
 
 
-def content_type(asked: Asked) -> str:
+def content_type(asked: RequestHead) -> str:
     """Return the type of a body without its parameters.
 
     Returns lower case; empty if none is given.
@@ -162,7 +162,7 @@ def content_type(asked: Asked) -> str:
     return asked.headers.get("content-type", "").partition(";")[0].strip().lower()
 
 
-def check_content(asked: Asked) -> None:
+def check_content(asked: RequestHead) -> None:
     """Refuse bodies of other types, in another charset, or packed."""
     kind = content_type(asked)
     if asked.headers.get("content-encoding", "identity").lower() != "identity":

@@ -15,7 +15,7 @@ from starlette.requests import HTTPConnection
 from rocking.app.answers import JsonAnswer
 from rocking.app.errors import Busy, NotSignedIn
 from rocking.app.schemas.answers import Answer
-from rocking.app.security.requests import Asked
+from rocking.app.security.requests import RequestHead
 from rocking.app.settings import Limits, state_of
 
 router = APIRouter(prefix="/api/session", tags=["session"])
@@ -101,7 +101,7 @@ def is_signed_in(request: HTTPConnection) -> bool:
     return state.sessions.knows(request.cookies.get(cookie_name(state.settings.port)))
 
 
-def check_session(asked: Asked, request: HTTPConnection) -> None:
+def check_session(asked: RequestHead, request: HTTPConnection) -> None:
     """Refuse what is not public to somebody who is not signed in."""
     public = not asked.of_api or ("GET" if asked.method == "HEAD" else asked.method, asked.target) in _PUBLIC
     if not public and not is_signed_in(request):

@@ -22,10 +22,10 @@ from rocking.motions.pulse import Pulse
 from rocking.motions.pulses import pulse
 from rocking.outcome import Outcome
 from rocking.spec.parts import motions_of
-from rocking.spec.reading import Inputs
+from rocking.spec.reading import InputFiles
 from rocking.spec.response import ResponseQuestion
 from rocking.studies._axes import axis_of
-from rocking.studies.body_axes import Restitution
+from rocking.studies.body_axes import RestitutionAxis
 from rocking.studies.geometry import changed_body
 from rocking.studies.plane import Plane
 from rocking.studies.question import Question
@@ -63,7 +63,7 @@ _STORED = {
 
 
 @dataclass(frozen=True)
-class Place:
+class HistoryPlace:
     """A history of a study."""
 
     number: int
@@ -71,7 +71,7 @@ class Place:
     restitution: int  # number of the restitution among those that are compared
 
     @classmethod
-    def of(cls, study: OpenStudy, x: int, y: int, restitution: int = 0, motion: int = 0) -> "Place":
+    def of(cls, study: OpenStudy, x: int, y: int, restitution: int = 0, motion: int = 0) -> "HistoryPlace":
         """Return the history at a point of a picture."""
         dims, choices = study.job.job.study.dims, len(study.job.job.parts.choices)
         across = across_of(study)
@@ -111,7 +111,7 @@ class Variation:
     stretch: float = 1.0  # factor on its time [-]
 
     @classmethod
-    def of(cls, study: OpenStudy, place: Place) -> "Variation":
+    def of(cls, study: OpenStudy, place: HistoryPlace) -> "Variation":
         """Return what a history is made of."""
         job = study.job.job
         label, restitution, choice = _choice(study, place)
@@ -133,7 +133,7 @@ class Variation:
         return cls(job.parts.bodies[number], _table(study, number), label, restitution, choice, scale)
 
 
-def _on_map(made: Variation, study: OpenStudy, place: Place) -> Variation:
+def _on_map(made: Variation, study: OpenStudy, place: HistoryPlace) -> Variation:
     """Return the variation of a cell of a map: its axes change it."""
     job = study.job.job
     assert job.document.map is not None  # asked before
@@ -148,7 +148,7 @@ def _on_map(made: Variation, study: OpenStudy, place: Place) -> Variation:
     made = replace(made, scale=float(case.scale[0]), stretch=float(case.stretch[0]))
     if geometry:
         made = replace(made, body=body, table=body_table(body))
-    if any(isinstance(axis, Restitution) for axis in axes.values()):
+    if any(isinstance(axis, RestitutionAxis) for axis in axes.values()):
         value = float(case.sides["r_right"][0])
         made = replace(made, label=f"{value!r}", restitution=value, choice={"value": value})
     return made
@@ -167,7 +167,7 @@ def _table(study: OpenStudy, number: int) -> dict[str, Any]:
     return dict((study.job.job.document.body or [])[number])
 
 
-def _choice(study: OpenStudy, place: Place) -> tuple[str, Any, dict[str, Any] | None]:
+def _choice(study: OpenStudy, place: HistoryPlace) -> tuple[str, Any, dict[str, Any] | None]:
     """Return label, restitution, and what inputs say of it."""
     table, number = study.job.job.document.restitution, place.restitution
     label, restitution = list(study.job.job.parts.choices.items())[number]
@@ -224,7 +224,7 @@ class ChosenMotion:
         assert table.records is not None  # asked before
         name = table.records[place]
         alone = table.model_copy(update={"records": [name], "scale": 1.0})
-        motion = _stretched(motions_of([alone], Inputs(study.folder.path))[0], stretch)
+        motion = _stretched(motions_of([alone], InputFiles(study.folder.path))[0], stretch)
         path = PurePosixPath(name)
         told: dict[str, Any] = {"record": path.parent.name, "file_name": path.name}
         told |= {key: getattr(table, key) for key in _OF_RECORDS if getattr(table, key) is not None}
@@ -270,7 +270,7 @@ def _stretched(motion: Motion, stretch: float) -> Motion:
     return replace(motion, time_step=motion.time_step * stretch)
 
 
-def cell_of(study: OpenStudy, place: Place, points: int = POINTS) -> dict[str, Any]:
+def cell_of(study: OpenStudy, place: HistoryPlace, points: int = POINTS) -> dict[str, Any]:
     """Return the history behind a point of a picture.
 
     Returns ``stored``: what the study has of it, to the last digit; ``inputs``: what to ask for the same history, null
@@ -297,7 +297,7 @@ def cell_of(study: OpenStudy, place: Place, points: int = POINTS) -> dict[str, A
     }
 
 
-def stored(study: OpenStudy, place: Place) -> dict[str, Any]:
+def stored(study: OpenStudy, place: HistoryPlace) -> dict[str, Any]:
     """Return what a study has of a history.
 
     Returns Number, outcome, mode, meaning, impacts, peaks and time of overturning, as they were computed.
@@ -308,7 +308,7 @@ def stored(study: OpenStudy, place: Place) -> dict[str, Any]:
 
 
 def _responded(
-    study: OpenStudy, place: Place, variation: Variation, motion: ChosenMotion
+    study: OpenStudy, place: HistoryPlace, variation: Variation, motion: ChosenMotion
 ) -> tuple[ResponseQuestion, Response]:
     job = study.job.job
     scale, engine = variation.scale * motion.scale, job.document.settings.engine

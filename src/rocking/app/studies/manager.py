@@ -13,8 +13,8 @@ from rocking.app.errors import NoRoom, NotFound, Refused, TooLarge
 from rocking.app.settings import Limits
 from rocking.app.studies.job_document import JobDocument
 from rocking.app.studies.opened import OpenStudies
-from rocking.app.studies.queue import Line
-from rocking.app.studies.study import Study, processors
+from rocking.app.studies.queue import StudyQueue
+from rocking.app.studies.study import HostedStudy, processors
 from rocking.app.studies.study_folder import (
     CAMPAIGN,
     CANCELLED,
@@ -53,7 +53,7 @@ class StudyManager:
         self._folder, self._limits, self._records = folder / "studies", limits, records
         there = studies_in(self._folder)
         self.opened = OpenStudies()
-        self._line = Line(there, workers or processors(), at_once, limits.studies_waiting)
+        self._line = StudyQueue(there, workers or processors(), at_once, limits.studies_waiting)
         if any(study.meta.state == WAITING for study in there.values()):
             self._line.changed()  # what an earlier server left goes on by itself
 
@@ -107,7 +107,7 @@ class StudyManager:
     def resume(self, study: str) -> None:
         """Put a study in line again; it goes on where it stopped."""
 
-        def again() -> Study:
+        def again() -> HostedStudy:
             """Return the study, which waits again."""
             with self._line.lock:
                 found = self._line.study(study)
@@ -144,7 +144,7 @@ class StudyManager:
         """Stop what runs, so that it can be resumed, and watch no longer."""
         self._line.close()
 
-    def _made(self, name: str, document: JobDocument) -> Study:
+    def _made(self, name: str, document: JobDocument) -> HostedStudy:
         check_room(self._folder, _BYTES * document.most, self._limits.studies_bytes)
         folder = StudyFolder(self._folder / new_id())
         created = datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
@@ -155,10 +155,10 @@ class StudyManager:
             if error.errno not in _FULL:
                 raise
             raise NoRoom("the disk is full, and nothing was kept of the study; make room and send it again") from error
-        return Study(folder, meta)
+        return HostedStudy(folder, meta)
 
 
-def studies_in(folder: Path) -> dict[str, Study]:
+def studies_in(folder: Path) -> dict[str, HostedStudy]:
     """Return the studies of an earlier server; none of them runs."""
     disk.make_folder(folder)
     folder.chmod(0o700)
@@ -172,7 +172,7 @@ def studies_in(folder: Path) -> dict[str, Study]:
         if meta is None and _half_made(path):
             shutil.rmtree(path, ignore_errors=True)
             continue
-        studies[path.name] = Study(StudyFolder(path), meta or _unknown(path), unreadable=meta is None)
+        studies[path.name] = HostedStudy(StudyFolder(path), meta or _unknown(path), unreadable=meta is None)
         studies[path.name].look()
     return studies
 
@@ -191,7 +191,7 @@ def _unknown(path: Path) -> Meta:
     return Meta(f"study {path.name}", "unknown", created.replace("+00:00", "Z"), 0, FAILED, _UNREADABLE)
 
 
-def remove(study: Study) -> None:
+def remove(study: HostedStudy) -> None:
     """Remove a study from the disk; a server that is killed meanwhile does not find half of one."""
     path = study.folder.path
     aside = path.with_name(f"{_DELETED}{path.name}")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from rocking.campaigns.jobs import JobFolder
-    from rocking.campaigns.jobs.answer import Answer
+    from rocking.campaigns.jobs.answer import AdaptiveResult
 
 _HELD = 256 * 2**20
 _ANSWERS = 64 * 2**20
@@ -74,7 +74,7 @@ class OpenStudy:
         return {} if finish is None else finish(self.raw)
 
     @cached_property
-    def answer(self) -> "Answer":
+    def answer(self) -> "AdaptiveResult":
         """What an adaptive study has found, from all of its rounds."""
         from rocking.campaigns.jobs import answer
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rocking.app.errors import Busy, NotFound
-from rocking.app.studies.study import Study, StudyProcess
+from rocking.app.studies.study import HostedStudy, StudyProcess
 from rocking.app.studies.study_folder import FAILED, INTERRUPTED, RUNNING, WAITING
 
 LOOK = 0.2
@@ -19,13 +19,13 @@ _LOG = logging.getLogger(__name__)
 _GONE = "there is no such study; it may have been deleted"
 
 
-class Line:
+class StudyQueue:
     """Studies of which a few run, some wait and the others do neither; safe to use from several threads.
 
     at_once: studies that run at the same time [-]; longest: studies that may wait [-].
     """
 
-    def __init__(self, studies: dict[str, Study], workers: int, at_once: int, longest: int) -> None:
+    def __init__(self, studies: dict[str, HostedStudy], workers: int, at_once: int, longest: int) -> None:
         self.lock = threading.RLock()
         self.published: dict[str, dict[str, Any]] = {}
         self.closed = False
@@ -36,14 +36,14 @@ class Line:
         self._thread: threading.Thread | None = None
         self.publish()
 
-    def study(self, name: str) -> Study:
+    def study(self, name: str) -> HostedStudy:
         """Return a study."""
         found = self._studies.get(name)
         if found is None:
             raise NotFound(_GONE)
         return found
 
-    def enter(self, make: Callable[[], Study]) -> Study:
+    def enter(self, make: Callable[[], HostedStudy]) -> HostedStudy:
         """Put a study in line; its place is kept while it is made."""
         with self.lock:
             waiting = self._entering + sum(each.meta.state == WAITING for each in self._studies.values())
@@ -62,7 +62,7 @@ class Line:
         self.changed()
         return study
 
-    def leave(self, name: str) -> tuple[Study, StudyProcess | None]:
+    def leave(self, name: str) -> tuple[HostedStudy, StudyProcess | None]:
         """Take a study out for good.
 
         Returns study: the study, which does not come back.
@@ -72,7 +72,7 @@ class Line:
             found.cancelled = found.left = True
             return self._studies.pop(name), found.process
 
-    def end(self, study: Study, process: StudyProcess) -> None:
+    def end(self, study: HostedStudy, process: StudyProcess) -> None:
         """Note how a study ended, once its process has; nothing if it was noted, or another process computes it."""
         with self.lock:
             if study.process is process:
@@ -142,7 +142,7 @@ class Line:
             self._wake.wait(LOOK if self._running() else SAVE_AGAIN if unsaved else None)
             self._wake.clear()
 
-    def _tend(self, each: Study) -> None:
+    def _tend(self, each: HostedStudy) -> None:
         """Look at a study that runs; whatever goes wrong with one does not touch the others."""
         process = each.process
         try:
@@ -162,7 +162,7 @@ class Line:
                 each.save()
             return not all(each.saved for each in self._studies.values())
 
-    def _running(self) -> list[Study]:
+    def _running(self) -> list[HostedStudy]:
         with self.lock:
             return [each for each in self._studies.values() if each.process is not None]
 

@@ -18,7 +18,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from rocking.app.answers import JsonAnswer, safe_name
 from rocking.app.schemas.answers import Deleted, answered, answered_with_file
-from rocking.app.schemas.study_answers import Cell, Launched, Studies, StudyFacts, StudyResult
+from rocking.app.schemas.study_answers import HistoryAnswer, Launched, Studies, StudyFacts, StudyResult
 from rocking.app.settings import state_of
 from rocking.app.studies.exports import MEDIA_TYPES, Crossing, Kind
 from rocking.app.studies.manager import StudyManager
@@ -163,7 +163,7 @@ async def _study_result(request: Request, study: str) -> Response:
     summary="The history behind a point of its picture",
     name="study_cell",
     response_class=JsonAnswer,
-    responses=answered(Cell, "The history."),
+    responses=answered(HistoryAnswer, "The history."),
 )
 async def _study_cell(
     request: Request,
@@ -228,11 +228,11 @@ def _result(manager: StudyManager, study: str) -> bytes:
 
 
 def _cell(manager: StudyManager, study: str, point: PointAsked) -> bytes:
-    from rocking.app.studies.history_at_point import Place, cell_of
+    from rocking.app.studies.history_at_point import HistoryPlace, cell_of
 
     with _there(manager, study) as folder:
         opened = manager.opened.get(folder)
-        found = Place.of(opened, point.x, point.y, point.restitution, point.motion)
+        found = HistoryPlace.of(opened, point.x, point.y, point.restitution, point.motion)
         key = (study, "cell", found.number, point.points)
         return manager.opened.answer(key, lambda: _json(cell_of(opened, found, point.points)))
 

@@ -25,7 +25,7 @@ _LONGEST_SENTENCE = 1000
 _LOG = logging.getLogger(__name__)
 
 
-class Pace:
+class StudyPace:
     """How fast histories are finished, over the last seconds, and how much work is done in a second.
 
     >>> pace = Pace()
@@ -131,7 +131,7 @@ def processors() -> int:
 
 
 @dataclass
-class Study:
+class HostedStudy:
     """A study."""
 
     folder: StudyFolder  # where it is
@@ -145,11 +145,11 @@ class Study:
     left: bool = False
     unreadable: bool = False  # whether what is on disk is not understood: it is shown, and left as it is
     saved: bool = True  # whether the disk knows its state
-    _pace: Pace = field(default_factory=Pace)
+    _pace: StudyPace = field(default_factory=StudyPace)
 
     def begin(self, workers: int) -> None:
         """Start to compute."""
-        self._pace, self.rate, self.estimate, self.cancelled = Pace(), 0.0, None, False
+        self._pace, self.rate, self.estimate, self.cancelled = StudyPace(), 0.0, None, False
         self.process = StudyProcess(self.folder, workers)
         self.become(RUNNING)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from rocking.app.errors import NotFound
 from rocking.app.studies.job_document import JobDocument
-from rocking.campaigns import Status, disk
+from rocking.campaigns import CampaignStatus, disk
 from rocking.campaigns.jobs.folder import status_of
 from rocking.errors import InvalidValueError, RockingError
 
@@ -156,7 +156,7 @@ class StudyFolder:
         sound = all(isinstance(word, str) for word in words) and isinstance(made.histories, int)
         return made if sound and made.state in STATES else None
 
-    def status(self) -> tuple[Status | None, bool]:
+    def status(self) -> tuple[CampaignStatus | None, bool]:
         """Return how far the campaign is.
 
         Returns status: of an adaptive study that of the rounds that have begun; None where nothing has.

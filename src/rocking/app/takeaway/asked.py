@@ -19,7 +19,7 @@ from rocking.report.facts.impact import ImpactAnswer
 
 
 @dataclass(frozen=True)
-class Asked:
+class Evaluation:
     """Inputs, and what is computed from them, each once and only when somebody needs it."""
 
     inputs: Inputs  # what the user chose

@@ -3,7 +3,7 @@
 import io
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
-from rocking.app.takeaway.asked import Asked
+from rocking.app.takeaway.asked import Evaluation
 from rocking.app.takeaway.inputs_file import FILE_NAME, commands, fingerprint, inputs_as_toml, record_name
 from rocking.app.takeaway.plain_text import plain_line
 
@@ -11,7 +11,7 @@ _EARLIEST = (1980, 1, 1, 0, 0, 0)
 _ORDINARY_FILE = 0o644 << 16
 
 
-def bundle_of(asked: Asked) -> bytes:
+def bundle_of(asked: Evaluation) -> bytes:
     """Return an archive with everything that the command line needs for the same result.
 
     Returns A ZIP file, the same bytes for the same inputs.
@@ -33,7 +33,7 @@ def _add(archive: ZipFile, name: str, data: bytes) -> None:
     archive.writestr(entry, data)
 
 
-def _words(asked: Asked, record: str | None) -> str:
+def _words(asked: Evaluation, record: str | None) -> str:
     said = commands(asked.inputs) or ["(nothing moves the body yet: choose a motion or free rocking first)"]
     files = [f"  {FILE_NAME:<16} body, motion, restitution and settings"]
     if record is not None:

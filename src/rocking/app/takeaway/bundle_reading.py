@@ -3,7 +3,7 @@
 import hashlib
 from typing import Any
 
-from rocking.app.api.records import Looked, Told
+from rocking.app.api.records import Looked, RecordOptions
 from rocking.app.errors import NotFound, Refused
 from rocking.app.records import RecordStore
 from rocking.app.schemas.inputs import LONGEST, Inputs, parsed_toml
@@ -33,7 +33,7 @@ def _inputs_from_archive(archive: Archive, records: RecordStore) -> Inputs:
     inputs = inputs_from_toml(text, lambda word: sha if word in {name, sha} else others(word))
     if inputs.motion is not None and inputs.motion.record == sha:
         records.check_upload(content)
-        Looked.at(content, name, Told(inputs.motion.format, inputs.motion.units, inputs.motion.time_step))
+        Looked.at(content, name, RecordOptions(inputs.motion.format, inputs.motion.units, inputs.motion.time_step))
         records.add(content, inputs.motion.file_name or name)
     return inputs
 

@@ -11,7 +11,7 @@ from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
 from rocking.plots.response_curves import ground_curve, motion_curves, over_slenderness, shown_until
 from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, PALE, in_journal_style, new_figure
-from rocking.report.facts.verdict import Verdict
+from rocking.report.facts.verdict import ModelAgreement
 from rocking.report.facts.words import restitution_words
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def comparison_picture(responses: Mapping[str, Response]) -> "Figure":
     """Draw several responses to one motion: ground acceleration, rotations, velocities, energy lost at impacts."""
     first = next(iter(responses.values()))
     figure, axes = new_figure(DOUBLE, 5.6, rows=4, sharex=True, height_ratios=[0.7, 1.8, 1.0, 1.0])
-    verdict = Verdict.of({restitution_words(label): one for label, one in responses.items()})
+    verdict = ModelAgreement.of({restitution_words(label): one for label, one in responses.items()})
     figure.suptitle(
         "\n".join(wrap(drawn_text(verdict.sentence, 330), 110)), x=0.01, ha="left", fontsize=8.5, fontweight="bold"
     )

@@ -11,7 +11,7 @@ from rocking.app.api.body import OCTETS
 from rocking.app.schemas.answers import answered, answered_with_file
 from rocking.app.schemas.inputs import Inputs, ResponseInputs
 from rocking.app.settings import state_of
-from rocking.app.takeaway.asked import Asked
+from rocking.app.takeaway.asked import Evaluation
 from rocking.app.takeaway.bundle import bundle_of
 from rocking.app.takeaway.bundle_reading import inputs_from_file
 from rocking.app.takeaway.film import MEDIA_TYPES, gif_of, page_of
@@ -35,7 +35,7 @@ async def report(
     request: Request, inputs: ResponseInputs, date: Annotated[datetime.date | None, Query(description=_DATE)] = None
 ) -> Answer:
     """Return the report: body, coefficients, motion, responses, and how to do it again."""
-    asked = Asked(inputs, state_of(request).records)
+    asked = Evaluation(inputs, state_of(request).records)
     day = "" if date is None else f"{date.day} {date:%B %Y}"
     return attachment(await heavy(request, report_of, asked, day), _name(asked, "report.pdf"), "application/pdf")
 
@@ -50,7 +50,7 @@ async def animation(
     request: Request, kind: Literal["html", "gif"], inputs: ResponseInputs, restitution: Place = None
 ) -> Answer:
     """Return one response in motion: a page that needs nothing else, or a GIF."""
-    asked = Asked(inputs, state_of(request).records)
+    asked = Evaluation(inputs, state_of(request).records)
     make = page_of if kind == "html" else gif_of
     data = await heavy(request, lambda: make(asked.chosen(restitution)))
     return attachment(data, f"{asked.words('animation', restitution)}.{kind}", MEDIA_TYPES[kind])
@@ -76,7 +76,7 @@ async def inputs_file(request: Request, inputs: Inputs) -> Answer:
 )
 async def inputs_bundle(request: Request, inputs: Inputs) -> Answer:
     """Return an archive of the file of inputs, the record, and what to type."""
-    asked = Asked(inputs, state_of(request).records)
+    asked = Evaluation(inputs, state_of(request).records)
     return attachment(await heavy(request, bundle_of, asked), _name(asked, "response.zip"), "application/zip")
 
 
@@ -93,5 +93,5 @@ async def inputs_read(request: Request) -> JsonAnswer:
     return JsonAnswer(plain_inputs(await heavy(request, inputs_from_file, data, state_of(request).records)))
 
 
-def _name(asked: Asked, ending: str) -> str:
+def _name(asked: Evaluation, ending: str) -> str:
     return f"{asked.name or 'rocking'} {ending}"

@@ -9,7 +9,7 @@ from rocking.app.answers import attachment
 from rocking.app.schemas.answers import answered_with_file
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.settings import state_of
-from rocking.app.takeaway.asked import Asked
+from rocking.app.takeaway.asked import Evaluation
 from rocking.app.takeaway.drawing import MEDIA_TYPES, PictureKind, drawn
 from rocking.app.takeaway.picture_words import in_words
 from rocking.app.work import heavy
@@ -40,12 +40,12 @@ async def picture(
     ] = None,
 ) -> Answer:
     """Return a picture as a file: the body, its coefficients, the three stages, the motion, or the responses."""
-    asked = Asked(inputs, state_of(request).records, onto)
+    asked = Evaluation(inputs, state_of(request).records, onto)
     data = await heavy(request, drawn, lambda: named(figure_of(what, asked, restitution), what, asked.name), kind)
     return attachment(data, f"{asked.name or 'rocking'} {what}.{kind}", MEDIA_TYPES[kind])
 
 
-def figure_of(what: str, asked: Asked, restitution: int | None = None) -> "Figure":
+def figure_of(what: str, asked: Evaluation, restitution: int | None = None) -> "Figure":
     """Return a picture."""
     from rocking.plots._body_picture import body_picture, coefficient_picture
     from rocking.plots._figure_2 import figure_2
@@ -63,7 +63,7 @@ def figure_of(what: str, asked: Asked, restitution: int | None = None) -> "Figur
     return body_picture(asked.body)
 
 
-def _responses(asked: Asked, restitution: int | None) -> "Figure":
+def _responses(asked: Evaluation, restitution: int | None) -> "Figure":
     from rocking.app.takeaway.comparison_picture import comparison_picture
     from rocking.plots.response import response_picture
 
@@ -78,7 +78,7 @@ def named(figure: "Figure", what: str, name: str) -> "Figure":
     return _titled(figure, name) if name and what in {"body", "coefficients", "stages"} else figure
 
 
-def _scaled(figure: "Figure", asked: Asked) -> "Figure":
+def _scaled(figure: "Figure", asked: Evaluation) -> "Figure":
     """Say that a motion was scaled: its name speaks of the one that it was."""
     scale = 1.0 if asked.inputs.motion is None else asked.inputs.motion.scale
     return figure if scale == 1.0 else _titled(figure, f"{scale:g} times {asked.motion.name}")

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from rocking.app.takeaway.asked import Asked
+from rocking.app.takeaway.asked import Evaluation
 from rocking.app.takeaway.drawing import drawn
 from rocking.app.takeaway.inputs_file import commands, fingerprint, inputs_as_toml
 from rocking.app.takeaway.pictures import figure_of
@@ -10,15 +10,15 @@ from rocking.app.takeaway.plain_text import plain_line
 from rocking.motions.intensity import Measure
 from rocking.plots.traces import fine_samples
 from rocking.report.facts.motion import measures_of
-from rocking.report.response_document import PICTURES, Found, response_pages
-from rocking.report.response_document import Asked as About
+from rocking.report.response_document import PICTURES, ReportResults, response_pages
+from rocking.report.response_document import ReportSubject as About
 from rocking.report.response_pdf import response_pdf
 
 
-def report_of(asked: Asked, date: str) -> bytes:
+def report_of(asked: Evaluation, date: str) -> bytes:
     """Return the report as PDF."""
     moved = asked.inputs.motion is not None
-    found = Found(
+    found = ReportResults(
         asked.impact,
         asked.motion if moved else None,
         _measures(asked) if moved else {},
@@ -36,5 +36,5 @@ def report_of(asked: Asked, date: str) -> bytes:
     return response_pdf(response_pages(about, found), pictures)
 
 
-def _measures(asked: Asked) -> dict[str, Measure]:
+def _measures(asked: Evaluation) -> dict[str, Measure]:
     return measures_of(asked.motion, fine_samples(asked.motion))

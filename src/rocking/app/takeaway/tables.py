@@ -12,7 +12,7 @@ from rocking.app.answers import attachment
 from rocking.app.schemas.answers import answered_with_file
 from rocking.app.schemas.inputs import Inputs
 from rocking.app.settings import state_of
-from rocking.app.takeaway.asked import Asked
+from rocking.app.takeaway.asked import Evaluation
 from rocking.app.takeaway.contents.body_tables import body_table, coefficient_table
 from rocking.app.takeaway.contents.motion_tables import measures_table, motion_table, spectrum_table
 from rocking.app.takeaway.contents.response_tables import impacts_table, outcomes_table, response_table
@@ -45,25 +45,25 @@ async def table(
     ] = None,
 ) -> Answer:
     """Return a table as a file that Excel, MATLAB, Python or R opens."""
-    asked = Asked(inputs, state_of(request).records, onto)
+    asked = Evaluation(inputs, state_of(request).records, onto)
     data, words = await heavy(request, _named_table, what, kind, asked, restitution)
     return attachment(data, f"{words}.{kind}", MEDIA_TYPES[kind])
 
 
-def _named_table(what: str, kind: str, asked: Asked, restitution: int | None) -> tuple[bytes, str]:
+def _named_table(what: str, kind: str, asked: Evaluation, restitution: int | None) -> tuple[bytes, str]:
     data = table_of(what, kind, asked, restitution)
     of_one = what == "response" and (kind != "xlsx" or restitution is not None)
     return data, asked.words(what, restitution) if of_one else f"{asked.name or 'rocking'} {what}"
 
 
-def table_of(what: str, kind: str, asked: Asked, restitution: int | None = None) -> bytes:
+def table_of(what: str, kind: str, asked: Evaluation, restitution: int | None = None) -> bytes:
     """Return a table as a file."""
     if what == "response":
         return _response(kind, asked, restitution)
     return written([(what, _table(what, asked))], kind)
 
 
-def _table(what: str, asked: Asked) -> Table:
+def _table(what: str, asked: Evaluation) -> Table:
     about = asked.about
     if what == "body":
         return body_table(asked.body, asked.gravity, asked.name, about)
@@ -76,7 +76,7 @@ def _table(what: str, asked: Asked) -> Table:
     return made(asked.motion, about)
 
 
-def _response(kind: str, asked: Asked, restitution: int | None) -> bytes:
+def _response(kind: str, asked: Evaluation, restitution: int | None) -> bytes:
     if kind != "xlsx":
         return _exported(asked.chosen(restitution), kind)
     if restitution is not None:

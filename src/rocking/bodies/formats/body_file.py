@@ -113,13 +113,13 @@ def _plane(given: dict[str, Any]) -> dict[str, Any]:
     return given
 
 
-def _validated(given: dict[str, Any]) -> "schema.Document":
+def _validated(given: dict[str, Any]) -> "schema.BodyFile":
     from pydantic import ValidationError
 
-    from rocking.bodies.formats.body_schema import Document
+    from rocking.bodies.formats.body_schema import BodyFile
 
     try:
-        return Document.model_validate(given)
+        return BodyFile.model_validate(given)
     except ValidationError as error:
         raise BodyFileError(sentence(error, given.get("units"))) from error
 
@@ -131,7 +131,7 @@ def _block(table: "schema.BlockTable", scale: float) -> Body:
         return body if feet is None else body.with_feet(*feet)
 
 
-def _shape(document: "schema.Document", scale: float) -> Section:
+def _shape(document: "schema.BodyFile", scale: float) -> Section:
     if trapezoid := document.trapezoid:
         with blamed("trapezoid"):
             sizes = (trapezoid.base, trapezoid.top, trapezoid.height, trapezoid.lean)
@@ -146,11 +146,11 @@ def _shape(document: "schema.Document", scale: float) -> Section:
         return _standing(shapes.regular_polygon(polygon.sides, polygon.radius * scale), polygon, scale)
 
 
-def _standing(outline: FloatArray, table: "schema.Shape", scale: float) -> Section:
+def _standing(outline: FloatArray, table: "schema.ShapeTable", scale: float) -> Section:
     return Section.from_points(outline, feet=_pair(table.feet, scale), **_options(table, scale))
 
 
-def _options(table: "schema.Shape", scale: float) -> "_Options":
+def _options(table: "schema.ShapeTable", scale: float) -> "_Options":
     options: _Options = {} if table.density is None else {"density": table.density}
     if table.depth is not None:
         options["depth"] = table.depth * scale

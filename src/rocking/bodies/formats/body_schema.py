@@ -14,7 +14,7 @@ Ring = Annotated[list[Pair], Field(min_length=3)]
 UnitName = Literal["m", "cm", "mm", "ft", "in"]
 
 
-class Table(BaseModel):
+class StrictTable(BaseModel):
     """A table whose keys are all known; numbers are numbers, and finite."""
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True)
@@ -28,7 +28,7 @@ class Table(BaseModel):
         return given
 
 
-class Shape(Table):
+class ShapeTable(StrictTable):
     """What every section-like shape has beside its dimensions, in the file's unit and kg/m3."""
 
     density: Positive | None = None
@@ -36,14 +36,14 @@ class Shape(Table):
     feet: Pair | None = None
 
 
-class BlockTable(Shape):
+class BlockTable(ShapeTable):
     """A rectangle; with feet it becomes a `Section`."""
 
     width: Positive
     height: Positive
 
 
-class TrapezoidTable(Shape):
+class TrapezoidTable(ShapeTable):
     """A trapezoid, upright or leaning."""
 
     base: Positive
@@ -52,7 +52,7 @@ class TrapezoidTable(Shape):
     lean: float = 0.0
 
 
-class EllipseTable(Shape):
+class EllipseTable(ShapeTable):
     """An ellipse as an inscribed polygon."""
 
     width: Positive
@@ -60,14 +60,14 @@ class EllipseTable(Shape):
     sides: Annotated[int, Field(ge=3, le=100_000)] = 64
 
 
-class RegularPolygonTable(Shape):
+class RegularPolygonTable(ShapeTable):
     """A regular polygon on one of its sides."""
 
     sides: Annotated[int, Field(ge=3, le=100_000)]
     radius: Positive
 
 
-class RegionTable(Table):
+class RegionTable(StrictTable):
     """A polygon, or the polygons of a text or of a file beside the body file."""
 
     outline: Ring | None = None
@@ -91,7 +91,7 @@ class RegionTable(Table):
         return self
 
 
-class SectionTable(Table):
+class SectionTable(StrictTable):
     """Regions, feet, depth and ground."""
 
     region: Annotated[list[RegionTable], Field(min_length=1)]
@@ -100,7 +100,7 @@ class SectionTable(Table):
     ground: float = 0.0
 
 
-class MassPointsTable(Table):
+class MassPointsTable(StrictTable):
     """Points, masses and feet, and where the base is flat."""
 
     points: Annotated[list[Pair], Field(min_length=1)]
@@ -109,7 +109,7 @@ class MassPointsTable(Table):
     contact: list[Pair] | None = None
 
 
-class Document(Table):
+class BodyFile(StrictTable):
     """A body file: a unit, and one table that says what the body is."""
 
     units: UnitName
@@ -123,7 +123,7 @@ class Document(Table):
     mass_points: MassPointsTable | None = None
 
     @model_validator(mode="after")
-    def _one_body(self) -> "Document":
+    def _one_body(self) -> "BodyFile":
         found = [f"[{key}]" for key in BODIES if getattr(self, key) is not None]
         if len(found) != 1:
             choice = ", ".join(f"[{key}]" for key in BODIES)

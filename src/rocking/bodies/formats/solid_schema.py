@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from rocking.bodies.formats.body_schema import Pair, Positive, Ring, Table, UnitName
+from rocking.bodies.formats.body_schema import Pair, Positive, Ring, StrictTable, UnitName
 
 Cut = Annotated[float, Field(ge=0.0)]
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
@@ -13,7 +13,7 @@ MOST_PARTS = 500
 """A body may have so many parts: each is tried against each for overlaps."""
 
 
-class BoxTable(Table):
+class BoxTable(StrictTable):
     """A box on z = 0, centred over the origin."""
 
     width: Positive
@@ -21,21 +21,21 @@ class BoxTable(Table):
     height: Positive
 
 
-class CylinderTable(Table):
+class CylinderTable(StrictTable):
     """An upright cylinder on z = 0, its axis through the origin."""
 
     diameter: Positive
     height: Positive
 
 
-class ConeTable(Table):
+class ConeTable(StrictTable):
     """An upright cone on z = 0."""
 
     diameter: Positive
     height: Positive
 
 
-class FrustumTable(Table):
+class FrustumTable(StrictTable):
     """A cone cut off level."""
 
     lower_diameter: Positive
@@ -43,7 +43,7 @@ class FrustumTable(Table):
     height: Positive
 
 
-class SphereTable(Table):
+class SphereTable(StrictTable):
     """A sphere, or what level cuts leave of it, its lowest point on z = 0."""
 
     diameter: Positive
@@ -51,7 +51,7 @@ class SphereTable(Table):
     cut_above: Cut = 0.0
 
 
-class EllipsoidTable(Table):
+class EllipsoidTable(StrictTable):
     """An ellipsoid, or what level cuts leave of it, its lowest point on z = 0."""
 
     width: Positive
@@ -61,7 +61,7 @@ class EllipsoidTable(Table):
     cut_above: Cut = 0.0
 
 
-class ExtrusionTable(Table):
+class ExtrusionTable(StrictTable):
     """A plan outline with holes, drawn up from z = 0."""
 
     outline: Ring
@@ -69,13 +69,13 @@ class ExtrusionTable(Table):
     holes: list[Ring] | None = None
 
 
-class RevolutionTable(Table):
+class RevolutionTable(StrictTable):
     """A profile of (radius, height) turned about the z axis."""
 
     profile: Annotated[list[Pair], Field(min_length=2)]
 
 
-class MeshTable(Table):
+class MeshTable(StrictTable):
     """A surface mesh in a file beside the body file."""
 
     file: str
@@ -85,14 +85,14 @@ class MeshTable(Table):
     fill_holes: bool = False
 
 
-class TurnTable(Table):
+class TurnTable(StrictTable):
     """A turn about an axis through the origin, counter-clockwise seen against it."""
 
     axis: Triple
     degrees: float
 
 
-class PartTable(Table):
+class PartTable(StrictTable):
     """One shape of one material: turned, in the order that is written, then moved."""
 
     box: BoxTable | None = None
@@ -121,7 +121,7 @@ SHAPES = ("box", "cylinder", "cone", "frustum", "sphere", "ellipsoid", "extrusio
 """Tables that say which shape a part has."""
 
 
-class SolidTable(Table):
+class SolidTable(StrictTable):
     """Parts, and on what they stand."""
 
     part: Annotated[list[PartTable], Field(min_length=1, max_length=MOST_PARTS)]
@@ -130,7 +130,7 @@ class SolidTable(Table):
     base_tolerance: Positive | None = None
 
 
-class SolidDocument(Table):
+class SolidDocument(StrictTable):
     """A file of a body in space: a unit and the table [solid]."""
 
     units: UnitName

@@ -9,7 +9,7 @@ from rocking.tables import Column, Table
 
 
 @dataclass(frozen=True)
-class Answer:
+class AdaptiveResult:
     """What an adaptive study has found."""
 
     value: Any  # what the Python call returns

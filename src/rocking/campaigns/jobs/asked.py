@@ -11,7 +11,7 @@ from rocking.conventions import IntArray
 from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
-from rocking.studies.histories import Histories, Table, hash_of
+from rocking.studies.histories import Histories, HistoryTable, hash_of
 from rocking.studies.motion_set import MotionList, MotionSet
 from rocking.studies.question import Question
 from rocking.studies.sensitivity.sampled import sampled
@@ -21,7 +21,7 @@ Compute = Callable[[Histories], Arrays]
 
 
 @dataclass(frozen=True, eq=False)
-class Asked(Table):
+class NumberedTable(HistoryTable):
     """Histories given one by one, the draws of each under a number of its own."""
 
     number: IntArray  # number of each history for random coefficients
@@ -59,7 +59,7 @@ class AskedBatch(Batch):
             return super().run(0, rows)
         given = rows(0, count)
         options: dict[str, Any] = {"law": self.law, "settings": self.settings, "engine": self.engine}
-        asked = Asked(self.motion_set, given.motion, given.values, given.key, **options)
+        asked = NumberedTable(self.motion_set, given.motion, given.values, given.key, **options)
         found = self.compute(sampled(asked))
         # nobody asks for what a round does not keep, and views of one NaN need no room
         return {name: found.get(name, np.broadcast_to(np.nan, count)) for name in RESULTS}, {}

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from rocking.campaigns import CampaignIncompleteError
-from rocking.campaigns.jobs.answer import Answer
+from rocking.campaigns.jobs.answer import AdaptiveResult
 from rocking.campaigns.jobs.folder import JobFolder
 from rocking.campaigns.jobs.round_status import resume, status_of_rounds
 from rocking.campaigns.jobs.rounds import replayed
@@ -59,7 +59,7 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     return study.finish(folder.campaign.results(*READ))
 
 
-def answer(folder: JobFolder) -> Answer:
+def answer(folder: JobFolder) -> AdaptiveResult:
     """Return what an adaptive study has found, from its rounds on disk.
 
     Parameters

@@ -15,9 +15,9 @@ from rocking.campaigns import (
     Campaign,
     CampaignDamagedError,
     CampaignMismatchError,
+    CampaignStatus,
     Executor,
     Progress,
-    Status,
     Summary,
     Verification,
     disk,
@@ -35,7 +35,7 @@ from rocking.campaigns.jobs.round_status import (
 )
 from rocking.campaigns.jobs.rounds import opened, run_rounds
 from rocking.errors import InvalidValueError
-from rocking.spec.reading import Inputs, document_of, located, refuse_changes
+from rocking.spec.reading import InputFiles, document_of, located, refuse_changes
 
 JOB, INPUTS, HISTORIES = "job.toml", "inputs.json", "histories"
 """Files of the folder, and its folder of results."""
@@ -117,7 +117,7 @@ class JobFolder:
         if not base.is_dir() and content["files"]:
             raise InvalidValueError(f"{path}: the folder of its inputs, {base}, is not there; give --inputs")
         with located(str(path)):
-            found = Inputs(base)
+            found = InputFiles(base)
             for item in content["files"]:  # before they are read: what has changed may not be readable
                 found.file(item["path"])
             refuse_changes(content["files"], found.told())
@@ -193,7 +193,7 @@ class JobStatus:
     path: Path
     name: str
     kind: str
-    status: Status | None
+    status: CampaignStatus | None
     complete: bool
     rounds: int | None = None
 

@@ -28,7 +28,7 @@ _BASE = 150_000_000
 
 
 @dataclass(frozen=True)
-class Forecast:
+class JobForecast:
     """What a job will take.
 
     Parameters
@@ -64,7 +64,7 @@ class Forecast:
     later: tuple[int, int] | None = None
 
 
-def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> Forecast:
+def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> JobForecast:
     """Return what a job will take, from histories that are computed for two seconds.
 
     Parameters
@@ -86,7 +86,7 @@ def forecast(job: Job, workers: int = 1, folder: Path | None = None) -> Forecast
     chunks = -(-histories.count // chunk)
     each, later = trial(histories), _later(job)
     work = each.at(workers / histories.count)
-    return Forecast(
+    return JobForecast(
         histories.count,
         chunks,
         chunk,

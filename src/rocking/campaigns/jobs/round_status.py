@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from rocking.campaigns import Campaign, CampaignDamagedError, Status, Verification
+from rocking.campaigns import Campaign, CampaignDamagedError, CampaignStatus, Verification
 from rocking.campaigns.disk import holder
 from rocking.campaigns.identity import NAME
 from rocking.campaigns.reading import verified
@@ -46,13 +46,13 @@ def way_out(folder: Path, number: int) -> Iterator[None]:
         ) from error
 
 
-def status_of_rounds(folder: Path, *, verify: bool = True) -> tuple[Status | None, int, bool]:
+def status_of_rounds(folder: Path, *, verify: bool = True) -> tuple[CampaignStatus | None, int, bool]:
     """Return how far the rounds are that have begun; how many will follow is not known before they do.
 
     Returns status: of all rounds that have begun; None if none has; finished: whether the last one was asked for, and
     all are complete.
     """
-    found: list[Status] = []
+    found: list[CampaignStatus] = []
     while (round_folder(folder, len(found)) / NAME).exists():
         with way_out(folder, len(found)):
             found.append(Campaign.status_of(round_folder(folder, len(found)), verify=verify))
@@ -64,7 +64,7 @@ def status_of_rounds(folder: Path, *, verify: bool = True) -> tuple[Status | Non
     }
     damaged, broken = (tuple(word for each in found for word in getattr(each, name)) for name in ("damaged", "broken"))
     software = found[0].software
-    status = Status(folder, running=holder(folder), software=software, damaged=damaged, broken=broken, **sums)
+    status = CampaignStatus(folder, running=holder(folder), software=software, damaged=damaged, broken=broken, **sums)
     told = finished_rounds(folder)
     whole = told is not None and told["rounds"] == len(found) and status.complete
     return status, len(found), whole

@@ -21,9 +21,9 @@ from rocking.campaigns import (
     disk,
 )
 from rocking.campaigns.disk import FolderLock
-from rocking.campaigns.executors import Interruption, Job
+from rocking.campaigns.executors import Interruption, WorkerTask
 from rocking.campaigns.identity import NAME, SHARDS, Identity
-from rocking.campaigns.jobs.answer import Answer
+from rocking.campaigns.jobs.answer import AdaptiveResult
 from rocking.campaigns.jobs.asked import Compute, first_round
 from rocking.campaigns.jobs.round_status import FINISHED, finished_rounds, resume, round_folder, way_out
 from rocking.campaigns.processes import chosen
@@ -34,7 +34,7 @@ NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_
 """What studies decide on: no more of a round is held in memory."""
 
 
-Search = Callable[[Compute], Answer]
+Search = Callable[[Compute], AdaptiveResult]
 
 
 @dataclass
@@ -103,7 +103,7 @@ def opened(path: Path, histories: Histories, chunk: int | None) -> Campaign:
     return Campaign.create(path, histories, chunk)
 
 
-def replayed(search: Search, folder: Path) -> Answer:
+def replayed(search: Search, folder: Path) -> AdaptiveResult:
     """Return what a finished study has found, from its rounds on disk; nothing is computed."""
     told = finished_rounds(folder)
     if told is None:
@@ -119,7 +119,7 @@ def replayed(search: Search, folder: Path) -> Answer:
     )
 
 
-class _Run:
+class _RoundsRun:
     """One run of the rounds that are missing; what it did is summed up."""
 
     def __init__(
@@ -168,7 +168,7 @@ def run_rounds(
     Returns what was done in the rounds that were not finished before.
     """
     _check(executor, workers, search, options.get("start_method"))
-    run = _Run(executor, workers, progress, **{"order_seed": None, **options})
+    run = _RoundsRun(executor, workers, progress, **{"order_seed": None, **options})
     rounds = Rounds(folder, chunk, run.advance, run.asked_to_stop)
     with ExitStack() as stack:
         with disk.guarded(folder):
@@ -187,7 +187,9 @@ def _check(executor: str | Executor, workers: int | None, search: Search, start_
     if isinstance(executor, Executor):
         histories = first_round(search)
         plan = Identity.of(histories).plan
-        nothing = who.run(Job(histories, plan.engine, plan.software, Path(SHARDS)), iter(()), bool, lambda *_: None)
+        nothing = who.run(
+            WorkerTask(histories, plan.engine, plan.software, Path(SHARDS)), iter(()), bool, lambda *_: None
+        )
         assert not list(nothing)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.campaigns.jobs.answer import Answer
+from rocking.campaigns.jobs.answer import AdaptiveResult
 from rocking.campaigns.jobs.asked import Compute
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.lost_contact import flags
@@ -37,7 +37,7 @@ class Study:
     rescale: Callable[[int, int, Arrays], Arrays] | None = None
     # of an adaptive study: takes what computes a round of histories, asks for one round after another, and returns what
     # it has found. The histories of the study are then those of the first round
-    search: Callable[[Compute], Answer] | None = None
+    search: Callable[[Compute], AdaptiveResult] | None = None
     # takes outcome and peak_rotation of all histories and returns the assessment of an inventory
     assess: Callable[[Arrays], Any] | None = None
 

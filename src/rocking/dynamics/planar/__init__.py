@@ -2,13 +2,13 @@
 
 from rocking.dynamics.planar.histories import simulate_with_contact
 from rocking.dynamics.planar.response import PlanarResponse
-from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
+from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
 from rocking.dynamics.planar.shenton import analytic_regime, friction_demand, regime_at_start, regime_map
 from rocking.dynamics.planar.start import Start
 from rocking.outcome import Regime
 
 __all__ = [
-    "ContactLaw",
+    "GroundContact",
     "PlanarResponse",
     "PlanarSettings",
     "Regime",

@@ -7,12 +7,12 @@ Lemke's algorithm would find is among them, and unlike it the trial also sees wh
 from itertools import chain, combinations
 from typing import NamedTuple
 
-from rocking.dynamics.planar.course import Course, course
+from rocking.dynamics.planar.course import ModeSeries, course
 from rocking.dynamics.planar.footing import Footing
-from rocking.dynamics.planar.ground import Ground
+from rocking.dynamics.planar.ground import GroundSeries
 from rocking.dynamics.planar.margins import consistent, margins
 from rocking.dynamics.planar.mode import Mode
-from rocking.dynamics.planar.state import State, along, away
+from rocking.dynamics.planar.state import PlanarState, along, away
 from rocking.outcome import Status
 
 TOLERANCE = 1e-12
@@ -21,7 +21,7 @@ _ORDER = 8
 _SAME = 1e-6
 
 
-def candidates(footing: Footing, state: State) -> list[Mode]:
+def candidates(footing: Footing, state: PlanarState) -> list[Mode]:
     """Return the modes that the velocities allow.
 
     Returns modes with most feet first, and those that stick before those that slide.
@@ -37,14 +37,14 @@ def candidates(footing: Footing, state: State) -> list[Mode]:
     return [*found, Mode(())]
 
 
-class Choice(NamedTuple):
+class NextMode(NamedTuple):
     """The mode that follows."""
 
     mode: Mode
     tolerance: float  # below it, over their scale, coefficients counted as zero [-]
 
 
-def choose(footing: Footing, state: State, ground: Ground, friction: float) -> Choice | Status:
+def choose(footing: Footing, state: PlanarState, ground: GroundSeries, friction: float) -> NextMode | Status:
     """Return the mode that follows a state.
 
     friction: Coulomb's coefficient [-]. Returns the mode; where there is none, or where two of them move the body
@@ -57,11 +57,11 @@ def choose(footing: Footing, state: State, ground: Ground, friction: float) -> C
         good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]
         if good:
             same = all(_agree(good[0][1], other, footing.size) for _, other in good[1:])
-            return Choice(good[0][0], tolerance) if same else Status.AMBIGUOUS
+            return NextMode(good[0][0], tolerance) if same else Status.AMBIGUOUS
     return Status.NO_CONTACT_FORCE
 
 
-def weight_of(ground: Ground) -> float:
+def weight_of(ground: GroundSeries) -> float:
     """Return the acceleration that contact forces are measured by.
 
     Returns |g + a_z| + |a_x|, and at least a little [m/s2].
@@ -69,7 +69,7 @@ def weight_of(ground: Ground) -> float:
     return max(abs(ground.lift[0]) + abs(ground.push[0]), 1e-3)
 
 
-def _agree(one: Course, other: Course, size: float) -> bool:
+def _agree(one: ModeSeries, other: ModeSeries, size: float) -> bool:
     """Whether two courses start alike, as they do where a margin is just zero."""
     gap = max(
         abs(one.rotation[2] - other.rotation[2]) * size, abs(one.x[2] - other.x[2]), abs(one.rise[2] - other.rise[2])

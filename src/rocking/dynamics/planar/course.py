@@ -7,15 +7,15 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
-from rocking.dynamics.planar.ground import Ground
+from rocking.dynamics.planar.ground import GroundSeries
 from rocking.dynamics.planar.mode import Mode
 from rocking.dynamics.planar.power_series import derivative, padded, twice, value
-from rocking.dynamics.planar.state import State, along, away
+from rocking.dynamics.planar.state import PlanarState, along, away
 from rocking.dynamics.planar.turning import turning
 
 
 @dataclass(frozen=True)
-class Course:
+class ModeSeries:
     """Series of a mode; the time within it runs from 0 to 1."""
 
     unit: float  # duration of all [s]
@@ -30,13 +30,13 @@ class Course:
     gaps: dict[int, FloatArray] = field(default_factory=dict)
     stiff: float = 1.0  # below or at zero no force is possible (Painleve) [-]
 
-    def state(self, at: float, touching: tuple[int, ...]) -> State:
+    def state(self, at: float, touching: tuple[int, ...]) -> PlanarState:
         """Return the state at an instant."""
         x, rise, rotation = (value(c, at) for c in (self.x, self.rise, self.rotation))
         u, w, spin = (value(derivative(c), at) / self.unit for c in (self.x, self.rise, self.rotation))
-        return State(x, rise, rotation, u, w, spin, touching)
+        return PlanarState(x, rise, rotation, u, w, spin, touching)
 
-    def shortened(self, part: float) -> "Course":
+    def shortened(self, part: float) -> "ModeSeries":
         """Return the beginning of the course.
 
         Returns the same series of a shorter unit.
@@ -44,7 +44,7 @@ class Course:
         if part == 1.0:
             return self
         powers = part ** np.arange(self.rotation.size)
-        return Course(
+        return ModeSeries(
             self.unit * part,
             self.rotation * powers,
             self.x * powers,
@@ -57,7 +57,9 @@ class Course:
         )
 
 
-def course(footing: Footing, state: State, mode: Mode, ground: Ground, friction: float, order: int) -> Course:
+def course(
+    footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries, friction: float, order: int
+) -> ModeSeries:
     """Return the course of a body in a mode.
 
     friction: Coulomb's coefficient [-].
@@ -69,7 +71,7 @@ def course(footing: Footing, state: State, mode: Mode, ground: Ground, friction:
     return _turning(footing, state, mode, ground, friction, order)
 
 
-def _flat(footing: Footing, state: State, mode: Mode, ground: Ground, friction: float) -> Course:
+def _flat(footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries, friction: float) -> ModeSeries:
     """Both feet: the resultant force decides how they share it."""
     size = max(len(ground.push), len(ground.lift)) + 2
     push, weight = padded(ground.push, size), padded(ground.lift, size)
@@ -82,10 +84,10 @@ def _flat(footing: Footing, state: State, mode: Mode, ground: Ground, friction: 
     }
     still = np.zeros(size)
     sliding = derivative(x) / ground.unit if mode.slip else still
-    return Course(ground.unit, still, x, still, tangential, normals, sliding)
+    return ModeSeries(ground.unit, still, x, still, tangential, normals, sliding)
 
 
-def _flight(footing: Footing, state: State, ground: Ground, order: int) -> Course:
+def _flight(footing: Footing, state: PlanarState, ground: GroundSeries, order: int) -> ModeSeries:
     """No foot: parabolas above a ground that moves."""
     size = order + 1
     x = twice(-padded(ground.push, size), state.x, state.u, ground.unit)
@@ -104,10 +106,12 @@ def _flight(footing: Footing, state: State, ground: Ground, order: int) -> Cours
             gap[0], gap[1] = 0.0, away(footing, state, foot) * ground.unit
         gaps[foot] = gap
     rotation = padded([state.rotation, state.spin * ground.unit], size)
-    return Course(ground.unit, rotation, x, rise, np.zeros(size), gaps=gaps)
+    return ModeSeries(ground.unit, rotation, x, rise, np.zeros(size), gaps=gaps)
 
 
-def _turning(footing: Footing, state: State, mode: Mode, ground: Ground, friction: float, order: int) -> Course:
+def _turning(
+    footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries, friction: float, order: int
+) -> ModeSeries:
     """One foot carries: the other one rises as theta does."""
     (foot,) = mode.feet
     pull = mode.slip * friction if mode.slip else None
@@ -129,6 +133,6 @@ def _turning(footing: Footing, state: State, mode: Mode, ground: Ground, frictio
         x = twice(tangential - push, state.x, state.u, ground.unit)
         sliding = derivative(x + arm_x) / ground.unit
         sliding[0] = along(footing, state, foot)
-    return Course(
+    return ModeSeries(
         ground.unit, rotation, x, rise, tangential, {foot: normal}, sliding, {-foot: foot * rotation}, found.stiff
     )

@@ -10,10 +10,10 @@ import math
 
 import numpy as np
 
-from rocking.dynamics.planar.choosing import TOLERANCE, Choice, choose, weight_of
-from rocking.dynamics.planar.course import Course, course
+from rocking.dynamics.planar.choosing import TOLERANCE, NextMode, choose, weight_of
+from rocking.dynamics.planar.course import ModeSeries, course
 from rocking.dynamics.planar.footing import BOTH, Footing
-from rocking.dynamics.planar.ground import Ground
+from rocking.dynamics.planar.ground import GroundSeries
 from rocking.dynamics.planar.history import History
 from rocking.dynamics.planar.impact import Struck, cleaned, largest_speed, strike
 from rocking.dynamics.planar.imposed import strike_with
@@ -21,8 +21,8 @@ from rocking.dynamics.planar.log import Blow, Log
 from rocking.dynamics.planar.margins import Kind, consistent, first_end, margins
 from rocking.dynamics.planar.mode import FLIGHT, REST, Mode
 from rocking.dynamics.planar.power_series import value
-from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
-from rocking.dynamics.planar.state import State, away, kept, kinetic
+from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
+from rocking.dynamics.planar.state import PlanarState, away, kept, kinetic
 from rocking.dynamics.planar.stirring import stirring
 from rocking.dynamics.taylor import first_fall, shifted
 from rocking.motions.segments import Segments
@@ -45,7 +45,7 @@ class Planar:
         self,
         footing: Footing,
         segments: Segments,
-        law: ContactLaw,
+        law: GroundContact,
         settings: PlanarSettings,
         scale: float = 1.0,
     ) -> None:
@@ -57,17 +57,17 @@ class Planar:
         self.pace = math.sqrt(settings.gravity / footing.size)
         self.slowest = settings.rest_speed * math.sqrt(settings.gravity * footing.size)
         self.log = Log(self.count, settings.gravity)
-        self.state, self.mode = State(), REST
+        self.state, self.mode = PlanarState(), REST
         self.stretch, self.tau = 0, 0.0
         self.tolerance, self.changed, self.events = TOLERANCE, 0, 0
         self.passed = math.nan
         self.ended: Status | None = None
         self.lies = False
-        self.latest: Course | None = None
+        self.latest: ModeSeries | None = None
 
-    def run(self, state: State | None = None) -> History:
+    def run(self, state: PlanarState | None = None) -> History:
         """Return the history from a state."""
-        self.state = state or State()
+        self.state = state or PlanarState()
         if any(away(self.footing, self.state, foot) < 0.0 for foot in self.state.touching):
             self._strike(FLIGHT)
         else:
@@ -91,14 +91,14 @@ class Planar:
         tilted = abs(self.state.rotation) > self.footing.slenderness_angle(side)
         return not tilted or (self.stretch - self.count) * self.step * self.pace > _AFTER
 
-    def _ground(self, unit: float) -> Ground:
+    def _ground(self, unit: float) -> GroundSeries:
         """Return the motion from now on, over a unit of time."""
         if self.stretch >= self.count:
-            return Ground([0.0], [self.settings.gravity], unit)
+            return GroundSeries([0.0], [self.settings.gravity], unit)
         width = unit / self.step
         push = shifted(self.push[self.stretch].tolist(), self.tau, width)
         lift = shifted(self.lift[self.stretch].tolist(), self.tau, width)
-        return Ground(push, lift, unit)
+        return GroundSeries(push, lift, unit)
 
     def _step(self) -> None:
         if self.mode == REST and self._skip():
@@ -126,7 +126,7 @@ class Planar:
         if kind is not None:
             self._end(kind, whole, at)
 
-    def _trusted(self, full: Course) -> float:
+    def _trusted(self, full: ModeSeries) -> float:
         """Part of a course over which its last terms stay below the tolerance."""
         if not all(np.isfinite(c).all() for c in (full.rotation, full.x, full.rise)):
             return 0.0
@@ -141,7 +141,7 @@ class Planar:
                     part = min(part, float(over) ** (-1.0 / k))
         return part
 
-    def _move(self, tau: float, reached: State, at: float) -> None:
+    def _move(self, tau: float, reached: PlanarState, at: float) -> None:
         self.state = kept(self.footing, reached, self.mode.feet, stick=self.mode.slip == 0)
         if tau > _WHOLE:
             self.stretch, self.tau = self.stretch + 1, 0.0
@@ -149,7 +149,7 @@ class Planar:
         else:
             self.tau = tau
 
-    def _watch_top(self, whole: Course, at: float) -> None:
+    def _watch_top(self, whole: ModeSeries, at: float) -> None:
         """Note when the centre passes over the foot."""
         side = 1 if value(whole.rotation, at) > 0.0 else -1
         gap = -side * whole.rotation
@@ -161,7 +161,7 @@ class Planar:
 
     # ---- events -----------------------------------------------------------------------------------------------------
 
-    def _end(self, kind: Kind, whole: Course, at: float) -> None:
+    def _end(self, kind: Kind, whole: ModeSeries, at: float) -> None:
         """Let a mode end."""
         self._count()
         if kind is Kind.LYING:
@@ -173,7 +173,7 @@ class Planar:
                 self.state = kept(self.footing, self.state, self.mode.feet, stick=True)
             self._change()
 
-    def _land(self, whole: Course, at: float) -> None:
+    def _land(self, whole: ModeSeries, at: float) -> None:
         before, mode = self.state, self.mode
         if mode.feet:
             upright = before._replace(rotation=0.0, rise=0.0)
@@ -202,7 +202,7 @@ class Planar:
         self.state = after
         self._change()
 
-    def _struck(self, before: State, mode: Mode) -> Struck | Status:
+    def _struck(self, before: PlanarState, mode: Mode) -> Struck | Status:
         law = self.law
         if law.restitution is not None and len(mode.feet) == 1:
             foot = -mode.feet[0]
@@ -214,7 +214,7 @@ class Planar:
         bounce = {foot: law.bounce if v > self.slowest else 0.0 for foot, v in bounces.items()}
         return strike(self.footing, before, law.friction, bounce)
 
-    def _calmed(self, after: State) -> State:
+    def _calmed(self, after: PlanarState) -> PlanarState:
         """Let a body that hardly moves after an impact stand, if the ground lets it."""
         slow = max(abs(after.w), abs(after.spin) * self.footing.size) <= self.slowest
         if after.touching != BOTH or not slow:
@@ -223,7 +223,7 @@ class Planar:
         if abs(calm.u) <= self.slowest * 1e-3:
             calm = calm._replace(u=0.0)
         found = choose(self.footing, calm, self._ground(1.0 / self.pace), self.law.friction)
-        return calm if isinstance(found, Choice) and found.mode.feet == BOTH else after
+        return calm if isinstance(found, NextMode) and found.mode.feet == BOTH else after
 
     def _count(self) -> None:
         self.events += 1

@@ -10,7 +10,7 @@ from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.planar.engine import Planar
 from rocking.dynamics.planar.footing import Footing
 from rocking.dynamics.planar.response import PlanarResponse
-from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
+from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
 from rocking.dynamics.planar.start import Start
 from rocking.dynamics.rocker import Rocker
 from rocking.errors import InvalidValueError
@@ -84,7 +84,7 @@ def simulate_with_contact(
     start = _start(options.pop("start", None))
     settings = _settings(options)
     footing = Footing.of_body(body)
-    law = ContactLaw(
+    law = GroundContact(
         friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
         checks.number("bounce", bounce),
         _imposed(body, restitution, settings),

@@ -13,7 +13,7 @@ from itertools import combinations
 from typing import NamedTuple
 
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
-from rocking.dynamics.planar.state import State, along, away, kept, kinetic
+from rocking.dynamics.planar.state import PlanarState, along, away, kept, kinetic
 from rocking.outcome import Status
 
 _ROUNDING = 1e-13
@@ -22,13 +22,13 @@ _ROUNDING = 1e-13
 class Struck(NamedTuple):
     """What an impact does."""
 
-    state: State  # the state after it
+    state: PlanarState  # the state after it
     normal: dict[int, float]  # vertical impulse at each foot, per unit of mass [m/s]
     tangential: float  # sum of the impulses along the ground, per unit of mass [m/s]
     slip: int  # direction in which the feet slide while they are struck; 0 if they stick
 
 
-def strike(footing: Footing, state: State, friction: float, bounce: dict[int, float]) -> Struck | Status:
+def strike(footing: Footing, state: PlanarState, friction: float, bounce: dict[int, float]) -> Struck | Status:
     """Return what an impact does.
 
     friction: Coulomb's coefficient [-]; bounce: e_N of each foot that touches [-]. Returns the state after it with the
@@ -46,7 +46,7 @@ def strike(footing: Footing, state: State, friction: float, bounce: dict[int, fl
     return good[0]
 
 
-def largest_speed(footing: Footing, state: State) -> float:
+def largest_speed(footing: Footing, state: PlanarState) -> float:
     """Return the size of the velocities from which those of the feet are differences.
 
     Returns by which their rounding is measured [m/s].
@@ -54,7 +54,7 @@ def largest_speed(footing: Footing, state: State) -> float:
     return max(abs(state.u), abs(state.w), footing.size * abs(state.spin))
 
 
-def _solutions(footing: Footing, state: State, friction: float, targets: dict[int, float]) -> list[Struck]:
+def _solutions(footing: Footing, state: PlanarState, friction: float, targets: dict[int, float]) -> list[Struck]:
     """Every choice of feet that take part and of how they slide, whether or not it is valid."""
     parts = [part for n in range(1, len(targets) + 1) for part in combinations(state.touching, n)]
     tried = (_try(footing, state, part, slip, friction, targets) for slip in (0, 1, -1) for part in parts)
@@ -62,7 +62,7 @@ def _solutions(footing: Footing, state: State, friction: float, targets: dict[in
 
 
 def _try(
-    footing: Footing, state: State, feet: tuple[int, ...], slip: int, friction: float, targets: dict[int, float]
+    footing: Footing, state: PlanarState, feet: tuple[int, ...], slip: int, friction: float, targets: dict[int, float]
 ) -> Struck | None:
     pull = slip * friction if slip else 0.0
     if len(feet) == 2:
@@ -72,7 +72,7 @@ def _try(
     return _on_one(footing, state, feet[0], targets[feet[0]])
 
 
-def _on_one(footing: Footing, state: State, foot: int, target: float) -> Struck:
+def _on_one(footing: Footing, state: PlanarState, foot: int, target: float) -> Struck:
     """Momentum about the foot is kept but for what the bounce takes."""
     r_x, r_z = footing.arm(foot, state.rotation)
     j = footing.inertia
@@ -81,7 +81,9 @@ def _on_one(footing: Footing, state: State, foot: int, target: float) -> Struck:
     return Struck(after, {foot: after.w - state.w}, after.u - state.u, 0)
 
 
-def _sliding_on_one(footing: Footing, state: State, foot: int, slip: int, pull: float, target: float) -> Struck | None:
+def _sliding_on_one(
+    footing: Footing, state: PlanarState, foot: int, slip: int, pull: float, target: float
+) -> Struck | None:
     r_x, r_z = footing.arm(foot, state.rotation)
     level = r_x + pull * r_z
     stiff = 1.0 + r_x * level / footing.inertia
@@ -93,7 +95,7 @@ def _sliding_on_one(footing: Footing, state: State, foot: int, slip: int, pull: 
     return Struck(after, {foot: normal}, -(pull * normal), slip)
 
 
-def _on_both(footing: Footing, state: State, slip: int, pull: float, targets: dict[int, float]) -> Struck:
+def _on_both(footing: Footing, state: PlanarState, slip: int, pull: float, targets: dict[int, float]) -> Struck:
     left, right, base = footing.left, footing.right, footing.base
     spin = (targets[LEFT] - targets[RIGHT]) / base
     w = (targets[LEFT] * right + targets[RIGHT] * left) / base
@@ -116,12 +118,12 @@ def _valid(footing: Footing, struck: Struck, friction: float, targets: dict[int,
     return abs(struck.tangential) <= friction * sum(struck.normal.values()) + slack * (1.0 + friction)
 
 
-def _differ(footing: Footing, one: State, other: State, speed: float) -> bool:
+def _differ(footing: Footing, one: PlanarState, other: PlanarState, speed: float) -> bool:
     gap = max(abs(one.u - other.u), abs(one.w - other.w), footing.height * abs(one.spin - other.spin))
     return gap > 1e-8 * speed
 
 
-def cleaned(footing: Footing, struck: Struck, stop: float) -> State:
+def cleaned(footing: Footing, struck: Struck, stop: float) -> PlanarState:
     """Return the state after an impact with rounding taken out of velocities that are zero.
 
     stop: velocities of a foot below this are zero [m/s]. Returns the state; its feet are still those that touched

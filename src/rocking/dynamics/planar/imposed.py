@@ -11,13 +11,13 @@ new foot slides off; with Housner's r this is the complementarity problem's own 
 
 from rocking.dynamics.planar.footing import LEFT, RIGHT, Footing
 from rocking.dynamics.planar.impact import Struck
-from rocking.dynamics.planar.state import State, along, away, kinetic
+from rocking.dynamics.planar.state import PlanarState, along, away, kinetic
 from rocking.outcome import Status
 
 _ROUNDING = 1e-12
 
 
-def strike_with(footing: Footing, state: State, foot: int, friction: float, r: float) -> Struck | Status | None:
+def strike_with(footing: Footing, state: PlanarState, foot: int, friction: float, r: float) -> Struck | Status | None:
     """Return what a rocking impact does when its coefficient of restitution is imposed.
 
     friction: Coulomb's coefficient [-]; r: theta_dot_after / theta_dot_before of the impact without slip [-]. Returns
@@ -41,7 +41,7 @@ def strike_with(footing: Footing, state: State, foot: int, friction: float, r: f
     return Status.ENERGY_GAIN if gained else found
 
 
-def _stuck(footing: Footing, state: State, foot: int, place: float) -> Struck:
+def _stuck(footing: Footing, state: PlanarState, foot: int, place: float) -> Struck:
     h, d, j = footing.height, footing.lever(foot), footing.inertia
     spin = (j * state.spin + h * state.u + place * state.w) / (j + h * h + place * d)
     if abs(spin) <= _ROUNDING * abs(state.spin):
@@ -50,7 +50,7 @@ def _stuck(footing: Footing, state: State, foot: int, place: float) -> Struck:
     return Struck(after, _shared(footing, place, after.w - state.w), after.u - state.u, 0)
 
 
-def _slid(footing: Footing, state: State, foot: int, place: float, slip: int, pull: float) -> Struck | None:
+def _slid(footing: Footing, state: PlanarState, foot: int, place: float, slip: int, pull: float) -> Struck | None:
     d = footing.lever(foot)
     turn = (pull * footing.height - place) / footing.inertia
     stiff = 1.0 - d * turn

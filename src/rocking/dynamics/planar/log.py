@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.planar.course import Course
+from rocking.dynamics.planar.course import ModeSeries
 from rocking.dynamics.planar.footing import LEFT, RIGHT
-from rocking.dynamics.planar.ground import Ground
+from rocking.dynamics.planar.ground import GroundSeries
 from rocking.dynamics.planar.impact import Struck
 from rocking.dynamics.planar.mode import Mode
 from rocking.dynamics.planar.power_series import derivative, integral, value
-from rocking.dynamics.planar.state import State
+from rocking.dynamics.planar.state import PlanarState
 from rocking.dynamics.taylor import turning_points
 
 SAMPLED = (
@@ -22,12 +22,12 @@ SAMPLED = (
 )  # fmt: skip
 
 
-class Piece(NamedTuple):
+class SmoothPiece(NamedTuple):
     """A smooth piece of the history."""
 
     start: float  # start, duration: when it starts and how long it lasts [s]
     duration: float
-    course: Course  # its series
+    course: ModeSeries  # its series
     at: float  # where it ends within the series, in (0, 1]
 
 
@@ -35,9 +35,9 @@ class Blow(NamedTuple):
     """An impact."""
 
     time: float  # when [s]
-    before: State  # the state before it
+    before: PlanarState  # the state before it
     struck: Struck  # impulses and state after it
-    after: State  # the state from which the history goes on
+    after: PlanarState  # the state from which the history goes on
     loss: float  # energy lost, per unit of mass [J/kg]
 
 
@@ -53,7 +53,7 @@ class Log:
     slid: float = 0.0
     usage: float = 0.0
     peak: float = 0.0
-    pieces: list[Piece] = field(default_factory=list)
+    pieces: list[SmoothPiece] = field(default_factory=list)
     blows: list[Blow] = field(default_factory=list)
     changes: list[tuple[float, Mode]] = field(default_factory=list)
     samples: FloatArray = field(init=False)
@@ -62,12 +62,12 @@ class Log:
         """Make room for the samples."""
         self.samples = np.full((self.count + 1, len(SAMPLED)), math.nan)
 
-    def pass_through(self, start: float, course: Course, ground: Ground, at: float, friction: float) -> None:
+    def pass_through(self, start: float, course: ModeSeries, ground: GroundSeries, at: float, friction: float) -> None:
         """Add a piece to the books.
 
         start: when it starts [s]; friction: Coulomb's coefficient [-].
         """
-        self.pieces.append(Piece(start, at * course.unit, course, at))
+        self.pieces.append(SmoothPiece(start, at * course.unit, course, at))
         lift = np.array(ground.lift)
         lift[0] -= self.gravity
         along = integral(np.array(ground.push), derivative(course.x), at)
@@ -84,14 +84,14 @@ class Log:
         inside = turning_points(rotation.tolist(), at) if value(turns, 0.0) * value(turns, at) < 0.0 else []
         self.peak = max(self.peak, *(abs(value(rotation, instant)) for instant in (0.0, at, *inside)))
 
-    def _use(self, course: Course, at: float, friction: float) -> None:
+    def _use(self, course: ModeSeries, at: float, friction: float) -> None:
         for instant in (0.0, at):
             normal = sum(value(c, instant) for c in course.normals.values())
             tangential = abs(value(course.tangential, instant))
             if tangential > 0.0 and normal > 0.0:
                 self.usage = max(self.usage, tangential / normal / friction if friction else 1.0)
 
-    def sample(self, row: int, state: State, mode: Mode, course: Course | None, at: float) -> None:
+    def sample(self, row: int, state: PlanarState, mode: Mode, course: ModeSeries | None, at: float) -> None:
         """Write a sample."""
         if row > self.count:
             return

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.planar.course import Course
+from rocking.dynamics.planar.course import ModeSeries
 from rocking.dynamics.planar.footing import BOTH, Footing
 from rocking.dynamics.planar.mode import Mode
 from rocking.dynamics.planar.power_series import padded
@@ -41,7 +41,7 @@ class Margin(NamedTuple):
     scale: float  # size that rounding of the others is measured by
 
 
-def margins(footing: Footing, mode: Mode, course: Course, friction: float, weight: float) -> list[Margin]:
+def margins(footing: Footing, mode: Mode, course: ModeSeries, friction: float, weight: float) -> list[Margin]:
     """Return what must stay above zero in a mode.
 
     friction: Coulomb's coefficient [-]; weight: acceleration that forces are measured by, such as g + |a_x| + |a_z|

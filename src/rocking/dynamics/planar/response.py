@@ -15,7 +15,7 @@ from rocking.dynamics.planar.events import impacts_of, places_of, regimes_of
 from rocking.dynamics.planar.footing import Footing
 from rocking.dynamics.planar.history import History
 from rocking.dynamics.planar.log import SAMPLED
-from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
+from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -55,7 +55,7 @@ class PlanarResponse(Exportable):
     body: Body
     motion: GroundMotion | Pulse | None
     footing: Footing
-    law: ContactLaw
+    law: GroundContact
     settings: PlanarSettings
     segments: Segments = field(repr=False)
     scale: float

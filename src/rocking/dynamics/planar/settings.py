@@ -45,7 +45,7 @@ class PlanarSettings:
 
 
 @dataclass(frozen=True)
-class ContactLaw:
+class GroundContact:
     """What happens where the feet touch the ground.
 
     Parameters

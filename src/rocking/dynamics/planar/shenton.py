@@ -15,10 +15,10 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.planar.choosing import Choice, choose
+from rocking.dynamics.planar.choosing import NextMode, choose
 from rocking.dynamics.planar.footing import LEFT, RIGHT, Footing
-from rocking.dynamics.planar.ground import Ground
-from rocking.dynamics.planar.state import State
+from rocking.dynamics.planar.ground import GroundSeries
+from rocking.dynamics.planar.state import PlanarState
 from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
 
@@ -96,9 +96,9 @@ def regime_at_start(
     gravity = checks.positive("gravity", gravity, "m/s2")
     push, lift = checks.number("acceleration", acceleration), checks.number("vertical", vertical)
     mu = checks.within("friction", friction, 0.0, 1e6)
-    ground = Ground([push * gravity], [gravity + lift * gravity], float(np.sqrt(footing.size / gravity)))
-    found = choose(footing, State(), ground, mu)
-    if not isinstance(found, Choice):
+    ground = GroundSeries([push * gravity], [gravity + lift * gravity], float(np.sqrt(footing.size / gravity)))
+    found = choose(footing, PlanarState(), ground, mu)
+    if not isinstance(found, NextMode):
         raise InvalidValueError(f"friction and acceleration must leave one contact force, got {mu:g} and {push:g}")
     return found.mode.regime
 

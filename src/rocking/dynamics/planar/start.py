@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rocking import checks
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
-from rocking.dynamics.planar.state import State
+from rocking.dynamics.planar.state import PlanarState
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Start:
         checks.within("height", self.height, 0.0, 1e4, unit="m", hint="the ground is at zero")
         checks.within("vertical_velocity", self.vertical_velocity, -1e4, 1e4, unit="m/s")
 
-    def state(self, footing: Footing) -> State:
+    def state(self, footing: Footing) -> PlanarState:
         """Return the state of the centre of mass.
 
         Parameters
@@ -73,7 +73,7 @@ class Start:
         if self.height == 0.0:
             touching = BOTH if self.rotation == 0.0 else (foot,)
         spin = self.angular_velocity
-        return State(
+        return PlanarState(
             footing.lever(foot) - r_x,
             footing.rise_on(foot, self.rotation) + self.height,
             self.rotation,

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from rocking.dynamics.planar.footing import BOTH, Footing
 
 
-class State(NamedTuple):
+class PlanarState(NamedTuple):
     """Where the body is and how it moves."""
 
     # x, rise, rotation: displacement of the centre of mass to the right [m] and upwards [m] from where it stood, and
@@ -19,7 +19,7 @@ class State(NamedTuple):
     touching: tuple[int, ...] = BOTH  # feet that touch the ground, exactly
 
 
-def along(footing: Footing, state: State, foot: int) -> float:
+def along(footing: Footing, state: PlanarState, foot: int) -> float:
     """Return the velocity of a foot along the ground.
 
     Returns v_t, to the right; exactly zero where the foot was made to stick [m/s].
@@ -27,7 +27,7 @@ def along(footing: Footing, state: State, foot: int) -> float:
     return state.u + footing.arm(foot, state.rotation)[1] * state.spin
 
 
-def away(footing: Footing, state: State, foot: int) -> float:
+def away(footing: Footing, state: PlanarState, foot: int) -> float:
     """Return the velocity of a foot away from the ground.
 
     Returns v_n, upwards; exactly zero where the foot was put to rest [m/s].
@@ -35,7 +35,7 @@ def away(footing: Footing, state: State, foot: int) -> float:
     return state.w - footing.arm(foot, state.rotation)[0] * state.spin
 
 
-def kept(footing: Footing, state: State, feet: tuple[int, ...], *, stick: bool) -> State:
+def kept(footing: Footing, state: PlanarState, feet: tuple[int, ...], *, stick: bool) -> PlanarState:
     """Return the state with rounding taken out of what the contacts fix.
 
     Returns with ``v_n = 0``, and ``v_t = 0`` if they stick, exactly.
@@ -44,14 +44,14 @@ def kept(footing: Footing, state: State, feet: tuple[int, ...], *, stick: bool) 
         return state
     if len(feet) == 2:
         u = 0.0 if stick else along(footing, state, feet[0])
-        return State(state.x, 0.0, 0.0, u, 0.0, 0.0, feet)
+        return PlanarState(state.x, 0.0, 0.0, u, 0.0, 0.0, feet)
     (foot,) = feet
     r_x, r_z = footing.arm(foot, state.rotation)
     u = -(r_z * state.spin) if stick else state.u
     return state._replace(rise=footing.rise_on(foot, state.rotation), u=u, w=r_x * state.spin)
 
 
-def kinetic(footing: Footing, state: State) -> float:
+def kinetic(footing: Footing, state: PlanarState) -> float:
     """Return the kinetic energy in the frame of the ground, per unit of mass.
 
     Returns ``(x'^2 + z'^2 + (I_C / m) theta'^2) / 2`` [J/kg].

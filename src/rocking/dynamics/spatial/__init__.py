@@ -5,10 +5,10 @@ from rocking.dynamics.spatial.impact import SpatialImpactLaw
 from rocking.dynamics.spatial.response import SpatialResponse
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
-from rocking.outcome import Contact
+from rocking.outcome import ContactMode
 
 __all__ = [
-    "Contact",
+    "ContactMode",
     "SpatialBody",
     "SpatialImpactLaw",
     "SpatialResponse",

@@ -10,7 +10,7 @@ from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.stance import Stance
-from rocking.dynamics.spatial.trajectory import Piece, SpatialEvent, SpatialEventKind, SpatialTrajectory
+from rocking.dynamics.spatial.trajectory import SpatialEvent, SpatialEventKind, SpatialTrajectory, StepPiece
 from rocking.dynamics.taylor import slope, turning_points
 from rocking.outcome import Outcome, Status
 from rocking.portable import dot
@@ -18,12 +18,12 @@ from rocking.portable import dot
 _HALVINGS = 60
 
 
-class Course:
+class IntegrationState:
     """The record of a history."""
 
     def __init__(self, body: SpatialBody, settings: SpatialSettings) -> None:
         self.body, self.settings = body, settings
-        self.pieces: list[Piece] = []
+        self.pieces: list[StepPiece] = []
         self.events: list[SpatialEvent] = []
         self.peak, self.peak_time = 0.0, 0.0
         self.held = 0.0
@@ -48,7 +48,7 @@ class Course:
         )
 
     def add(
-        self, piece: Piece, until: float, up: FloatArray, pivot: FloatArray, vertical: FloatArray | None = None
+        self, piece: StepPiece, until: float, up: FloatArray, pivot: FloatArray, vertical: FloatArray | None = None
     ) -> None:
         """Keep a step, and what it says about tilt and fall.
 
@@ -57,7 +57,9 @@ class Course:
         """
         if until > 0.0 or not self.pieces:
             self.pieces.append(
-                Piece(piece.start, piece.length, until, piece.quaternions, piece.velocities, piece.places, piece.stance)
+                StepPiece(
+                    piece.start, piece.length, until, piece.quaternions, piece.velocities, piece.places, piece.stance
+                )
             )
         if vertical is None:
             return
@@ -117,7 +119,7 @@ class Course:
             engine=f"reference (Taylor, order up to {self.settings.order}, tolerance {self.settings.tolerance:g})",
         )
 
-    def _raise_peak(self, piece: Piece, until: float, vertical: FloatArray) -> None:
+    def _raise_peak(self, piece: StepPiece, until: float, vertical: FloatArray) -> None:
         """Tilt at both ends, and where it turns inside."""
         share = [0.0, until]
         terms = vertical.tolist()
@@ -128,7 +130,7 @@ class Course:
         if found[best] > self.peak:
             self.peak, self.peak_time = float(found[best]), piece.start + share[best] * piece.length
 
-    def _passing(self, piece: Piece, until: float) -> float:
+    def _passing(self, piece: StepPiece, until: float) -> float:
         """When the centre of mass passed over the contact, within a step."""
         low, high = 0.0, until
         for _ in range(_HALVINGS):

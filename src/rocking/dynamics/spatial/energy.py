@@ -7,7 +7,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.ledger import ResponseEnergy
 from rocking.dynamics.spatial.states import States, pivots
-from rocking.dynamics.spatial.trajectory import Piece
+from rocking.dynamics.spatial.trajectory import StepPiece
 from rocking.portable import applied, gauss_legendre
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def _work(response: "SpatialResponse") -> FloatArray:
     return made
 
 
-def _of_piece(response: "SpatialResponse", piece: Piece, stops: FloatArray) -> FloatArray:
+def _of_piece(response: "SpatialResponse", piece: StepPiece, stops: FloatArray) -> FloatArray:
     """Work between the stops of a step."""
     half = 0.5 * np.diff(stops)
     times = (0.5 * (stops[1:] + stops[:-1]))[:, None] + half[:, None] * _NODES

@@ -9,7 +9,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.spatial.polynomials import NOTHING, first_zero
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.stance import Stance
-from rocking.outcome import Contact
+from rocking.outcome import ContactMode
 from rocking.portable import applied, norm
 
 SLOW_OPENING = 1e-9
@@ -39,9 +39,9 @@ def watched(body: SpatialBody, stance: Stance) -> tuple[int, ...]:
     Returns both neighbours of a vertex; the vertex farthest from an edge.
     """
     count = len(body.vertices)
-    if stance.contact is Contact.VERTEX and stance.points:
+    if stance.contact is ContactMode.VERTEX and stance.points:
         return ((stance.points[0] - 1) % count, (stance.points[0] + 1) % count)
-    if stance.contact is Contact.EDGE:
+    if stance.contact is ContactMode.EDGE:
         distance = applied(body.vertices[:, :2] - stance.pivot[:2], body.inward[stance.points[0]])
         return (int(np.argmax(distance)),)
     return ()
@@ -80,7 +80,7 @@ def nearly_flat(body: SpatialBody, up: FloatArray) -> bool:
 
 def rim_events(body: SpatialBody, stance: Stance, step: Step) -> float | None:
     """Return when a round base begins to roll, or lies flat."""
-    if stance.contact is Contact.ROLLING:
+    if stance.contact is ContactMode.ROLLING:
         first = step.up[0, :2]
         sine = applied(step.up[:, :2], first) / norm(first)
         sine[0] -= STOP_ROLLING

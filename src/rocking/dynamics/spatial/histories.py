@@ -17,7 +17,7 @@ from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
-from rocking.outcome import Contact
+from rocking.outcome import ContactMode
 from rocking.portable import applied
 
 _FINE, _AFTER, _LONG = 0.05, 15.0, 300.0
@@ -168,7 +168,7 @@ def free_rocking_spatial(
     engine = SpatialReference(made, ground_of(), law_of(restitution, made), settings)
     found = engine.run(*start, length)
     last = found.pieces[-1]
-    rests = duration is None and last.stance.contact is Contact.REST
+    rests = duration is None and last.stance.contact is ContactMode.REST
     end = min(length, last.start + _FINE / p if rests else last.end)
     return SpatialResponse(made, engine.ground, engine.law, settings, _samples(_FINE / p, end), found, end)
 

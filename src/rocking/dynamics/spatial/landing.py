@@ -8,16 +8,24 @@ from rocking.dynamics.spatial.attitude import cross
 from rocking.dynamics.spatial.events import START_ROLLING, STOP_ROLLING
 from rocking.dynamics.spatial.impact import SpatialImpactLaw, projected
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.dynamics.spatial.selection import Choice, State, candidates, forces, impulses, of_forces, of_impact
+from rocking.dynamics.spatial.selection import (
+    Continuation,
+    SpatialState,
+    candidates,
+    forces,
+    impulses,
+    of_forces,
+    of_impact,
+)
 from rocking.dynamics.spatial.stance import Stance
-from rocking.outcome import Contact
+from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm
 
 CLOSED = 1e-12
 """Gaps below this share of the size of a body are closed."""
 
 
-def landed(body: SpatialBody, state: State, touching: tuple[int, ...], law: SpatialImpactLaw) -> Choice:
+def landed(body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw) -> Continuation:
     """Return what an impact on some vertices leaves.
 
     Where no contact set is without pull (a vertex that grazes the ground while it moves fast along it would stick only
@@ -29,23 +37,23 @@ def landed(body: SpatialBody, state: State, touching: tuple[int, ...], law: Spat
     return found[0] if found else _least_pull(body, state, touching)
 
 
-def _least_pull(body: SpatialBody, state: State, touching: tuple[int, ...]) -> Choice:
-    best: Choice | None = None
+def _least_pull(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
+    best: Continuation | None = None
     for stance in candidates(body, touching):
         velocity = np.zeros(3)
-        if stance.contact is not Contact.REST:
+        if stance.contact is not ContactMode.REST:
             velocity = projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
         opening = applied(cross(velocity, body.vertices[list(touching)] - stance.pivot), state.up)
         if opening.min() < -1e-9 * float(np.abs(velocity).max()) * body.size:
             continue
         push = impulses(body, state, stance, velocity)
         if best is None or push.min() > best.supports.min():
-            best = Choice(stance, velocity, push)
+            best = Continuation(stance, velocity, push)
     assert best is not None  # an edge or a face opens no gap
     return best
 
 
-def stuck(body: SpatialBody, state: State, touching: tuple[int, ...]) -> Choice:
+def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
     """Return what impacts leave that pile up at one moment: the largest set of touching points, pulled or not.
 
     A body that turns about the vertical on one corner while its neighbour chatters beside it comes to stick on both: in
@@ -55,22 +63,22 @@ def stuck(body: SpatialBody, state: State, touching: tuple[int, ...]) -> Choice:
     """
     stance = next(candidates(body, touching))
     velocity = np.zeros(3)
-    if stance.contact is not Contact.REST:
+    if stance.contact is not ContactMode.REST:
         velocity = projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
-    return Choice(stance, velocity, impulses(body, state, stance, velocity))
+    return Continuation(stance, velocity, impulses(body, state, stance, velocity))
 
 
-def laid_down(body: SpatialBody, state: State) -> Choice | None:
+def laid_down(body: SpatialBody, state: SpatialState) -> Continuation | None:
     """Return a round base laid flat, where the ground would hold it there: rolling alone never comes to rest.
 
     Returns at rest; None where it would be lifted at once.
     """
     flat, still = stances.face(body), np.zeros(3)
     holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
-    return Choice(flat, still, impulses(body, state, flat, still)) if holds else None
+    return Continuation(flat, still, impulses(body, state, flat, still)) if holds else None
 
 
-def rim_landed(body: SpatialBody, state: State, law: SpatialImpactLaw) -> Choice:
+def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) -> Continuation:
     """Return what the impact of a round base that falls flat leaves: its far side, or all of it.
 
     Returns what stays, and the angular velocity after.
@@ -81,14 +89,14 @@ def rim_landed(body: SpatialBody, state: State, law: SpatialImpactLaw) -> Choice
     velocity = law.velocity_after(body, state.pivot, far.pivot, None, state.up, state.velocity)
     opens = dot(cross(velocity, state.pivot - far.pivot), state.up) > 0.0
     if opens and push.min() >= 0.0:
-        return Choice(far, velocity, push)
+        return Continuation(far, velocity, push)
     flat = stances.face(body)
-    return Choice(flat, np.zeros(3), impulses(body, state, flat, np.zeros(3)))
+    return Continuation(flat, np.zeros(3), impulses(body, state, flat, np.zeros(3)))
 
 
 def settled(
-    body: SpatialBody, state: State, choice: Choice, touching: tuple[int, ...], slow: float, *, weak: bool
-) -> Choice:
+    body: SpatialBody, state: SpatialState, choice: Continuation, touching: tuple[int, ...], slow: float, *, weak: bool
+) -> Continuation:
     """Return what a body stands on once points that would fall back at once are taken to stay.
 
     slow: speed below which a point that leaves the ground counts as staying [m/s]. Returns the same stance where forces
@@ -96,13 +104,13 @@ def settled(
     """
     if body.round:
         push = forces(body, stances.face(body), np.zeros(3), state.up, state.field)[1]
-        rests = (weak or choice.stance.contact is Contact.REST) and push.min() >= 0.0
-        return Choice(stances.face(body), np.zeros(3), choice.supports) if rests else choice
+        rests = (weak or choice.stance.contact is ContactMode.REST) and push.min() >= 0.0
+        return Continuation(stances.face(body), np.zeros(3), choice.supports) if rests else choice
     opening = applied(cross(choice.velocity, body.vertices - choice.stance.pivot), state.up)
     every = range(len(body.vertices)) if weak else touching
     near = tuple(i for i in every if weak or i in choice.stance.points or opening[i] <= slow)
     found = of_forces(body, state, near, choice.stance)
-    return Choice(found[0].stance, found[0].velocity, choice.supports) if found else choice
+    return Continuation(found[0].stance, found[0].velocity, choice.supports) if found else choice
 
 
 def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[Stance, tuple[int, ...]]:

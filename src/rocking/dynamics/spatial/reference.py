@@ -8,18 +8,18 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.spatial import attitude, events, flow, release, resting
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.attitude import cross
-from rocking.dynamics.spatial.course import Course
+from rocking.dynamics.spatial.course import IntegrationState
 from rocking.dynamics.spatial.events import Step
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
 from rocking.dynamics.spatial.landing import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.rolling import RollingFlow
-from rocking.dynamics.spatial.selection import Choice, State, of_forces
+from rocking.dynamics.spatial.selection import Continuation, SpatialState, of_forces
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.stance import Stance
-from rocking.dynamics.spatial.trajectory import Piece, SpatialEventKind, SpatialTrajectory
-from rocking.outcome import Contact, Outcome, Status
+from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory, StepPiece
+from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import applied, norm
 
 _PULL = 1e-9
@@ -38,7 +38,7 @@ class SpatialReference:
         self.slow = settings.rest_speed * math.sqrt(settings.gravity * body.size)
         self.weak = settings.rest_speed**2 * body.mass * settings.gravity * body.lift
         self.pull = _PULL * settings.gravity
-        self.flows: dict[tuple[Contact, tuple[int, ...]], flow.PivotFlow] = {}
+        self.flows: dict[tuple[ContactMode, tuple[int, ...]], flow.PivotFlow] = {}
         self.rolling = RollingFlow(body)
         self.time, self.stretch = 0.0, 0
         self.place = np.zeros(2)
@@ -57,11 +57,11 @@ class SpatialReference:
         [s].
         """
         self.horizon = horizon
-        self.course = Course(self.body, self.settings)
+        self.course = IntegrationState(self.body, self.settings)
         self.quaternion, self.velocity = attitude.normalised(quaternion), velocity
         ended = self._start()
         while ended is None:
-            ended = self._rest() if self.stance.contact is Contact.REST else self._move()
+            ended = self._rest() if self.stance.contact is ContactMode.REST else self._move()
         return self.course.trajectory(*ended)
 
     def _start(self) -> tuple[Outcome, Status] | None:
@@ -69,12 +69,12 @@ class SpatialReference:
         self.stance = stance
         # the base lies with its origin at the origin of the ground, and the body leans from there
         self.place = applied(attitude.matrix(attitude.flat(self.quaternion)), stance.pivot)[:2]
-        if stance.contact is Contact.REST or len(touching) == len(self.body.vertices) > 0:
+        if stance.contact is ContactMode.REST or len(touching) == len(self.body.vertices) > 0:
             self.quaternion = attitude.flat(self.quaternion)
         self.touching = tuple(i for i in touching if i not in stance.points)
         if self.touching and not np.any(self.velocity):
             self._decide(touching)
-        if self.stance.contact is not Contact.REST:
+        if self.stance.contact is not ContactMode.REST:
             self.course.note(self.time, SpatialEventKind.UPLIFT, self.stance, 0.0, self._kinetic())
         return None
 
@@ -127,7 +127,7 @@ class SpatialReference:
 
     def _stepped(self, step: Step, at: float, *, held: bool) -> tuple[Outcome, Status] | None:
         """Look at where a step without event has led."""
-        pulls = self.stance.contact is Contact.EDGE
+        pulls = self.stance.contact is ContactMode.EDGE
         pulls = pulls and min(release.end_forces(self.body, self.stance, step, at)) < -self.pull
         self.course.held += step.length if pulls or held else 0.0
         self.touching = ()
@@ -139,9 +139,9 @@ class SpatialReference:
 
     # ---- a step -----------------------------------------------------------------------------------------------------
 
-    def _step(self) -> tuple[Step | None, Piece | None, bool]:
+    def _step(self) -> tuple[Step | None, StepPiece | None, bool]:
         rate = self.p + norm(self.velocity)
-        if self.stance.contact is Contact.ROLLING:
+        if self.stance.contact is ContactMode.ROLLING:
             up = self._up
             # at most half of the way to lying flat: there the contact runs round
             rate += 2.0 * norm(cross(up, self.velocity)[:2]) / norm(up[:2])
@@ -155,7 +155,7 @@ class SpatialReference:
         field[2, 0] -= self.settings.gravity
         order = min(max(flow.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
         places = self.place[None, :]
-        if self.stance.contact is Contact.ROLLING:
+        if self.stance.contact is ContactMode.ROLLING:
             state = self.quaternion, self.velocity, self.place
             q, w, up, places = self.rolling.series(state, length, field, order)
         else:
@@ -169,7 +169,7 @@ class SpatialReference:
             np.zeros(3) if self.stance.axis is None else applied(attitude.matrix(self.quaternion), self.stance.axis)
         )
         step = Step(length * part, w, up, field, heading)
-        return step, Piece(self.time, length * part, 1.0, q, w, places, self.stance), last and part == 1.0
+        return step, StepPiece(self.time, length * part, 1.0, q, w, places, self.stance), last and part == 1.0
 
     def _flow(self) -> flow.PivotFlow:
         key = self.stance.contact, self.stance.points
@@ -179,7 +179,7 @@ class SpatialReference:
             self.flows[key] = flow.PivotFlow(self.body, self.stance.pivot, self.stance.axis)
         return self.flows[key]
 
-    def _arrive(self, piece: Piece, at: float, vertical: FloatArray, *, whole: bool) -> None:
+    def _arrive(self, piece: StepPiece, at: float, vertical: FloatArray, *, whole: bool) -> None:
         self.quaternion = attitude.normalised(flow.value(piece.quaternions, at))
         self.velocity = flow.value(piece.velocities, at)
         self.place = flow.value(piece.places, at)
@@ -191,7 +191,7 @@ class SpatialReference:
 
     def _add_rest(self, until: float) -> None:
         rows = self.quaternion[None], np.zeros((1, 3)), self.place[None]
-        self.course.add(Piece(self.time, until - self.time, 1.0, *rows, self.stance), 1.0, self._up, self._pivot)
+        self.course.add(StepPiece(self.time, until - self.time, 1.0, *rows, self.stance), 1.0, self._up, self._pivot)
         self.time = until
 
     # ---- events -----------------------------------------------------------------------------------------------------
@@ -200,7 +200,7 @@ class SpatialReference:
         body = self.body
         gaps = applied(body.vertices - self.stance.pivot, self._up)
         closed = {vertex, *self.stance.points, *np.flatnonzero(gaps <= CLOSED * body.size).tolist()}
-        if self.stance.contact is Contact.EDGE or len(closed) > 2:
+        if self.stance.contact is ContactMode.EDGE or len(closed) > 2:
             closed = set(range(len(body.vertices)))
         touching = tuple(sorted(closed))
         if len(touching) == len(body.vertices):
@@ -213,7 +213,7 @@ class SpatialReference:
         before, choice = self._kinetic(), stuck(self.body, self._state(), touching)
         self._stand(choice.stance)
         self.velocity, self.touching = choice.velocity, ()
-        self.sticks = choice.stance.contact is Contact.EDGE
+        self.sticks = choice.stance.contact is ContactMode.EDGE
         kind = SpatialEventKind.IMPACT
         self.course.note(self.time, kind, choice.stance, before, self._kinetic(), choice.supports)
         return self._guard()
@@ -226,18 +226,18 @@ class SpatialReference:
 
     def _rim(self) -> tuple[Outcome, Status] | None:
         up = self._up
-        if self.stance.contact is not Contact.ROLLING and math.hypot(up[0], up[1]) > 0.5 * events.START_ROLLING:
+        if self.stance.contact is not ContactMode.ROLLING and math.hypot(up[0], up[1]) > 0.5 * events.START_ROLLING:
             self.stance = stances.rolling(self.stance)
             return self._guard()
         state = self._state()
-        if self.stance.contact is Contact.ROLLING:
+        if self.stance.contact is ContactMode.ROLLING:
             self.stance = stances.rim(self.body, state.pivot[:2])  # so flat that the point of contact is fixed
             return self._guard()
         self.quaternion = attitude.flat(self.quaternion)
         return self._land(rim_landed(self.body, state, self.law), ())
 
-    def _land(self, choice: Choice, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
-        before = self._kinetic() + (self._potential() if self.stance.contact is Contact.ROLLING else 0.0)
+    def _land(self, choice: Continuation, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
+        before = self._kinetic() + (self._potential() if self.stance.contact is ContactMode.ROLLING else 0.0)
         self._stand(choice.stance)
         self.velocity = choice.velocity
         weak = self._weak
@@ -247,7 +247,7 @@ class SpatialReference:
         self.touching = tuple(i for i in touching if i not in choice.stance.points)
         kind = SpatialEventKind.IMPACT
         self.course.note(self.time, kind, choice.stance, before, self._kinetic(), choice.supports)
-        if choice.stance.contact is Contact.REST:
+        if choice.stance.contact is ContactMode.REST:
             self.course.note(self.time, SpatialEventKind.REST, choice.stance, 0.0, 0.0)
         return self._guard()
 
@@ -274,7 +274,7 @@ class SpatialReference:
         if self.at_once > _STUCK or len(self.course.events) > self.settings.most_events:
             return Outcome.FAILED, Status.TOO_MANY_EVENTS
         # a base of many corners may have no step without an impact; whether it still can fall is asked here too
-        if self._final is False or self.stance.contact is Contact.REST:
+        if self._final is False or self.stance.contact is ContactMode.REST:
             return None
         return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
 
@@ -284,7 +284,7 @@ class SpatialReference:
         """Move the pivot, and take rounding out of the attitude."""
         rotation = attitude.matrix(self.quaternion)
         self.place = self.place + applied(rotation, stance.pivot - self._pivot)[:2]
-        if stance.contact is Contact.REST:
+        if stance.contact is ContactMode.REST:
             self.quaternion = attitude.flat(self.quaternion)
         elif stance.axis is not None:
             self.quaternion = attitude.levelled(self.quaternion, stance.axis)
@@ -311,10 +311,10 @@ class SpatialReference:
         field[2] -= self.settings.gravity
         return applied(attitude.matrix(self.quaternion).T, field)
 
-    def _state(self) -> State:
+    def _state(self) -> SpatialState:
         axis = self.stance.axis
         along = np.zeros(3) if axis is None else self.stance.length * axis
-        return State(self._pivot, self.velocity, self._up, self._field_now(), along)
+        return SpatialState(self._pivot, self.velocity, self._up, self._field_now(), along)
 
     def _kinetic(self) -> float:
         return self.body.kinetic(self._pivot, self.velocity)

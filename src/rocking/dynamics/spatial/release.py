@@ -9,7 +9,7 @@ from rocking.dynamics.spatial.polynomials import cauchy, dot, first_zero, padded
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.taylor import value
-from rocking.outcome import Contact
+from rocking.outcome import ContactMode
 from rocking.portable import applied, inverse, times
 from rocking.portable import dot as dot_of
 
@@ -60,7 +60,7 @@ def _opens(force: FloatArray, opening: FloatArray) -> float | None:
 
 def _normal(body: SpatialBody, stance: Stance, step: Step) -> FloatArray:
     """Vertical force per unit mass."""
-    if stance.contact is Contact.ROLLING:
+    if stance.contact is ContactMode.ROLLING:
         # height of the centre over the ground: Z . C + b sin(tilt)
         level = step.up[:, :2]
         height = applied(step.up, body.centre) + body.radius * square_root(dot(level, level))

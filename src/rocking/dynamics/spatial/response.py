@@ -19,7 +19,7 @@ from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory
 from rocking.errors import InvalidValueError
-from rocking.outcome import Contact, Outcome, Status
+from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import applied, dot, norm
 
 if TYPE_CHECKING:
@@ -120,9 +120,9 @@ class SpatialResponse(Exportable):
         return self.states.point(self.body.centre * np.array([1.0, 1.0, 2.0]))
 
     @cached_property
-    def intervals(self) -> list[tuple[float, float, Contact, tuple[int, ...]]]:
+    def intervals(self) -> list[tuple[float, float, ContactMode, tuple[int, ...]]]:
         """Start and end [s], regime, and vertices on the ground, as long as they stay the same."""
-        found: list[tuple[float, float, Contact, tuple[int, ...]]] = []
+        found: list[tuple[float, float, ContactMode, tuple[int, ...]]] = []
         for piece in self.trajectory.pieces:
             if found and piece.start >= self.end:
                 break
@@ -141,7 +141,7 @@ class SpatialResponse(Exportable):
             if event.time > self.end:
                 break
             stays, push = event.stance, event.impulses
-            total = push.sum() if stays.contact is Contact.EDGE else push[-1]
+            total = push.sum() if stays.contact is ContactMode.EDGE else push[-1]
             vertices = "-".join(map(str, stays.points))
             pull = max(0.0, -float(push.min()))
             rows.append((event.time, event.before, event.after, total, pull, stays.contact.name.lower(), vertices))
@@ -188,7 +188,7 @@ class SpatialResponse(Exportable):
     @cached_property
     def still_rocking(self) -> bool:
         """Whether it stands, but does not yet rest where the response ends; later impacts are not among `impacts`."""
-        return self.outcome is Outcome.ROCKED and int(self._last.contact[0]) != Contact.REST.code
+        return self.outcome is Outcome.ROCKED and int(self._last.contact[0]) != ContactMode.REST.code
 
     @property
     def unfinished(self) -> str:
@@ -261,7 +261,7 @@ class SpatialResponse(Exportable):
         """How often a round base rolled through lying nearly flat, below 1 % of its slenderness angle."""
         if not self.body.round:
             return 0
-        rolling = [p for p in self.trajectory.pieces if p.stance.contact is Contact.ROLLING and p.start < self.end]
+        rolling = [p for p in self.trajectory.pieces if p.stance.contact is ContactMode.ROLLING and p.start < self.end]
         tilts = attitude.tilt(np.array([p.quaternions[0] for p in rolling]).reshape(-1, 4))
         low = (tilts[1:-1] <= tilts[:-2]) & (tilts[1:-1] < tilts[2:])
         return int((low & (tilts[1:-1] < NEARLY_FLAT * self.body.radius / self.body.centre[2])).sum())

@@ -6,7 +6,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.dynamics.spatial.selection import State, of_forces
+from rocking.dynamics.spatial.selection import SpatialState, of_forces
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.taylor import first_fall, shifted, value
 from rocking.portable import convolved, times
@@ -40,7 +40,7 @@ def next_uplift(
     return None
 
 
-def lifted(body: SpatialBody, state: State, edges: tuple[int, ...]) -> Stance | None:
+def lifted(body: SpatialBody, state: SpatialState, edges: tuple[int, ...]) -> Stance | None:
     """Return on what a body stands when it is lifted from rest.
 
     Returns none if the ground would have to pull.

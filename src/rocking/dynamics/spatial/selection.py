@@ -19,14 +19,14 @@ from rocking.dynamics.spatial.attitude import cross
 from rocking.dynamics.spatial.impact import SpatialImpactLaw, projected
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.stance import Stance
-from rocking.outcome import Contact
+from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm, solution
 
 _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class SpatialState:
     """A body at an instant, in its own axes."""
 
     pivot: FloatArray  # A point at rest on the ground [m]; shape (3,)
@@ -51,7 +51,7 @@ class State:
 
 
 @dataclass(frozen=True, eq=False)
-class Choice:
+class Continuation:
     """What stays, and how the body goes on."""
 
     stance: Stance  # on what the body stands
@@ -71,7 +71,9 @@ def candidates(body: SpatialBody, touching: tuple[int, ...]) -> Iterator[Stance]
         yield stances.vertex(body, number)
 
 
-def of_impact(body: SpatialBody, state: State, touching: tuple[int, ...], law: SpatialImpactLaw) -> list[Choice]:
+def of_impact(
+    body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw
+) -> list[Continuation]:
     """Return every contact set that an impact may leave, the largest first."""
     found = []
     scale = float(np.abs(state.velocity).max()) * body.size
@@ -81,21 +83,23 @@ def of_impact(body: SpatialBody, state: State, touching: tuple[int, ...], law: S
         if push.min() < -_ROUNDING * body.mass * scale:
             continue
         velocity = plastic
-        if stance.contact is not Contact.REST:
+        if stance.contact is not ContactMode.REST:
             velocity = law.velocity_after(
                 body, state.nearest(stance), stance.pivot, stance.axis, state.up, state.velocity
             )
         if _opening(body, stance, velocity, state.up, touching) >= -_ROUNDING * scale:
-            found.append(Choice(stance, velocity, push))
+            found.append(Continuation(stance, velocity, push))
     return found
 
 
-def of_forces(body: SpatialBody, state: State, touching: tuple[int, ...], first: Stance | None = None) -> list[Choice]:
+def of_forces(
+    body: SpatialBody, state: SpatialState, touching: tuple[int, ...], first: Stance | None = None
+) -> list[Continuation]:
     """Return every contact set that stays when no gap opens with a speed, a preferred one first.
 
     Returns empty if the ground would have to pull.
     """
-    found: list[Choice] = []
+    found: list[Continuation] = []
     scale = norm(state.field)
     for stance in [] if first is None else [first]:
         _try_forces(body, state, stance, touching, scale, found)
@@ -106,7 +110,12 @@ def of_forces(body: SpatialBody, state: State, touching: tuple[int, ...], first:
 
 
 def _try_forces(
-    body: SpatialBody, state: State, stance: Stance, touching: tuple[int, ...], scale: float, found: list[Choice]
+    body: SpatialBody,
+    state: SpatialState,
+    stance: Stance,
+    touching: tuple[int, ...],
+    scale: float,
+    found: list[Continuation],
 ) -> None:
     velocity = _after(body, state, stance)
     rate, push = forces(body, stance, velocity, state.up, state.field)
@@ -116,10 +125,10 @@ def _try_forces(
     opening = applied(cross(rate, body.vertices - stance.pivot) + spin, state.up)
     others = [i for i in touching if i not in stance.points]
     if not others or opening[others].min() >= -_ROUNDING * scale:
-        found.append(Choice(stance, velocity, push))
+        found.append(Continuation(stance, velocity, push))
 
 
-def impulses(body: SpatialBody, state: State, stance: Stance, velocity: FloatArray) -> FloatArray:
+def impulses(body: SpatialBody, state: SpatialState, stance: Stance, velocity: FloatArray) -> FloatArray:
     """Return the impulses of the ground in an impact.
 
     velocity: angular velocity after, in body axes [rad/s]. Returns as of `supports` of the stance [N s].
@@ -142,7 +151,7 @@ def forces(
     arm, inertia = body.centre - stance.pivot, body.inertia_about(stance.pivot)
     rate: FloatArray
     gyroscopic, weight = cross(velocity, applied(inertia, velocity)), body.mass * cross(arm, field)
-    if stance.contact is Contact.REST:
+    if stance.contact is ContactMode.REST:
         rate = np.zeros(3)
     elif stance.axis is not None:
         rate = stance.axis * (dot(stance.axis, weight - gyroscopic) / dot(stance.axis, applied(inertia, stance.axis)))
@@ -153,8 +162,8 @@ def forces(
     return rate, stances.supports(body, stance, force, moment, up)
 
 
-def _after(body: SpatialBody, state: State, stance: Stance) -> FloatArray:
-    if stance.contact is Contact.REST:
+def _after(body: SpatialBody, state: SpatialState, stance: Stance) -> FloatArray:
+    if stance.contact is ContactMode.REST:
         return np.zeros(3)
     return projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
 

@@ -7,7 +7,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial.attitude import cross
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.outcome import Contact
+from rocking.outcome import ContactMode
 from rocking.portable import dot, norm
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -17,7 +17,7 @@ UP = np.array([0.0, 0.0, 1.0])
 class Stance:
     """What stays on the ground."""
 
-    contact: Contact  # the regime
+    contact: ContactMode  # the regime
     points: tuple[int, ...]  # numbers of the vertices that stay; none for round bases
     pivot: FloatArray  # A point that stays, in body axes [m]; shape (3,)
     axis: FloatArray | None = None  # unit vector along an edge that stays, in body axes [-]; shape (3,)
@@ -27,19 +27,19 @@ class Stance:
 def face(body: SpatialBody) -> Stance:
     """Return standing on the whole base."""
     pivot = np.zeros(3) if body.round else body.vertices[0]
-    return Stance(Contact.REST, tuple(range(len(body.vertices))), pivot)
+    return Stance(ContactMode.REST, tuple(range(len(body.vertices))), pivot)
 
 
 def edge(body: SpatialBody, number: int) -> Stance:
     """Return standing on an edge."""
     after = (number + 1) % len(body.vertices)
     length = norm(body.vertices[after] - body.vertices[number])
-    return Stance(Contact.EDGE, (number, after), body.vertices[number], body.edges[number], length)
+    return Stance(ContactMode.EDGE, (number, after), body.vertices[number], body.edges[number], length)
 
 
 def vertex(body: SpatialBody, number: int) -> Stance:
     """Return standing on a vertex."""
-    return Stance(Contact.VERTEX, (number,), body.vertices[number])
+    return Stance(ContactMode.VERTEX, (number,), body.vertices[number])
 
 
 def rim(body: SpatialBody, direction: FloatArray) -> Stance:
@@ -48,12 +48,12 @@ def rim(body: SpatialBody, direction: FloatArray) -> Stance:
     Returns turning about that point: what rolling starts with while the base is nearly flat.
     """
     unit = direction / norm(direction)
-    return Stance(Contact.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
+    return Stance(ContactMode.VERTEX, (), np.array([*(body.radius * unit), 0.0]))
 
 
 def rolling(stance: Stance) -> Stance:
     """Return rolling that starts on the point of a stance."""
-    return replace(stance, contact=Contact.ROLLING)
+    return replace(stance, contact=ContactMode.ROLLING)
 
 
 def supports(body: SpatialBody, stance: Stance, force: FloatArray, moment: FloatArray, up: FloatArray) -> FloatArray:
@@ -71,7 +71,7 @@ def supports(body: SpatialBody, stance: Stance, force: FloatArray, moment: Float
     if stance.axis is not None:
         second = dot(cross(up, moment), stance.axis) / stance.length
         return np.array([normal - second, second])
-    if stance.contact is not Contact.REST:
+    if stance.contact is not ContactMode.REST:
         return np.array([normal])
     pressure = cross(up, moment)[:2] + normal * stance.pivot[:2]
     if body.round:
@@ -85,7 +85,7 @@ def touching_point(body: SpatialBody, stance: Stance, up: FloatArray) -> FloatAr
 
     up: vertical in body axes [-]. Returns the pivot; of a rolling body the lowest point of its rim, in body axes [m].
     """
-    if stance.contact is not Contact.ROLLING:
+    if stance.contact is not ContactMode.ROLLING:
         return stance.pivot
     level = up[:2] / norm(up[:2])
     return np.array([-body.radius * level[0], -body.radius * level[1], 0.0])

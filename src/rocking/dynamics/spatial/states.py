@@ -8,8 +8,8 @@ import numpy as np
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.dynamics.spatial.trajectory import Piece, SpatialTrajectory
-from rocking.outcome import Contact
+from rocking.dynamics.spatial.trajectory import SpatialTrajectory, StepPiece
+from rocking.outcome import ContactMode
 from rocking.portable import applied, times
 
 
@@ -96,13 +96,13 @@ def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray
     return States(body, parts[0], parts[1], parts[2], parts[3], contact)
 
 
-def pivots(body: SpatialBody, piece: Piece, quaternions: FloatArray) -> FloatArray:
+def pivots(body: SpatialBody, piece: StepPiece, quaternions: FloatArray) -> FloatArray:
     """Return the points on the ground, in body axes.
 
     quaternions: attitudes within it [-]. Returns pivot of the stance; of a rolling body the lowest points of its rim
     [m].
     """
-    if piece.stance.contact is not Contact.ROLLING:
+    if piece.stance.contact is not ContactMode.ROLLING:
         return np.broadcast_to(piece.stance.pivot, (len(quaternions), 3))
     level = attitude.matrix(quaternions)[:, 2, :2]
     low = -body.radius * level / np.linalg.norm(level, axis=1)[:, None]

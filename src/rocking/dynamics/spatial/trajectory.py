@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial.stance import Stance
-from rocking.outcome import Contact, Outcome, Status
+from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import powers, times
 
 
@@ -34,7 +34,7 @@ class SpatialEvent:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Piece:
+class StepPiece:
     """A step of the engine."""
 
     start: float  # start, length: when it starts, and the unit of time of its series [s]
@@ -67,7 +67,7 @@ class Piece:
 class SpatialTrajectory:
     """A history."""
 
-    pieces: list[Piece] = field(repr=False)  # in order of time, without gaps
+    pieces: list[StepPiece] = field(repr=False)  # in order of time, without gaps
     events: list[SpatialEvent] = field(repr=False)  # in order of time
     outcome: Outcome  # how it ended
     status: Status  # whether it could be computed
@@ -88,6 +88,6 @@ class SpatialTrajectory:
         return [event for event in self.events if event.kind is SpatialEventKind.IMPACT]
 
     @property
-    def contact(self) -> Contact:
+    def contact(self) -> ContactMode:
         """On what the body stands at the end."""
         return self.pieces[-1].stance.contact

@@ -7,7 +7,7 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory
-from rocking.outcome import Contact, Outcome
+from rocking.outcome import ContactMode, Outcome
 
 
 def results_of(found: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
@@ -29,7 +29,7 @@ def results_of(found: SpatialTrajectory) -> tuple[FloatArray, list[int]]:
     uplifts = sum(event.kind is SpatialEventKind.UPLIFT for event in events)
     status, contact = found.status.code, -1 if stance is None else stance.contact.code
     counts = [found.outcome.code, status, contact, number]
-    still = found.outcome is Outcome.ROCKED and last.stance.contact is not Contact.REST
+    still = found.outcome is Outcome.ROCKED and last.stance.contact is not ContactMode.REST
     return results, [*counts, len(found.impacts), uplifts, len(events), len(found.pieces), int(still)]
 
 

@@ -10,14 +10,14 @@ _WORDS = {Outcome.OVERTURNED: "overturns", Outcome.ROCKED: "stays standing", Out
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class ModelAgreement:
     """What the models say together."""
 
     decides: bool  # whether they end differently
     sentence: str  # the same in words
 
     @classmethod
-    def of(cls, found: Mapping[str, Response]) -> "Verdict":
+    def of(cls, found: Mapping[str, Response]) -> "ModelAgreement":
         """Compare responses."""
         groups: dict[str, list[str]] = {}
         for name, one in found.items():

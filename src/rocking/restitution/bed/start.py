@@ -13,7 +13,7 @@ from rocking.restitution.bed.settlement import settlement
 
 
 @dataclass(frozen=True)
-class Start:
+class ImpactStart:
     """State of the body when the computation begins, and the scales of the impact."""
 
     # base centre height y [m], rotation [rad], velocities u, w along and across the base [m/s], rotation rate [rad/s]
@@ -37,7 +37,7 @@ def start_of(
     rotation: float | None = None,
     angular_velocity: float | None = None,
     impulsive: bool = False,
-) -> Start:
+) -> ImpactStart:
     """Return the start of an impact.
 
     With gravity the body starts as high as it must to land with the velocity asked for, at rest if half its range of
@@ -72,7 +72,7 @@ def start_of(
     reach = rigid.bed.ends[1] - rigid.bed.ends[0]
     depth = depth_absorbing(law, float(np.sum(rigid.bed.shares)), energy, landing * reach)
     new = rigid.pivot(1e-9 if impulsive else min(0.5 * rigid.furthest(1.0), -angle))
-    return Start(state, landing, energy, min(depth, reach), landing * reach, 0.5 * reach, old, new, impulsive)
+    return ImpactStart(state, landing, energy, min(depth, reach), landing * reach, 0.5 * reach, old, new, impulsive)
 
 
 def _angle_of(rigid: RigidRocking, landing: float, most: float) -> float:

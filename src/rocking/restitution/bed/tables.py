@@ -8,7 +8,7 @@ import numpy as np
 from rocking.conventions import FloatArray, IntArray
 from rocking.restitution.bed.law import LawNumbers
 from rocking.restitution.bed.rigid import RigidRocking
-from rocking.restitution.bed.start import Start
+from rocking.restitution.bed.start import ImpactStart
 
 END_AT_PEAK, END_AT_PARTING = 0, 1
 
@@ -35,7 +35,7 @@ class Setup:
 
     rigid: RigidRocking  # body and bed
     law: LawNumbers  # contact law under this body
-    start: Start  # initial state and scales
+    start: ImpactStart  # initial state and scales
     push: float  # horizontal ground acceleration [m/s2]
     tolerance: float  # relative error of a step [-]
     longest: float  # time after which the computation ends [s]

@@ -10,8 +10,8 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.counts import Counts
 from rocking.studies.fragility.estimate import (
-    Curves,
-    Scale,
+    FittedCurves,
+    LogScale,
     find_curves,
     log_dispersion,
     log_fractile,
@@ -84,9 +84,9 @@ class BootstrapSample:
         How the repetitions were drawn.
     """
 
-    curves: Curves
-    original: Curves
-    scale: Scale
+    curves: FittedCurves
+    original: FittedCurves
+    scale: LogScale
     kind: Resampling
     ends = ENDS[0]
 
@@ -176,14 +176,14 @@ class BootstrapSample:
         unit = one[1][0] if ends == "studentised" else 1.0
         return one[0][0] - high * unit, one[0][0] - low * unit
 
-    def _quantity(self, curves: Curves, variate: float | None) -> FloatArray:
+    def _quantity(self, curves: FittedCurves, variate: float | None) -> FloatArray:
         if variate is None:
             return log_dispersion(curves.theta, self.scale)
         return log_fractile(curves.theta, self.scale, variate)
 
 
 def bootstrap(
-    counts: Counts, original: Curves, scale: Scale, kind: Resampling, repetitions: int, seed: int
+    counts: Counts, original: FittedCurves, scale: LogScale, kind: Resampling, repetitions: int, seed: int
 ) -> BootstrapSample:
     """Repeat a study many times and fit every repetition as the study itself was."""
     probability = curve_probability(original, scale, counts.levels)
@@ -195,7 +195,7 @@ def bootstrap(
     return BootstrapSample(curves, original, scale, kind)
 
 
-def curve_probability(curves: Curves, scale: Scale, levels: FloatArray) -> FloatArray:
+def curve_probability(curves: FittedCurves, scale: LogScale, levels: FloatArray) -> FloatArray:
     """Return the probability of failure of the first curve.
 
     levels: levels, > 0 [any unit]. Returns probabilities [-].

@@ -17,7 +17,7 @@ from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.counts import Counts
-from rocking.studies.fragility.estimate import Curves, Scale, find_curves
+from rocking.studies.fragility.estimate import FittedCurves, LogScale, find_curves
 
 OUTWARD = 6
 """Steps that look for a value outside the interval, each twice as long: an end beyond them is open."""
@@ -46,8 +46,8 @@ class CapacitySample:
     """
 
     levels: FloatArray
-    original: Curves
-    scale: Scale
+    original: FittedCurves
+    scale: LogScale
     variates: FloatArray
     kind = "capacities"
     ends = "inverted"
@@ -165,7 +165,9 @@ class CapacitySample:
         return np.asarray(np.where(curves.found[:, None], curves.theta, flat))
 
 
-def draw_capacities(counts: Counts, original: Curves, scale: Scale, repetitions: int, seed: int) -> CapacitySample:
+def draw_capacities(
+    counts: Counts, original: FittedCurves, scale: LogScale, repetitions: int, seed: int
+) -> CapacitySample:
     """Return what repeats a study whose records have one capacity each."""
     checks.within("repetitions", repetitions, 1, 10**6)
     if not counts.tries_all_levels:

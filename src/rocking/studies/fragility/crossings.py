@@ -52,7 +52,7 @@ class OverturningInterval:
 
 
 @dataclass(frozen=True)
-class Brackets:
+class OutcomeBrackets:
     """Pairs of levels between which the outcome of a motion changes."""
 
     motion: IntArray  # number of the motion
@@ -76,28 +76,30 @@ class Brackets:
         """Return how many there are."""
         return int(self.motion.size)
 
-    def chosen(self, which: Any) -> "Brackets":
+    def chosen(self, which: Any) -> "OutcomeBrackets":
         """Return some of them."""
-        return Brackets(*(values[which] for values in vars(self).values()))
+        return OutcomeBrackets(*(values[which] for values in vars(self).values()))
 
-    def joined(self, other: "Brackets") -> "Brackets":
+    def joined(self, other: "OutcomeBrackets") -> "OutcomeBrackets":
         """Return these and others."""
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)
-        both = Brackets(*(np.concatenate(pair) for pair in pairs))
+        both = OutcomeBrackets(*(np.concatenate(pair) for pair in pairs))
         return both.chosen(np.lexsort((both.low, both.motion)))
 
 
-def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> Brackets:
+def brackets_of(motion: IntArray, levels: FloatArray, sides: IntArray) -> OutcomeBrackets:
     """Return the pairs of neighbouring levels between which the outcome changes.
 
     levels: levels, increasing along each row [unit of the measure]. Returns by row and level; also those between
     overturning to one side and to the other.
     """
     row, place = np.nonzero(sides[:, 1:] != sides[:, :-1])
-    return Brackets(motion[row], levels[row, place], levels[row, place + 1], sides[row, place], sides[row, place + 1])
+    return OutcomeBrackets(
+        motion[row], levels[row, place], levels[row, place + 1], sides[row, place], sides[row, place + 1]
+    )
 
 
-def refined(brackets: Brackets, outcomes: Outcomes, tolerance: float) -> Brackets:
+def refined(brackets: OutcomeBrackets, outcomes: Outcomes, tolerance: float) -> OutcomeBrackets:
     """Return narrower brackets, all cut at once in every round.
 
     Levels that overturn to the right and levels that overturn to the left are both open sets, so that between two of
@@ -121,7 +123,9 @@ def refined(brackets: Brackets, outcomes: Outcomes, tolerance: float) -> Bracket
     return done
 
 
-def _cut(brackets: Brackets, outcomes: Outcomes, parts: int, *, every: bool) -> tuple[Brackets, Brackets]:
+def _cut(
+    brackets: OutcomeBrackets, outcomes: Outcomes, parts: int, *, every: bool
+) -> tuple[OutcomeBrackets, OutcomeBrackets]:
     """Return the brackets that a failed history keeps from being cut, and the pieces of the others."""
     share = np.linspace(0.0, 1.0, parts + 1)
     levels = brackets.low[:, None] + share * (brackets.high - brackets.low)[:, None]
@@ -136,7 +140,7 @@ def _cut(brackets: Brackets, outcomes: Outcomes, parts: int, *, every: bool) -> 
     return brackets.chosen(~known), replace(pieces, motion=brackets.motion[pieces.motion])
 
 
-def _lowest(pieces: Brackets, parents: Brackets) -> Brackets:
+def _lowest(pieces: OutcomeBrackets, parents: OutcomeBrackets) -> OutcomeBrackets:
     """Return the lowest change of each bracket: for sides that meet, the first stop and the start after it, if any."""
     meeting = parents.starts[pieces.motion] == parents.stops[pieces.motion]
     ends = pieces.starts | pieces.stops
@@ -150,7 +154,7 @@ def _lowest(pieces: Brackets, parents: Brackets) -> Brackets:
     return kept.chosen(place < np.where(pair, wanted, 1))
 
 
-def intervals_of(brackets: Brackets) -> list[OverturningInterval]:
+def intervals_of(brackets: OutcomeBrackets) -> list[OverturningInterval]:
     """Return the intervals of levels that overturn, from where they start and stop."""
     brackets = brackets.chosen(brackets.starts | brackets.stops)
     found = []

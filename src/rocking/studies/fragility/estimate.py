@@ -13,14 +13,14 @@ from rocking.studies.fragility.separation import Separation, classify
 
 
 @dataclass(frozen=True)
-class Scale:
+class LogScale:
     """From logarithms of levels to numbers near one: u = (ln level - center) / spread."""
 
     center: float  # center, spread: mean and standard deviation of the logarithms over the trials [-]
     spread: float
 
     @classmethod
-    def of(cls, counts: Counts) -> "Scale":
+    def of(cls, counts: Counts) -> "LogScale":
         """Return the scale of some data."""
         logarithm = np.log(counts.levels)
         center = float(np.average(logarithm, weights=counts.trials))
@@ -42,7 +42,7 @@ class Scale:
 
 
 @dataclass(frozen=True, eq=False)
-class Curves:
+class FittedCurves:
     """Curves Phi(a + b u) found in many data sets of the same levels."""
 
     theta: FloatArray  # rows of a and b; NaN where there is no rising curve [-]
@@ -54,8 +54,8 @@ class Curves:
 
 
 def find_curves(
-    levels: FloatArray, scale: Scale, failures: FloatArray, trials: FloatArray, *, penalised: bool = False
-) -> Curves:
+    levels: FloatArray, scale: LogScale, failures: FloatArray, trials: FloatArray, *, penalised: bool = False
+) -> FittedCurves:
     """Return the likeliest curves of many data sets; of those with a step, the penalised one.
 
     levels: distinct levels, ascending [any unit]; failures, trials: one row a data set, one column a level [-].
@@ -76,7 +76,7 @@ def find_curves(
             theta[rows], curvature[rows], value[rows] = best.theta, best.curvature, best.value
             found[rows] = best.proven & (best.theta[:, 1] > 0.0)
     theta[~found] = np.nan
-    return Curves(theta, curvature, value, found, firth, kinds)
+    return FittedCurves(theta, curvature, value, found, firth, kinds)
 
 
 def _pieces(rows: IntArray, width: int) -> list[IntArray]:
@@ -85,7 +85,7 @@ def _pieces(rows: IntArray, width: int) -> list[IntArray]:
     return [rows[start : start + size] for start in range(0, rows.size, size)]
 
 
-def log_fractile(theta: FloatArray, scale: Scale, variate: float | FloatArray) -> FloatArray:
+def log_fractile(theta: FloatArray, scale: LogScale, variate: float | FloatArray) -> FloatArray:
     """Return the logarithm of the level where curves reach a probability.
 
     theta: rows of a and b [-]; variate: standard normal variate of the probability [-]. Returns ln level [-].
@@ -93,7 +93,7 @@ def log_fractile(theta: FloatArray, scale: Scale, variate: float | FloatArray) -
     return scale.log_level((variate - theta[:, 0]) / theta[:, 1])
 
 
-def log_dispersion(theta: FloatArray, scale: Scale) -> FloatArray:
+def log_dispersion(theta: FloatArray, scale: LogScale) -> FloatArray:
     """Return the logarithm of the dispersion of curves.
 
     theta: rows of a and b, b > 0 [-]. Returns ln beta [-].
@@ -101,7 +101,7 @@ def log_dispersion(theta: FloatArray, scale: Scale) -> FloatArray:
     return np.log(scale.spread / theta[:, 1])
 
 
-def standard_errors(theta: FloatArray, curvature: FloatArray, scale: Scale, variate: float | None) -> FloatArray:
+def standard_errors(theta: FloatArray, curvature: FloatArray, scale: LogScale, variate: float | None) -> FloatArray:
     """Return the standard errors of a logarithmic fractile or of the logarithmic dispersion.
 
     theta: rows of a and b [-]; curvature: their observed information [-]; variate: standard normal variate of the

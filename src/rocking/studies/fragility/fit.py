@@ -12,9 +12,9 @@ from rocking.errors import InvalidValueError
 from rocking.studies.fragility.bootstrap import BootstrapSample, Resampling, bootstrap
 from rocking.studies.fragility.capacities import CapacitySample, draw_capacities
 from rocking.studies.fragility.counts import Counts
-from rocking.studies.fragility.estimate import Curves, Scale
+from rocking.studies.fragility.estimate import FittedCurves, LogScale
 from rocking.studies.fragility.goodness import Goodness, goodness_of
-from rocking.studies.fragility.intervals import IntervalMethod, Intervals
+from rocking.studies.fragility.intervals import ConfidenceIntervals, IntervalMethod
 from rocking.studies.fragility.separation import Separation, median_interval
 from rocking.studies.fragility.verdict import verdict_of
 
@@ -42,8 +42,8 @@ class LognormalFit:
     counts: Counts
     separation: Separation
     method: str
-    scale: Scale | None = None
-    curves: Curves | None = None
+    scale: LogScale | None = None
+    curves: FittedCurves | None = None
 
     @property
     def exists(self) -> bool:
@@ -107,7 +107,7 @@ class LognormalFit:
         return "bootstrap" if self.counts.is_clustered and not self.counts.scarcity else "profile"
 
     @cached_property
-    def intervals(self) -> Intervals:
+    def intervals(self) -> ConfidenceIntervals:
         """What the curve's coefficients mean, and how far the data let them move.
 
         Raises
@@ -117,7 +117,7 @@ class LognormalFit:
         """
         if self.curves is None or self.scale is None:
             raise InvalidValueError(f"a fragility curve is needed, got none: {self.verdict}")
-        return Intervals(self.counts, self.scale, self.curves)
+        return ConfidenceIntervals(self.counts, self.scale, self.curves)
 
     def probability(self, im: Any) -> FloatArray:
         """Return the probability of failure.

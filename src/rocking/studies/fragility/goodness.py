@@ -9,7 +9,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.bootstrap import resample
 from rocking.studies.fragility.counts import Counts
-from rocking.studies.fragility.estimate import Curves, Scale, find_curves
+from rocking.studies.fragility.estimate import FittedCurves, LogScale, find_curves
 
 
 class Statistic(NamedTuple):
@@ -71,7 +71,9 @@ class Goodness:
         return {name: dict(zip(Statistic._fields, getattr(self, name), strict=True)) for name in names}
 
 
-def goodness_of(counts: Counts, curves: Curves, scale: Scale, groups: int, repetitions: int, seed: int) -> Goodness:
+def goodness_of(
+    counts: Counts, curves: FittedCurves, scale: LogScale, groups: int, repetitions: int, seed: int
+) -> Goodness:
     """Return how well a curve agrees with the outcomes."""
     if groups < 2 or repetitions < 20:
         raise InvalidValueError(f"groups must be >= 2 and repetitions >= 20, got {groups} and {repetitions}")

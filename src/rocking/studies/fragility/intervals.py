@@ -18,8 +18,8 @@ from rocking.studies.fragility.constraints import (
 )
 from rocking.studies.fragility.counts import Counts
 from rocking.studies.fragility.estimate import (
-    Curves,
-    Scale,
+    FittedCurves,
+    LogScale,
     log_dispersion,
     log_fractile,
     quadratic_error,
@@ -36,12 +36,12 @@ SIDES = np.array([-1.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
-class Intervals:
+class ConfidenceIntervals:
     """One fitted curve and the likelihood it is the maximum of."""
 
     counts: Counts  # the outcomes
-    scale: Scale  # scale of the coefficients
-    curves: Curves  # the curve: one row
+    scale: LogScale  # scale of the coefficients
+    curves: FittedCurves  # the curve: one row
 
     @cached_property
     def model(self) -> Probit:

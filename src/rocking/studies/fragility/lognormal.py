@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.counts import Counts, count_outcomes
-from rocking.studies.fragility.estimate import Scale, find_curves, log_fractile
+from rocking.studies.fragility.estimate import LogScale, find_curves, log_fractile
 from rocking.studies.fragility.fit import LognormalFit
 from rocking.studies.fragility.separation import Separation, separation_of
 
@@ -83,7 +83,7 @@ def fit_counts(counts: Counts, method: Method = "auto") -> LognormalFit:
         )
     if separation is not Separation.OVERLAP and not separation.step:
         return LognormalFit(counts, separation, "none")
-    scale = Scale.of(counts)
+    scale = LogScale.of(counts)
     curves = find_curves(
         counts.levels, scale, counts.failures[None], counts.trials[None], penalised=method == "penalised"
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.estimate import Scale
+from rocking.studies.fragility.estimate import LogScale
 from rocking.studies.fragility.likelihood import Derivatives, tails
 from rocking.studies.fragility.lognormal import LognormalFit, fit_lognormal
 from rocking.studies.fragility.maximum import maximise
@@ -80,7 +80,7 @@ def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -
             "method must not be 'common-dispersion' unless all states overlap with what is below them, and some trials"
             f" end in each; {' '.join(f'state {k}: {fit.verdict}' for k, fit in enumerate(fits, 1))}"
         )
-    scale = Scale.of(fits[0].counts)
+    scale = LogScale.of(fits[0].counts)
     ended = -np.diff(np.vstack([trials, reached, np.zeros_like(trials)]), axis=0)
     best = maximise(OrderedProbit(scale.position(levels), ended), _start(fits, scale))
     *thresholds, slope = best.theta[0]
@@ -89,7 +89,7 @@ def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -
     return [(float(np.exp(scale.log_level(np.array(-a / slope)))), float(scale.spread / slope)) for a in thresholds]
 
 
-def _start(fits: list[LognormalFit], scale: Scale) -> FloatArray:
+def _start(fits: list[LognormalFit], scale: LogScale) -> FloatArray:
     medians, dispersions = zip(*((fit.intervals.fractile(0.5), fit.intervals.dispersion) for fit in fits), strict=True)
     slope = scale.spread / float(np.mean(dispersions))
     start = [-float(scale.position(np.array(median))) * slope for median in medians]

@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.studies.fragility.counts import Counts
-from rocking.studies.fragility.estimate import Curves, Scale
+from rocking.studies.fragility.estimate import FittedCurves, LogScale
 from rocking.studies.fragility.likelihood import tails
 
 LEAST = 1e-12
@@ -16,7 +16,7 @@ FULLEST = 2_000_000
 """Numbers that are held at once."""
 
 
-def with_cluster_errors(counts: Counts, scale: Scale, curves: Curves, drawn: FloatArray) -> Curves:
+def with_cluster_errors(counts: Counts, scale: LogScale, curves: FittedCurves, drawn: FloatArray) -> FittedCurves:
     """Return curves whose curvature is the inverse of the covariance between clusters.
 
     The covariance is H^-1 M H^-1, with the information H and the sum M of the squared scores of whole clusters (Liang &
@@ -37,7 +37,7 @@ def with_cluster_errors(counts: Counts, scale: Scale, curves: Curves, drawn: Flo
     return replace(curves, curvature=curvature)
 
 
-def _scores_squared(counts: Counts, scale: Scale, theta: FloatArray, drawn: FloatArray) -> FloatArray:
+def _scores_squared(counts: Counts, scale: LogScale, theta: FloatArray, drawn: FloatArray) -> FloatArray:
     position = scale.position(counts.levels)
     failures, trials = np.split(counts.distinct_clusters[0], 2, axis=1)
     tail = tails(theta[:, :1] + theta[:, 1:] * position)

@@ -19,7 +19,7 @@ from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility._measures import IntensityMeasure, RockingScale, measure
-from rocking.studies.histories import Histories, Product, Table
+from rocking.studies.histories import Histories, HistoryTable, Product
 from rocking.studies.motion_set import MotionList, MotionSet, digest
 from rocking.version import SOFTWARE
 
@@ -128,13 +128,13 @@ class Subject:
         sides = {name: np.array([[value]]) for name, value in self._sides.items()}
         return Product(self.motions, sides, factors, law=self.rocker.law, settings=self.settings, engine=self.engine)
 
-    def table(self, motion: np.ndarray, factors: FloatArray) -> Table:
+    def table(self, motion: np.ndarray, factors: FloatArray) -> HistoryTable:
         """Return histories given one by one.
 
         factors: factor on it [-].
         """
         values = {name: np.array([value]) for name, value in self._sides.items()}
-        return Table(
+        return HistoryTable(
             self.motions, motion, values | {"scale": factors},
             law=self.rocker.law, settings=self.settings, engine=self.engine,
         )  # fmt: skip

@@ -30,7 +30,7 @@ _TELLING = frozenset({
 
 
 @dataclass(frozen=True)
-class Column:
+class InventoryColumn:
     """What a column holds."""
 
     fields: tuple[str, ...]  # fields of `InventoryObject` that it gives: a base without a direction gives both
@@ -38,7 +38,7 @@ class Column:
     title: str  # its name in the file
 
 
-def columns_of(titles: Sequence[str], source: str) -> tuple[list[Column | None], tuple[str, ...]]:
+def columns_of(titles: Sequence[str], source: str) -> tuple[list[InventoryColumn | None], tuple[str, ...]]:
     """Return what the columns of a file hold.
 
     Returns columns: none for one that is not read; ignored: names of those that are not read.
@@ -76,16 +76,16 @@ def _split(title: str) -> tuple[str, str]:
     return (stem, unit) if stem in _MEASURES and whole not in _MEASURES else (whole, "")
 
 
-def _column(title: str, source: str) -> Column | None:
+def _column(title: str, source: str) -> InventoryColumn | None:
     stem, unit = _split(title)
     if stem in _MEASURES:
         units = WEIGHTS if stem == "weight" else LENGTH_UNITS
         if unit not in units:
             known = ", ".join(f"{stem}_{each}" for each in units)
             raise InvalidValueError(f"{source}: column {title.strip()!r} must name its unit: {known}")
-        return Column(_FIELDS.get(stem, (stem,)), units[unit], title.strip())
+        return InventoryColumn(_FIELDS.get(stem, (stem,)), units[unit], title.strip())
     if stem in WORDS:
-        return Column((stem,), 1.0, title.strip())
+        return InventoryColumn((stem,), 1.0, title.strip())
     _refuse_measure(title.strip(), stem, source)
     return None
 

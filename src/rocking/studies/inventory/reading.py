@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory.columns import REQUIRED, Column, columns_of, has_required
+from rocking.studies.inventory.columns import REQUIRED, InventoryColumn, columns_of, has_required
 from rocking.studies.inventory.numerals import DecimalMark
 from rocking.studies.inventory.objects import InventoryObject, NotAssessed
 
@@ -158,7 +158,9 @@ def _rows(text: str, delimiter: str, source: str) -> list[tuple[int, list[str]]]
     return found
 
 
-def _object(line: int, cells: Sequence[str], columns: Sequence[Column | None], mark: DecimalMark) -> InventoryObject:
+def _object(
+    line: int, cells: Sequence[str], columns: Sequence[InventoryColumn | None], mark: DecimalMark
+) -> InventoryObject:
     if len(cells) != len(columns):
         hint = "a decimal comma between commas?" if len(cells) > len(columns) else "a separator missing?"
         raise InvalidValueError(f"it has {len(cells)} fields, the header {len(columns)}; {hint}")
@@ -174,7 +176,7 @@ def _object(line: int, cells: Sequence[str], columns: Sequence[Column | None], m
     return InventoryObject(**values)  # type: ignore[arg-type]
 
 
-def _value(column: Column, cell: str, mark: DecimalMark) -> object:
+def _value(column: InventoryColumn, cell: str, mark: DecimalMark) -> object:
     if column.fields[0] in _TEXTS:
         return cell.strip()
     number = mark.number(column.title, cell) * column.factor
@@ -185,6 +187,6 @@ def _value(column: Column, cell: str, mark: DecimalMark) -> object:
     return int(number)
 
 
-def _name(cells: Sequence[str], columns: Sequence[Column | None]) -> str:
+def _name(cells: Sequence[str], columns: Sequence[InventoryColumn | None]) -> str:
     place = next(k for k, column in enumerate(columns) if column and column.fields == ("name",))
     return cells[place].strip() if place < len(cells) else ""

@@ -11,7 +11,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.studies._axes import axis_of
-from rocking.studies.body_axes import Restitution
+from rocking.studies.body_axes import RestitutionAxis
 from rocking.studies.motion_set import MotionSet
 from rocking.studies.sensitivity.choices import named_choices
 from rocking.studies.sensitivity.comparison import Sensitivity
@@ -115,7 +115,7 @@ def map_sensitivity(
     from rocking.studies._overturning_map import overturning_map
 
     along = axis_of(x), axis_of(y)
-    if any(isinstance(axis, Restitution) for axis in along):
+    if any(isinstance(axis, RestitutionAxis) for axis in along):
         raise InvalidValueError("restitution cannot be an axis where it is what is compared")
     return sensitivity(partial(overturning_map, body, motion, *along, **options), restitutions, baseline)
 

@@ -9,7 +9,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, percent
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.estimate import Scale, find_curves, log_dispersion, log_fractile
+from rocking.studies.fragility.estimate import LogScale, find_curves, log_dispersion, log_fractile
 
 _FEWEST = 0.975
 _WEIGHTS = 4_000_000
@@ -173,7 +173,7 @@ def fits(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> FloatA
     NaN where there is no curve.
     """
     x = np.log(levels)
-    scale = Scale(float(x.mean()), float(x.std()))
+    scale = LogScale(float(x.mean()), float(x.std()))
     theta = find_curves(levels, scale, failures, trials).theta
     return np.array([log_fractile(theta, scale, 0.0), np.exp(log_dispersion(theta, scale))])
 

@@ -10,7 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from rocking.app.application import create_app
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 from rocking.app.studies.opened import OpenStudy
 
 jsonschema = pytest.importorskip("jsonschema_rs")
@@ -115,7 +115,7 @@ def asker(
     job = map_job(4, restitution={"model": "ked"})
     job["map"]["refine"] = 1
     made["refined"] = computed(job).id
-    settings = Settings(folder=tmp_path, workers=1)
+    settings = ServerSettings(folder=tmp_path, workers=1)
     app = create_app(settings)
     head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
     with TestClient(app, base_url=settings.origin, headers=head) as client:

@@ -11,7 +11,7 @@ from rocking.app.errors import NotFound
 from rocking.app.question import question_of
 from rocking.app.records import RecordStore
 from rocking.app.schemas.inputs import Inputs
-from rocking.app.studies.history_at_point import Place, cell_of, stretched_words
+from rocking.app.studies.history_at_point import HistoryPlace, cell_of, stretched_words
 from rocking.app.studies.opened import OpenStudy
 from rocking.bodies import Block
 from rocking.motions.formats import write_motion
@@ -40,10 +40,10 @@ def _axis(name: str, count: int = 4) -> Tables:
     return {"axis": name, "from": low, "to": high, "count": count}
 
 
-def _cells(study: OpenStudy) -> list[tuple[Place, Tables]]:
+def _cells(study: OpenStudy) -> list[tuple[HistoryPlace, Tables]]:
     sizes = [study.job.job.study.dims[name] for name in study.job.job.study.dims if name != "restitution"]
     count = len(study.job.job.parts.choices)
-    places = [Place.of(study, x, y, r) for x in range(sizes[-1]) for y in range(sizes[0]) for r in range(count)]
+    places = [HistoryPlace.of(study, x, y, r) for x in range(sizes[-1]) for y in range(sizes[0]) for r in range(count)]
     return [(place, cell_of(study, place, 50)) for place in places]
 
 
@@ -85,10 +85,10 @@ def test_another_cell_is_another_history(
 ) -> None:
     """A negative control: the inputs of the neighbour do not give the numbers of the cell."""
     study = computed(map_job(map={"x": _axis("frequency_ratio"), "y": {"axis": "pga", "values": [4.0, 4.01]}}))
-    inputs = cell_of(study, Place.of(study, 2, 1))["inputs"]
+    inputs = cell_of(study, HistoryPlace.of(study, 2, 1))["inputs"]
     question = question_of(Inputs.model_validate(inputs), records)
     found = question.answered_with("ked").peak_rotation
-    here, there = (cell_of(study, Place.of(study, 2, y))["stored"]["peak_rotation_rad"] for y in (1, 0))
+    here, there = (cell_of(study, HistoryPlace.of(study, 2, y))["stored"]["peak_rotation_rad"] for y in (1, 0))
     assert found == pytest.approx(abs(here), rel=1e-9)
     assert found != pytest.approx(abs(there), rel=1e-6)
 
@@ -167,7 +167,7 @@ def test_points_of_other_studies_are_histories_too(
     for x in range(across[0]):
         for y in range(across[1]):
             cell = cell_of(
-                study, Place.of(study, x, y, 1, motion=2 if kind in {"rocking-spectrum", "histories"} else 0)
+                study, HistoryPlace.of(study, x, y, 1, motion=2 if kind in {"rocking-spectrum", "histories"} else 0)
             )
             question = question_of(Inputs.model_validate(cell["inputs"]), records)
             response = question.answered_with(next(iter(question.choices.values())))
@@ -197,7 +197,7 @@ def test_cells_without_a_history_say_why(
     """Where no such block can be made there is a sentence instead of a response."""
     x, y = {"axis": "semi_diagonal", "values": [0.5, 2.0]}, {"axis": "width", "values": [0.5, 1.5]}
     study = computed(map_job(map={"x": x, "y": y}))
-    cell = cell_of(study, Place.of(study, 0, 1))
+    cell = cell_of(study, HistoryPlace.of(study, 0, 1))
     assert cell["stored"]["mode"] == -3
     assert cell["answer"] is None
     assert "semi-diagonal" in cell["note"]
@@ -210,7 +210,7 @@ def test_points_outside_are_not_there(
     """A number beyond the axes is no cell, and no other cell in its place."""
     study = computed(map_job(4))
     with pytest.raises(NotFound, match="must be a number from 0 to"):
-        Place.of(study, *at)
+        HistoryPlace.of(study, *at)
 
 
 @pytest.mark.parametrize("name", sorted(catalogue()))
@@ -232,7 +232,7 @@ def test_blocks_of_spectra_are_those_of_the_study(
 ) -> None:
     """The block behind a point of a spectrum has the angle and the period 2 pi / p of the point."""
     study = computed(map_job(campaign={"name": "x", "kind": "rocking-spectrum"}, **KINDS["rocking-spectrum"]))
-    body = cell_of(study, Place.of(study, 1, 1))["inputs"]["body"]
+    body = cell_of(study, HistoryPlace.of(study, 1, 1))["inputs"]["body"]
     side = Block(width=body["width"], height=body["height"]).side("right")
     assert side.slenderness_angle == pytest.approx(0.3, rel=1e-14)
     assert 2.0 * np.pi / side.frequency_parameter == pytest.approx(3.0, rel=1e-14)

@@ -21,7 +21,7 @@ from rocking.app.settings import Limits
 from rocking.app.studies import queue as line
 from rocking.app.studies import router
 from rocking.app.studies.manager import StudyManager
-from rocking.app.studies.study import Study
+from rocking.app.studies.study import HostedStudy
 from rocking.app.studies.study_folder import StudyFolder
 from rocking.errors import RockingError
 
@@ -105,14 +105,14 @@ def test_a_study_that_cannot_be_looked_at_stops_no_other(
     """Whatever is raised: it fails, the next one is computed."""
     manager._line._at_once = 0
     first, second = manager.create(None, map_job()), manager.create(None, map_job())
-    look = Study.look
+    look = HostedStudy.look
 
-    def refuse(study: Study) -> bool:
+    def refuse(study: HostedStudy) -> bool:
         if study.folder.id == first and study.process is None and study.meta.state == "running":
             raise ZeroDivisionError
         return look(study)
 
-    monkeypatch.setattr(Study, "look", refuse)
+    monkeypatch.setattr(HostedStudy, "look", refuse)
     manager._line._at_once = 1
     manager._line.changed()
     assert "ZeroDivisionError" in _until(manager, first, "failed")["message"]
@@ -137,7 +137,7 @@ def test_what_was_deleted_does_not_come_back(
     study = manager.create(None, map_job())
     found = manager._line.study(study)
 
-    def crossed() -> Study:
+    def crossed() -> HostedStudy:
         manager.delete(study)
         return found
 

@@ -9,7 +9,7 @@ import pytest
 from fastapi import FastAPI
 from starlette.websockets import WebSocketDisconnect
 
-from rocking.app.settings import Settings
+from rocking.app.settings import ServerSettings
 from rocking.app.studies import router as live
 
 pytestmark = pytest.mark.timed
@@ -19,7 +19,7 @@ with warnings.catch_warnings():  # it says that another client than httpx is com
     from fastapi.testclient import TestClient
 
 Tables = dict[str, Any]
-LIVE = f"{Settings().origin.replace('http', 'ws')}/api/studies/live"
+LIVE = f"{ServerSettings().origin.replace('http', 'ws')}/api/studies/live"
 
 
 def _launched(client: TestClient, job: Tables, name: str | None = None) -> str:
@@ -148,7 +148,7 @@ def test_too_many_browsers_are_turned_away(client: TestClient, monkeypatch: pyte
         assert socket.receive_json() == {"studies": []}
 
 
-def test_strangers_see_nothing(stranger: TestClient, settings: Settings) -> None:
+def test_strangers_see_nothing(stranger: TestClient, settings: ServerSettings) -> None:
     """Without a session there is no list, no study and no websocket."""
     assert stranger.get("/api/studies").status_code == 401
     with pytest.raises(WebSocketDisconnect), stranger.websocket_connect(LIVE, headers={"Origin": settings.origin}):

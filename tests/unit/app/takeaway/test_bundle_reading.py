@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 
 from rocking.app.application import create_app
 from rocking.app.errors import Refused
-from rocking.app.settings import Limits, Settings
+from rocking.app.settings import Limits, ServerSettings
 from rocking.app.takeaway.archive import Archive
 
 OCTETS = {"Content-Type": "application/octet-stream"}
@@ -38,7 +38,7 @@ def read(client, data):
 @pytest.fixture
 def other(tmp_path):
     """Return a script of another server, which has no record yet."""
-    settings = Settings(folder=tmp_path / "other", limits=Limits(upload_bytes=200_000))
+    settings = ServerSettings(folder=tmp_path / "other", limits=Limits(upload_bytes=200_000))
     settings.folder.mkdir()
     app = create_app(settings)
     head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}

@@ -94,7 +94,7 @@ def test_executors_are_tried_before_anything_is_computed(tmp_path):
     assert folder.run(Serial(1)).computed > 0
 
 
-class Stopping(rounds._Run):
+class Stopping(rounds._RoundsRun):
     """Runs two rounds, and stops within the third as its campaign would."""
 
     error: BaseException = CampaignInterrupted("stopped: all 1 chunks are safe; run the campaign again")

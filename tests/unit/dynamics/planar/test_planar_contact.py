@@ -7,28 +7,28 @@ import pytest
 
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
-from rocking.dynamics.planar.choosing import Choice, candidates, choose, weight_of
+from rocking.dynamics.planar.choosing import NextMode, candidates, choose, weight_of
 from rocking.dynamics.planar.course import course
 from rocking.dynamics.planar.footing import BOTH, LEFT, RIGHT, Footing
-from rocking.dynamics.planar.ground import Ground
+from rocking.dynamics.planar.ground import GroundSeries
 from rocking.dynamics.planar.impact import Struck, strike
 from rocking.dynamics.planar.imposed import strike_with
 from rocking.dynamics.planar.margins import Kind, Margin, consistent, first_end, leading, margins
 from rocking.dynamics.planar.mode import FLIGHT, REST, Mode
 from rocking.dynamics.planar.power_series import derivative, integral, value
-from rocking.dynamics.planar.state import State, along, away, kept, kinetic
+from rocking.dynamics.planar.state import PlanarState, along, away, kept, kinetic
 from rocking.dynamics.planar.turning import turning
 from rocking.outcome import Regime, Status
 
 G = 9.80665
 TALL = Footing.of_body(Block(width=1.0, height=2.0))
-STILL = Ground([0.0], [G], 0.3)
+STILL = GroundSeries([0.0], [G], 0.3)
 
 
 def _tilted(rotation, spin, slip=0.0):
     """A body on its right foot, which slides at a speed."""
     r_x, r_z = TALL.arm(RIGHT, rotation)
-    return State(0.0, TALL.rise_on(RIGHT, rotation), rotation, slip - r_z * spin, r_x * spin, spin, (RIGHT,))
+    return PlanarState(0.0, TALL.rise_on(RIGHT, rotation), rotation, slip - r_z * spin, r_x * spin, spin, (RIGHT,))
 
 
 def test_footing_of_a_block_is_its_half_sizes():
@@ -65,7 +65,7 @@ def test_modes_have_names():
 def test_series_satisfy_newton_and_euler(mode):
     """Forces from the series move the centre and turn the body: m x'' = F_t - m a_x, ..., at three instants."""
     mu, state = 0.3, _tilted(0.2, -0.5, mode.slip * 0.4)
-    ground = Ground([1.0, -0.5], [G + 0.4, 0.3], 0.05)
+    ground = GroundSeries([1.0, -0.5], [G + 0.4, 0.3], 0.05)
     found = course(TALL, state, mode, ground, mu, 30)
     for at in (0.0, 0.4, 1.0):
         second = [value(derivative(derivative(c)), at) / 0.05**2 for c in (found.x, found.rise, found.rotation)]
@@ -93,7 +93,7 @@ def test_integral_of_a_product():
 
 def test_impulses_change_the_momenta():
     """Impulses at the feet account for all three momenta; signs of the laws hold; a wrong sign is caught."""
-    state = State(0.0, 0.0, 0.0, 0.7, -1.0, 0.4, BOTH)
+    state = PlanarState(0.0, 0.0, 0.0, 0.7, -1.0, 0.4, BOTH)
     for mu, e in ((0.1, 0.0), (0.5, 0.3), (2.0, 0.6)):
         found = strike(TALL, state, mu, dict.fromkeys(BOTH, e))
         assert isinstance(found, Struck)
@@ -112,7 +112,9 @@ def test_impulses_change_the_momenta():
 def test_newton_and_coulomb_may_create_energy_and_then_there_is_no_result():
     """A fast bounce of a foot under the body, found at random, gains energy: a status; its plastic twin is fine."""
     rotation, spin = 1.3334259860891, -1.8520466144989
-    state = State(0.0, TALL.rise_on(RIGHT, rotation), rotation, -0.12833044107477, -0.64140325334667, spin, (RIGHT,))
+    state = PlanarState(
+        0.0, TALL.rise_on(RIGHT, rotation), rotation, -0.12833044107477, -0.64140325334667, spin, (RIGHT,)
+    )
     assert strike(TALL, state, 3.0, {RIGHT: 0.9}) is Status.ENERGY_GAIN
     assert isinstance(strike(TALL, state, 3.0, {RIGHT: 0.0}), Struck)
 
@@ -124,7 +126,7 @@ def test_plastic_impacts_never_create_energy():
     for _ in range(300):
         rotation = float(rng.uniform(0.01, 1.4))
         u, w, spin = rng.uniform(-1.0, 1.0, 3).tolist()
-        state = State(0.0, TALL.rise_on(RIGHT, rotation), rotation, u, w, spin, (RIGHT,))
+        state = PlanarState(0.0, TALL.rise_on(RIGHT, rotation), rotation, u, w, spin, (RIGHT,))
         if away(TALL, state, RIGHT) >= 0.0:
             continue
         found = strike(TALL, state, float(rng.uniform(0.0, 1.3)), {RIGHT: 0.0})
@@ -138,14 +140,14 @@ def test_plastic_impacts_never_create_energy():
 def test_imposed_coefficient_that_presses_the_old_foot_down_is_left_to_complementarity():
     """r = 0 for a slender body with no friction would turn it back: None."""
     height, lever = 1.0, 0.5
-    state = State(0.0, 0.0, 0.0, height, -lever, 1.0, BOTH)
+    state = PlanarState(0.0, 0.0, 0.0, height, -lever, 1.0, BOTH)
     assert isinstance(strike_with(TALL, state, RIGHT, 1e6, 0.0), Struck)
     assert strike_with(TALL, state, RIGHT, 0.0, 0.0) is None
 
 
 def test_imposed_coefficient_sets_the_place_of_the_impulse():
     """r = 1 - 3 k / (2 (1 + lambda^2) ...): the shares of the feet say where the resultant is, by moments."""
-    state = State(0.0, 0.0, 0.0, 1.0, -0.5, 1.0, BOTH)
+    state = PlanarState(0.0, 0.0, 0.0, 1.0, -0.5, 1.0, BOTH)
     found = strike_with(TALL, state, RIGHT, 1e6, 0.85)
     place = 0.5 * (found.normal[RIGHT] - found.normal[LEFT]) / sum(found.normal.values())
     # moments about the centre: j (r - 1) = -h P_t - s P_n with P_t = h (r - 1), P_n = b (r + 1)
@@ -155,23 +157,23 @@ def test_imposed_coefficient_sets_the_place_of_the_impulse():
 
 def test_candidates_are_what_velocities_allow():
     """At rest all nine modes; sliding to the right only those that slide there, and flight."""
-    assert len(candidates(TALL, State())) == 10
-    assert candidates(TALL, State(u=1.0)) == [Mode(BOTH, 1), Mode((LEFT,), 1), Mode((RIGHT,), 1), FLIGHT]
-    assert candidates(TALL, State(rise=1.0, touching=())) == [FLIGHT]
+    assert len(candidates(TALL, PlanarState())) == 10
+    assert candidates(TALL, PlanarState(u=1.0)) == [Mode(BOTH, 1), Mode((LEFT,), 1), Mode((RIGHT,), 1), FLIGHT]
+    assert candidates(TALL, PlanarState(rise=1.0, touching=())) == [FLIGHT]
 
 
 @pytest.mark.parametrize(("rate", "expected"), [(1e-3, Mode((LEFT,))), (-1e-3, REST)])
 def test_next_derivative_decides_at_the_threshold(rate, expected):
     """At a_x = g b / h exactly, the push that grows lifts the body and the one that falls lets it rest."""
-    found = choose(TALL, State(), Ground([0.5 * G, rate], [G], 0.3), 1.0)
-    assert isinstance(found, Choice)
+    found = choose(TALL, PlanarState(), GroundSeries([0.5 * G, rate], [G], 0.3), 1.0)
+    assert isinstance(found, NextMode)
     assert found.mode == expected
 
 
 def test_a_slide_that_stops_does_not_turn_round_without_a_push():
     """At v_t = 0 on ground at rest the body rests; under a_x = 0.4 g with mu = 0.3 it slides to the left."""
-    assert choose(TALL, State(), STILL, 0.3).mode == REST
-    assert choose(TALL, State(), Ground([0.4 * G], [G], 0.3), 0.3).mode == Mode(BOTH, -1)
+    assert choose(TALL, PlanarState(), STILL, 0.3).mode == REST
+    assert choose(TALL, PlanarState(), GroundSeries([0.4 * G], [G], 0.3), 0.3).mode == Mode(BOTH, -1)
 
 
 def test_margins_start_with_their_first_coefficient_that_is_not_rounding():
@@ -201,12 +203,12 @@ def test_kept_takes_out_rounding_exactly():
     made = kept(TALL, state, (RIGHT,), stick=True)
     assert away(TALL, made, RIGHT) == 0.0
     assert along(TALL, made, RIGHT) == 0.0
-    flat = kept(TALL, State(rotation=1e-17, spin=1e-17), BOTH, stick=True)
+    flat = kept(TALL, PlanarState(rotation=1e-17, spin=1e-17), BOTH, stick=True)
     assert (flat.rotation, flat.spin, flat.w) == (0.0, 0.0, 0.0)
     assert math.copysign(1.0, kept(TALL, state, (), stick=True).u) == 1.0
 
 
-AWAY = Ground([-13.9], [-3.25], 0.3)
+AWAY = GroundSeries([-13.9], [-3.25], 0.3)
 UNEVEN = Footing(1.0, 0.42, 1.0, 0.65, 1.2)
 
 
@@ -214,7 +216,7 @@ def test_two_motions_that_both_obey_coulomb_are_not_chosen_between():
     """On ground that falls faster than g a tilted body at rest may fly; pushed so that its foot sticks instead with
     N > 0 and |T| <= mu N, by the two equations of a foot that does not move, it may do either: that is said."""
     friction, rotation = 2.3, 0.1
-    state = State(0.0, UNEVEN.rise_on(RIGHT, rotation), rotation, touching=(RIGHT,))
+    state = PlanarState(0.0, UNEVEN.rise_on(RIGHT, rotation), rotation, touching=(RIGHT,))
     r_x, r_z = UNEVEN.arm(RIGHT, rotation)
     j = UNEVEN.inertia
     # v_t' = T - a_x + r_z theta'', v_n' = N - (g + a_z) - r_x theta'', j theta'' = T r_z - N r_x
@@ -224,7 +226,7 @@ def test_two_motions_that_both_obey_coulomb_are_not_chosen_between():
     assert -AWAY.lift[0] > 0.0, "and it may fly"
     assert choose(UNEVEN, state, AWAY, friction) is Status.AMBIGUOUS
     frictionless = choose(UNEVEN, state, AWAY, 0.0)
-    assert isinstance(frictionless, Choice)
+    assert isinstance(frictionless, NextMode)
     assert frictionless.mode == FLIGHT
 
 
@@ -239,8 +241,8 @@ def test_what_counts_as_rounding_is_the_same_for_similar_bodies_and_steps(mode, 
         r_x, r_z = footing.arm(RIGHT, 0.2)
         spin, slip = -0.5 / math.sqrt(size), mode.slip * 0.4 * math.sqrt(size)
         rise = footing.rise_on(RIGHT, 0.2) + (0.1 * size if mode == FLIGHT else 0.0)
-        state = State(0.0, rise, 0.2, slip - r_z * spin, r_x * spin, spin, mode.feet)
-        found = course(footing, state, mode, Ground([1.0], [G + 0.4], unit), 0.3, 12)
+        state = PlanarState(0.0, rise, 0.2, slip - r_z * spin, r_x * spin, spin, mode.feet)
+        found = course(footing, state, mode, GroundSeries([1.0], [G + 0.4], unit), 0.3, 12)
         made = margins(footing, mode, found, 0.3, 12.0)
         return [(margin.kind, margin.series[margin.exact] / margin.scale) for margin in made]
 
@@ -257,7 +259,7 @@ def test_impulses_of_an_imposed_coefficient_change_the_momenta(foot, spin, frict
     """Of a body whose feet differ: all three momenta, friction within its cone, the new foot neither leaves nor sinks;
     with enough friction theta' keeps the coefficient, and where it slides it slides against the friction."""
     old = UNEVEN.lever(-foot)
-    state = State(0.0, 0.0, 0.0, UNEVEN.height * spin, old * spin, spin, BOTH)
+    state = PlanarState(0.0, 0.0, 0.0, UNEVEN.height * spin, old * spin, spin, BOTH)
     found = strike_with(UNEVEN, state, foot, friction, 0.6)
     assert isinstance(found, Struck)
     normal, after = found.normal, found.state
@@ -280,9 +282,9 @@ def test_impulses_of_an_imposed_coefficient_change_the_momenta(foot, spin, frict
 
 def test_forces_are_measured_by_the_motion_of_the_moment():
     """|g + a_z| + |a_x| now, whatever the ground does afterwards, and something where it falls freely."""
-    assert weight_of(Ground([2.0, -30.0], [G - 1.0, 50.0], 0.3)) == pytest.approx(G + 1.0, rel=1e-15)
-    assert weight_of(Ground([-2.0, 30.0], [-3.0, 50.0], 0.3)) == pytest.approx(5.0, rel=1e-15)
-    assert 0.0 < weight_of(Ground([0.0, 1.0], [0.0, 1.0], 0.3)) < 0.01
+    assert weight_of(GroundSeries([2.0, -30.0], [G - 1.0, 50.0], 0.3)) == pytest.approx(G + 1.0, rel=1e-15)
+    assert weight_of(GroundSeries([-2.0, 30.0], [-3.0, 50.0], 0.3)) == pytest.approx(5.0, rel=1e-15)
+    assert 0.0 < weight_of(GroundSeries([0.0, 1.0], [0.0, 1.0], 0.3)) < 0.01
 
 
 def test_a_push_that_sets_in_late_turns_a_body():

@@ -24,7 +24,7 @@ from rocking.dynamics.planar.export import SAMPLES
 from rocking.dynamics.planar.footing import Footing
 from rocking.dynamics.planar.log import Log
 from rocking.dynamics.planar.mode import Mode
-from rocking.dynamics.planar.settings import ContactLaw, PlanarSettings
+from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine
@@ -186,7 +186,7 @@ def test_bad_starts_are_refused(wrong):
 def test_settings_are_frozen_values():
     """Defaults pass their own checks."""
     assert PlanarSettings().rest_speed == 1e-7
-    assert ContactLaw(0.5) == ContactLaw(0.5, 0.0, None)
+    assert GroundContact(0.5) == GroundContact(0.5, 0.0, None)
 
 
 def test_too_many_events_are_a_status():
@@ -235,7 +235,7 @@ def test_paradox_at_the_start_leaves_empty_tables():
 
 def test_numbers_that_run_out():
     """Where the series of a motion are no longer finite the history has failed, and not for want of a contact force."""
-    footing, law = Footing.of_body(BODY), ContactLaw(0.6)
+    footing, law = Footing.of_body(BODY), GroundContact(0.6)
     for push in ([0.0, 1e200, 1e200], [0.0, 1e305, -1e305]):
         with np.errstate(all="ignore"):
             found = Planar(footing, Segments.between_samples(1e80, np.array(push)), law, PlanarSettings()).run()

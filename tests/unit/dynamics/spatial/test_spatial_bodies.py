@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import Contact, SpatialBody, SpatialSettings, attitude
+from rocking.dynamics.spatial import ContactMode, SpatialBody, SpatialSettings, attitude
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial, law_of
 from rocking.dynamics.spatial.landing import landed, started
-from rocking.dynamics.spatial.selection import State, forces, impulses, of_impact
+from rocking.dynamics.spatial.selection import SpatialState, forces, impulses, of_impact
 from rocking.dynamics.spatial.stance import edge, face, rise, vertex
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution.spatial import SpatialHousner
@@ -139,7 +139,7 @@ def test_where_nothing_stays_without_a_pull_the_least_pull_is_taken():
         body = SpatialBody(6.0, centre, np.square(arms).sum() * np.eye(3) - arms.T @ arms, base)
         for _ in range(30):
             pivot, velocity = body.vertices[random.integers(count)], random.normal(size=3) * [1.0, 1.0, 30.0]
-            state = State(pivot, velocity, UP, -9.81 * UP)
+            state = SpatialState(pivot, velocity, UP, -9.81 * UP)
             if (np.cross(velocity, body.vertices - pivot) @ UP).max() > 0.0 or of_impact(body, state, every, law):
                 continue
             none += 1
@@ -148,7 +148,7 @@ def test_where_nothing_stays_without_a_pull_the_least_pull_is_taken():
             assert opens.min() >= -1e-8 * np.abs(velocity).max()
             assert found.supports.min() < 0.0
             assert found.supports.min() >= impulses(body, state, face(body), np.zeros(3)).min()
-            if found.stance.contact is Contact.REST:
+            if found.stance.contact is ContactMode.REST:
                 faces += 1
                 np.testing.assert_array_equal(found.velocity, np.zeros(3))
     assert none > 30
@@ -188,7 +188,7 @@ def test_of_two_contact_sets_the_larger_stays():
     every, two = (0, 1, 2, 3), 0
     for _ in range(1500):
         pivot, velocity = body.vertices[random.integers(4)], random.normal(size=3)
-        state = State(pivot, velocity, UP, -9.81 * UP)
+        state = SpatialState(pivot, velocity, UP, -9.81 * UP)
         if (np.cross(velocity, body.vertices - pivot) @ UP).max() > 0.0:
             continue
         found = of_impact(body, state, every, law)
@@ -224,12 +224,12 @@ def test_a_start_that_turns_about_an_edge_stands_on_it(size):
     for number, axis in enumerate(body.edges):
         stance, touching = started(body, 0.7 * axis, UP)
         assert touching == (0, 1, 2, 3, 4)
-        assert (stance.contact, stance.points) == (Contact.EDGE, (number, (number + 1) % 5))
+        assert (stance.contact, stance.points) == (ContactMode.EDGE, (number, (number + 1) % 5))
         for askew in (1e-3, -1e-3):
             stance, _ = started(body, 0.7 * axis + askew * np.cross(UP, axis), UP)
             # the turn about the inward normal lowers the far end of the edge, or lifts it
             stays = (number + 1) % 5 if askew > 0.0 else number
-            assert (stance.contact, stance.points) == (Contact.VERTEX, (stays,))
+            assert (stance.contact, stance.points) == (ContactMode.VERTEX, (stays,))
 
 
 def test_the_point_at_rest_that_is_nearest_to_a_new_stance():
@@ -241,7 +241,7 @@ def test_the_point_at_rest_that_is_nearest_to_a_new_stance():
     share, inside = np.linspace(0.0, 1.0, 10_001)[:, None], 0
     for number in range(5):
         old = edge(body, number)
-        state = State(old.pivot, np.zeros(3), UP, -9.81 * UP, old.length * old.axis)
+        state = SpatialState(old.pivot, np.zeros(3), UP, -9.81 * UP, old.length * old.axis)
         for other in range(5):
             for new in (edge(body, other), vertex(body, other)):
                 target = new.pivot if new.axis is None else new.pivot + 0.5 * new.length * new.axis
@@ -251,7 +251,7 @@ def test_the_point_at_rest_that_is_nearest_to_a_new_stance():
                 part = (found - old.pivot) @ old.axis / old.length
                 assert found == pytest.approx(old.pivot + min(max(part, 0.0), 1.0) * state.along, abs=1e-14)
                 inside += 0.01 < part < 0.99
-        alone = State(old.pivot, np.zeros(3), UP, -9.81 * UP)
+        alone = SpatialState(old.pivot, np.zeros(3), UP, -9.81 * UP)
         assert alone.nearest(edge(body, (number + 2) % 5)) == pytest.approx(old.pivot, abs=0.0)
     assert inside > 10
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import Contact, SpatialBody, free_rocking_spatial, simulate_spatial
+from rocking.dynamics.spatial import ContactMode, SpatialBody, free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial.impact import law_of
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
@@ -30,7 +30,7 @@ def test_under_little_gravity_it_rocks_slower():
     here, there = (free_rocking_spatial(BOX, 0.1, restitution=0.6, gravity=9.8 * k) for k in (1.0, 1e-4))
     assert here.impacts.size == there.impacts.size > 3
     np.testing.assert_allclose(there.impacts["time"], 100.0 * here.impacts["time"], rtol=1e-9)
-    assert there.trajectory.pieces[-1].stance.contact is Contact.REST
+    assert there.trajectory.pieces[-1].stance.contact is ContactMode.REST
 
 
 def test_a_law_of_ones_own_serves():
@@ -67,7 +67,7 @@ def test_a_body_that_rests_stays_where_it_is():
         free_rocking_spatial(BOX, duration=1.0),
     ):
         assert run.outcome is Outcome.NO_UPLIFT
-        assert run.intervals == [(0.0, run.end, Contact.REST, (0, 1, 2, 3))]
+        assert run.intervals == [(0.0, run.end, ContactMode.REST, (0, 1, 2, 3))]
         assert not run.energy.kinetic.any()
         assert not run.tilt.any()
 
@@ -127,7 +127,7 @@ def test_nothing_of_a_response_lies_beyond_its_end():
     run = free_rocking_spatial(BOX, 0.1, angular_velocity=(0.0, -1.2, 0.0), duration=0.02)
     assert run.outcome is Outcome.OVERTURNED
     assert run.trajectory.pieces[-1].end > run.overturning_time > run.end == 0.02
-    assert run.intervals == [(0.0, 0.02, Contact.EDGE, (1, 2))]
+    assert run.intervals == [(0.0, 0.02, ContactMode.EDGE, (1, 2))]
     assert run.impacts.size == 0
     assert run.time[-1] <= 0.02
 
@@ -137,7 +137,7 @@ def test_energy_closes_where_steps_hold_several_samples():
     each of them."""
     pulse = rk.pulses.half_sine(amplitude=1.0, period=12.0)
     run = simulate_spatial(BOX, pulse, pulse.scaled(0.3), pulse.scaled(-0.2), tilt=0.15, azimuth=0.3, duration=4.0)
-    starts = np.array([piece.start for piece in run.trajectory.pieces if piece.stance.contact is not Contact.REST])
+    starts = np.array([piece.start for piece in run.trajectory.pieces if piece.stance.contact is not ContactMode.REST])
     assert np.bincount(np.searchsorted(starts, run.time[run.time < 4.0], side="right"))[1:].max() > 2
     assert np.abs(run.energy.work).max() > 100.0
     assert run.energy.closure < 1e-9

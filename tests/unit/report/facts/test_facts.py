@@ -14,7 +14,7 @@ from rocking.report.facts.impact import ImpactAnswer, impact_facts
 from rocking.report.facts.motion import MotionAnswer, motion_facts, spectrum_facts
 from rocking.report.facts.response import finite, other_facts, response_facts
 from rocking.report.facts.stages import stages_facts
-from rocking.report.facts.verdict import Verdict
+from rocking.report.facts.verdict import ModelAgreement
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 LEANING = rk.Section.from_trapezoid(1.0, 0.5, 2.5)
@@ -89,18 +89,20 @@ def test_motion_facts_of_a_record_and_a_pulse():
 def test_the_verdict_names_who_says_what():
     """Two outcomes are a decision, with the names of the models on both sides; one is none."""
     stands, falls = rk.simulate(BLOCK, MOTION, duration=60.0), rk.simulate(BLOCK, MOTION, scale=3.0)
-    both = Verdict.of({"a": stands, "b": falls, "c": stands})
-    assert both == Verdict(True, "The model decides: the body stays standing with a, c, overturns with b.")
-    assert Verdict.of({"b": falls}) == Verdict(False, "With every one of these models the body overturns.")
+    both = ModelAgreement.of({"a": stands, "b": falls, "c": stands})
+    assert both == ModelAgreement(True, "The model decides: the body stays standing with a, c, overturns with b.")
+    assert ModelAgreement.of({"b": falls}) == ModelAgreement(
+        False, "With every one of these models the body overturns."
+    )
 
 
 def test_the_verdict_names_who_still_rocks():
     """Of three responses one is cut while it rocks: the sentence says which, and the outcome is the same."""
     rests, cut = rk.simulate(BLOCK, MOTION, duration=60.0), rk.simulate(BLOCK, MOTION, duration=1.0)
-    together = Verdict.of({"a": rests, "b": cut, "c": rests})
+    together = ModelAgreement.of({"a": rests, "b": cut, "c": rests})
     assert together.sentence.endswith("the body stays standing. Still rocking when the computation ends: with b.")
     assert not together.decides
-    assert Verdict.of({"a": rests}).sentence.endswith("the body stays standing.")
+    assert ModelAgreement.of({"a": rests}).sentence.endswith("the body stays standing.")
 
 
 def test_curves_follow_the_formula_of_housner():
@@ -116,6 +118,6 @@ def test_the_verdict_names_with_whom_the_ground_would_have_to_pull():
     with pytest.warns(PureRockingWarning, match="would have to pull"):
         torn = rk.simulate(rk.Block(width=3.0, height=1.0), rk.pulses.sine(40.0, 1.0), 0.5)
     assert torn.lost_contact
-    assert "pull" not in Verdict.of({"a": held}).sentence
-    both = Verdict.of({"a": held, "b": torn}).sentence
+    assert "pull" not in ModelAgreement.of({"a": held}).sentence
+    both = ModelAgreement.of({"a": held, "b": torn}).sentence
     assert both.endswith("The ground would have to pull, and the verdict assumes contact: with b.")

@@ -7,7 +7,7 @@ import pytest
 
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.counts import count_outcomes
-from rocking.studies.fragility.estimate import Scale
+from rocking.studies.fragility.estimate import LogScale
 from rocking.studies.fragility.likelihood import Probit
 from rocking.studies.fragility.lognormal import fit_lognormal
 from rocking.studies.fragility.robust import with_cluster_errors
@@ -103,7 +103,7 @@ def test_a_bad_method_or_number_of_repetitions_is_refused():
 
 def test_errors_of_clusters_by_the_sum_over_single_clusters():
     """The covariance is that of the textbook, H^-1 M H^-1, with M summed cluster by cluster from the likelihood."""
-    counts, scale = SPREAD.counts, Scale.of(SPREAD.counts)
+    counts, scale = SPREAD.counts, LogScale.of(SPREAD.counts)
     curves, position = SPREAD.curves, scale.position(counts.levels)[None]
     total = np.zeros((2, 2))
     for failures, trials in zip(counts.cluster_failures, counts.cluster_trials, strict=True):

@@ -14,7 +14,7 @@ from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.studies.fragility._incremental import incremental, incremental_plan
 from rocking.studies.fragility.censored import fit_censored, fit_crossings, fit_moments
-from rocking.studies.fragility.crossings import Brackets, brackets_of, intervals_of, refined
+from rocking.studies.fragility.crossings import OutcomeBrackets, brackets_of, intervals_of, refined
 from rocking.studies.fragility.stripes import multiple_stripes
 
 BODY = rk.Block(width=0.4, height=1.6).with_feet(0.04, 0.4)
@@ -136,7 +136,7 @@ def test_motions_with_a_failure_have_no_crossing_and_are_named(found):
 
 def bracket(low, high, before, after, motion=0):
     """One bracket."""
-    return Brackets(*(np.array([value]) for value in (motion, low, high, before, after)))
+    return OutcomeBrackets(*(np.array([value]) for value in (motion, low, high, before, after)))
 
 
 def test_search_keeps_what_the_first_round_finds():
@@ -217,7 +217,7 @@ def test_many_brackets_are_halved_and_end_the_same():
     def outcomes(motion, level):
         return 1 * (level >= wanted[motion]), np.ones(level.size, bool)
 
-    many = Brackets(np.arange(3000), np.ones(3000), np.full(3000, 2.0), np.zeros(3000, int), np.ones(3000, int))
+    many = OutcomeBrackets(np.arange(3000), np.ones(3000), np.full(3000, 2.0), np.zeros(3000, int), np.ones(3000, int))
     found = refined(many, outcomes, 1e-10)
     assert found.motion.tolist() == list(range(3000))
     assert np.all((found.low < wanted) & (wanted <= found.high))

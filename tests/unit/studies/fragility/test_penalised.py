@@ -6,7 +6,7 @@ from scipy.optimize import minimize
 from scipy.special import log_ndtr, ndtr
 
 from rocking.studies.fragility.counts import count_outcomes
-from rocking.studies.fragility.estimate import Scale, find_curves
+from rocking.studies.fragility.estimate import LogScale, find_curves
 from rocking.studies.fragility.lognormal import fit_lognormal
 from rocking.studies.fragility.penalised import PenalisedProbit
 
@@ -46,7 +46,7 @@ def test_penalised_fit_is_the_highest_of_many_searches(levels, failures, trials)
 def test_penalty_removes_bias():
     """Over 1500 small studies the mean slope is off by less than half of what maximum likelihood's is (Firth 1993)."""
     levels = np.exp(np.linspace(-1.0, 1.0, 6))
-    scale = Scale.of(count_outcomes(levels, np.zeros(6), np.full(6, 20)))
+    scale = LogScale.of(count_outcomes(levels, np.zeros(6), np.full(6, 20)))
     truth = np.array([0.2, 1.3])
     random = np.random.default_rng(11)
     p = ndtr(truth[0] + truth[1] * scale.position(levels))

@@ -8,7 +8,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError
-from rocking.studies.body_axes import Restitution
+from rocking.studies.body_axes import RestitutionAxis
 from rocking.studies.sensitivity import (
     SampledRestitution,
     Sensitivity,
@@ -101,7 +101,7 @@ def test_cells_of_a_grid_have_no_interval_unless_something_is_drawn():
 def test_the_restitution_is_no_axis_where_it_is_compared():
     """A map over the restitution itself would be the same for all choices: refused before anything is computed."""
     told = []
-    for axes in ((("restitution", [0.8, 0.9]), AXES[1]), (AXES[0], Restitution([0.8, 0.9]))):
+    for axes in ((("restitution", [0.8, 0.9]), AXES[1]), (AXES[0], RestitutionAxis([0.8, 0.9]))):
         with pytest.raises(InvalidValueError, match="restitution cannot be an axis where it is what is compared"):
             map_sensitivity(BLOCK, PULSE, *axes, ["housner", "ked"], progress=told.append)
     assert told == []

@@ -11,7 +11,7 @@ from rocking.dynamics import RandomRestitution, Rocker
 from rocking.dynamics.impact_law import uniform
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
-from rocking.studies.histories import Product, Table
+from rocking.studies.histories import HistoryTable, Product
 from rocking.studies.motion_set import MotionList
 from rocking.studies.sensitivity.sampled import SampledHistories, SampledRestitution, sampled, uniforms
 
@@ -132,7 +132,8 @@ def test_a_bad_row_touches_no_other():
     broken = {name: values.copy() for name, values in good.values.items()}
     broken["alpha_right"][17] = np.nan
     found, clean = (
-        SampledHistories.of(Table(PULSES, good.motion, values), LAW).run(0, 300) for values in (broken, good.values)
+        SampledHistories.of(HistoryTable(PULSES, good.motion, values), LAW).run(0, 300)
+        for values in (broken, good.values)
     )
     assert found["status"][17] == Status.INVALID.code
     others = np.arange(300) != 17

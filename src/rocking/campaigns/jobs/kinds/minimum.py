@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from rocking.campaigns.jobs.answer import Answer
-from rocking.campaigns.jobs.asked import Asked, Compute, first_round
+from rocking.campaigns.jobs.answer import AdaptiveResult
+from rocking.campaigns.jobs.asked import Compute, NumberedTable, first_round
 from rocking.campaigns.jobs.kinds.minimum_tables import tables_of
 from rocking.campaigns.jobs.kinds.words import along, of_words
 from rocking.campaigns.jobs.study import Study
@@ -37,7 +37,7 @@ class MinimumSearch:
     options: dict[str, Any]  # settings and engine, as `Histories` takes them
     names: dict[str, list[str]]  # what the motions and the restitutions are called
 
-    def __call__(self, compute: Compute) -> Answer:
+    def __call__(self, compute: Compute) -> AdaptiveResult:
         """Return all crossings.
 
         Returns A tuple of `Crossings`, None where no history could be computed, and tables of them.
@@ -48,14 +48,14 @@ class MinimumSearch:
             if case.size:
                 # the draws of a body are the same at every amplitude, and those of a call with this motion alone
                 told: dict[str, Any] = {"law": self.law, **self.options}
-                found = compute(sampled(Asked(self.motions, motion[case], values, body[case], **told)))
+                found = compute(sampled(NumberedTable(self.motions, motion[case], values, body[case], **told)))
             else:
                 found = empty_results(0)
             ratio = peak_ratio(found["peak_rotation"], values["alpha_right"], values["alpha_left"])
             return {**found, "mode": modes_of(found), "peak_ratio": ratio}
 
         crossings = searched(self.cases, self.effort, run)
-        return Answer(crossings, tables_of(crossings, self.cases, self.effort, self.shape, self.names))
+        return AdaptiveResult(crossings, tables_of(crossings, self.cases, self.effort, self.shape, self.names))
 
 
 def minimum_study(parts: Parts) -> Study:

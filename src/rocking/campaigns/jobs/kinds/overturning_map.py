@@ -12,7 +12,7 @@ from rocking.spec.parts import Parts
 from rocking.spec.reading import located
 from rocking.studies._axes import axis_of
 from rocking.studies.axis import Axis
-from rocking.studies.body_axes import Restitution
+from rocking.studies.body_axes import RestitutionAxis
 from rocking.studies.plane import Plane
 from rocking.studies.question import Question
 from rocking.studies.sensitivity.sampled import sampled
@@ -34,7 +34,7 @@ def map_study(parts: Parts) -> Study:
             Question(parts.bodies[0], parts.motions[0], choice, parts.settings, None, engine)
             for choice in parts.choices.values()
         ]
-        if len(questions) > 1 and any(isinstance(axis, Restitution) for axis in axes):
+        if len(questions) > 1 and any(isinstance(axis, RestitutionAxis) for axis in axes):
             raise InvalidValueError("restitution cannot be an axis where it is what is compared; leave one model")
         planes = [Plane(question, *axes) for question in questions]
         histories = MapHistories.of(planes)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rocking.campaigns.jobs.answer import Answer
+from rocking.campaigns.jobs.answer import AdaptiveResult
 from rocking.campaigns.jobs.asked import AskedQuestion, Compute
 from rocking.campaigns.jobs.study import Study
 from rocking.conventions import FloatArray, IntArray
@@ -53,7 +53,7 @@ class MapSearch:
             Lattice(planes[0], table.refine)
         return cls(study, planes[0], table.refine, table.boundary, tolerance)
 
-    def __call__(self, compute: Compute) -> Answer:
+    def __call__(self, compute: Compute) -> AdaptiveResult:
         """Return the points and the polylines.
 
         Returns A pair of `Refined` and a list of `Polyline`, and tables of them.
@@ -65,7 +65,7 @@ class MapSearch:
         lines = outlines(lattice, cells, self.by, self.tolerance)
         tables = {"refined": _points(points, plane), "boundary": _vertices(lines, plane)}
         told = {"refine": self.levels, "boundary": self.by, "boundary_tolerance": self.tolerance}
-        return Answer((points, lines), tables, {**told, "polylines": len(lines)})
+        return AdaptiveResult((points, lines), tables, {**told, "polylines": len(lines)})
 
     def _base(self, found: Arrays) -> tuple[IntArray, FloatArray]:
         """Return modes and relative peaks of the map."""
