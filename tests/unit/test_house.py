@@ -1,4 +1,4 @@
-"""No module imports a room above its own, none imports itself by a detour, within functions and by strings too; one class name, one meaning."""
+"""No import of a room above, none in a circle, within functions and by strings too; one class name, one meaning."""
 
 import pytest
 from benchmarks import house

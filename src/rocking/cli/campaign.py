@@ -40,10 +40,10 @@ def check(
     as_json: AsJson = False,
 ) -> None:
     """Read a job and all its files, and say what it will take, from a trial of two seconds."""
-    from rocking.cli import campaign_output as output
+    from rocking.cli import campaign_output
 
-    with output.codes():
-        output.show_forecast(job, workers, out, as_json)
+    with campaign_output.codes():
+        campaign_output.show_forecast(job, workers, out, as_json)
 
 
 @campaign.command(epilog=_CODES)
@@ -57,11 +57,11 @@ def run(
 ) -> None:
     """Begin a campaign and compute it; the job is copied into its folder."""
     from rocking.campaigns.jobs import Job, JobFolder
-    from rocking.cli import campaign_output as output
+    from rocking.cli import campaign_output
 
-    with output.codes(out):
-        who = output.executor_of(executor, workers, address)
-        output.compute(JobFolder.create(out, Job.read(job)), who, as_json)
+    with campaign_output.codes(out):
+        who = campaign_output.executor_of(executor, workers, address)
+        campaign_output.compute(JobFolder.create(out, Job.read(job)), who, as_json)
 
 
 @campaign.command(epilog=_CODES)
@@ -75,29 +75,29 @@ def resume(
 ) -> None:
     """Go on with a campaign where it stopped; files that have changed since are refused."""
     from rocking.campaigns.jobs import JobFolder
-    from rocking.cli import campaign_output as output
+    from rocking.cli import campaign_output
 
-    with output.codes(folder):
-        who = output.executor_of(executor, workers, address)
-        output.compute(JobFolder.open(folder, inputs), who, as_json)
+    with campaign_output.codes(folder):
+        who = campaign_output.executor_of(executor, workers, address)
+        campaign_output.compute(JobFolder.open(folder, inputs), who, as_json)
 
 
 @campaign.command(epilog=_CODES)
 def status(folder: Folder, as_json: AsJson = False) -> None:
     """Say how far a campaign is, also while another process runs it; what it calls safe was read and is whole."""
-    from rocking.cli import campaign_output as output
+    from rocking.cli import campaign_output
 
-    with output.codes(folder):
-        output.show_status(folder, as_json)
+    with campaign_output.codes(folder):
+        campaign_output.show_status(folder, as_json)
 
 
 @campaign.command(epilog=_CODES)
 def verify(folder: Folder, as_json: AsJson = False) -> None:
     """Read a campaign as a whole: every result is there once, and every bit is as it was written; resume mends it."""
-    from rocking.cli import campaign_output as output
+    from rocking.cli import campaign_output
 
-    with output.codes(folder):
-        output.show_verification(folder, as_json)
+    with campaign_output.codes(folder):
+        campaign_output.show_verification(folder, as_json)
 
 
 @campaign.command(epilog=_CODES)
@@ -129,8 +129,8 @@ def export(
     as_json: AsJson = False,
 ) -> None:
     """Write the results of a finished campaign into a file, with where they come from."""
-    from rocking.cli import campaign_output as output
+    from rocking.cli import campaign_output
     from rocking.cli.campaign_export import write
 
-    with output.codes(folder):
+    with campaign_output.codes(folder):
         write(folder, to, what, restitution=restitution, crossing=crossing, inputs=inputs, as_json=as_json)

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from rocking.campaigns import CampaignStorageError, Progress, disk
-from rocking.campaigns.jobs import JobFolder, assessment, export, exports_of
+from rocking.campaigns import CampaignStorageError, Progress, disk, jobs
+from rocking.campaigns.jobs import JobFolder, assessment, exports_of
 from rocking.campaigns.jobs.exporting import write_provenance
 from rocking.campaigns.jobs.round_status import finished_rounds
 from rocking.cli.campaign_output import bar
@@ -71,7 +71,7 @@ def _file(
             tell(Progress(done, total, 0, 0, 0.0, None, 0.0, 0))
 
         try:
-            return export(folder, to, what, restitution=restitution, crossing=crossing, progress=step)
+            return jobs.export(folder, to, what, restitution=restitution, crossing=crossing, progress=step)
         except InvalidValueError as error:
             words = str(error).replace('crossing="common-dispersion"', "--crossing common-dispersion")
             raise InvalidValueError(words) from error

@@ -4,7 +4,7 @@ import json
 import math
 from typing import Any
 
-from rocking.cli.shared_options import in_unit
+from rocking.cli.options import in_unit
 from rocking.cli.simulate_question import Question, restitution_from
 from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
 from rocking.dynamics.planar import PlanarResponse, Regime, Start, simulate_with_contact

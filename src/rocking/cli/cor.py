@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.cli import shared_options as shared
+from rocking.cli import options
 
 _OUTPUT = "Output"
 
@@ -15,16 +15,16 @@ def cor(
         Path | None,
         typer.Argument(help="Body file: TOML, or WKT, GeoJSON, DXF, or a mesh STL, OBJ, PLY with --units, or GLB."),
     ] = None,
-    width: shared.Width = None,
-    height: shared.Height = None,
-    depth: shared.Depth = None,
-    density: shared.Density = None,
-    angle: shared.Angle = None,
-    semi_diagonal: shared.SemiDiagonal = None,
-    units: shared.Units = None,
-    up: shared.Up = None,
-    fill_holes: shared.FillHoles = False,
-    base_tolerance: shared.BaseTolerance = None,
+    width: options.Width = None,
+    height: options.Height = None,
+    depth: options.Depth = None,
+    density: options.Density = None,
+    angle: options.Angle = None,
+    semi_diagonal: options.SemiDiagonal = None,
+    units: options.Units = None,
+    up: options.Up = None,
+    fill_holes: options.FillHoles = False,
+    base_tolerance: options.BaseTolerance = None,
     onto: Annotated[str, typer.Option(help="Foot on which the body lands: right, left or both.")] = "both",
     model: Annotated[
         list[str] | None,
@@ -35,7 +35,7 @@ def cor(
     identities: Annotated[
         bool, typer.Option("--identities", help="Also try the identities of mechanics on every model.")
     ] = False,
-    as_json: shared.AsJson = False,
+    as_json: options.AsJson = False,
     csv: Annotated[Path | None, typer.Option(help="Write the table for Excel.", rich_help_panel=_OUTPUT)] = None,
     picture: Annotated[
         Path | None,
@@ -46,19 +46,21 @@ def cor(
     ] = None,
 ) -> None:
     """Print the coefficient of restitution of a body under every model, with its interval and what it implies."""
-    from rocking.cli import cor_of_plane_body, cor_of_solid
-    from rocking.cli.solid_options import is_solid
+    from rocking.cli import cor_plane, cor_solid
+    from rocking.cli.inputs import is_solid
     from rocking.conventions import LENGTH_UNITS
 
     sizes = {"width": width, "height": height, "depth": depth, "angle": angle, "semi_diagonal": semi_diagonal}
     mesh = {"up": up, "fill_holes": fill_holes, "base_tolerance": base_tolerance}
-    (unit,) = shared.units_of(units, LENGTH_UNITS)
+    (unit,) = options.units_of(units, LENGTH_UNITS)
     told = {"density": density, "unit": unit}
     files = {"csv": csv, "picture": picture, "stages": stages}
     asked = {"onto": onto, "eta": eta, "identities": identities}
     if body is not None and is_solid(body):
-        cor_of_solid.answer(body, sizes, {**told, **mesh}, asked, files, models=model, gravity=gravity, as_json=as_json)
+        cor_solid.answer_of_solid(
+            body, sizes, {**told, **mesh}, asked, files, models=model, gravity=gravity, as_json=as_json
+        )
         return
-    cor_of_plane_body.answer(
+    cor_plane.answer_of_plane_body(
         body, {**sizes, **told}, mesh, asked, files, models=model, gravity=gravity, as_json=as_json
     )

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.cli import shared_options as shared
+from rocking.cli import options
 
 _SHAKING = "What shakes it"
 _OUTPUT = "Output"
@@ -53,20 +53,20 @@ def fragility(
         list[str] | None,
         typer.Option(help="Model as in rocking models, or a coefficient; again for more, to compare; ked if none."),
     ] = None,
-    width: shared.Width = None,
-    height: shared.Height = None,
-    depth: shared.Depth = None,
-    density: shared.Density = None,
-    angle: shared.Angle = None,
-    semi_diagonal: shared.SemiDiagonal = None,
-    format: shared.Format = None,
-    units: shared.Units = None,
-    time_step: shared.TimeStep = None,
-    component: shared.Component = None,
-    linear: shared.Linear = False,
-    engine: shared.Engine = "auto",
-    gravity: shared.Gravity = None,
-    threads: shared.Threads = None,
+    width: options.Width = None,
+    height: options.Height = None,
+    depth: options.Depth = None,
+    density: options.Density = None,
+    angle: options.Angle = None,
+    semi_diagonal: options.SemiDiagonal = None,
+    format: options.Format = None,
+    units: options.Units = None,
+    time_step: options.TimeStep = None,
+    component: options.Component = None,
+    linear: options.Linear = False,
+    engine: options.Engine = "auto",
+    gravity: options.Gravity = None,
+    threads: options.Threads = None,
     name: Annotated[
         str | None, typer.Option(help="Name of the body in the files; its kind if not given.", rich_help_panel=_OUTPUT)
     ] = None,
@@ -91,17 +91,16 @@ def fragility(
             rich_help_panel=_OUTPUT,
         ),
     ] = False,
-    as_json: shared.AsJson = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Print how likely a body is to rock or to overturn at a level of shaking, and how well that is known."""
-    from rocking.cli import fragility_output, fragility_page_output
-    from rocking.cli.body_options import body_from
-    from rocking.cli.fragility_motions import body_and_records
-    from rocking.cli.fragility_question import FragilityQuestion
-    from rocking.cli.study_output import settings_from
+    from rocking.cli import fragility_output
+    from rocking.cli.fragility_question import FragilityQuestion, body_and_records
+    from rocking.cli.inputs import body_from
+    from rocking.cli.output import settings_from
     from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 
-    unit, units = shared.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
+    unit, units = options.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
     size = {"width": width, "height": height, "depth": depth, "density": density}
     sized = any(one is not None for one in (width, height, angle, semi_diagonal))
     file, records = body_and_records(body, motions or [], sized=sized)
@@ -118,9 +117,9 @@ def fragility(
     answer = question.answered(sources, told, as_json)
     # the numbers are shown even if a file cannot be made of them
     if as_json:
-        print(fragility_page_output.as_json(answer))
+        print(fragility_output.as_json(answer))
     else:
-        fragility_page_output.show(answer, unit or "m")
+        fragility_output.show(answer, unit or "m")
     for path in files.write(answer, name):
         if not as_json:
             print(f"wrote {path}")

@@ -2,15 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.cli import study_output as shared
-from rocking.cli.fragility_motions import motions_from
-from rocking.cli.simulate_question import restitution_from
+from rocking.cli import output
+from rocking.cli.inputs import is_body, motion_from
+from rocking.cli.simulate_question import refuse_reversed, restitution_from
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility._measures import IntensityMeasure, measure
@@ -22,12 +23,19 @@ if TYPE_CHECKING:
     from rocking.studies.sensitivity import Sensitivity
 
 ANALYSES = ("stripes", "cloud", "incremental")
-
 MOST_HISTORIES = 10_000_000
 """A larger analysis is a campaign."""
 
 _REACH = (0.9, 9.0, 16)
 """Levels of PGA that serve where none are given: from, to in what lifts the body, how many, in equal ratios."""
+
+COUNT, SEED = 100, 1
+"""What serves where nobody says otherwise."""
+
+MOST_MOTIONS = 5000
+"""All of them are held in memory."""
+
+_SOURCES = ("record", "synthetic", "count", "seed")
 
 
 @dataclass(frozen=True)
@@ -43,13 +51,13 @@ class FragilityQuestion:
     states: tuple[float, ...]  # rotations over alpha [-]
     factor: float  # factor on all motions of a cloud [-]
     choices: dict[str, Any]  # by the word that was given, the first one first
-    settings: dict[str, Any]  # as of `rocking.cli.study_output.settings_from`
+    settings: dict[str, Any]  # as of `rocking.cli.output.settings_from`
 
     @property
     def unit(self) -> tuple[str, float]:
         """Unit that the levels were written in, that of the measure if in none, and its size."""
         unit, written = self.measure.unit, self.written
-        return (written, shared.UNITS[unit][written]) if written else (unit, 1.0)
+        return (written, output.UNITS[unit][written]) if written else (unit, 1.0)
 
     @classmethod
     def of(
@@ -64,7 +72,7 @@ class FragilityQuestion:
         if len(words) > 1 and kind != "stripes":
             raise InvalidValueError(f"several --restitution are compared by --analysis stripes, not by {kind}")
         levels, written = _levels(kind, wanted, asked["levels"])
-        rotations = tuple(shared.row("--states", asked["states"], "1")[0].tolist())
+        rotations = tuple(output.row("--states", asked["states"], "1")[0].tolist())
         limit_states(rotations)
         if asked["factor"] is not None and kind != "cloud":
             raise InvalidValueError(f"--factor is for --analysis cloud: {kind} brings every motion to the levels")
@@ -81,7 +89,7 @@ class FragilityQuestion:
             raise InvalidValueError(
                 f"there must be at most {MOST_HISTORIES} histories, got {total}; rocking campaign computes more"
             )
-        with shared.bar("histories", total, quiet=quiet) as tell:
+        with output.bar("histories", total, quiet=quiet) as tell:
             found, compared = self._computed(motions, levels, tell)
         return FragilityAnswer(self, facts, found, compared)
 
@@ -140,5 +148,54 @@ def _levels(kind: str, wanted: IntensityMeasure, word: str | None) -> tuple[Floa
         if wanted.name not in {"pga", "pga/(g tan alpha)"}:
             raise InvalidValueError(f"which levels of {wanted.name}? Give --levels FIRST:LAST:COUNT in {wanted.unit}")
         return None, "g" if wanted.name == "pga" else ""
-    values, written = shared.row("--levels", word, "1" if wanted.unit == "-" else wanted.unit)
+    values, written = output.row("--levels", word, "1" if wanted.unit == "-" else wanted.unit)
     return checked_levels("--levels", values, wanted.unit), written
+
+
+def body_and_records(body: str | None, motions: list[str], *, sized: bool) -> tuple[Path | None, list[str]]:
+    """Return which word names the body and which ones the motions."""
+    if sized and body is not None and not is_body(body):
+        return None, [body, *motions]
+    for motion in motions:
+        refuse_reversed(body, motion)
+    return None if body is None else Path(body), motions
+
+
+def motions_from(
+    sources: dict[str, Any], told: dict[str, Any], *, quiet: bool = False
+) -> tuple[MotionList, dict[str, Any]]:
+    """Return the motions that a command was given.
+
+    Returns facts: kind, count, and family and seed, or names.
+    """
+    from rocking.motions.pulse import Pulse
+    from rocking.studies.record_set import SyntheticSet
+
+    records, synthetic, count, seed = (sources[name] for name in _SOURCES)
+    if records:
+        _refuse(
+            {f"--{name}": sources[name] for name in _SOURCES[1:]}, "synthetic motions: leave it out beside --record"
+        )
+        found = MotionList([motion_from(word, **told) for word in records])
+        kind = "pulses" if isinstance(found[0], Pulse) else "records"
+        return found, {"kind": kind, "count": len(found), "names": [found[k].name for k in range(len(found))]}
+    given = {"--" + name.replace("_", "-"): value for name, value in told.items()}
+    _refuse(given, "record files: leave it out, or give --record")
+    if synthetic is None:
+        raise InvalidValueError("what shakes it? Give --record FILE, or --synthetic firm-ground")
+    number = COUNT if count is None else count
+    if not 1 <= number <= MOST_MOTIONS:
+        raise InvalidValueError(f"--count must be in [1, {MOST_MOTIONS}], got {number}; rocking campaign takes more")
+    family = SyntheticSet(synthetic, number, SEED if seed is None else seed)
+    made = []
+    with output.bar("motions", number, quiet=quiet) as tell:
+        for k in range(number):
+            made.append(family[k])
+            tell(1)
+    return MotionList(made), {"kind": "synthetic", "count": number, "family": family.family.name, "seed": family.seed}
+
+
+def _refuse(given: dict[str, Any], whose: str) -> None:
+    odd = [name for name, value in given.items() if value is not None]
+    if odd:
+        raise InvalidValueError(f"{', '.join(odd)} is for {whose}")

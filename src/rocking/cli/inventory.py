@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.cli import shared_options as shared
+from rocking.cli import options
 
 _SHAKING = "How it shakes"
 _OUTPUT = "Output"
@@ -40,23 +40,23 @@ def inventory(
     seed: Annotated[
         int | None, typer.Option(help="Seed of the synthetic motions, 1 if not given.", rich_help_panel=_SHAKING)
     ] = None,
-    restitution: shared.Restitution = "ked",
+    restitution: options.Restitution = "ked",
     encoding: Annotated[
         str, typer.Option(help="Encoding of the CSV file; cp1252 for some spreadsheets.")
     ] = "utf-8-sig",
-    format: shared.Format = None,
-    units: shared.RecordUnits = None,
-    time_step: shared.TimeStep = None,
-    component: shared.Component = None,
+    format: options.Format = None,
+    units: options.RecordUnits = None,
+    time_step: options.TimeStep = None,
+    component: options.Component = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for the report: HTML, PDF, Excel, CSV, JSON.", rich_help_panel=_OUTPUT),
     ] = None,
-    as_json: shared.AsJson = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Print which objects of a list stay standing at a level of shaking, the worst first, in plain words."""
     from rocking.cli import inventory_output
-    from rocking.cli.inventory_hazard import hazard_from
+    from rocking.cli.inventory_output import hazard_from
 
     told = {"format": format, "units": units, "time_step": time_step, "component": component}
     answer = inventory_output.answer(

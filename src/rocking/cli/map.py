@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.cli import shared_options as shared
+from rocking.cli import options
 
 _OUTPUT = "Output"
 _AXIS = (
@@ -15,9 +15,9 @@ _AXIS = (
 
 
 def map(
-    body: shared.BodyFile = None,
-    record: shared.Record = None,
-    motion: shared.Motion = None,
+    body: options.BodyFile = None,
+    record: options.Record = None,
+    motion: options.Motion = None,
     x: Annotated[str, typer.Option(help=_AXIS)] = "frequency_ratio=0.5:10:100",
     y: Annotated[str, typer.Option(help="The same for the upright axis.")] = "amplitude_ratio=1:12:100",
     restitution: Annotated[
@@ -27,22 +27,22 @@ def map(
     refine: Annotated[
         int | None, typer.Option(help="Levels of refinement along boundaries, each of half the spacing.")
     ] = None,
-    width: shared.Width = None,
-    height: shared.Height = None,
-    depth: shared.Depth = None,
-    density: shared.Density = None,
-    angle: shared.Angle = None,
-    semi_diagonal: shared.SemiDiagonal = None,
-    format: shared.Format = None,
-    units: shared.Units = None,
-    time_step: shared.TimeStep = None,
-    component: shared.Component = None,
-    vertical: shared.Vertical = None,
-    vertical_file: shared.VerticalFile = None,
-    linear: shared.Linear = False,
-    engine: shared.Engine = "auto",
-    gravity: shared.Gravity = None,
-    threads: shared.Threads = None,
+    width: options.Width = None,
+    height: options.Height = None,
+    depth: options.Depth = None,
+    density: options.Density = None,
+    angle: options.Angle = None,
+    semi_diagonal: options.SemiDiagonal = None,
+    format: options.Format = None,
+    units: options.Units = None,
+    time_step: options.TimeStep = None,
+    component: options.Component = None,
+    vertical: options.Vertical = None,
+    vertical_file: options.VerticalFile = None,
+    linear: options.Linear = False,
+    engine: options.Engine = "auto",
+    gravity: options.Gravity = None,
+    threads: options.Threads = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw the first map (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
     ] = None,
@@ -50,16 +50,15 @@ def map(
     netcdf: Annotated[
         Path | None, typer.Option(help="Write everything, refined points too, as netCDF.", rich_help_panel=_OUTPUT)
     ] = None,
-    as_json: shared.AsJson = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Print how a body ends over two parameters: shares of each way to overturn, safe islands, and where it begins."""
-    from rocking.cli import map_output, map_page_output
-    from rocking.cli.files_output import check_files
-    from rocking.cli.study_output import body_and_motion_of, settings_from
+    from rocking.cli import map_output
+    from rocking.cli.output import body_and_motion_of, check_files, settings_from
     from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 
     check_files(picture, csv, netcdf)
-    unit, units = shared.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
+    unit, units = options.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
     size = {"width": width, "height": height, "depth": depth, "density": density}
     told = {"format": format, "units": units, "time_step": time_step, "component": component}
     question = map_output.MapQuestion.of(
@@ -77,8 +76,8 @@ def map(
     answer = question.answered(quiet=as_json)
     written = map_output.write(answer, picture, csv, netcdf)
     if as_json:
-        print(map_page_output.as_json(answer))
+        print(map_output.as_json(answer))
         return
-    map_page_output.show(answer, unit or "m")
+    map_output.show(answer, unit or "m")
     for path in written:
         print(f"wrote {path}")

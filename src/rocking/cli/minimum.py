@@ -5,17 +5,17 @@ from typing import Annotated
 
 import typer
 
-from rocking.cli import shared_options as shared
+from rocking.cli import options
 
 _HOW = "How it is computed"
 _OUTPUT = "Output"
 
 
 def minimum(
-    body: shared.BodyFile = None,
-    record: shared.Record = None,
-    motion: shared.Motion = None,
-    restitution: shared.Restitution = "ked",
+    body: options.BodyFile = None,
+    record: options.Record = None,
+    motion: options.Motion = None,
+    restitution: options.Restitution = "ked",
     lowest: Annotated[
         str | None, typer.Option(help="Where to begin: 0.1g, 1m/s2; what lifts the body if not given.")
     ] = None,
@@ -26,36 +26,35 @@ def minimum(
     levels: Annotated[
         int, typer.Option(help="How often suspicious intervals are halved, 0 to 12.", rich_help_panel=_HOW)
     ] = 4,
-    width: shared.Width = None,
-    height: shared.Height = None,
-    depth: shared.Depth = None,
-    density: shared.Density = None,
-    angle: shared.Angle = None,
-    semi_diagonal: shared.SemiDiagonal = None,
-    format: shared.Format = None,
-    units: shared.Units = None,
-    time_step: shared.TimeStep = None,
-    component: shared.Component = None,
-    vertical: shared.Vertical = None,
-    vertical_file: shared.VerticalFile = None,
-    linear: shared.Linear = False,
-    engine: shared.Engine = "auto",
-    gravity: shared.Gravity = None,
-    threads: shared.Threads = None,
+    width: options.Width = None,
+    height: options.Height = None,
+    depth: options.Depth = None,
+    density: options.Density = None,
+    angle: options.Angle = None,
+    semi_diagonal: options.SemiDiagonal = None,
+    format: options.Format = None,
+    units: options.Units = None,
+    time_step: options.TimeStep = None,
+    component: options.Component = None,
+    vertical: options.Vertical = None,
+    vertical_file: options.VerticalFile = None,
+    linear: options.Linear = False,
+    engine: options.Engine = "auto",
+    gravity: options.Gravity = None,
+    threads: options.Threads = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw peak rotation over amplitude (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
     ] = None,
     csv: Annotated[Path | None, typer.Option(help="Write a line for every crossing.", rich_help_panel=_OUTPUT)] = None,
-    as_json: shared.AsJson = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Print all peak ground accelerations at which a body begins or ceases to overturn, not the first alone."""
     from rocking.cli import minimum_output
-    from rocking.cli.files_output import check_files
-    from rocking.cli.study_output import body_and_motion_of, settings_from
+    from rocking.cli.output import body_and_motion_of, check_files, settings_from
     from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS
 
     check_files(picture, csv)
-    unit, units = shared.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
+    unit, units = options.units_of(units, LENGTH_UNITS, ACCELERATION_UNITS)
     size = {"width": width, "height": height, "depth": depth, "density": density}
     told = {"format": format, "units": units, "time_step": time_step, "component": component}
     answer = minimum_output.MinimumAnswer.of(

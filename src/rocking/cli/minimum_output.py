@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from rocking.bodies import Body
-from rocking.cli import study_output as shared
-from rocking.cli.files_output import write_csv
-from rocking.cli.shared_options import beside_g, in_unit
+from rocking.cli import output
+from rocking.cli.options import beside_g, in_unit
+from rocking.cli.output import write_csv
 from rocking.cli.simulate_question import restitution_from
 from rocking.conventions import ACCELERATION_UNITS, g, percent
 from rocking.dynamics.response import Motion
@@ -38,7 +38,7 @@ class MinimumAnswer:
     body: Body
     motion: Motion
     restitution: Any
-    settings: dict[str, Any]  # as of `rocking.cli.study_output.settings_from`
+    settings: dict[str, Any]  # as of `rocking.cli.output.settings_from`
     found: Crossings  # what was found
 
     @classmethod
@@ -59,7 +59,7 @@ class MinimumAnswer:
         from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
 
         law = restitution_from(restitution)
-        with shared.bar("histories", quiet=quiet) as tell:
+        with output.bar("histories", quiet=quiet) as tell:
             found = minimum_overturning_acceleration(body, motion, law, progress=tell, **search, **settings)
         return cls(body, motion, law, settings, found)
 
@@ -76,7 +76,7 @@ def search_from(lowest: str | None, highest: str | None) -> dict[str, float | No
     """
     words = {"lowest": lowest, "highest": highest}
     found = {
-        name: None if word is None else shared.quantity(f"--{name}", word, "m/s2")[0] for name, word in words.items()
+        name: None if word is None else output.quantity(f"--{name}", word, "m/s2")[0] for name, word in words.items()
     }
     least, most = found.values()
     if least is not None and most is not None and not least < most:
@@ -124,7 +124,7 @@ def as_json(answer: MinimumAnswer) -> str:
     facts = {
         "body": repr(answer.body),
         "assumed": list(answer.body.assumed),
-        "motion": shared.motion_facts(answer.motion),
+        "motion": output.motion_facts(answer.motion),
         "restitution": answer.label,
         "gravity_m_s2": answer.settings["gravity"],
         "linear": answer.settings["linear"],
@@ -191,7 +191,7 @@ def show(answer: MinimumAnswer, length: str = "m", acceleration: str = "m/s2") -
 
     console, found = Console(highlight=False, soft_wrap=True), answer.found
     unit, lifts = beside_g(acceleration), found.uplift_acceleration
-    for name, words in shared.body_lines(answer.body, answer.settings["gravity"], length):
+    for name, words in output.body_lines(answer.body, answer.settings["gravity"], length):
         console.print(f"{name + ':':13} {words}", markup=False)
     console.print(f"motion:       {answer.motion.name}, scaled", markup=False)
     console.print(f"restitution:  {answer.label}", markup=False)
@@ -212,7 +212,7 @@ def show(answer: MinimumAnswer, length: str = "m", acceleration: str = "m/s2") -
             for one in crossings(found)
         ]
         console.print()
-        console.print(shared.table(head, rows, left=0))
+        console.print(output.table(head, rows, left=0))
     if found.failed:
         console.print(f"! {found.failed} of {found.samples} histories could not be computed", style="yellow")
     if found.contact:

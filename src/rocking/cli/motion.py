@@ -5,19 +5,19 @@ from typing import Annotated
 
 import typer
 
-from rocking.cli import shared_options as shared
+from rocking.cli import options
 
 _OUTPUT = "Output"
 
 
 def motion(
     record: Annotated[str, typer.Argument(help="Record file, or a pulse such as sine:amplitude=3,period=0.8.")],
-    format: shared.Format = None,
-    units: shared.RecordUnits = None,
-    time_step: shared.TimeStep = None,
-    component: shared.Component = None,
-    vertical: shared.Vertical = None,
-    vertical_file: shared.VerticalFile = None,
+    format: options.Format = None,
+    units: options.RecordUnits = None,
+    time_step: options.TimeStep = None,
+    component: options.Component = None,
+    vertical: options.Vertical = None,
+    vertical_file: options.VerticalFile = None,
     scale: Annotated[float | None, typer.Option(help="Factor on the acceleration.")] = None,
     damping: Annotated[float, typer.Option(help="Damping ratio of the spectrum.")] = 0.05,
     periods: Annotated[
@@ -30,15 +30,15 @@ def motion(
         Path | None,
         typer.Option(help="Write time, acceleration, velocity, displacement.", rich_help_panel=_OUTPUT),
     ] = None,
-    as_json: shared.AsJson = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Print what a record or a pulse is, its intensity measures and its response spectrum."""
     from rocking.cli import motion_output
-    from rocking.cli.motion_options import motion_from
+    from rocking.cli.inputs import motion_from
     from rocking.conventions import ACCELERATION_UNITS
     from rocking.report.facts.motion import MotionAnswer
 
-    (units,) = shared.units_of(units, ACCELERATION_UNITS)
+    (units,) = options.units_of(units, ACCELERATION_UNITS)
     subject = motion_from(
         record,
         format=format,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.cli.shared_options import beside_g, in_unit
+from rocking.cli.options import beside_g, in_unit
 from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import Measure

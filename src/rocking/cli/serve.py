@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from rocking.cli import shared_options as shared
+from rocking.cli import options
 
 if TYPE_CHECKING:
     from rocking.app.server import Started
@@ -21,7 +21,7 @@ def serve(
     data: Annotated[Path | None, typer.Option(help="Folder for records and studies.")] = None,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the link, open nothing.")] = False,
     workers: Annotated[int | None, typer.Option(help="Processes for a study.", min=1, max=1024)] = None,
-    as_json: shared.AsJson = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Open the application: draw a body, drop a record, see it rock. Everything stays on this machine."""
     from rocking.app.settings import ServerSettings, default_folder

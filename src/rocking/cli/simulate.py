@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.cli import shared_options as shared
+from rocking.cli import options
 
 _OUTPUT = "Output"
 _SPACE = "Body in space"
@@ -14,13 +14,13 @@ _CONTACT = "Sliding and hopping"
 
 def simulate(
     context: typer.Context,
-    body: shared.BodyFile = None,
-    record: shared.Record = None,
-    motion: shared.Motion = None,
+    body: options.BodyFile = None,
+    record: options.Record = None,
+    motion: options.Motion = None,
     free: Annotated[
         float | None, typer.Option(help="No motion: let the body go at this share of its slenderness angle.")
     ] = None,
-    restitution: shared.Restitution = "ked",
+    restitution: options.Restitution = "ked",
     scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
     friction: Annotated[
         float | None, typer.Option(help="Coefficient of friction between body and ground; 0.5 is assumed.")
@@ -43,24 +43,24 @@ def simulate(
     component_z: Annotated[
         str | None, typer.Option(help="Component of the file of --motion-z.", rich_help_panel=_SPACE)
     ] = None,
-    up: shared.Up = None,
-    fill_holes: shared.FillHoles = False,
-    base_tolerance: shared.BaseTolerance = None,
-    width: shared.Width = None,
-    height: shared.Height = None,
-    depth: shared.Depth = None,
-    density: shared.Density = None,
-    angle: shared.Angle = None,
-    semi_diagonal: shared.SemiDiagonal = None,
-    format: shared.Format = None,
-    units: shared.Units = None,
-    time_step: shared.TimeStep = None,
-    component: shared.Component = None,
-    vertical: shared.Vertical = None,
-    vertical_file: shared.VerticalFile = None,
-    linear: shared.Linear = False,
-    engine: shared.Engine = "auto",
-    gravity: shared.Gravity = None,
+    up: options.Up = None,
+    fill_holes: options.FillHoles = False,
+    base_tolerance: options.BaseTolerance = None,
+    width: options.Width = None,
+    height: options.Height = None,
+    depth: options.Depth = None,
+    density: options.Density = None,
+    angle: options.Angle = None,
+    semi_diagonal: options.SemiDiagonal = None,
+    format: options.Format = None,
+    units: options.Units = None,
+    time_step: options.TimeStep = None,
+    component: options.Component = None,
+    vertical: options.Vertical = None,
+    vertical_file: options.VerticalFile = None,
+    linear: options.Linear = False,
+    engine: options.Engine = "auto",
+    gravity: options.Gravity = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw the response (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
     ] = None,
@@ -72,18 +72,18 @@ def simulate(
     netcdf: Annotated[
         Path | None, typer.Option(help="Write samples and impacts as netCDF.", rich_help_panel=_OUTPUT)
     ] = None,
-    as_json: shared.AsJson = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Print how a body rocks under a ground motion, whether it overturns, and whether the model of impact decides."""
-    from rocking.cli import simulate_of_contact, simulate_of_pure_rocking, simulate_of_solid
-    from rocking.cli.simulate_asked import SimulateOptions
+    from rocking.cli import simulate_output
     from rocking.cli.simulate_output import ResponseFiles
+    from rocking.cli.simulate_question import SimulateOptions
 
     asked = SimulateOptions.of(context)
     files = ResponseFiles(picture, animation, csv, mat, netcdf)
     if asked.solid is not None:
-        simulate_of_solid.answer(asked, files, as_json=as_json)
+        simulate_output.answer_of_solid(asked, files, as_json=as_json)
     elif contact:
-        simulate_of_contact.answer(asked, files, as_json=as_json)
+        simulate_output.answer_of_contact(asked, files, as_json=as_json)
     else:
-        simulate_of_pure_rocking.answer(asked, files, as_json=as_json)
+        simulate_output.answer_of_pure_rocking(asked, files, as_json=as_json)

@@ -3,9 +3,9 @@
 import math
 from typing import Any
 
-from rocking.cli.body_options import body_words
-from rocking.cli.shared_options import in_unit
-from rocking.cli.simulate_output import ResponseComparison
+from rocking.cli.inputs import body_words
+from rocking.cli.options import in_unit
+from rocking.cli.simulate_question import ResponseComparison
 from rocking.conventions import given_or_assumed
 from rocking.dynamics.response import Response
 from rocking.motions.pulse import Pulse

@@ -1,22 +1,31 @@
 """What `rocking simulate` was asked: a body, a motion or a first rotation, and how to compute."""
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import typer
+
 from rocking import checks, plausibility
 from rocking.bodies import Body
-from rocking.cli.model_options import models_from
-from rocking.cli.motion_options import motion_from
-from rocking.cli.solid_options import is_body
-from rocking.conventions import DEFAULT_FRICTION, g
-from rocking.dynamics.response import Motion
+from rocking.cli.inputs import body_from, is_body, is_solid, models_from, motion_from, refuse, spelt
+from rocking.cli.options import units_of
+from rocking.conventions import ACCELERATION_UNITS, DEFAULT_FRICTION, LENGTH_UNITS, g
+from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.settings import Settings
-from rocking.errors import InvalidValueError
+from rocking.errors import InvalidValueError, RockingError
+from rocking.outcome import Outcome
 from rocking.spec.response import ResponseQuestion
 
 Question = ResponseQuestion
 """Everything that a response depends on."""
+
+_SIZE = ("width", "height", "depth", "density", "angle", "semi_diagonal", "unit")
+_RECORD = ("format", "units", "time_step", "component", "vertical", "vertical_file")
+_MESH = ("up", "fill_holes", "base_tolerance")
+_ALONG = ("motion_y", "motion_z", "component_y", "component_z")
+_OUTPUTS = {"body", "picture", "animation", "csv", "mat", "netcdf", "as_json"}
 
 
 def question_of(
@@ -110,3 +119,129 @@ def restitution_from(word: str) -> Any:
         return float(word)
     except ValueError:
         return next(iter(models_from([word]) or []))
+
+
+@dataclass(frozen=True, slots=True)
+class SimulateOptions:
+    """The options of one call."""
+
+    values: dict[str, Any]  # parameter of the command to its value
+    typed: frozenset[str]  # parameters that were typed, so that their values are no defaults
+    document: Path | None  # the file that says everything, if the first word is one
+
+    @classmethod
+    def of(cls, context: typer.Context) -> "SimulateOptions":
+        """Return what was typed."""
+        document = path_of(context)
+        by_hand = frozenset(name for name in context.params if typed(context, name))
+        unit, units = units_of(context.params["units"], LENGTH_UNITS, ACCELERATION_UNITS)
+        return cls({**context.params, "unit": unit, "units": units}, by_hand, document)
+
+    @property
+    def solid(self) -> str | None:
+        """The first word, if it is the file of a body in space."""
+        word = self.values["body"]
+        return word if self.document is None and is_solid(word) else None
+
+    @property
+    def units(self) -> tuple[str, str]:
+        """Units of lengths and of accelerations, SI where none was typed."""
+        return self.values["unit"] or "m", self.values["units"] or "m/s2"
+
+    def some(self, names: tuple[str, ...]) -> dict[str, Any]:
+        """Return some options."""
+        return {name: self.values[name] for name in names}
+
+    def only_typed(self, names: tuple[str, ...]) -> dict[str, Any]:
+        """Return those of some options that were typed, as they are spelt, to refuse them."""
+        return spelt(self.some(tuple(name for name in names if name in self.typed)))
+
+    def question(self) -> Question:
+        """Return the question about a plane body.
+
+        Returns Body, motion or first rotation, friction, and how to compute.
+        """
+        refuse("a plane body is no mesh and has one horizontal motion", self.only_typed((*_MESH, *_ALONG)))
+        values, size, free = self.values, self.some(_SIZE), self.values["free"]
+        sized = any(size[name] is not None for name in ("width", "height", "angle", "semi_diagonal"))
+        file, word = body_and_motion(
+            values["body"], values["record"], values["motion"], sized=sized, free=free is not None
+        )
+        how = self.some(("scale", "gravity", "engine", "linear", "friction"))
+        subject = body_from(file, **size)
+        return question_of(subject, motion_asked(word, self.some(_RECORD), how["scale"]), free, **how)
+
+
+def path_of(context: typer.Context) -> Path | None:
+    """Return the file that says everything, if the command was given one: a TOML file with a table [response].
+
+    Returns none if the first word is something else.
+    """
+    from rocking.spec.reading import is_response
+
+    word = context.params.get("body")
+    if word is None or not is_response(Path(word)):
+        return None
+    given = [name for name in context.params if name not in _OUTPUTS and typed(context, name)]
+    if given:
+        names = ", ".join("a second word" if name == "record" else f"--{name.replace('_', '-')}" for name in given)
+        raise InvalidValueError(f"{word} has a table [response] and says everything itself, so it takes no {names}")
+    return Path(word)
+
+
+@dataclass(frozen=True, slots=True)
+class ResponseComparison:
+    """A response, and what the other models of impact make of the same question."""
+
+    response: Response  # with the restitution asked for
+    friction: float  # coefficient of friction between body and ground [-]
+    others: dict[str, Response | str]  # by model: the response, or why the model has none for this body
+
+    @classmethod
+    def of(cls, question: Question, restitution: str) -> "ResponseComparison":
+        """Compute the response, and what every model that needs no value makes of the same question."""
+        from rocking.evidence._coefficient_table import default_models
+
+        response = _computed(question, restitution_from(restitution))
+        rivals = {model.label: model for model in default_models() if model.label != response.rocker.label}
+        return cls(response, question.friction, {name: _tried(question, model) for name, model in rivals.items()})
+
+    @classmethod
+    def of_choices(cls, question: Question) -> "ResponseComparison":
+        """Compute the response with the first restitution of a question, and with all others that it lists."""
+        (_, first), *rest = question.choices.items()
+        response = _computed(question, first)
+        return cls(response, question.friction, {name: _tried(question, choice) for name, choice in rest})
+
+
+def _computed(question: Question, restitution: Any) -> Response:
+    response = question.answered_with(restitution)
+    if response.outcome is Outcome.FAILED:
+        raise RockingError(f"there is no response: {response.status.value}")
+    return response
+
+
+def _tried(question: Question, restitution: Any) -> Response | str:
+    try:
+        return question.answered_with(restitution)
+    except InvalidValueError as error:
+        return str(error)
+
+
+def answer_of(path: Path) -> ResponseComparison:
+    """Return the answer to what a file asks.
+
+    Returns the response with the first restitution, and with the others that the file lists.
+    """
+    from rocking.spec.response import ResponseJob
+
+    return ResponseComparison.of_choices(ResponseJob.read(path).question)
+
+
+def typed(context: typer.Context, name: str) -> bool:
+    """Return whether an option was typed.
+
+    Returns false where its value is the default.
+    """
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"

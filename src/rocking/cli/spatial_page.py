@@ -5,8 +5,7 @@ import math
 from typing import Any
 
 from rocking.bodies.formats import SolidFile
-from rocking.cli.solid_cor_output import show_body
-from rocking.cli.solid_impact import base_facts, body_facts
+from rocking.cli.cor_solid import base_facts, body_facts, show_body
 from rocking.dynamics.spatial import SpatialResponse
 from rocking.outcome import Outcome
 from rocking.report.facts.response import finite

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from rocking.cli import shared_options as shared
+from rocking.cli import options
 
 _OUTPUT = "Output"
 
@@ -21,29 +21,28 @@ def spectrum(
     periods: Annotated[
         str, typer.Option(help="2 pi / p in s: FIRST:LAST:COUNT in equal ratios, or with :linear, or A,B,C.")
     ] = "1:10:100",
-    restitution: shared.Restitution = "ked",
+    restitution: options.Restitution = "ked",
     scale: Annotated[float, typer.Option(help="Factor on the acceleration of the ground.")] = 1.0,
-    format: shared.Format = None,
-    units: shared.RecordUnits = None,
-    time_step: shared.TimeStep = None,
-    component: shared.Component = None,
-    vertical: shared.Vertical = None,
-    vertical_file: shared.VerticalFile = None,
-    linear: shared.Linear = False,
-    engine: shared.Engine = "auto",
-    gravity: shared.Gravity = None,
-    threads: shared.Threads = None,
+    format: options.Format = None,
+    units: options.RecordUnits = None,
+    time_step: options.TimeStep = None,
+    component: options.Component = None,
+    vertical: options.Vertical = None,
+    vertical_file: options.VerticalFile = None,
+    linear: options.Linear = False,
+    engine: options.Engine = "auto",
+    gravity: options.Gravity = None,
+    threads: options.Threads = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw the spectra (.png, .svg, .pdf).", rich_help_panel=_OUTPUT)
     ] = None,
     csv: Annotated[Path | None, typer.Option(help="Write a line for every block.", rich_help_panel=_OUTPUT)] = None,
     netcdf: Annotated[Path | None, typer.Option(help="Write everything as netCDF.", rich_help_panel=_OUTPUT)] = None,
-    as_json: shared.AsJson = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Print the peak rotation of blocks of many sizes and slendernesses under motions, and which sizes overturn."""
     from rocking.cli import spectrum_output
-    from rocking.cli.files_output import check_files
-    from rocking.cli.study_output import settings_from
+    from rocking.cli.output import check_files, settings_from
 
     check_files(picture, csv, netcdf)
     told = {"format": format, "units": units, "time_step": time_step, "component": component}

@@ -15,9 +15,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rocking.cli import study_output as shared
-from rocking.cli.files_output import plain, write_csv
-from rocking.cli.motion_options import motion_from
+from rocking.cli import output
+from rocking.cli.inputs import motion_from
+from rocking.cli.output import plain, write_csv
 from rocking.cli.simulate_question import restitution_from
 from rocking.conventions import FloatArray
 from rocking.dynamics.response import Motion
@@ -50,7 +50,7 @@ def angles_from(word: str) -> FloatArray:
     """
     import numpy as np
 
-    values, unit = shared.row("--slenderness", word, "rad")
+    values, unit = output.row("--slenderness", word, "rad")
     highest, allowed = (0.5 * math.pi, "in (0, 90) deg") if unit else (1e9, "h/b, above 0")
     bad = values[~((values > 0.0) & (values < highest))]
     if bad.size:
@@ -65,7 +65,7 @@ def periods_from(word: str) -> FloatArray:
     """
     import numpy as np
 
-    values, _ = shared.row("--periods", word, "s", "log")
+    values, _ = output.row("--periods", word, "s", "log")
     if np.any(values <= 0.0) or np.any(np.diff(values) <= 0.0):
         raise InvalidValueError(f"--periods must be above 0 s and increase, got {word!r:.60}")
     return values
@@ -89,7 +89,7 @@ def answer(
     total = len(motions) * angles.size * periods.size
     if total > _MOST:
         raise InvalidValueError(f"spectra must take at most {_MOST} histories, got {total}; rocking campaign does more")
-    with shared.bar("histories", total, quiet=quiet) as tell:
+    with output.bar("histories", total, quiet=quiet) as tell:
         return rocking_spectrum(motions, angles, periods, restitution_from(restitution), progress=tell, **settings)
 
 
@@ -157,7 +157,7 @@ def show(found: "xr.Dataset") -> None:
     """Print a line for every curve."""
     from rich.console import Console
 
-    from rocking.cli.study_output import table
+    from rocking.cli.output import table
 
     console = Console(highlight=False, soft_wrap=True)
     periods, sizes = found["period"].values, found["semi_diagonal"].values

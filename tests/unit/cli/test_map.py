@@ -11,7 +11,8 @@ import pytest
 import typer
 
 import rocking as rk
-from rocking.cli import application, main, study_output
+from rocking.cli import application, main
+from rocking.cli import output as study_output
 from rocking.cli.map import map as map_command
 from rocking.cli.map_output import axis_from
 from rocking.studies._overturning_map import overturning_map

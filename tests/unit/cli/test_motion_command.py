@@ -7,7 +7,7 @@ import math
 import pytest
 
 from rocking.cli import main
-from rocking.cli.motion_options import motion_from
+from rocking.cli.inputs import motion_from
 from rocking.errors import InvalidValueError, RecordError, UnknownModelError
 
 G = 9.80665

@@ -11,9 +11,9 @@ from PIL import Image
 
 import rocking as rk
 from rocking.cli import main
-from rocking.cli.simulate_json import as_json
-from rocking.cli.simulate_output import ResponseComparison
+from rocking.cli.simulate_output import as_text
 from rocking.cli.simulate_page import show
+from rocking.cli.simulate_question import ResponseComparison
 from rocking.dynamics import engine as fast_engine
 from rocking.evidence._coefficient_table import default_models
 
@@ -233,7 +233,7 @@ def test_a_model_that_does_not_fit_says_why(capsys):
     out = capsys.readouterr().out
     assert "not for this body" in out
     assert "! odd: the impact would create energy" in out
-    assert json.loads(as_json(answer))["other_models"]["odd"] == {"error": "the impact would create energy"}
+    assert json.loads(as_text(answer))["other_models"]["odd"] == {"error": "the impact would create energy"}
 
 
 def test_files(capsys, tmp_path):

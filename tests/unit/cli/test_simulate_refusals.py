@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 import rocking as rk
-from rocking.cli import main, simulate_output
+from rocking.cli import main
 from rocking.cli.simulate_question import Question
+from rocking.evidence import _coefficient_table
 from rocking.restitution import model
 
 SIZE = ("--width", "0.5", "--height", "2")
@@ -45,7 +46,7 @@ def test_a_history_without_a_result_is_refused(capsys, monkeypatch):
 
 def test_a_rival_that_creates_energy_is_told_and_left_out(capsys, monkeypatch):
     """A coefficient of 1 on either side of an asymmetric body creates energy on one of them: told, not computed."""
-    monkeypatch.setattr(simulate_output, "default_models", lambda: [model("fixed:r=1")])
+    monkeypatch.setattr(_coefficient_table, "default_models", lambda: [model("fixed:r=1")])
     code, out, err = run(capsys, STATUE, "--free", "0.3")
     assert (code, err) == (0, "")
     assert "not for this body" in out

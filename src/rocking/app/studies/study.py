@@ -28,7 +28,7 @@ _LOG = logging.getLogger(__name__)
 class StudyPace:
     """How fast histories are finished, over the last seconds, and how much work is done in a second.
 
-    >>> pace = Pace()
+    >>> pace = StudyPace()
     >>> pace.look(0, 0.0, now=10.0), pace.look(100, 1.5, now=11.0), pace.look(600, 11.5, now=16.0)
     ((0.0, 0.0), (100.0, 0.0), (100.0, 2.0))
     """

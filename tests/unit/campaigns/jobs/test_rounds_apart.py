@@ -109,7 +109,7 @@ class Stopping(rounds._RoundsRun):
 def test_interruption_names_the_job(tmp_path, monkeypatch):
     """Ctrl-C within a round: the folder that is named is the one to resume, quoted where it has blanks."""
     folder = begun(tmp_path / "my map")
-    monkeypatch.setattr(rounds, "_Run", Stopping)
+    monkeypatch.setattr(rounds, "_RoundsRun", Stopping)
     with pytest.raises(CampaignInterrupted) as told:
         folder.run(workers=1)
     assert str(told.value) == (
@@ -127,7 +127,7 @@ def test_full_disk_names_the_job(tmp_path, monkeypatch):
     cause = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     error = CampaignStorageError("inner: No space left on device; 0 of 1 chunks are safe; run the campaign again")
     error.__cause__ = cause
-    monkeypatch.setattr(rounds, "_Run", Stopping)
+    monkeypatch.setattr(rounds, "_RoundsRun", Stopping)
     monkeypatch.setattr(Stopping, "error", error)
     with pytest.raises(CampaignStorageError) as told:
         folder.run(workers=1)

@@ -1,15 +1,96 @@
-"""What `rocking cor` prints, writes and draws."""
+"""`rocking cor` of plane bodies: what it computes, prints and writes."""
 
 import json
 import math
+import sys
 from pathlib import Path
 from typing import Any
 
-from rocking.cli.shared_options import in_unit
-from rocking.conventions import FEET, Foot
+from rocking.bodies import Body
+from rocking.cli.inputs import body_from, models_from, refuse, spelt
+from rocking.cli.options import in_unit
+from rocking.conventions import FEET, Foot, g
+from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CoefficientRow, outside_evidence
 from rocking.report.facts.impact import ImpactAnswer, impact_facts
 from rocking.restitution import energy_ledger
+from rocking.spec.document import SettingsTable
+from rocking.spec.fields import JobTable
+from rocking.spec.parts import body_of
+from rocking.spec.reading import InputFiles, is_response, located, read_text, validated
+
+
+class BodyOfDocument(JobTable):
+    """The tables of such a file of which only the body and the settings are looked at."""
+
+    body: dict[str, Any]
+    settings: SettingsTable = SettingsTable()
+    response: Any = None
+    motion: Any = None
+    restitution: Any = None
+
+
+def body_and_gravity(path: Path, size: dict[str, object]) -> tuple[Body, float | None]:
+    """Return the body of a file with a table [response], and the gravity that it states.
+
+    Returns gravity: acceleration of gravity, None if the file states none [m/s2].
+    """
+    given = [name for name, value in spelt(size).items() if value is not None]
+    if given:
+        raise InvalidValueError(f"{path} has a table [body] and says everything itself, so it takes no {given[0]}")
+    with located(str(path)):
+        document = validated(BodyOfDocument, read_text(path))
+        with located("body"):
+            body = body_of(document.body, InputFiles(path.parent))
+    return body, document.settings.gravity
+
+
+def sentence(path: Path) -> str:
+    """Return what is not used of such a file."""
+    return f"{path.name}: body and gravity are taken from it; everything else it says is for `rocking simulate`."
+
+
+def answer_of_plane_body(
+    body: Path | None,
+    size: dict[str, Any],
+    mesh: dict[str, Any],
+    asked: dict[str, Any],
+    files: dict[str, Path | None],
+    *,
+    models: list[str] | None,
+    gravity: float | None,
+    as_json: bool,
+) -> None:
+    """Print, write and draw the coefficients of a plane body.
+
+    gravity: acceleration of gravity; that of the file or the standard one if not given [m/s2].
+    """
+    refuse("a plane body is no mesh", spelt(mesh))
+    made, stated = _body(body, size, as_json=as_json)
+    chosen = next((one for one in (gravity, stated) if one is not None), g)
+    found = ImpactAnswer.of(made, models_from(models), gravity=chosen, **asked)
+    csv, picture, stages = files["csv"], files["picture"], files["stages"]
+    if csv is not None:
+        write_csv(found, csv)
+    if picture is not None:
+        draw(found, picture)
+    if stages is not None:
+        draw_stages(found, stages)
+    if as_json:
+        print(as_text(found))
+        return
+    show(found, size["unit"] or "m")
+    for path in filter(None, files.values()):
+        print(f"wrote {path}")
+
+
+def _body(file: Path | None, size: dict[str, Any], *, as_json: bool) -> tuple[Body, float | None]:
+    """Return the body, and the gravity of a file that says a whole response; JSON stays alone on its stream."""
+    if file is None or not is_response(file):
+        return body_from(file, **size), None
+
+    print(sentence(file), file=sys.stderr if as_json else sys.stdout)
+    return body_and_gravity(file, size)
 
 
 def show(answer: ImpactAnswer, length: str = "m") -> None:
@@ -43,7 +124,7 @@ def show(answer: ImpactAnswer, length: str = "m") -> None:
             console.print(f"  {check.sentence}", markup=False)
 
 
-def as_json(answer: ImpactAnswer) -> str:
+def as_text(answer: ImpactAnswer) -> str:
     """Return everything as JSON.
 
     Returns one object; SI units, named in the keys where a quantity has one.

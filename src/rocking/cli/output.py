@@ -1,15 +1,16 @@
-"""What the commands of studies share: rows of values with units, the body and the motion, and a bar."""
+"""Tables, files and pages that several commands write."""
 
 import math
 import re
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.cli.body_options import body_words
+from rocking.cli.inputs import body_words
 from rocking.conventions import ACCELERATION_UNITS, LENGTH_UNITS, FloatArray, g
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
@@ -29,8 +30,42 @@ MOST_VALUES = 100_000
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([A-Za-z/][A-Za-z0-9/]*)?")
 _SPACINGS = ("linear", "log")
-
 Progress = Callable[[int], None]
+
+
+def check_files(picture: Path | None, *others: Path | None) -> None:
+    """Refuse, before anything is computed, files that could not be written."""
+    if picture is not None and picture.suffix not in {".png", ".svg", ".pdf"}:
+        raise InvalidValueError(f"a picture is .png, .svg or .pdf, got {picture.name!r}")
+    for path in (picture, *others):
+        if path is not None and not path.parent.is_dir():
+            raise InvalidValueError(f"no folder {str(path.parent)!r} to write {path.name!r} into")
+
+
+def write_csv(path: Path, columns: dict[str, tuple[Any, str]]) -> None:
+    """Write values with their units as comma-separated values, all digits kept."""
+    import numpy as np
+
+    from rocking.quantities import QUANTITIES
+    from rocking.tables import Column, Table, to_csv
+
+    codes = {name: QUANTITIES[name].codes if name in QUANTITIES else {} for name in columns}
+    table = {name: Column(np.asarray(v), unit, codes=codes[name]) for name, (v, unit) in columns.items()}
+    to_csv(Table("row", table, no_unit="1"), path, blank=False)
+
+
+def plain(values: Any) -> Any:
+    """Return an array as nested lists for JSON, with null where there is no number.
+
+    >>> plain([[1.0, float("nan")]])
+    [[1.0, None]]
+    """
+    import numpy as np
+
+    array = np.asarray(values)
+    made = array.astype(object)
+    made[~np.isfinite(array)] = None
+    return made.tolist()
 
 
 def quantity(name: str, word: str, unit: str) -> tuple[float, str]:
@@ -101,8 +136,7 @@ def body_and_motion_of(
     words: tuple[str | None, str | None, str | None], size: dict[str, Any], told: dict[str, Any]
 ) -> tuple[Body, Motion]:
     """Return the body and the motion that a command was given."""
-    from rocking.cli.body_options import body_from
-    from rocking.cli.motion_options import motion_from
+    from rocking.cli.inputs import body_from, motion_from
     from rocking.cli.simulate_question import body_and_motion
 
     body, record, motion = words

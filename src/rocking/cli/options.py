@@ -1,4 +1,4 @@
-"""Options that several commands share: body and motion, what a record file leaves open, how it is computed."""
+"""Options that several commands have."""
 
 from collections.abc import Mapping
 from typing import Annotated
@@ -10,7 +10,6 @@ _FILE = "What a record file leaves open"
 _MESH = "What a mesh file leaves open"
 _HOW = "How it is computed"
 _OUTPUT = "Output"
-
 Width = Annotated[float | None, typer.Option(help=r"Full width of a block \[m, or --units].", rich_help_panel=_BODY)]
 Height = Annotated[float | None, typer.Option(help=r"Full height of a block \[m, or --units].", rich_help_panel=_BODY)]
 Depth = Annotated[float | None, typer.Option(help=r"Depth of a block \[m, or --units].", rich_help_panel=_BODY)]
