@@ -56,8 +56,8 @@ _PAGE = """
 from pathlib import Path
 from fastapi.testclient import TestClient
 from rocking.app.application import create_app
-from rocking.app.settings import Settings
-settings = Settings(folder=Path("."), workers=1)
+from rocking.app.settings import ServerSettings
+settings = ServerSettings(folder=Path("."), workers=1)
 app = create_app(settings)
 head = {"Authorization": f"Bearer {app.state.rocking.sessions.key}", "Origin": settings.origin}
 client = TestClient(app, base_url=settings.origin, headers=head)
