@@ -15,7 +15,7 @@ from rocking.campaigns import Campaign, DaskExecutor, Progress
 from rocking.dynamics import engine
 from rocking.studies import SyntheticSet
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "unit" / "studies" / "campaign"))  # for the workers, too
+sys.path.insert(0, str(Path(__file__).parents[1] / "unit" / "campaigns"))  # for the workers, too
 from slow import Motions, product
 
 pytest.importorskip("distributed")
