@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.spatial import SpatialBody, SpatialResponse, attitude, free_rocking_spatial, simulate_spatial
+from rocking.dynamics import free_rocking, simulate
+from rocking.dynamics.spatial import SpatialBody, SpatialResponse, SpatialStart, attitude
 from rocking.motions.motion import GroundMotion
 
 GRAVITY = 9.81
@@ -75,12 +76,15 @@ class Case:
 
     def ours(self, restitution: object = "housner-3d") -> SpatialResponse:
         """What our engine makes of it."""
-        start = {"tilt": self.tilt, "azimuth": math.radians(self.azimuth)}
-        common = {"gravity": GRAVITY, "duration": self.duration}
+        common = {
+            "start": SpatialStart(self.tilt, math.radians(self.azimuth)),
+            "gravity": GRAVITY,
+            "duration": self.duration,
+        }
         if not self.shaken:
-            return free_rocking_spatial(self.body, restitution=restitution, **start, **common)
+            return free_rocking(self.body, restitution=restitution, **common)
         x, y, z = (GroundMotion(each, STEP) for each in self.samples())
-        return simulate_spatial(self.body, x, y, z, restitution, **start, **common)
+        return simulate(self.body, {"x": x, "y": y, "z": z}, restitution, **common)
 
 
 CASES = (

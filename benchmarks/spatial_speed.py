@@ -16,7 +16,8 @@ from benchmarks.spatial_mujoco import Contact
 from benchmarks.spatial_studies import GENERIC
 from benchmarks.timing import cpu_seconds
 from rocking.conventions import FloatArray
-from rocking.dynamics.spatial import SpatialBody, SpatialResponse, attitude, simulate_spatial
+from rocking.dynamics import simulate
+from rocking.dynamics.spatial import SpatialBody, SpatialResponse, attitude
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.modulation import GammaModulation
 from rocking.motions.synthetic.stochastic import NonstationaryFilter, nonstationary_motion
@@ -57,14 +58,14 @@ def reference(factors: FloatArray) -> list[SpatialResponse]:
     """Our engine in Python, one history after another."""
     x, y, z = record()
     common = {"gravity": GRAVITY, "duration": DURATION}
-    return [simulate_spatial(body(), x, y, z, scale=float(factor), **common) for factor in factors]
+    return [simulate(body(), {"x": x, "y": y, "z": z}, "housner", scale=float(factor), **common) for factor in factors]
 
 
 def batch_engine() -> Callable[..., Any] | None:
     """Our compiled engine, where it was built."""
     try:
         import_module("rocking.dynamics._spatial")
-        found: Callable[..., Any] = import_module("rocking.dynamics.spatial_batch").simulate_spatial_batch
+        found: Callable[..., Any] = import_module("rocking.dynamics.spatial_batch").batch_in_space
     except (ImportError, AttributeError):
         return None
     return found

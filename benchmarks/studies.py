@@ -13,6 +13,7 @@ from benchmarks import campaigns, synthetic, table
 from benchmarks.engine_batch import STEP, Histories, histories
 from benchmarks.engine_peers import scipy_events
 from benchmarks.table import Row
+from rocking import conventions
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 RATIOS = np.linspace(0.5, 10.0, 200)
@@ -54,7 +55,7 @@ def cells(seed: int = 1) -> Histories:
     r = rk.coefficient_of_restitution(BLOCK, "ked")
     ratio, amplitude = rng.choice(RATIOS, SAMPLE), rng.choice(AMPLITUDES, SAMPLE)
     pulses = [
-        rk.pulses.sine(a * rk.conventions.g * np.tan(alpha), 2.0 * np.pi / (p * w))
+        rk.pulses.sine(a * conventions.g * np.tan(alpha), 2.0 * np.pi / (p * w))
         for w, a in zip(ratio, amplitude, strict=True)
     ]
     each = np.ones(SAMPLE)

@@ -4,6 +4,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import rocking as rk
+from rocking import conventions
 from rocking.campaigns.jobs import Job, JobFolder, answer
 from rocking.plots import write
 from rocking.plots.crossings_of_many import crossings_of_many_picture
@@ -41,7 +42,7 @@ assert alone.acceleration.tolist() == found["ked"][7].acceleration.tolist()  # t
 
 for label, each in found.items():
     again = sum(any(high > 1.01 * low for low, high in one.safe_intervals[1:]) for one in each)
-    least = sorted(one.minimum / rk.conventions.g for one in each)
+    least = sorted(one.minimum / conventions.g for one in each)
     print(f"{label}: overturns from {least[0]:.2f} g to {least[-1]:.2f} g on, median {least[COUNT // 2]:.2f} g;")
     print(f"    under {again} of {COUNT} motions it stands again over more than 1 % of a level beyond the least")
     assert again > 0
@@ -50,5 +51,5 @@ for label, each in found.items():
 folder = Path("gallery-output")
 folder.mkdir(exist_ok=True)
 names = [str(k + 1) for k in range(COUNT)]
-picture = crossings_of_many_picture(found, names, words="motion, by the least of housner", until=3.0 * rk.conventions.g)
+picture = crossings_of_many_picture(found, names, words="motion, by the least of housner", until=3.0 * conventions.g)
 write(picture, folder / "crossings_under_many_motions.png")

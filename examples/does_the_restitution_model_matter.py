@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import rocking as rk
+from rocking import conventions
 from rocking.plots import write
 from rocking.plots.difference_map import difference_map_picture
 from rocking.plots.sensitivity import sensitivity_picture
@@ -28,7 +29,7 @@ assert float(change.median()) > 0.0  # KED loses less, so that the block rocks f
 write(difference_map_picture(maps), folder / "does_the_restitution_model_matter_map.png")
 
 motions = list(SyntheticSet("point-source", count=60, seed=1))
-levels = np.linspace(0.3, 3.0, 12) * rk.conventions.g
+levels = np.linspace(0.3, 3.0, 12) * conventions.g
 choices = {"housner": "housner", "ked": "ked", "r = 0.9": 0.9}
 found = fragility_sensitivity(block, motions, levels, choices, repetitions=300)
 for label in found.labels[1:]:

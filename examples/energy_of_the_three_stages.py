@@ -5,7 +5,7 @@ from pathlib import Path
 import rocking as rk
 from rocking.plots import figure_2
 
-outline = rk.shapes.trapezoid(base=1.0, top=0.5, height=2.5)
+outline = rk.bodies.shapes.trapezoid(base=1.0, top=0.5, height=2.5)
 hollow = [(0.4, 0.4), (0.6, 0.4), (0.6, 1.6), (0.4, 1.6)]
 pedestal = rk.Section.from_points(outline, density=2700.0, holes=[hollow])
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import rocking as rk
+from rocking import conventions
 from rocking.plots import write
 from rocking.plots.fragility import fragility_picture
 from rocking.studies import SyntheticSet, multiple_stripes
@@ -12,20 +13,20 @@ from rocking.studies.fragility import model_of, to_csv, to_nrml
 
 cabinet = rk.Block(width=0.3, height=1.5)
 motions = SyntheticSet("point-source", count=60, seed=1)
-levels = np.linspace(0.15, 0.9, 11) * rk.conventions.g
+levels = np.linspace(0.15, 0.9, 11) * conventions.g
 found = multiple_stripes(cabinet, list(motions), levels, "ked", states=(0.2, 0.5))
 
 print(f"{found.trials.sum()} histories; {found.uplift.verdict}")
 assert found.uplift.contradictions == 0  # rocking is no matter of probability: it starts at g b / h
-assert abs(found.subject.uplift_threshold / (0.2 * rk.conventions.g) - 1.0) < 1e-12
+assert abs(found.subject.uplift_threshold / (0.2 * conventions.g) - 1.0) < 1e-12
 
 medians = []
 for state, fit in found.fits.items():
     # one motion serves at every level: whole motions are drawn anew, not single outcomes
     low, high = fit.interval("median", method="bootstrap")
     print(
-        f"{state:20s} median {fit.median / rk.conventions.g:.3f} g "
-        f"({low / rk.conventions.g:.3f} to {high / rk.conventions.g:.3f}), dispersion {fit.dispersion:.2f}"
+        f"{state:20s} median {fit.median / conventions.g:.3f} g "
+        f"({low / conventions.g:.3f} to {high / conventions.g:.3f}), dispersion {fit.dispersion:.2f}"
     )
     assert low < fit.median < high
     medians.append(fit.median)

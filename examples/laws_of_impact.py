@@ -13,13 +13,13 @@ print("by side:    ", by_side.summary)
 onto = by_side.impacts["onto"]
 assert set(by_side.impacts["coefficient"][onto == "left"]) == {0.80}
 
-harder = rk.SpeedRestitution(at=[0.0, 0.2, 1.0], factors=[1.0, 0.97, 0.90], times="housner")
+harder = rk.dynamics.SpeedRestitution(at=[0.0, 0.2, 1.0], factors=[1.0, 0.97, 0.90], times="housner")
 by_speed = rk.simulate(block, shaking, restitution=harder)
 print("by velocity:", by_speed.summary)
 fast = np.abs(by_speed.impacts["velocity_before"])
 assert (np.diff(by_speed.impacts["coefficient"][np.argsort(fast)]) <= 0.0).all()
 
-drawn = rk.RandomRestitution.normal(0.9, 0.03, seed=11)
+drawn = rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=11)
 drawn_responses = [rk.simulate(block, shaking, restitution=drawn, key=key) for key in range(100)]
 falls = sum(response.outcome is rk.Outcome.OVERTURNED for response in drawn_responses)
 print(f"drawn:       overturned in {falls} of 100 draws of the same distribution")

@@ -6,7 +6,7 @@ import rocking as rk
 
 
 @dataclass(frozen=True)
-class SineFit(rk.RestitutionModel):
+class SineFit(rk.restitution.RestitutionModel):
     """The free fit r = 1 - c sin(alpha)^2."""
 
     c: float = 0.994

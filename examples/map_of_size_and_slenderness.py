@@ -5,12 +5,13 @@ from pathlib import Path
 import numpy as np
 
 import rocking as rk
+from rocking import conventions
 from rocking.plots import write
 from rocking.plots.overturning_map import overturning_map_picture
 from rocking.studies import boundary, map_sensitivity
 
 block = rk.Block(width=0.5, height=2.0)
-pulse = rk.pulses.sine(amplitude=0.5 * rk.conventions.g, period=0.8)
+pulse = rk.pulses.sine(amplitude=0.5 * conventions.g, period=0.8)
 axes = ("semi_diagonal", np.geomspace(0.2, 10.0, 120)), ("slenderness_ratio", np.linspace(1.5, 9.0, 121))
 compared = map_sensitivity(block, pulse, *axes, ["ked", "housner"])
 found = compared.datasets["ked"]  # what overturning_map returns

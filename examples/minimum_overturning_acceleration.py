@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 
 import rocking as rk
+from rocking import conventions
 from rocking.plots import write
 from rocking.plots.crossings import crossings_picture
 from rocking.studies import minimum_overturning_acceleration
@@ -12,16 +13,16 @@ block = rk.Block(width=0.5, height=2.0)
 pulse = rk.pulses.sine(amplitude=3.0, period=0.8)
 found = minimum_overturning_acceleration(block, pulse, 0.85)
 for low, high in found.overturning_intervals:
-    print(f"overturns from {low / rk.conventions.g:.4f} g to {high / rk.conventions.g:.4f} g")
+    print(f"overturns from {low / conventions.g:.4f} g to {high / conventions.g:.4f} g")
 for low, high in found.safe_intervals:
-    print(f"stays standing from {low / rk.conventions.g:.4f} g to {high / rk.conventions.g:.4f} g")
+    print(f"stays standing from {low / conventions.g:.4f} g to {high / conventions.g:.4f} g")
 assert len(found) == 3  # after one impact, safe again, without impact
 assert found.modes[:, 1].tolist() == [1, -1, 0]
 
 # a constant acceleration and the slender-linear equations have a closed form: g alpha / (1 - exp(-p T))
 duration = 0.5
 one = minimum_overturning_acceleration(block, rk.pulses.rectangular(1.0, duration), 0.85, linear=True)
-exact = rk.conventions.g * block.slenderness_angle / (1.0 - math.exp(-block.frequency_parameter * duration))
+exact = conventions.g * block.slenderness_angle / (1.0 - math.exp(-block.frequency_parameter * duration))
 print(f"rectangular pulse: {one.minimum:.9f} m/s2, closed form {exact:.9f} m/s2")
 assert one.minimum is not None
 assert abs(one.minimum / exact - 1.0) < 1e-10

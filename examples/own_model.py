@@ -7,7 +7,7 @@ import rocking as rk
 
 
 @dataclass(frozen=True)
-class Facets(rk.RestitutionModel):
+class Facets(rk.restitution.RestitutionModel):
     """The body rolls over n equal facets: a product of n Housner impacts between neighbouring edges."""
 
     n: int = 2

@@ -5,11 +5,12 @@ from pathlib import Path
 import numpy as np
 
 import rocking as rk
+from rocking import conventions
 from rocking.plots import write
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
 from rocking.studies import SyntheticSet, rocking_spectrum
 
-motions = SyntheticSet("point-source", count=200, seed=1, pga=0.3 * rk.conventions.g)
+motions = SyntheticSet("point-source", count=200, seed=1, pga=0.3 * conventions.g)
 angles, periods = np.arctan([1 / 4, 1 / 6, 1 / 8]), np.geomspace(0.8, 16.0, 60)
 found = rocking_spectrum([motions[k] for k in range(len(motions))], angles, periods)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 import rocking as rk
 from rocking.bodies.solid import Part, RoundBase, Solid, box, revolution
-from rocking.dynamics.spatial import simulate_spatial
+from rocking.dynamics import SpatialStart
 from rocking.plots import write
 from rocking.plots.style import DOUBLE, new_figure
 from rocking.restitution.spatial import edge_coefficient
@@ -16,7 +16,8 @@ parts = [Part(revolution(profile), 2600.0), Part(box(0.25, 0.2, 0.3), 2600.0).mo
 time = np.arange(101) * 0.01
 along = rk.GroundMotion(0.30 * np.sin(2.0 * np.pi * time / 0.9), 0.01)
 across = rk.GroundMotion(0.225 * np.sin(2.0 * np.pi * time / 0.7 + 0.8), 0.01)
-start = {"tilt": 0.04, "azimuth": 0.4, "angular_velocity": (0.15, 0.1, 0.1), "duration": 1.2}
+shaking = {"x": along, "y": across}
+start = SpatialStart(tilt=0.04, azimuth=0.4, angular_velocity=(0.15, 0.1, 0.1))
 
 
 def on_corners(count: int) -> Solid:
@@ -26,7 +27,7 @@ def on_corners(count: int) -> Solid:
 
 
 drum = Solid(parts, base=RoundBase(np.zeros(2), 0.3))
-rim = simulate_spatial(drum, along, across, **start)
+rim = rk.simulate(drum, shaking, start=start, duration=1.2)
 energy = rim.energy.kinetic[-1] + rim.energy.potential[-1]
 counts = np.array([8, 16, 32, 64, 128, 200])
 lacking = {}
@@ -35,7 +36,7 @@ for law in ("housner-3d", "ked-3d"):
     for count in counts:
         solid = on_corners(count)
         edge = int(np.argmin([abs(e.direction[0]) - e.point[0] for e in solid.base.edges]))
-        run = simulate_spatial(solid, along, across, restitution=law, **start)
+        run = rk.simulate(solid, shaking, law, start=start, duration=1.2)
         landing = edge_coefficient(solid, law, start=edge) - edge_coefficient(drum, law, start=0.0)
         rows.append((abs(landing), 1.0 - run.peak_tilt / rim.peak_tilt, run.energy.lost[-1] / energy))
     lacking[law] = np.array(rows)

@@ -61,7 +61,7 @@ for name in spatial_models():
     assert all(0.0 < r < 1.0 for r in over)
 
 x, y = rk.pulses.sine(amplitude=3.5, period=0.5), rk.pulses.ricker(amplitude=3.0, period=0.6)
-response = rk.simulate_spatial(found.solid, x, y)
+response = rk.simulate(found.solid, {"x": x, "y": y}, "housner")
 print(response.summary)
 assert response.outcome is not rk.Outcome.FAILED
 frame = response.to_dataframe()

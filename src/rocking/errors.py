@@ -1,5 +1,7 @@
 """One family of errors: everything this package refuses is a `RockingError`."""
 
+import sys
+import warnings
 from importlib import import_module
 from types import ModuleType
 
@@ -50,7 +52,7 @@ class MissingExtraError(RockingError, ImportError):
 
 
 class PureRockingWarning(UserWarning):
-    """Pure rocking is not credible for a response: the body would slide or fly, see `simulate_with_contact`."""
+    """Pure rocking is not credible for a response: the body would slide or fly, see `friction` of `simulate`."""
 
 
 class PlausibilityWarning(UserWarning):
@@ -112,3 +114,23 @@ def extra(module: str, what: str) -> ModuleType:
         return import_module(module)
     except ImportError as error:
         raise MissingExtraError(how_to_install(what, module, error)) from error
+
+
+def warn(sentence: str, category: type[Warning]) -> None:
+    """Warn at the line outside this package that asked.
+
+    Parameters
+    ----------
+    sentence : str
+        What to say.
+    category : type
+        Class of the warning.
+    """
+    level, frame = 1, sys._getframe(0)
+    # constructors are called by `dataclasses.replace` too
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in {
+        "rocking",
+        "dataclasses",
+    }:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(sentence, category, stacklevel=level)

@@ -15,6 +15,8 @@ def exports(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any
         if name not in homes:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         home = import_module(homes[name])
+        if homes[name] == f"{package}.{name}":
+            return home
         found = getattr(home, name, None)
         return import_module(f"{homes[name]}.{name}") if found is None else found
 

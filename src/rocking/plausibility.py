@@ -4,13 +4,12 @@ Each doubt is a `PlausibilityWarning` whose sentence begins with "check the inpu
 it, for studies without dimensions: ``warnings.simplefilter("ignore", rocking.errors.PlausibilityWarning)``.
 """
 
-import sys
-import warnings
 from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
+from rocking import errors
 from rocking.conventions import percent
 from rocking.errors import InvalidValueError, PlausibilityWarning
 
@@ -185,15 +184,4 @@ def of_truncation(cut: float, onto: str, most: float) -> tuple[str, ...]:
 def warn(sentences: Iterable[str]) -> None:
     """Say doubts as warnings, at the line outside this package that gave the value."""
     for sentence in sentences:
-        warnings.warn(f"check the input: {sentence}", PlausibilityWarning, stacklevel=_outside())
-
-
-def _outside() -> int:
-    level, frame = 1, sys._getframe(1)
-    # constructors are called by `dataclasses.replace` too
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in {
-        "rocking",
-        "dataclasses",
-    }:
-        level, frame = level + 1, frame.f_back
-    return level
+        errors.warn(f"check the input: {sentence}", PlausibilityWarning)

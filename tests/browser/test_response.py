@@ -15,7 +15,7 @@ from playwright.sync_api import expect
 
 from rocking.bodies import Block, Region, Section
 from rocking.bodies.shapes import trapezoid
-from rocking.dynamics.histories import free_rocking, simulate
+from rocking.dynamics import free_rocking, simulate
 from rocking.dynamics.response import Response
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import pulse

@@ -16,6 +16,7 @@ import numpy as np
 import trees
 
 import rocking as rk
+from rocking import conventions
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
@@ -32,8 +33,8 @@ POINTS = rk.MassPoints([(0, 1), (1, 1), (0.5, 4)], [1.0, 2.0, 3.0], feet=(0.0, 1
 BODIES = {"block": BLOCK, "statue": STATUE, "pier": PIER, "points": POINTS}
 CORNERS = np.array([[-0.4, -0.3], [0.3, -0.35], [0.45, 0.15], [0.1, 0.4], [-0.35, 0.25]])
 SOLID = rk.Solid([
-    rk.Part(rk.solid.extrusion(CORNERS, 1.4), 2400.0),
-    rk.Part(rk.solid.frustum(0.4, 0.2, 0.9), 1800.0).moved(0.05, -0.03, 1.4),
+    rk.bodies.Part(rk.bodies.solid.extrusion(CORNERS, 1.4), 2400.0),
+    rk.bodies.Part(rk.bodies.solid.frustum(0.4, 0.2, 0.9), 1800.0).moved(0.05, -0.03, 1.4),
 ])  # fmt: skip
 PULSE = "sine:amplitude=3.2,period=0.8"
 
@@ -72,10 +73,10 @@ def python() -> dict[str, Case]:
         doors.simulate(STATUE, MOTIONS["horizontal"], engine="reference", scale=0.6, linear=True)
     )
     cases["simulate drawn"] = lambda _: doors.response_tree(
-        doors.simulate(BLOCK, MOTIONS["both"], rk.RandomRestitution.normal(0.9, 0.03, seed=4))
+        doors.simulate(BLOCK, MOTIONS["both"], rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=4))
     )
     cases["simulate by speed"] = lambda _: doors.response_tree(
-        doors.simulate(BLOCK, MOTIONS["both"], rk.SpeedRestitution([0.0, 0.5, 2.0], [0.95, 0.9, 0.8]))
+        doors.simulate(BLOCK, MOTIONS["both"], rk.dynamics.SpeedRestitution([0.0, 0.5, 2.0], [0.95, 0.9, 0.8]))
     )
     cases["free"] = lambda _: [
         doors.response_tree(doors.free_rocking(b, 0.6 * b.side("left").slenderness_angle, "ked"))
@@ -103,7 +104,7 @@ def python() -> dict[str, Case]:
     cases["many drawn"] = lambda _: doors.simulate_many(
         [STATUE, BLOCK],
         [both(k, 4.0) for k in (5, 6, 7)],
-        rk.RandomRestitution.normal(0.9, 0.03, seed=2),
+        rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=2),
         scale=[0.5, 1.0],
     )
     cases["map"] = lambda _: doors.overturning_map(
@@ -158,15 +159,20 @@ def _coefficients(body: Any) -> Any:
 def _solid() -> Any:
     edges, corners = SOLID.base.edges, SOLID.base.corners
     impacts = [
-        rk.impact_in_space(SOLID, -edges[0].direction, pivot=edges[0], onto=onto, model=model).velocity
+        rk.restitution.spatial.impact_in_space(
+            SOLID, -edges[0].direction, pivot=edges[0], onto=onto, model=model
+        ).velocity
         for onto in (edges[2], corners[3])
         for model in ("housner-3d", "horizontal-momentum-3d", "ked-3d", "ked-3d-point")
     ]
     names = ("housner-3d", "horizontal-momentum-3d", "ked-3d", "ked-3d-point")
     frustum = rk.Solid(
-        [rk.Part(rk.solid.box(0.5, 0.4, 1.5), 2400.0), rk.Part(rk.solid.box(0.2, 0.2, 0.3), 900.0).moved(0.1, 0, 1.5)]
+        [
+            rk.bodies.Part(rk.bodies.solid.box(0.5, 0.4, 1.5), 2400.0),
+            rk.bodies.Part(rk.bodies.solid.box(0.2, 0.2, 0.3), 900.0).moved(0.1, 0, 1.5),
+        ]
     )
-    edge = {name: [rk.edge_coefficient(frustum, name, start=k) for k in range(4)] for name in names}
+    edge = {name: [rk.restitution.spatial.edge_coefficient(frustum, name, start=k) for k in range(4)] for name in names}
     return {"mass": SOLID.mass, "centre": SOLID.centre, "inertia": SOLID.inertia, "impacts": impacts, "edges": edge}
 
 
@@ -218,7 +224,7 @@ def _fragility() -> Any:
     from rocking.studies import SyntheticSet, cloud, incremental, multiple_stripes
 
     motions = list(SyntheticSet("point-source", count=20, seed=1))
-    g = rk.conventions.g
+    g = conventions.g
     stripes = multiple_stripes(BLOCK, motions, np.linspace(0.2, 1.2, 8) * g, "ked", states=(0.3,))
     other = cloud(BLOCK, [motion.scaled(6.0) for motion in motions], "ked", measure="pgv")
     growing = incremental(BLOCK, motions[:7], np.linspace(0.2, 1.6, 12) * g, "housner")

@@ -9,14 +9,30 @@ from typing import Any
 
 import rocking as rk
 from rocking.cli import main
+from rocking.dynamics.spatial import SpatialStart
+from rocking.dynamics.spatial_batch.many import batch_in_space
 
 simulate = rk.simulate
 simulate_many = rk.simulate_many
 free_rocking = rk.free_rocking
-with_contact = rk.simulate_with_contact
-in_space = rk.simulate_spatial
-free_in_space = rk.free_rocking_spatial
-many_in_space = rk.simulate_spatial_batch
+
+
+def with_contact(body, motion, friction, **how):
+    """Return what slides and hops, impacts by complementarity."""
+    return rk.simulate(body, motion, None, friction=friction, **how)
+
+
+def in_space(body, x, y, z, law, **how):
+    """Return a response in space."""
+    return rk.simulate(body, {"x": x, "y": y, "z": z}, law, **how)
+
+
+def free_in_space(body, tilt, azimuth, law, **how):
+    """Return a response in space on ground at rest."""
+    return rk.free_rocking(body, restitution=law, start=SpatialStart(tilt, azimuth), **how)
+
+
+many_in_space = batch_in_space
 overturning_map = rk.overturning_map
 rocking_spectrum = rk.rocking_spectrum
 minimum = rk.minimum_overturning_acceleration

@@ -78,7 +78,7 @@ def test_a_law_of_ones_own():
 
     with pytest.raises(InvalidValueError, match="engine must be reference"):
         rk.free_rocking(BODY, 0.1, Wearing(), engine="fast")
-    response = rk.free_rocking(BODY, 0.1, Wearing(), most_impacts=3)
+    response = rk.free_rocking(BODY, 0.1, Wearing(), most_events=3)
     assert response.engine.startswith("reference")
     ratios = response.impacts["velocity_after"] / response.impacts["velocity_before"]
     np.testing.assert_allclose(np.abs(ratios), [0.9, 0.81, 0.729], rtol=1e-12)

@@ -11,6 +11,7 @@ import rocking as rk
 from rocking.bodies.formats import read_solid
 from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
+from rocking.dynamics import SpatialStart
 from rocking.errors import PlausibilityWarning
 from rocking.evidence.measurements import all_measurements
 from rocking.report.facts.body import body_facts
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.filterwarnings("default::rocking.errors.PlausibilityWar
 BLOCK = rk.Block(width=0.5, height=2.0, density=500.0)
 PULSE = rk.pulses.sine(amplitude=3.0, period=0.8)
 TOWER = rk.Block(width=12.0, height=95.0, density=1800.0)
-SLOW, BOX, HEIGHTS = PULSE.scaled(0.5), rk.SpatialBody.box(0.5, 0.5, 2.0), ("height", [2.0, 3.0])
+SLOW, BOX, HEIGHTS = PULSE.scaled(0.5), rk.dynamics.SpatialBody.box(0.5, 0.5, 2.0), ("height", [2.0, 3.0])
 STATUE_2_CM = [(0.0, 0.0), (0.008, 0.0), (0.005, 0.02)]
 
 DOUBTFUL = {
@@ -40,22 +41,28 @@ DOUBTFUL = {
     "step in ms": (lambda: rk.GroundMotion(np.array([0.0, 3.0]), 5.0), "step of 5 s.*in ms"),
     "scale": (lambda: rk.simulate(BLOCK, PULSE, scale=-9000.0), "2.7e[+]04 m/s2"),
     "scales of many": (lambda: rk.simulate_many(BLOCK, [PULSE, PULSE], scale=[1.0, -9000.0]), "2.7e[+]04 m/s2.*scale"),
-    "scale with contact": (lambda: rk.simulate_with_contact(BLOCK, PULSE, 0.5, scale=20.0), "60 m/s2.*scale"),
-    "scale in space": (lambda: rk.simulate_spatial(BOX, y=PULSE, scale=20.0), "60 m/s2.*scale"),
-    "scales in space": (lambda: rk.simulate_spatial_batch(BOX, (None, PULSE), scales=[1.0, 20.0]), "60 m/s2.*scale"),
+    "scale with contact": (lambda: rk.simulate(BLOCK, PULSE, None, friction=0.5, scale=20.0), "60 m/s2.*scale"),
+    "scale in space": (lambda: rk.simulate(BOX, {"y": PULSE}, "housner", scale=20.0), "60 m/s2.*scale"),
+    "scales in space": (lambda: rk.simulate_many(BOX, {"y": PULSE}, "housner", scale=[1.0, 20.0]), "60 m/s2.*scale"),
     "scale of a spectrum": (lambda: rk.rocking_spectrum(PULSE, [0.2], [2.0], 0.9, scale=20.0), "60 m/s2.*scale"),
     "scale of a map": (lambda: rk.overturning_map(BLOCK, PULSE, ("scale", [1.0, 9000.0]), HEIGHTS), "2.7e[+]04 m/s2"),
     "pga of a map": (lambda: rk.overturning_map(BLOCK, PULSE, ("pga", [1.0, 300.0]), HEIGHTS), "300 m/s2"),
     "levels": (lambda: multiple_stripes(BLOCK, [PULSE, SLOW], [2.0, 3000.0], 0.9), "3000 m/s2.*unit"),
     "upwards": (lambda: rk.simulate_many(BLOCK, rk.GroundMotion([0, 1], 0.01, vertical=[0, 9]), scale=5.0), "45 m/s2"),
     "gravity in cm/s2": (lambda: rk.simulate(BLOCK, PULSE, gravity=981.0), "gravity of 981 m/s2.*1.6.*25.*cm/s2"),
-    "gravity in g": (lambda: rk.simulate_with_contact(BLOCK, None, 0.5, gravity=1.0), "gravity of 1 m/s2.*or in g"),
-    "gravity in space": (lambda: rk.free_rocking_spatial(BOX, 0.01, gravity=981.0), "gravity of 981 m/s2"),
+    "gravity in g": (
+        lambda: rk.free_rocking(BLOCK, restitution=None, friction=0.5, gravity=1.0),
+        "gravity of 1 m/s2.*or in g",
+    ),
+    "gravity in space": (
+        lambda: rk.free_rocking(BOX, restitution="housner", start=SpatialStart(0.01), gravity=981.0),
+        "gravity of 981 m/s2",
+    ),
     "friction in percent": (
         lambda: rk.simulate(BLOCK, PULSE, friction=40.0),
         "friction of 40 is more than 10.*percent",
     ),
-    "friction in degrees": (lambda: rk.simulate_with_contact(BLOCK, PULSE, 35.0), "friction of 35.*degrees"),
+    "friction in degrees": (lambda: rk.simulate(BLOCK, PULSE, None, friction=35.0), "friction of 35.*degrees"),
     "loss for coefficient": (lambda: rk.simulate(BLOCK, PULSE, 0.07), "restitution of 0.07.*what is lost"),
     "loss for a model": (lambda: model("fixed", r=0.05), "restitution of 0.05"),
 }
@@ -85,7 +92,7 @@ MEANT = {
     "stops at once": lambda: rk.simulate(BLOCK, PULSE, 0.0),
     "everyday": lambda: rk.simulate(BLOCK, PULSE, 0.9, scale=-1.5),
     "bodies that identities try": lambda: rk.restitution.identity_report(TOWER, rk.restitution.Ked()),
-    "feet that never slide": lambda: rk.simulate_with_contact(BLOCK, PULSE, 1e6),
+    "feet that never slide": lambda: rk.simulate(BLOCK, PULSE, None, friction=1e6),
     "on the Moon": lambda: rk.simulate(BLOCK, PULSE.scaled(0.1), gravity=1.62),
     "levels of a study": lambda: multiple_stripes(BLOCK, [PULSE, SLOW], [2.0, 20.0], 0.9),
     "ratios of a map": lambda: rk.overturning_map(BLOCK, PULSE, ("amplitude_ratio", [1.0, 30.0]), HEIGHTS),

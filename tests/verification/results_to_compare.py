@@ -14,17 +14,17 @@ import numpy as np
 
 import rocking as rk
 from rocking.dynamics import engine as plane_engine
-from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial, simulate_spatial
-from rocking.dynamics.spatial_batch import SpatialStart, simulate_spatial_batch
+from rocking.dynamics.spatial import SpatialBody, SpatialStart
 from rocking.dynamics.spatial_batch import engine as space_engine
+from rocking.dynamics.spatial_batch.many import batch_in_space
 from rocking.restitution.bed import ContactBed, KelvinVoigt
 
 STEP = 0.015625
 PEDESTAL = rk.Section([rk.Region([(-0.45, 0.0), (0.55, 0.0), (0.4, 2.5), (-0.15, 2.2)], density=2400.0)])
 CORNERS = np.array([[-0.4, -0.3], [0.3, -0.35], [0.45, 0.15], [0.1, 0.4], [-0.35, 0.25]])
 STATUE = rk.Solid([
-    rk.Part(rk.solid.extrusion(CORNERS, 1.4), 2400.0),
-    rk.Part(rk.solid.frustum(0.4, 0.2, 0.9), 1800.0).moved(0.05, -0.03, 1.4),
+    rk.bodies.Part(rk.bodies.solid.extrusion(CORNERS, 1.4), 2400.0),
+    rk.bodies.Part(rk.bodies.solid.frustum(0.4, 0.2, 0.9), 1800.0).moved(0.05, -0.03, 1.4),
 ])  # fmt: skip
 LAWS = ["housner-3d", "horizontal-momentum-3d", "ked-3d", 0.9]
 
@@ -73,19 +73,19 @@ def space(body: SpatialBody) -> list[Any]:
     """Histories of the reference engine, one a law."""
     laws = LAWS if body.matter else ["housner-3d", 0.95]
     end = 1.2 if body.round else 3.0
-    return [of_space(simulate_spatial(body, *shaking(k), law, scale=0.9, duration=end)) for k, law in enumerate(laws)]
+    return [of_space(rk.simulate(body, shaking(k), law, scale=0.9, duration=end)) for k, law in enumerate(laws)]
 
 
 def spatial_batch() -> list[Any]:
     """Histories of the compiled engine in space."""
     bodies, motions = [SpatialBody.of(STATUE), tower(), tower(0.3)], [shaking(k) for k in range(6)]
     laws: list[Any] = ["housner-3d", "horizontal-momentum-3d", 0.9, 0.97]
-    found = simulate_spatial_batch(bodies, motions, laws, scales=[0.3, 0.6, 1.2])
-    statue = simulate_spatial_batch(bodies[:1], motions[:2], ["ked-3d"], scales=[0.6])
+    found = batch_in_space(bodies, motions, laws, scales=[0.3, 0.6, 1.2])
+    statue = batch_in_space(bodies[:1], motions[:2], ["ked-3d"], scales=[0.6])
     spun = [
         SpatialStart(tilt=0.05, azimuth=0.7 * k, yaw=0.3 * k, angular_velocity=(0.2, -0.1, 0.1 * k)) for k in range(8)
     ]
-    thrown = simulate_spatial_batch(bodies[:1], motions[:1], [0.9], start=spun)
+    thrown = batch_in_space(bodies[:1], motions[:1], [0.9], start=spun)
     return [value for one in (found, statue, thrown) for value in one.values.values()]
 
 
@@ -111,7 +111,7 @@ def response() -> list[Any]:
 def contact() -> list[Any]:
     """Sliding, rocking and flight in the plane."""
     motion = rk.GroundMotion(noise(37, 3.0).acceleration, STEP, noise(91, 4.0).acceleration)
-    made = [rk.simulate_with_contact(PEDESTAL, motion, friction, scale=0.6) for friction in (0.15, 0.4, 2.0)]
+    made = [rk.simulate(PEDESTAL, motion, None, friction=friction, scale=0.6) for friction in (0.15, 0.4, 2.0)]
     return [[r.rotation, r.displacement, r.rise, r.outcome.value] for r in made]
 
 
@@ -127,7 +127,9 @@ def bed(engine: Any) -> list[Any]:
     found = []
     for ratio in (0.2, 1.0):
         law = KelvinVoigt(PEDESTAL.mass * 2.0e6, damping_ratio=ratio)
-        impact = rk.bed_impact(PEDESTAL, ContactBed.uniform(PEDESTAL, 9, law), angular_velocity=0.5, engine=engine)
+        impact = rk.restitution.bed.bed_impact(
+            PEDESTAL, ContactBed.uniform(PEDESTAL, 9, law), angular_velocity=0.5, engine=engine
+        )
         found.append([impact.results, impact.samples])
     return found
 
@@ -145,7 +147,9 @@ def spatial_impacts() -> list[Any]:
     """Moments of a solid and impacts in space, onto corners and edges."""
     moments, edges = STATUE.local_moments, STATUE.base.edges
     made = [
-        rk.impact_in_space(STATUE, -edges[0].direction, pivot=edges[0], onto=onto, model=model).velocity
+        rk.restitution.spatial.impact_in_space(
+            STATUE, -edges[0].direction, pivot=edges[0], onto=onto, model=model
+        ).velocity
         for onto in (edges[2], STATUE.base.corners[3])
         for model in ("housner-3d", "horizontal-momentum-3d", "ked-3d")
     ]
@@ -155,7 +159,14 @@ def spatial_impacts() -> list[Any]:
 def starts() -> list[Any]:
     """Free rocking in space from given angles."""
     return [
-        of_space(free_rocking_spatial(body, tilt=0.12, azimuth=0.6, angular_velocity=(0.1, 0.0, 0.8), duration=3.0))
+        of_space(
+            rk.free_rocking(
+                body,
+                restitution="housner",
+                start=SpatialStart(0.12, 0.6, angular_velocity=(0.1, 0.0, 0.8)),
+                duration=3.0,
+            )
+        )
         for body in (tower(), tower(0.3))
     ]
 

@@ -261,7 +261,7 @@ def test_adversarial_cases(kind: str, record_property: Callable[[str, object], N
         first = 1000 * list(KINDS).index(kind)
         numbers = range(first + number, first + math.ceil(CASES / len(KINDS)), len(SPEEDS_OF_REST))
         cases = [KINDS[kind](Maker(k)) for k in numbers]
-        found, on_edge, doubted = disagreements(cases, Settings(rest_speed=rest_speed, most_impacts=2_000))
+        found, on_edge, doubted = disagreements(cases, Settings(rest_speed=rest_speed, most_events=2_000))
         bad += [f"rest speed {rest_speed:g}, {line}" for line in found]
         total, edges, short = total + len(cases), edges + on_edge, short + doubted
     record_property("cases, knife-edges, with shorter steps, disagreements", (total, edges, short, len(bad)))

@@ -57,7 +57,7 @@ def ordinary(count: int, seed: int) -> dict[str, Any]:
 def run(
     values: dict[str, Any], motions: list[Segments], which: Any, name: str, settings: Settings | None = None
 ) -> dict[str, Any]:
-    batch = Batch(motions, ConstantRestitution(), settings or Settings(most_impacts=2_000), 2, name)
+    batch = Batch(motions, ConstantRestitution(), settings or Settings(most_events=2_000), 2, name)
 
     def rows(first: int, last: int) -> Rows:
         part = slice(first, last)
@@ -188,7 +188,7 @@ def test_pathological_parameters(name: str, linear: bool) -> None:
     # p times the step above 1e5 has a test of its own, below
     long = np.fmax(values["p_right"], values["p_left"]) * [motions[k % 10].step for k in which] > 1e5
     which[long] = random.integers(0, 2, int(long.sum()))
-    settings = Settings(linear=linear, most_impacts=300, rest_speed=0.0 if linear else 0.01)
+    settings = Settings(linear=linear, most_events=300, rest_speed=0.0 if linear else 0.01)
     found = run(values, motions, which, name, settings)
     # the ranges, written once more
     valid = (which >= 0) & (which < len(motions)) & (np.abs(values["scale"]) <= 1e9)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking import conventions
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility._cloud import cloud
 from rocking.studies.fragility._incremental import incremental
@@ -183,26 +184,26 @@ def test_gravity():
     plain = multiple_stripes(BLOCK, records(30), levels, restitution=0.9, measure=NORMALISED)
     heavy = multiple_stripes(
         BLOCK, records(30, step=0.02 / math.sqrt(c)), levels, restitution=0.9, measure=NORMALISED,
-        gravity=c * rk.conventions.g,
+        gravity=c * conventions.g,
     )  # fmt: skip
     assert plain.responses.outcome.tolist() == heavy.responses.outcome.tolist()
 
 
 def test_uplift_is_certain_given_pga():
     """P(no rocking) is a step at g tan(alpha): 600 histories just below and above it, none of which disagrees."""
-    threshold = rk.conventions.g * 0.25
+    threshold = conventions.g * 0.25
     levels = threshold * np.array([0.9, 1.0 - 1e-6, 1.0 + 1e-6, 1.1])
     found = multiple_stripes(BLOCK, records(150), levels, restitution=0.9)
     assert found.counts["rocking"].tolist() == [0, 0, 150, 150]
     assert (found.uplift.checked, found.uplift.contradictions) == (600, 0)
     # linear equations lift at g alpha instead
-    linear = multiple_stripes(BLOCK, records(20), [rk.conventions.g * math.atan(0.25)], restitution=0.9, linear=True)
-    assert linear.uplift.threshold == pytest.approx(rk.conventions.g * math.atan(0.25), rel=1e-15)
+    linear = multiple_stripes(BLOCK, records(20), [conventions.g * math.atan(0.25)], restitution=0.9, linear=True)
+    assert linear.uplift.threshold == pytest.approx(conventions.g * math.atan(0.25), rel=1e-15)
 
 
 def test_cloud_of_pulses_has_the_boundary_between_its_levels():
     """One pulse shape at many amplitudes: the cloud is separated exactly at the closed boundary."""
-    boundary = HALF_SINE[2] * rk.conventions.g * math.atan(0.25)
+    boundary = HALF_SINE[2] * conventions.g * math.atan(0.25)
     unit = pulse(rk.pulses.half_sine, 2.0, BLOCK)
     pulses = [unit.scaled(boundary * f) for f in (0.8, 0.9, 1.0 - 1e-9, 1.0 + 1e-9, 1.1, 1.2)]
     found = cloud(BLOCK, pulses, restitution=0.9, states=(), linear=True)
@@ -235,7 +236,7 @@ def test_nrml_reproduces_the_curve(tmp_path):
         sigma = mp.sqrt(mp.log(1 + (deviation / mean) ** 2))
         median = mean**2 / mp.sqrt(deviation**2 + mean**2)
         for level in np.linspace(2.5, 12.0, 20):
-            p = mp.ncdf(mp.log(mp.mpf(level) / mp.mpf(rk.conventions.g) / median) / sigma)
+            p = mp.ncdf(mp.log(mp.mpf(level) / mp.mpf(conventions.g) / median) / sigma)
             worst = max(worst, abs(float(p - mp.mpf(float(fit.probability(level))))))
             # negative control: median and dispersion written as if they were mean and standard deviation
             naive_sigma = mp.sqrt(mp.log(1 + (mp.mpf(fit.dispersion) / fit.median) ** 2))

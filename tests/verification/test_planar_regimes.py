@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
+import rocking as rk
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
-from rocking.dynamics.histories import simulate
+from rocking.dynamics import simulate
 from rocking.dynamics.planar import (
     Regime,
     Start,
@@ -15,7 +16,6 @@ from rocking.dynamics.planar import (
     friction_demand,
     regime_at_start,
     regime_map,
-    simulate_with_contact,
 )
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine
@@ -35,10 +35,12 @@ def _noise(count=400, vertical=0.0, seed=3, factor=1.0):
     return GroundMotion(factor * row, 0.02, vertical=up)
 
 
-def _knock(block, friction, bounce=0.0, **options):
+def _knock(block, friction, bounce=0.0, restitution=None):
     """The impact of a block that turns onto its right foot."""
     start = Start(rotation=-1e-9, angular_velocity=1e-2)
-    response = simulate_with_contact(block, None, friction, bounce=bounce, start=start, duration=1e-3, **options)
+    response = rk.free_rocking(
+        block, restitution=restitution, friction=friction, bounce=bounce, start=start, duration=1e-3
+    )
     return response, response.impacts[0]
 
 
@@ -174,7 +176,9 @@ def test_bouncing_impact_is_the_closed_form(slenderness, bounce):
 def test_landing_flat_bounces_as_a_point():
     """Dropped from 0.2 m the feet share the blow, m sqrt(2 g H) (1 + e), and the first bounce is e^2 H high."""
     drop, e = 0.2, 0.4
-    response = simulate_with_contact(SLENDER, None, 0.3, bounce=e, start=Start(height=drop), duration=1.0)
+    response = rk.free_rocking(
+        SLENDER, restitution=None, friction=0.3, bounce=e, start=Start(height=drop), duration=1.0
+    )
     first = response.impacts[0]
     speed = math.sqrt(2.0 * G * drop)
     blow = SLENDER.mass * speed * (1.0 + e)
@@ -188,7 +192,9 @@ def test_landing_flat_bounces_as_a_point():
 def test_bounces_accumulate_to_rest():
     """A dropped body stands after sqrt(2 H / g) (1 + e) / (1 - e), and all its energy is booked as lost in impacts."""
     drop, e = 0.2, 0.5
-    response = simulate_with_contact(SLENDER, None, 0.3, bounce=e, start=Start(height=drop), duration=2.0)
+    response = rk.free_rocking(
+        SLENDER, restitution=None, friction=0.3, bounce=e, start=Start(height=drop), duration=2.0
+    )
     stands = response.regimes[response.regimes["regime"] == "REST"]["start"][0]
     assert stands == pytest.approx(math.sqrt(2.0 * drop / G) * (1.0 + e) / (1.0 - e), rel=1e-6)
     assert response.energy.lost_in_impacts[-1] == pytest.approx(SLENDER.mass * G * drop, rel=1e-12)
@@ -221,7 +227,7 @@ def test_imposed_coefficient_is_kept_while_the_foot_sticks():
 def test_block_on_a_rectangular_pulse_slides_as_newmark_says():
     """A pulse A for T: slid (A - mu g) A T^2 / (2 mu g), back to the left; 1 % more friction is told apart."""
     push, duration, mu = 4.0, 0.5, 0.3
-    response = simulate_with_contact(Block(width=1.0, height=1.0), rectangular(push, duration), mu)
+    response = rk.simulate(Block(width=1.0, height=1.0), rectangular(push, duration), None, friction=mu)
     grip = mu * G
     expected = (push - grip) * push * duration**2 / (2.0 * grip)
     assert response.sliding_distance == pytest.approx(expected, rel=1e-12)
@@ -234,7 +240,7 @@ def test_block_on_a_rectangular_pulse_slides_as_newmark_says():
 def test_block_that_is_pushed_stops_where_friction_stops_it():
     """Let go at v on ground at rest it slides v^2 / (2 mu g), and friction takes m v^2 / 2."""
     body, mu, v = Block(width=1.0, height=1.0), 0.25, 1.7
-    response = simulate_with_contact(body, None, mu, start=Start(horizontal_velocity=v), duration=3.0)
+    response = rk.free_rocking(body, restitution=None, friction=mu, start=Start(horizontal_velocity=v), duration=3.0)
     assert response.displacement[-1] == pytest.approx(v**2 / (2.0 * mu * G), rel=1e-12)
     assert response.energy.lost_in_friction[-1] == pytest.approx(0.5 * body.mass * v**2, rel=1e-12)
     assert response.friction_usage == pytest.approx(1.0, rel=1e-12)
@@ -243,7 +249,7 @@ def test_block_that_is_pushed_stops_where_friction_stops_it():
 def test_flight_is_a_parabola():
     """Thrown with a spin the centre flies on a parabola and the body turns evenly until a foot lands."""
     start = Start(rotation=0.1, height=0.5, angular_velocity=0.7, horizontal_velocity=0.3, vertical_velocity=1.0)
-    response = simulate_with_contact(SLENDER, None, 0.4, start=start, duration=0.25)
+    response = rk.free_rocking(SLENDER, restitution=None, friction=0.4, start=start, duration=0.25)
     state = response.history.log.samples[0]
     t = response.time
     assert response.regimes["regime"][0] == "FLIGHT"
@@ -260,7 +266,7 @@ def test_ground_that_drops_away_is_seen_from_the_ground():
     samples = np.zeros(60)
     vertical = np.where(np.arange(60) <= 10, -2.0 * G, 0.0)
     motion = GroundMotion(samples, 0.01, vertical=vertical)
-    response = simulate_with_contact(SLENDER, motion, 0.4, duration=0.5)
+    response = rk.simulate(SLENDER, motion, None, friction=0.4, duration=0.5)
     assert response.rise[10] == pytest.approx(0.5 * G * 0.1**2, rel=1e-12)
     assert response.outcome is Outcome.FLEW
 
@@ -269,7 +275,7 @@ def test_ground_that_drops_away_is_seen_from_the_ground():
 def test_much_friction_is_the_pure_rocking_engine(restitution):
     """mu = 1e6 and no bounce: rotations equal the reference engine's to 1e-9 rad over 30 impacts, lifted ground too."""
     body, motion = Block(width=0.9, height=2.0), _noise(vertical=2.0, factor=1.4)
-    planar = simulate_with_contact(body, motion, 1e6, restitution=restitution, duration=8.0)
+    planar = rk.simulate(body, motion, restitution, friction=1e6, duration=8.0)
     pure = simulate(body, motion, restitution or "housner", engine="reference", duration=8.0, rest_speed=1e-7)
     assert pure.impacts.size > 30
     assert pure.peak_rotation > 0.01
@@ -282,7 +288,7 @@ def test_another_coefficient_is_told_apart_from_the_pure_rocking_engine():
     """Negative control: with r = 0.9 times Housner's the same comparison fails by more than 1e-6 rad."""
     body, motion = Block(width=0.9, height=2.0), _noise(vertical=2.0, factor=1.4)
     r = 0.9 * (1.0 - 1.5 * math.sin(body.slenderness_angle) ** 2)
-    planar = simulate_with_contact(body, motion, 1e6, restitution=r, duration=8.0)
+    planar = rk.simulate(body, motion, r, friction=1e6, duration=8.0)
     pure = simulate(body, motion, "housner", engine="reference", duration=8.0)
     assert np.max(np.abs(planar.rotation - pure.rotation)) > 1e-6
 
@@ -298,7 +304,7 @@ def _strong():
 @pytest.mark.parametrize(("width", "mu", "bounce"), CASES)
 def test_energy_adds_up(width, mu, bounce):
     """Kinetic + potential + lost = work + initial to 1e-10, through every regime; losses only grow."""
-    response = simulate_with_contact(Block(width=width, height=2.0), _strong(), mu, bounce=bounce)
+    response = rk.simulate(Block(width=width, height=2.0), _strong(), None, friction=mu, bounce=bounce)
     assert response.status is Status.GOOD
     assert response.energy.closure < 1e-10
     for lost in (response.energy.lost_in_impacts, response.energy.lost_in_friction):
@@ -312,8 +318,8 @@ def test_mirror_is_exact(width, mu, bounce):
     """The body in a mirror under the motion in a mirror moves as the mirror shows, to the last bit."""
     body, motion = Block(width=width, height=2.0), _strong()
     turned = GroundMotion(-motion.acceleration, 0.02, vertical=motion.vertical)
-    one = simulate_with_contact(body, motion, mu, bounce=bounce)
-    other = simulate_with_contact(body.mirrored(), turned, mu, bounce=bounce)
+    one = rk.simulate(body, motion, None, friction=mu, bounce=bounce)
+    other = rk.simulate(body.mirrored(), turned, None, friction=mu, bounce=bounce)
     assert np.array_equal(one.rotation, -other.rotation)
     assert np.array_equal(one.displacement, -other.displacement)
     assert np.array_equal(one.rise, other.rise)
@@ -324,7 +330,7 @@ def test_mirror_is_exact(width, mu, bounce):
 def test_contact_forces_obey_their_laws_at_every_sample():
     """Feet press, never pull, |F_t| <= mu F_n, no foot is below the ground, and friction acts against sliding."""
     body, mu = Block(width=1.5, height=2.0), 0.8
-    response = simulate_with_contact(body, _strong(), mu)
+    response = rk.simulate(body, _strong(), None, friction=mu)
     forces, scale = response.forces, body.mass * G
     assert forces.left.min() >= -1e-9 * scale
     assert forces.right.min() >= -1e-9 * scale
@@ -339,7 +345,7 @@ def test_tolerance_does_not_change_a_history():
     """A tolerance of 1e-12 instead of 1e-15 moves rotations by less than 1e-8 rad through sliding and rocking."""
     body = Block(width=1.2, height=2.0)
     pulse = sine(amplitude=9.0, period=0.9)
-    fine, coarse = (simulate_with_contact(body, pulse, 0.65, tolerance=t, duration=2.5) for t in (1e-15, 1e-12))
+    fine, coarse = (rk.simulate(body, pulse, None, friction=0.65, tolerance=t, duration=2.5) for t in (1e-15, 1e-12))
     assert fine.regimes["regime"].tolist() == coarse.regimes["regime"].tolist()
     assert "SLIDE_ROCK" in fine.regimes["regime"]
     assert np.max(np.abs(fine.rotation - coarse.rotation)) < 1e-8
@@ -349,7 +355,10 @@ def test_a_foot_dragged_behind_the_paradox_is_a_status():
     """Painleve: lambda = 2 sliding forward with mu > 4 / 3 has no contact force; below 4 / 3 it has one."""
     block = Block(width=1.0, height=2.0)
     start = Start(rotation=1e-6, horizontal_velocity=1.0)
-    stuck, fine = (simulate_with_contact(block, None, 4.0 / 3.0 + d, start=start, duration=0.01) for d in (0.1, -0.1))
+    stuck, fine = (
+        rk.free_rocking(block, restitution=None, friction=4.0 / 3.0 + d, start=start, duration=0.01)
+        for d in (0.1, -0.1)
+    )
     assert stuck.status is Status.NO_CONTACT_FORCE
     assert stuck.outcome is Outcome.FAILED
     assert fine.status is Status.GOOD
@@ -386,7 +395,9 @@ def _peer(width, height, mu, push, duration, total):
 @pytest.mark.parametrize(("width", "height", "mu", "push", "duration", "total", "regime"), PEER_CASES)
 def test_a_general_purpose_engine_agrees(width, height, mu, push, duration, total, regime):
     """MuJoCo 4.0 (0.1 ms, soft contacts) agrees to 1e-5 of the distance slid, to 2e-3 in sliding and rocking."""
-    response = simulate_with_contact(Block(width=width, height=height), rectangular(push, duration), mu, duration=total)
+    response = rk.simulate(
+        Block(width=width, height=height), rectangular(push, duration), None, friction=mu, duration=total
+    )
     assert regime in response.regimes["regime"]
     x, _, rotation = response.at(total)
     x_peer, rotation_peer = _peer(width, height, mu, push, duration, total)

@@ -138,7 +138,7 @@ def test_of_a_sample() -> None:
 def coefficients(law: RandomRestitution, key: int, name: str, sides: tuple[float, float] = (1.0, 1.0)) -> Any:
     """Coefficients that an engine used, impact by impact, on a body let go on ground at rest."""
     right, left = (RockingSide(0.2, 3.0, 1.0, r) for r in sides)
-    settings = Settings(rest_speed=1e-7, most_impacts=10_000)
+    settings = Settings(rest_speed=1e-7, most_events=10_000)
     found = run(Rocker(right, left, law, ""), Segments.still(0.05, 400), settings, engine=name, key=key, rotation=0.1)
     return [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
 

@@ -11,6 +11,7 @@ import pytest
 from scipy import optimize, stats
 
 import rocking as rk
+from rocking import conventions
 from rocking.dynamics import Rocker
 from rocking.dynamics.settings import Settings
 from rocking.outcome import Outcome
@@ -64,11 +65,11 @@ def test_other_boundaries_are_rejected():
 
 def drawn(count, law, pieces=1):
     """Outcomes of a full sine at Omega = 3 and the amplitude where r = 0.9 is just enough to overturn."""
-    rocker = Rocker.of_body(BLOCK, 1.0, rk.conventions.g)
+    rocker = Rocker.of_body(BLOCK, 1.0, conventions.g)
     side = rocker.right
     names = {"alpha": side.slenderness_angle, "p": side.frequency_parameter, "r": 1.0}
     values = {f"{name}_{foot}": value for name, value in names.items() for foot in ("right", "left")}
-    amplitude = LOWER[3][0] * rk.conventions.g * side.slenderness_angle
+    amplitude = LOWER[3][0] * conventions.g * side.slenderness_angle
     pulse = rk.pulses.sine(amplitude, 2.0 * np.pi / (3.0 * side.frequency_parameter))
     table = HistoryTable(MotionList(pulse), np.zeros(count, np.int64), values, settings=Settings(linear=True))
     edges = np.linspace(0, count, pieces + 1).astype(int)
@@ -116,7 +117,7 @@ def test_no_width_is_the_constant_in_every_study():
     """Map, spectrum and stripes with a distribution of no width equal those with the constant."""
     motions = synthetic(6, seed=9)
     choices = [0.9, SampledRestitution([0.9, 0.9], 4)]
-    levels = rk.conventions.g * BLOCK.slenderness_angle * np.array([1.2, 2.0, 3.0])
+    levels = conventions.g * BLOCK.slenderness_angle * np.array([1.2, 2.0, 3.0])
     axes = ("scale", [0.5, 1.0, 2.0]), ("semi_diagonal", [0.5, 1.0])
     for found in (
         map_sensitivity(BLOCK, motions[0], *axes, choices),
@@ -130,7 +131,7 @@ def test_no_width_is_the_constant_in_every_study():
 
 def test_no_width_is_the_constant_to_the_last_bit_in_stripes():
     """Rotations of stripes drawn without width equal the constant's bitwise, through the whole analysis."""
-    levels = rk.conventions.g * BLOCK.slenderness_angle * np.array([1.2, 2.0, 3.0])
+    levels = conventions.g * BLOCK.slenderness_angle * np.array([1.2, 2.0, 3.0])
     choices = [0.9, SampledRestitution([0.9, 0.9], 4)]
     found = fragility_sensitivity(BLOCK, synthetic(20, seed=9), levels, choices, repetitions=0)
     first, second = (result.responses.rotation for result in found.results.values())
@@ -153,7 +154,7 @@ def synthetic(count, seed):
 def comparison():
     """Block with b = 0.2 m, h = 0.6 m, linear, 2000 synthetic motions at six levels of PGA / (g alpha)."""
     block = rk.Block(width=0.4, height=1.2)
-    levels = rk.conventions.g * block.slenderness_angle * np.array([1.1, 1.25, 1.4, 1.6, 1.86, 2.49])
+    levels = conventions.g * block.slenderness_angle * np.array([1.1, 1.25, 1.4, 1.6, 1.86, 2.49])
     models = ["housner", "horizontal-momentum", "ked"]
     return fragility_sensitivity(block, synthetic(2000, seed=1), levels, models, repetitions=400, linear=True)
 

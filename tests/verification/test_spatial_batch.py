@@ -11,10 +11,13 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody, attitude, flow, free_rocking_spatial, simulate_spatial
+from rocking import conventions
+from rocking.dynamics import Settings
+from rocking.dynamics.spatial import SpatialBody, SpatialStart, attitude, flow
 from rocking.dynamics.spatial.ground import ground_of
-from rocking.dynamics.spatial_batch import SpatialBatchSettings, SpatialStart, engine, simulate_spatial_batch
+from rocking.dynamics.spatial_batch import engine
 from rocking.dynamics.spatial_batch.course import course_of
+from rocking.dynamics.spatial_batch.many import batch_in_space
 from rocking.outcome import Outcome
 
 pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
@@ -52,6 +55,10 @@ def _polygon(rng):
     return SpatialBody(1500.0, centre, inertia, base)
 
 
+def _let_go(start, law):
+    return rk.free_rocking(TOWER, restitution=law, start=SpatialStart(**start), duration=3.0)
+
+
 def _case(seed):
     rng = np.random.default_rng(seed)
     box = SpatialBody.box(rng.uniform(0.3, 1.4), rng.uniform(0.3, 1.4), rng.uniform(1.5, 5.0))
@@ -61,8 +68,8 @@ def _case(seed):
 
 def _both(seed):
     body, motion, scale, law = _case(seed)
-    slow = simulate_spatial(body, *motion, law, scale=scale, duration=LENGTH)
-    fast = simulate_spatial_batch(body, motion, law, scales=scale, threads=1)
+    slow = rk.simulate(body, motion, law, scale=scale, duration=LENGTH)
+    fast = batch_in_space(body, motion, law, scales=scale, threads=1)
     return slow, fast
 
 
@@ -74,7 +81,7 @@ def _mode(response):
 def _near(seed, width):
     """The batch at 41 scales about that of a case."""
     body, motion, scale, law = _case(seed)
-    return simulate_spatial_batch(body, motion, law, scales=scale * (1.0 + width * np.linspace(-1.0, 1.0, 41)))
+    return batch_in_space(body, motion, law, scales=scale * (1.0 + width * np.linspace(-1.0, 1.0, 41)))
 
 
 def test_verdicts_are_those_of_the_reference_engine():
@@ -106,7 +113,7 @@ def test_verdicts_are_those_of_the_reference_engine():
 
 def _first_three(body, motion, scale, law):
     """Largest difference of times [s] and attitudes [-] at the first three impacts."""
-    slow = simulate_spatial(body, *motion, law, scale=scale, duration=LENGTH)
+    slow = rk.simulate(body, motion, law, scale=scale, duration=LENGTH)
     ground = ground_of(*motion, until=LENGTH)
     course = course_of(body, ground, LENGTH, law, scale=scale)
     hits = course[course["kind"] == 1][:3]
@@ -137,15 +144,18 @@ def test_a_gyroscopic_term_left_out_is_rejected(monkeypatch):
     tilted = SpatialStart(0.15, 0.6, angular_velocity=(0.0, 0.0, 0.8))
     course = course_of(TOWER, ground_of(), 3.0, start=tilted)
     hit = course[course["kind"] == 1]["time"][0]
-    first = {"tilt": 0.15, "azimuth": 0.6, "angular_velocity": (0.0, 0.0, 0.8), "duration": 3.0}
-    assert abs(free_rocking_spatial(TOWER, **first).impacts["time"][0] - hit) < 1e-10
+    first = {"tilt": 0.15, "azimuth": 0.6, "angular_velocity": (0.0, 0.0, 0.8)}
+    assert abs(_let_go(first, "housner").impacts["time"][0] - hit) < 1e-10
     monkeypatch.setattr(flow.PivotFlow, "__init__", without)
-    assert abs(free_rocking_spatial(TOWER, **first).impacts["time"][0] - hit) > 1e-3
+    assert abs(_let_go(first, "housner").impacts["time"][0] - hit) > 1e-3
 
 
 def test_energy_and_vertical_momentum_about_a_vertex_stay():
     """Free motion about a vertex up to the first impact: both invariants of section 3.5 to 1e-12."""
-    start, fine = SpatialStart(0.2, 0.7, angular_velocity=(0.0, 0.0, 0.5)), SpatialBatchSettings(longest_step=0.05)
+    start, fine = (
+        SpatialStart(0.2, 0.7, angular_velocity=(0.0, 0.0, 0.5)),
+        Settings(longest_step=0.05, mechanics="space, many"),
+    )
     course = course_of(TOWER, ground_of(), 3.0, start=start, settings=fine)
     until = int(np.flatnonzero(course["kind"] == 1)[0])
     steps = course[1:until]
@@ -154,7 +164,7 @@ def test_energy_and_vertical_momentum_about_a_vertex_stay():
     pivot = TOWER.vertices[int(steps["number"][0])]
     inertia, arm = TOWER.inertia_about(pivot), TOWER.centre - pivot
     up, w = steps["rotation"][:, 2], steps["velocity"]
-    energy = 0.5 * np.einsum("na,ab,nb->n", w, inertia, w) + TOWER.mass * rk.conventions.g * up @ arm
+    energy = 0.5 * np.einsum("na,ab,nb->n", w, inertia, w) + TOWER.mass * conventions.g * up @ arm
     momentum = np.einsum("na,ab,nb->n", up, inertia, w)
     assert np.ptp(energy) < 1e-12 * energy.max()
     assert np.ptp(momentum) < 1e-12 * np.abs(momentum).max() * 10.0
@@ -179,7 +189,7 @@ def test_a_prism_in_a_plane_is_the_plane_solution(axis, space, plane):
     count = min(10, np.sum(wanted < along.duration))
     assert count > 3
     np.testing.assert_allclose(hits["time"][:count], wanted[:count], atol=1e-9)
-    peaks = simulate_spatial_batch(TOWER, parts, space, scales=[1.0, 1.001]).peak_tilt.ravel()
+    peaks = batch_in_space(TOWER, parts, space, scales=[1.0, 1.001]).peak_tilt.ravel()
     assert peaks[0] == pytest.approx(expected.peak_rotation, abs=1e-9)
     assert abs(peaks[1] - expected.peak_rotation) > 1e-7  # negative control
     other = course_of(TOWER, ground_of(*parts), along.duration, 0.8)  # negative control
@@ -198,7 +208,7 @@ def test_the_period_about_an_edge_is_the_elliptic_integral(share, period):
         ground_of(),
         0.3 * period,
         start=SpatialStart(share * math.atan(0.25)),
-        settings=SpatialBatchSettings(gravity=G),
+        settings=Settings(gravity=G, mechanics="space, many"),
     )
     assert 4.0 * batch[batch["kind"] == 1]["time"][0] == pytest.approx(period, abs=1e-9)
 
@@ -214,7 +224,7 @@ def test_a_prism_over_its_diagonal_keeps_59_over_71():
 def test_ked_is_that_of_the_reference_engine_on_tilted_landings():
     """The moments handed to the compiled engine give the energies of the reference engine at every impact to 1e-8."""
     start = {"tilt": 0.12, "azimuth": 0.5}
-    slow = free_rocking_spatial(TOWER, **start, restitution="ked-3d", duration=3.0).impacts
+    slow = _let_go(start, "ked").impacts
     course = course_of(TOWER, ground_of(), 3.0, "ked-3d", start=SpatialStart(**start))
     hits = course[course["kind"] == 1]
     count = min(8, len(slow))
@@ -230,8 +240,8 @@ def test_turning_body_and_motion_together_turns_the_result(turned):
     c, s = math.cos(turned), math.sin(turned)
     a, b = np.asarray(x.acceleration), np.asarray(y.acceleration)
     moved = rk.GroundMotion(c * a - s * b, STEP), rk.GroundMotion(s * a + c * b, STEP), z
-    first = simulate_spatial_batch(TOWER, (x, y, z), scales=[0.8, 1.6])
-    second = simulate_spatial_batch(TOWER, moved, scales=[0.8, 1.6], start=SpatialStart(yaw=turned))
+    first = batch_in_space(TOWER, (x, y, z), scales=[0.8, 1.6])
+    second = batch_in_space(TOWER, moved, scales=[0.8, 1.6], start=SpatialStart(yaw=turned))
     assert (first.outcome == second.outcome).all()
     np.testing.assert_allclose(first.peak_tilt, second.peak_tilt, rtol=1e-6)
     assert (first.overturned == 1.0).any()
@@ -242,7 +252,7 @@ def test_turning_body_and_motion_together_turns_the_result(turned):
 def test_a_tighter_tolerance_changes_little():
     """Peaks at tolerances 1e-11 and 1e-15 agree to 1e-8 up to the first impacts; the attitude stays a rotation."""
     start, ground = SpatialStart(0.2, 0.7, angular_velocity=(0.1, 0.0, 0.5)), ground_of()
-    tight = [SpatialBatchSettings(tolerance=tolerance) for tolerance in (1e-11, 1e-15)]
+    tight = [Settings(tolerance=tolerance, mechanics="space, many") for tolerance in (1e-11, 1e-15)]
     runs = [course_of(TOWER, ground, 2.0, start=start, settings=given) for given in tight]
     hits = [run[run["kind"] == 1]["time"][:3] for run in runs]
     np.testing.assert_allclose(hits[0], hits[1], atol=1e-8)

@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody, attitude, free_rocking_spatial, simulate_spatial
+from rocking import conventions
+from rocking.dynamics import Settings
+from rocking.dynamics.spatial import SpatialBody, SpatialStart, attitude
 from rocking.dynamics.spatial.ground import ground_of
-from rocking.dynamics.spatial_batch import SpatialBatchSettings, SpatialStart, engine, simulate_spatial_batch
+from rocking.dynamics.spatial_batch import engine
 from rocking.dynamics.spatial_batch.course import course_of
+from rocking.dynamics.spatial_batch.many import batch_in_space
 from rocking.errors import InvalidValueError
 
 pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")
@@ -27,7 +30,9 @@ def _tilts(theta, rate, spin, duration=2.0):
     axis = np.array([math.sin(theta), 0.0, math.cos(theta)])
     velocity = rate * np.array([0.0, 0.0, 1.0]) + (spin - rate * math.cos(theta)) * axis
     start = SpatialStart(theta, angular_velocity=tuple(velocity.tolist()))
-    course = course_of(CYLINDER, ground_of(), duration, start=start, settings=SpatialBatchSettings(gravity=G))
+    course = course_of(
+        CYLINDER, ground_of(), duration, start=start, settings=Settings(gravity=G, mechanics="space, many")
+    )
     return np.arccos(course["rotation"][:, 2, 2][course["time"] < duration])
 
 
@@ -61,7 +66,7 @@ def test_energy_stays_while_it_rolls():
     arm = CYLINDER.centre - np.column_stack([low, np.zeros(len(low))])
     speed = np.cross(w, arm)
     energy = 0.5 * np.einsum("na,ab,nb->n", w, CYLINDER.inertia, w) + 0.5 * CYLINDER.mass * np.square(speed).sum(axis=1)
-    energy += CYLINDER.mass * rk.conventions.g * (up * arm).sum(axis=1)
+    energy += CYLINDER.mass * conventions.g * (up * arm).sum(axis=1)
     assert np.ptp(energy) < 1e-11 * energy.max()
 
 
@@ -69,7 +74,7 @@ def test_energy_stays_while_it_rolls():
 def test_free_rolling_is_that_of_the_reference_engine(spin):
     """Attitudes over four seconds of rolling, by two engines, to 1e-7."""
     start = {"tilt": 0.1, "azimuth": 0.3, "angular_velocity": spin}
-    slow = free_rocking_spatial(CYLINDER, **start, duration=4.0)
+    slow = rk.free_rocking(CYLINDER, restitution="housner", start=SpatialStart(**start), duration=4.0)
     course = course_of(CYLINDER, ground_of(), 4.0, start=SpatialStart(**start))
     course = course[(course["kind"] == -1) & (course["time"] < 4.0)]
     assert np.abs(slow.at(course["time"]).rotation - course["rotation"]).max() < 1e-7
@@ -79,10 +84,7 @@ def test_free_rolling_is_that_of_the_reference_engine(spin):
 def test_a_pulse_throws_a_cylinder_over_as_the_reference_engine_says():
     """A strong pulse along x and y: outcome by both engines; direction towards which it falls to 1e-3 rad."""
     pulse = rk.pulses.sine(amplitude=9.0, period=0.8)
-    batch = {
-        name: simulate_spatial_batch(CYLINDER, (pulse, pulse.scaled(0.5)), engine=name)
-        for name in ("fast", "reference")
-    }
+    batch = {name: batch_in_space(CYLINDER, (pulse, pulse.scaled(0.5)), engine=name) for name in ("fast", "reference")}
     assert batch["fast"].outcome.item() == batch["reference"].outcome.item()
     assert batch["fast"]["first_uplift"].item() == pytest.approx(batch["reference"]["first_uplift"].item(), abs=1e-12)
 
@@ -90,13 +92,13 @@ def test_a_pulse_throws_a_cylinder_over_as_the_reference_engine_says():
 def test_ked_by_points_on_a_rim_is_refused_in_words():
     """KED by points needs moments of the landing point, and a rim has any number of them."""
     with pytest.raises(InvalidValueError, match="any point of its rim"):
-        simulate_spatial_batch(CYLINDER, restitution="ked-3d-point", start=SpatialStart(0.1))
+        batch_in_space(CYLINDER, restitution="ked-3d-point", start=SpatialStart(0.1))
 
 
 def test_ked_on_a_rim_is_that_of_the_plane():
     """A cylinder let go over its rim falls flat on the far side: REF 1.6 (9 digits) at three impacts, both engines."""
     body, start = SpatialBody.cylinder(1.0, 4.0), {"tilt": 0.08, "azimuth": 0.7}
-    slow = free_rocking_spatial(body, **start, restitution="ked-3d", duration=2.5)
+    slow = rk.free_rocking(body, start=SpatialStart(**start), duration=2.5)
     course = course_of(body, ground_of(), 2.5, "ked-3d", start=SpatialStart(**start))
     hits = course[course["kind"] == 1]
     for ratio in (hits["after"] / hits["before"], slow.impacts["energy_after"] / slow.impacts["energy_before"]):
@@ -108,8 +110,10 @@ def test_ked_on_a_rim_is_that_of_the_plane():
 def test_a_round_base_that_is_pushed_comes_to_rest(share):
     """Pushed by a share of what tips it, it lies still after as many impacts as in the reference engine."""
     push = rk.GroundMotion(np.full(101, share * G * RADIUS / HEIGHT), 0.01)
-    batch = simulate_spatial_batch([CYLINDER], [push], [0.2], start=SpatialStart(0.02), gravity=G)
-    slow = simulate_spatial(CYLINDER, push, None, None, 0.2, tilt=0.02, azimuth=0.0, gravity=G)
+    batch = batch_in_space(
+        [CYLINDER], [push], [0.2], start=SpatialStart(0.02), settings=Settings(gravity=G, mechanics="space, many")
+    )
+    slow = rk.simulate(CYLINDER, push, 0.2, start=SpatialStart(0.02), gravity=G)
     assert slow.impacts.size > 3
     assert batch.values["impacts"].item() == slow.impacts.size
     assert not batch.still_rocking.item()

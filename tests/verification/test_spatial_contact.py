@@ -13,12 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rocking as rk
+from rocking import conventions
+from rocking.dynamics import SpatialStart
 from rocking.dynamics.spatial import (
     ContactMode,
     SpatialBody,
     events,
-    free_rocking_spatial,
-    simulate_spatial,
 )
 from rocking.dynamics.spatial.impact import law_of
 from rocking.dynamics.spatial.selection import SpatialState, of_impact
@@ -38,7 +38,7 @@ SPIN = st.tuples(st.floats(-0.3, 0.3), st.floats(-0.3, 0.3), st.floats(-0.4, 0.4
 @given(ANGLE, st.floats(0.01, 0.2), SPIN)
 def test_nothing_ever_enters_the_ground_and_energy_adds_up(azimuth, tilt, spin):
     """Wobbling to rest or overturning from any start: gaps >= -1e-12 m, the ledger closes, impacts create no energy."""
-    run = free_rocking_spatial(SQUARE, tilt, azimuth, angular_velocity=spin)
+    run = rk.free_rocking(SQUARE, restitution="housner", start=SpatialStart(tilt, azimuth, angular_velocity=spin))
     assert run.status is Status.GOOD or run.outcome is Outcome.OVERTURNED
     fine = np.linspace(0.0, run.time[-1], 2000)
     assert run.at(fine).least_gap.min() >= -1e-12
@@ -50,10 +50,10 @@ def test_nothing_ever_enters_the_ground_and_energy_adds_up(azimuth, tilt, spin):
 
 def test_without_watching_the_neighbours_a_body_enters_the_ground(monkeypatch):
     """Negative control: with no gaps watched the same measure shows centimetres of penetration."""
-    start = {"tilt": 0.1, "azimuth": 0.6, "duration": 2.0}
-    assert free_rocking_spatial(SQUARE, **start).states.least_gap.min() >= -1e-12
+    start = {"start": SpatialStart(0.1, 0.6), "duration": 2.0}
+    assert rk.free_rocking(SQUARE, **start).states.least_gap.min() >= -1e-12
     monkeypatch.setattr(events, "watched", lambda body, stance: ())
-    assert free_rocking_spatial(SQUARE, **start).states.least_gap.min() < -1e-2
+    assert rk.free_rocking(SQUARE, **start).states.least_gap.min() < -1e-2
 
 
 def test_an_impact_without_complementarity_is_rejected():
@@ -74,30 +74,30 @@ def test_rest_ends_where_the_pressure_leaves_the_base(direction):
         (TOWER, min(0.5 / math.cos(direction), 0.65 / max(math.sin(direction), 1e-9))),
         (CYLINDER, 0.25),
     ):
-        limit = rk.conventions.g * reach / float(body.centre[2])
+        limit = conventions.g * reach / float(body.centre[2])
         for share, lifted in ((0.999, False), (1.001, True)):
             pulses = [
                 rk.pulses.rectangular(amplitude=share * limit * c, duration=0.5) if abs(c) > 1e-12 else None
                 for c in (math.cos(direction), math.sin(direction))
             ]
-            run = simulate_spatial(body, *pulses, duration=0.4)
+            run = rk.simulate(body, pulses, "housner", duration=0.4)
             assert (run.outcome is not Outcome.NO_UPLIFT) is lifted
 
 
 def test_a_ground_that_falls_faster_than_the_body_is_said_so():
     """Downwards with 2 g the contact is lost: a status, no number for the peak; with 0.9 g the body just stands."""
-    drop = rk.pulses.rectangular(amplitude=-2.0 * rk.conventions.g, duration=0.2)
-    run = simulate_spatial(SQUARE, vertical=drop)
+    drop = rk.pulses.rectangular(amplitude=-2.0 * conventions.g, duration=0.2)
+    run = rk.simulate(SQUARE, {"z": drop}, "housner")
     assert (run.outcome, run.status) == (Outcome.FAILED, Status.LOST_CONTACT)
     assert math.isnan(run.peak_tilt)
-    assert simulate_spatial(SQUARE, vertical=drop.scaled(0.45)).outcome is Outcome.NO_UPLIFT
+    assert rk.simulate(SQUARE, {"z": drop.scaled(0.45)}, "housner").outcome is Outcome.NO_UPLIFT
 
 
 @pytest.mark.parametrize("direction", [0.0, 1.0, 2.5, -2.0])
 def test_a_strong_pulse_overturns_a_round_body_against_its_direction(direction):
     """A push of the ground towards phi throws a cylinder towards phi + 180 degrees, to 1e-6."""
     pulses = [rk.pulses.half_sine(amplitude=9.0 * c, period=1.2) for c in (math.cos(direction), math.sin(direction))]
-    run = simulate_spatial(CYLINDER, *pulses)
+    run = rk.simulate(CYLINDER, pulses, "housner")
     assert run.outcome is Outcome.OVERTURNED
     wrapped = (run.overturning_direction - direction) % (2.0 * math.pi) - math.pi
     assert wrapped == pytest.approx(0.0, abs=1e-6)
@@ -109,7 +109,7 @@ def test_an_edge_becomes_a_vertex_where_the_reaction_reaches_its_end():
     corners = 0.5 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     body = SpatialBody(1000.0, np.array([0.1, 0.1, 2.0]), np.diag([1400.0, 1400.0, 170.0]), corners)
     along = rk.GroundMotion(np.concatenate([np.zeros(20), np.linspace(0.0, 4.5, 30), np.zeros(5)]), 0.01)
-    run = simulate_spatial(body, rk.pulses.half_sine(amplitude=3.5, period=1.2), along, gravity=G)
+    run = rk.simulate(body, {"x": rk.pulses.half_sine(amplitude=3.5, period=1.2), "y": along}, "housner", gravity=G)
     start, end, contact, ends = run.intervals[1]
     assert (contact, ends, run.intervals[2][2:]) == (ContactMode.EDGE, (3, 0), (ContactMode.VERTEX, (0,)))
     assert run.trajectory.held == 0.0

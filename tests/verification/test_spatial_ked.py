@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box, cylinder, frustum
-from rocking.dynamics.spatial import SpatialBody, attitude, free_rocking_spatial, simulate_spatial
+from rocking.dynamics import SpatialStart
+from rocking.dynamics.spatial import SpatialBody, attitude
 from rocking.dynamics.spatial.impact import law_of
 from rocking.errors import InvalidValueError
 from rocking.restitution.spatial import SpatialKed, SpatialKedPoint, edge_coefficient, impact_in_space, spatial_models
@@ -58,7 +59,7 @@ def test_free_rocking_in_a_plane_is_that_of_the_plane(axis, model):
     block = rk.Block(width=(1.0, 1.3)[axis], height=4.0)
     angle = 0.5 * block.slenderness_angle
     plane = rk.free_rocking(block, angle, PLANE[model], engine="reference", duration=8.0)
-    space = free_rocking_spatial(TOWER, angle, 0.5 * math.pi * axis, model, duration=8.0)
+    space = rk.free_rocking(TOWER, restitution=model, start=SpatialStart(angle, 0.5 * math.pi * axis), duration=8.0)
     time = np.linspace(0.0, 8.0, 201)
     rotation = space.at(time).rotation
     np.testing.assert_allclose(np.arctan2(rotation[:, axis, 2], rotation[:, 2, 2]), plane.at(time), atol=1e-10)
@@ -73,7 +74,7 @@ def test_ked_under_a_pulse_in_a_plane_is_that_of_the_plane(amplitude):
     """A prism over a trapezoid under a sine pulse: rotation and impacts of the plane engine with KED, to 1e-9."""
     pulse = rk.pulses.sine(amplitude=amplitude, period=0.8)
     plane = rk.simulate(TRAPEZOID, pulse, "ked", engine="reference", duration=4.0, rest_speed=1e-6)
-    space = simulate_spatial(Solid.from_section(TRAPEZOID), pulse, restitution="ked-3d", duration=4.0)
+    space = rk.simulate(Solid.from_section(TRAPEZOID), pulse, "ked-3d", duration=4.0)
     count = min(len(plane.impacts), 6)
     assert count >= 4
     np.testing.assert_allclose(space.impacts["time"][:count], plane.impacts["time"][:count], atol=1e-9)
@@ -90,7 +91,7 @@ def test_ked_under_a_pulse_in_a_plane_is_that_of_the_plane(amplitude):
 def test_the_diagonal_impacts_of_a_prism_are_the_reference():
     """Corner to opposite corner, symmetric for ever: KED's REF by point and by axis at every impact, to 1e-9."""
     for law, value in (("ked-3d-point", 0.9132455302034), ("ked-3d", 0.9125115342467)):
-        run = free_rocking_spatial(SQUARE, 0.12, 0.25 * math.pi, law, duration=2.5)
+        run = rk.free_rocking(SQUARE, restitution=law, start=SpatialStart(0.12, 0.25 * math.pi), duration=2.5)
         assert set(run.impacts["vertices"]) == {"0", "2"}
         left = run.impacts["energy_after"] / run.impacts["energy_before"]
         np.testing.assert_allclose(np.sqrt(left), value, rtol=1e-9)
@@ -104,7 +105,7 @@ def test_a_round_base_that_falls_flat_has_the_impact_of_its_far_side(model):
     The engine lets the rim roll down to tilts of 1e-11, where rounding turns the last bit of the motion sideways.
     """
     solid = Solid(Part(cylinder(1.0, 3.0)).moved(4.0, -2.0, 0.0))
-    run = free_rocking_spatial(SpatialBody.of(solid), 0.08, 0.7, model, duration=2.0)
+    run = rk.free_rocking(SpatialBody.of(solid), restitution=model, start=SpatialStart(0.08, 0.7), duration=2.0)
     before, far = np.array([math.cos(0.7), math.sin(0.7)]), np.array([4.0, -2.0])
     impact = impact_in_space(
         solid, [before[1], -before[0], 0.0], pivot=far + 0.5 * before, onto=far - 0.5 * before, model=model
@@ -119,7 +120,7 @@ def test_an_impact_on_a_leaning_body_asks_the_true_vertical():
 
     Negative control: with the ground frozen to the axes of the body the mass points say 1e-4 and more besides.
     """
-    run = free_rocking_spatial(TOWER, 0.15, 0.9, "ked-3d-point", duration=2.0)
+    run = rk.free_rocking(TOWER, restitution="ked-3d-point", start=SpatialStart(0.15, 0.9), duration=2.0)
     supports = [points[0] for _, _, _, points in run.intervals]
     assert [str(number) for number in supports[1:]] == run.impacts["vertices"].tolist() == ["1", "0", "3", "2"]
     frozen = []
@@ -139,7 +140,9 @@ def test_an_impact_on_a_leaning_body_asks_the_true_vertical():
 @given(ANGLE, st.floats(0.01, 0.2), SPIN, st.sampled_from(LAWS))
 def test_impacts_create_no_energy_and_nothing_enters_the_ground(azimuth, tilt, spin, law):
     """Wobbling from any start by every model: energy after <= before, gaps >= -1e-12 m, the ledger closes to 1e-9."""
-    run = free_rocking_spatial(TOWER, tilt, azimuth, law, angular_velocity=spin, duration=6.0)
+    run = rk.free_rocking(
+        TOWER, restitution=law, start=SpatialStart(tilt, azimuth, angular_velocity=spin), duration=6.0
+    )
     assert (run.impacts["energy_after"] <= run.impacts["energy_before"] * (1.0 + 1e-12)).all()
     assert run.states.least_gap.min() >= -1e-12
     assert run.energy.closure < 1e-9
@@ -150,7 +153,8 @@ def test_impacts_create_no_energy_and_nothing_enters_the_ground(azimuth, tilt, s
 def test_a_body_turned_about_the_vertical_rocks_the_same(yaw, azimuth):
     """Body and start turned together: the centre by KED is the turned one until the fifth impact, to 1e-9."""
     first, second = (
-        free_rocking_spatial(TOWER, 0.1, azimuth + angle, "ked-3d", yaw=angle, duration=2.0) for angle in (0.0, yaw)
+        rk.free_rocking(TOWER, restitution="ked-3d", start=SpatialStart(0.1, azimuth + angle, yaw=angle), duration=2.0)
+        for angle in (0.0, yaw)
     )
     until = first.impacts["time"][5] if first.impacts.size > 5 else 2.0
     keep = min(int((first.time < until).sum()), len(second.time))
@@ -163,9 +167,13 @@ def test_a_body_turned_about_the_vertical_rocks_the_same(yaw, azimuth):
 def test_a_mirrored_start_gives_the_mirrored_history(azimuth, spin):
     """Mirrored in the x-z plane, KED gives the mirrored centre until the fourth impact, to 1e-9."""
     assume(abs(math.sin(2.0 * azimuth)) > 0.05)  # on an edge with a spin it is left open which end stays
-    first = free_rocking_spatial(TOWER, 0.1, azimuth, "ked-3d", angular_velocity=spin, duration=2.0)
+    first = rk.free_rocking(
+        TOWER, restitution="ked-3d", start=SpatialStart(0.1, azimuth, angular_velocity=spin), duration=2.0
+    )
     turned = (-spin[0], spin[1], -spin[2])
-    other = free_rocking_spatial(TOWER, 0.1, -azimuth, "ked-3d", angular_velocity=turned, duration=2.0)
+    other = rk.free_rocking(
+        TOWER, restitution="ked-3d", start=SpatialStart(0.1, -azimuth, angular_velocity=turned), duration=2.0
+    )
     until = first.impacts["time"][4] if first.impacts.size > 4 else 2.0
     keep = min(int((first.time < until).sum()), len(other.time))
     np.testing.assert_allclose(other.centre[:keep], first.centre[:keep] * [1.0, -1.0, 1.0], atol=1e-9)
@@ -186,7 +194,10 @@ def test_a_solid_far_from_the_origin_is_the_same_body():
         )
         for x, y, z in ((0.0, 0.0, 0.0), (1000.0, 500.0, 30.0))
     )
-    first, second = (free_rocking_spatial(solid, 0.1, 0.4, "ked-3d", duration=1.0) for solid in (near, far))
+    first, second = (
+        rk.free_rocking(solid, restitution="ked-3d", start=SpatialStart(0.1, 0.4), duration=1.0)
+        for solid in (near, far)
+    )
     count = 3
     for name in ("time", "energy_after"):
         np.testing.assert_allclose(second.impacts[name][:count], first.impacts[name][:count], rtol=1e-9)
@@ -197,11 +208,11 @@ def test_a_body_of_moments_alone_is_refused_by_ked(law):
     """Mass, centre and inertia do not say where the mass is: refused at the door with what is needed."""
     bare = SpatialBody(TOWER.mass, TOWER.centre, TOWER.inertia, TOWER.base)
     with pytest.raises(InvalidValueError, match=r"distribution of mass.*SpatialBody.of\(solid\)"):
-        free_rocking_spatial(bare, 0.1, restitution=law)
+        rk.free_rocking(bare, restitution=law, start=SpatialStart(0.1))
     with pytest.raises(InvalidValueError, match="distribution of mass"):
         law_of(law).velocity_after(bare, bare.vertices[0], bare.vertices[1], None, UP, np.array([0.3, 1.0, 0.1]))
     for other in ("housner-3d", "horizontal-momentum-3d", 0.9):
-        free_rocking_spatial(bare, 0.1, restitution=other, duration=0.5)
+        rk.free_rocking(bare, restitution=other, start=SpatialStart(0.1), duration=0.5)
 
 
 def test_a_body_takes_its_matter_along():

@@ -10,8 +10,9 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Part, RoundBase, Solid, box, revolution
-from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial, reference, simulate_spatial
-from rocking.dynamics.spatial_batch import SpatialStart, engine, simulate_spatial_batch
+from rocking.dynamics.spatial import SpatialBody, SpatialStart, reference
+from rocking.dynamics.spatial_batch import engine
+from rocking.dynamics.spatial_batch.many import batch_in_space
 from rocking.restitution.spatial import edge_coefficient
 
 RADIUS, LENGTH = 0.3, 1.2
@@ -36,7 +37,7 @@ def statue(corners):
 
 
 def shaken(corners, law):
-    return simulate_spatial(statue(corners), *MOTION, restitution=law, duration=LENGTH, **START)
+    return rk.simulate(statue(corners), MOTION, law, start=SpatialStart(**START), duration=LENGTH)
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +52,7 @@ def rim():
 def errors(law, corners, rim):
     """How far the peak stays below the rim's, and which share of the rim's energy impacts take."""
     bodies = [SpatialBody.of(statue(int(n))) for n in corners]
-    batch = simulate_spatial_batch(bodies, MOTION, law, start=SpatialStart(**START), duration=LENGTH)
+    batch = batch_in_space(bodies, MOTION, law, start=SpatialStart(**START), duration=LENGTH)
     assert (batch.status == 0).all()
     assert (batch.still_rocking == 1.0).all()
     return 1.0 - batch.peak_tilt.ravel() / rim[0], batch["lost"].ravel() / rim[1]
@@ -115,11 +116,11 @@ def test_the_coefficient_converges_to_that_of_the_drum():
 def test_what_comes_to_rest_is_not_still_rocking():
     """A box rests in the end; the same history cut short is still rocking, in words and in its files."""
     tower = SpatialBody.box(1.0, 1.3, 4.0)
-    rests = free_rocking_spatial(tower, 0.05, 0.4, "ked-3d")
+    rests = rk.free_rocking(tower, restitution="ked-3d", start=SpatialStart(0.05, 0.4))
     assert not rests.still_rocking
     assert rests.unfinished == ""
     assert "still rocking" not in rests.summary
-    cut = free_rocking_spatial(tower, 0.05, 0.4, "ked-3d", duration=1.0)
+    cut = rk.free_rocking(tower, restitution="ked-3d", start=SpatialStart(0.05, 0.4), duration=1.0)
     assert cut.still_rocking
     assert "still rocking when the computation ends at 1 s" in cut.summary
     assert cut.exported().provenance["still_rocking"]
@@ -131,8 +132,12 @@ def test_a_spin_nearly_flat_ends_after_so_many_steps(monkeypatch):
     monkeypatch.setattr(reference, "_MOST_LATE", 40)
     tilt = 2.4e-3
     spin = (-0.1, 100.0 * math.sin(tilt), 15.0)
-    ended = free_rocking_spatial(
-        SpatialBody.cylinder(0.5, 2.0), tilt, -0.5 * math.pi, gravity=9.81, duration=0.02, angular_velocity=spin
+    ended = rk.free_rocking(
+        SpatialBody.cylinder(0.5, 2.0),
+        restitution="housner",
+        start=SpatialStart(tilt, -0.5 * math.pi, angular_velocity=spin),
+        gravity=9.81,
+        duration=0.02,
     )
     assert ended.still_rocking
     assert ended.end < 0.2
@@ -143,9 +148,9 @@ def test_batches_say_what_is_still_rocking():
     tower = SpatialBody.box(1.0, 1.3, 4.0)
     starts = [SpatialStart(0.05, 0.4), SpatialStart(), SpatialStart(0.2, 0.0, angular_velocity=(0.0, 1.5, 0.0))]
     for name in ("fast", "reference"):
-        short = simulate_spatial_batch(tower, None, "ked-3d", start=starts, duration=1.0, engine=name)
+        short = batch_in_space(tower, None, "ked-3d", start=starts, duration=1.0, engine=name)
         assert short.still_rocking.ravel().tolist() == [True, False, False]
         assert short.overturned.ravel().tolist() == [False, False, True]
-    long = simulate_spatial_batch(tower, None, "ked-3d", start=starts[0])
+    long = batch_in_space(tower, None, "ked-3d", start=starts[0])
     assert not long.still_rocking.item()
     assert "did not yet rest" in long.exported().columns["still_rocking"].attributes["long_name"]

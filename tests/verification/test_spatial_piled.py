@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody, reference, simulate_spatial
-from rocking.dynamics.spatial_batch import engine, simulate_spatial_batch
+from rocking.dynamics.spatial import SpatialBody, reference
+from rocking.dynamics.spatial_batch import engine
+from rocking.dynamics.spatial_batch.many import batch_in_space
 from rocking.outcome import Outcome, Status
 
 STEP, LENGTH = 0.02, 8.0
@@ -53,7 +54,7 @@ def _case(seed):
 
 def _reference(seed, law):
     body, motion, scale = _case(seed)
-    return simulate_spatial(body, *motion, law, scale=scale, duration=LENGTH)
+    return rk.simulate(body, motion, law, scale=scale, duration=LENGTH)
 
 
 def test_a_corner_whose_neighbour_chatters_comes_to_stick(monkeypatch):
@@ -81,7 +82,7 @@ def test_a_body_on_its_way_down_is_not_at_rest(monkeypatch):
 def test_no_history_on_polygons_ends_in_piled_impacts():
     """Boxes and polygons under 200 records at 3 scales by 3 laws: no pile, under 1 % that take off, peaks below 90."""
     found = [
-        simulate_spatial_batch(body, motion, LAWS, scales=scale * np.array([0.5, 1.0, 1.6]))
+        batch_in_space(body, motion, LAWS, scales=scale * np.array([0.5, 1.0, 1.6]))
         for body, motion, scale in map(_case, range(200))
     ]
     status, outcome = (np.concatenate([one[name].ravel() for one in found]) for name in ("status", "outcome"))

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.dynamics import SpatialStart
 from rocking.dynamics.spatial import (
     ContactMode,
     SpatialBody,
-    free_rocking_spatial,
-    simulate_spatial,
 )
 from rocking.dynamics.spatial.impact import law_of
 from rocking.dynamics.spatial.selection import SpatialState, of_impact
@@ -38,14 +37,16 @@ def test_free_rocking_in_a_plane_is_the_plane_solution(axis):
     block = rk.Block(width=half, height=4.0)
     angle = 0.5 * block.slenderness_angle
     plane = rk.free_rocking(block, angle, "housner", engine="reference", duration=8.0)
-    space = free_rocking_spatial(TOWER, angle, 0.5 * math.pi * axis, duration=8.0)
+    space = rk.free_rocking(TOWER, restitution="housner", start=SpatialStart(angle, 0.5 * math.pi * axis), duration=8.0)
     time = np.linspace(0.0, 8.0, 201)
     theta = plane.at(time)
     rotation = space.at(time).rotation
     np.testing.assert_allclose(np.arctan2(rotation[:, axis, 2], rotation[:, 2, 2]), theta, atol=1e-10)
     np.testing.assert_allclose(space.impacts["time"][:8], plane.impacts["time"][:8], atol=1e-10)
     # negative control: the other direction is another body
-    other = free_rocking_spatial(TOWER, angle, 0.5 * math.pi * (1 - axis), duration=8.0)
+    other = rk.free_rocking(
+        TOWER, restitution="housner", start=SpatialStart(angle, 0.5 * math.pi * (1 - axis)), duration=8.0
+    )
     assert abs(other.impacts["time"][0] - plane.impacts["time"][0]) > 1e-2
 
 
@@ -55,7 +56,7 @@ def test_a_sine_pulse_in_a_plane_is_the_plane_solution(axis, amplitude):
     """Uplift, impacts, peak and outcome under a sine pulse are those of the plane engine to 1e-10."""
     block, pulse = rk.Block(width=(1.0, 1.3)[axis], height=4.0), rk.pulses.sine(amplitude=amplitude, period=1.0)
     plane = rk.simulate(block, pulse, "housner", engine="reference", duration=5.0, rest_speed=1e-6)
-    space = simulate_spatial(TOWER, **{"xy"[axis]: pulse}, duration=5.0)
+    space = rk.simulate(TOWER, {"xy"[axis]: pulse}, "housner", duration=5.0)
     assert space.outcome is plane.outcome
     time = plane.time[(plane.time < 5.0) & ~(plane.time > plane.overturning_time) & (plane.time < space.time[-1])]
     rotation = space.at(time).rotation
@@ -77,7 +78,7 @@ def test_a_record_with_a_vertical_part_is_the_plane_solution():
     plane = rk.simulate(
         rk.Block(width=1.0, height=4.0), rk.GroundMotion(along, 0.02, up), "housner", engine="reference"
     )
-    space = simulate_spatial(TOWER, x=rk.GroundMotion(along, 0.02), vertical=rk.GroundMotion(up, 0.02))
+    space = rk.simulate(TOWER, {"x": rk.GroundMotion(along, 0.02), "z": rk.GroundMotion(up, 0.02)}, "housner")
     count = 12
     np.testing.assert_allclose(space.impacts["time"][:count], plane.impacts["time"][:count], atol=1e-9)
     until = plane.impacts["time"][count]
@@ -93,7 +94,9 @@ def test_a_record_with_a_vertical_part_is_the_plane_solution():
 )
 def test_the_period_about_an_edge_is_the_elliptic_integral(share, period):
     """A quarter of the exact period to the first impact, REF 3.2, to 1e-10."""
-    found = free_rocking_spatial(TOWER, share * ALPHA, gravity=G, duration=0.3 * period)
+    found = rk.free_rocking(
+        TOWER, restitution="housner", start=SpatialStart(share * ALPHA), gravity=G, duration=0.3 * period
+    )
     assert 4.0 * found.impacts["time"][0] == pytest.approx(period, abs=1e-9 if share > 0.99 else 1e-10)
     assert found.intervals[0][2] is ContactMode.EDGE
 

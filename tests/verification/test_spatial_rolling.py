@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+import rocking as rk
+from rocking.dynamics import SpatialStart
 from rocking.dynamics.spatial import (
     SpatialBody,
     attitude,
-    free_rocking_spatial,
 )
 from rocking.dynamics.spatial.flow import value
 from rocking.dynamics.spatial.rolling import RollingFlow
@@ -35,8 +36,13 @@ def test_a_cylinder_keeps_its_steady_wobbles(tilt, first, second):
     for turning, spin in ((first, 4.0 * first * s), (second, second * (c - 1.0))):
         q = attitude.turn([1.0, 0.0, 0.0], tilt)
         omega = attitude.matrix(q) @ np.array([0.0, turning * s, spin])
-        run = free_rocking_spatial(
-            CYLINDER, tilt, -0.5 * math.pi, angular_velocity=omega, gravity=G, duration=5.0, rest_speed=1e-6
+        run = rk.free_rocking(
+            CYLINDER,
+            restitution="housner",
+            start=SpatialStart(tilt, -0.5 * math.pi, angular_velocity=omega),
+            gravity=G,
+            duration=5.0,
+            rest_speed=1e-6,
         )
         np.testing.assert_allclose(run.tilt, tilt, atol=1e-9)
         assert run.impacts.size == 0
@@ -48,7 +54,13 @@ def test_a_cylinder_keeps_its_steady_wobbles(tilt, first, second):
             np.testing.assert_allclose(np.hypot(*(place - middle).T), 0.25, atol=1e-8)
     # negative control: a rate one per mille off does not stay
     omega = attitude.matrix(q) @ np.array([0.0, 1.001 * second * s, second * (c - 1.0)])
-    run = free_rocking_spatial(CYLINDER, tilt, -0.5 * math.pi, angular_velocity=omega, gravity=G, duration=5.0)
+    run = rk.free_rocking(
+        CYLINDER,
+        restitution="housner",
+        start=SpatialStart(tilt, -0.5 * math.pi, angular_velocity=omega),
+        gravity=G,
+        duration=5.0,
+    )
     assert np.ptp(run.tilt) > 1e-5
 
 
@@ -64,7 +76,13 @@ def test_a_near_flat_passage_sweeps_the_reference_angle(ratio, sweep):
     body = SpatialBody.cylinder(2.0, 2.0 * ratio)
     inertia = body.inertia[0, 0] + body.mass * (1.0 + ratio**2)
     quarter = math.sqrt(2.0 * 5e-4 * inertia / (body.mass * G))  # theta'' = -m g b / I near the ground
-    run = free_rocking_spatial(body, 5e-4, angular_velocity=(2e-6, 0.0, 0.0), gravity=G, duration=2.2 * quarter)
+    run = rk.free_rocking(
+        body,
+        restitution="housner",
+        start=SpatialStart(5e-4, angular_velocity=(2e-6, 0.0, 0.0)),
+        gravity=G,
+        duration=2.2 * quarter,
+    )
     # the contact turns by less than a radian a step, so that the ends of the steps follow it round
     steps = [piece.start for piece in run.trajectory.pieces if piece.start < run.end]
     fine = run.at([*steps, run.end]).quaternion
@@ -96,7 +114,13 @@ def test_rolling_agrees_with_the_equations_in_euler_angles():
     tilt, turning, spin = 0.12, 2.0, 0.3
     q = attitude.turn([1.0, 0.0, 0.0], tilt)
     omega = attitude.matrix(q) @ np.array([0.1, turning * math.sin(tilt), spin])
-    run = free_rocking_spatial(CYLINDER, tilt, -0.5 * math.pi, angular_velocity=omega, gravity=G, duration=3.0)
+    run = rk.free_rocking(
+        CYLINDER,
+        restitution="housner",
+        start=SpatialStart(tilt, -0.5 * math.pi, angular_velocity=omega),
+        gravity=G,
+        duration=3.0,
+    )
     exact = solve_ivp(
         rates, (0.0, 3.0), [tilt, 0.1, turning, spin], method="DOP853", rtol=1e-12, atol=1e-13, t_eval=run.time
     )

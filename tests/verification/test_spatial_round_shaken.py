@@ -11,13 +11,15 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody, attitude, events, free_rocking_spatial, release, simulate_spatial
+from rocking import conventions
+from rocking.dynamics.spatial import SpatialBody, SpatialStart, attitude, events, release
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.events import Step
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.rolling import RollingFlow
-from rocking.dynamics.spatial_batch import engine, simulate_spatial_batch
+from rocking.dynamics.spatial_batch import engine
 from rocking.dynamics.spatial_batch.course import course_of
+from rocking.dynamics.spatial_batch.many import batch_in_space
 from rocking.outcome import Outcome, Status
 
 STEP, LENGTH, G = 0.02, 8.0, 9.81
@@ -60,7 +62,7 @@ def _case(seed):
 
 def _reference(seed, **options):
     body, motion, scale = _case(seed)
-    return simulate_spatial(body, *motion, scale=scale, duration=LENGTH, **options)
+    return rk.simulate(body, motion, "housner", scale=scale, duration=LENGTH, **options)
 
 
 @built
@@ -71,7 +73,7 @@ def test_round_bodies_end_with_a_result(components, count):
     for seed in range(count):
         body, (x, y, z), scale = _case(seed)
         motion = {"three": (x, y, z), "one": (x,), "along and up": (x, None, z)}[components]
-        batch = simulate_spatial_batch(body, motion, LAWS, scales=0.5 * scale if y not in motion else scale)
+        batch = batch_in_space(body, motion, LAWS, scales=0.5 * scale if y not in motion else scale)
         outcomes.append(batch.outcome.ravel())
     found = np.array(outcomes)
     assert found.shape == (count, 4)
@@ -112,8 +114,8 @@ def test_a_history_lifted_from_rest_has_a_result():
 def test_the_lift_from_rest_is_no_passage():
     """A body that has been lifted, and has not come back, never rolled through lying nearly flat."""
     shaking = rk.GroundMotion(np.full(20, 6.0), 0.01)
-    column = rk.Solid([rk.Part(rk.solid.cylinder(0.25, 2.0), 2400.0)])
-    lifted = rk.simulate_spatial(column, shaking, restitution=0.5, duration=0.2)
+    column = rk.Solid([rk.bodies.Part(rk.bodies.solid.cylinder(0.25, 2.0), 2400.0)])
+    lifted = rk.simulate(column, shaking, 0.5, duration=0.2)
     assert lifted.peak_tilt > 0.01
     assert lifted.near_flat_passages == 0
 
@@ -170,7 +172,13 @@ def test_a_rim_is_held_down_up_to_a_hundredth_of_the_slenderness_angle(tilt, rat
     assert _normal_by_angles(tilt, rate, turning, spin) < -5.0 * G
     rotation = attitude.matrix(attitude.turn([1.0, 0.0, 0.0], tilt))
     velocity = rotation @ np.array([rate, turning * math.sin(tilt), spin])
-    run = free_rocking_spatial(CYLINDER, tilt, -0.5 * math.pi, angular_velocity=velocity, gravity=G, duration=0.02)
+    run = rk.free_rocking(
+        CYLINDER,
+        restitution="housner",
+        start=SpatialStart(tilt, -0.5 * math.pi, angular_velocity=velocity),
+        gravity=G,
+        duration=0.02,
+    )
     assert run.status is Status.LOST_CONTACT
     last = run.trajectory.pieces[-1]
     assert (last.end > 1e-3) is (run.trajectory.held > 1e-3) is held
@@ -196,18 +204,18 @@ def test_energy_of_the_batch_stays_after_the_record():
     arm = body.centre - np.column_stack([low, np.zeros(len(low))])
     speed = np.cross(w, arm)
     energy = 0.5 * np.einsum("na,ab,nb->n", w, body.inertia, w) + 0.5 * body.mass * np.square(speed).sum(axis=1)
-    energy += body.mass * rk.conventions.g * ((up * arm).sum(axis=1) - body.centre[2])
+    energy += body.mass * conventions.g * ((up * arm).sum(axis=1) - body.centre[2])
     assert len(free) > 100
     assert np.ptp(energy) < 1e-9 * energy.max()
 
 
 def test_rolling_with_hardly_any_energy_comes_to_rest():
     """Below the energy of rest it lies down and loses just what it had; above it rolls on: rolling alone loses none."""
-    start = {"tilt": 1e-6, "angular_velocity": (1e-3, 0.0, 0.0), "duration": 0.02}
-    calm = free_rocking_spatial(CYLINDER, **start, rest_speed=1e-2)
+    how = {"start": SpatialStart(1e-6, angular_velocity=(1e-3, 0.0, 0.0)), "duration": 0.02}
+    calm = rk.free_rocking(CYLINDER, **how, rest_speed=1e-2)
     assert calm.contact[-1] == 0
     assert calm.energy.lost[-1] == pytest.approx(calm.energy.kinetic[0] + calm.energy.potential[0], rel=1e-9)
-    rolls = free_rocking_spatial(CYLINDER, **start)  # negative control
+    rolls = rk.free_rocking(CYLINDER, **how)  # negative control
     assert rolls.contact[-1] == 3
     assert rolls.impacts.size == 0
 
@@ -218,7 +226,7 @@ def test_both_engines_find_the_same_outcome():
     compared = 0
     for seed in range(30, 90 if CAMPAIGN else 36):
         body, motion, scale = _case(seed)
-        slow, fast = _reference(seed), simulate_spatial_batch(body, motion, scales=scale)
+        slow, fast = _reference(seed), batch_in_space(body, motion, scales=scale)
         assert fast.outcome.item() == slow.outcome.code, seed
         if slow.outcome is Outcome.ROCKED and not slow.near_flat_passages:
             assert fast.peak_tilt.item() == pytest.approx(slow.peak_tilt, rel=1e-6)

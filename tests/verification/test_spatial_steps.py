@@ -8,7 +8,7 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder
-from rocking.dynamics.spatial import free_rocking_spatial
+from rocking.dynamics import SpatialStart
 from rocking.restitution.spatial import (
     LeaningImpact,
     SpatialFlag,
@@ -55,11 +55,16 @@ def test_the_impulse_of_a_block_on_narrow_feet(apart, k):
 @pytest.mark.parametrize(("apart", "narrow"), [(0.8, False), (0.3, True)])
 def test_a_history_says_where_the_base_is_too_narrow(apart, narrow):
     """All of the impacts over feet .3 apart have k above 1 and are counted, none of those over feet .8 apart."""
-    found = free_rocking_spatial(on_feet(apart), 0.5 * math.atan(0.5 * apart), 0.0, "ked-3d", duration=2.0)
+    found = rk.free_rocking(
+        on_feet(apart), restitution="ked-3d", start=SpatialStart(0.5 * math.atan(0.5 * apart), 0.0), duration=2.0
+    )
     assert found.impacts.size > 1
     assert found.cut_impacts == (found.impacts.size if narrow else 0)
     assert ("so narrow" in found.summary) == narrow
-    assert free_rocking_spatial(on_feet(0.3), 0.07, 0.0, "housner-3d", duration=2.0).cut_impacts == 0
+    assert (
+        rk.free_rocking(on_feet(0.3), restitution="housner-3d", start=SpatialStart(0.07, 0.0), duration=2.0).cut_impacts
+        == 0
+    )
 
 
 @pytest.mark.parametrize(("diameter", "narrow"), [(1.2, False), (0.3, True)])
@@ -67,7 +72,7 @@ def test_a_round_foot_may_be_too_narrow_too(diameter, narrow):
     """A slab on a round leg that rocks in its plane of symmetry lies down from either side of the rim."""
     solid = Solid([Part(cylinder(diameter, 0.4)), Part(box(1.2, 1.0, 0.3)).moved(0.02, 0.0, 0.4)])
     assert all((impulse_position(solid).at(np.array([x, 0.0, 0.0])) > 1.0) == narrow for x in (-1.0, 1.0))
-    found = free_rocking_spatial(solid, 0.2 * diameter, 0.0, "ked-3d", duration=2.0)
+    found = rk.free_rocking(solid, restitution="ked-3d", start=SpatialStart(0.2 * diameter, 0.0), duration=2.0)
     assert found.impacts.size > 1
     assert found.cut_impacts == (found.impacts.size if narrow else 0)
 
@@ -194,7 +199,7 @@ def test_a_given_coefficient_is_a_ratio_of_velocities_as_in_the_plane(r):
     Negative control: with r^2 as the ratio of energies the second impact comes more than 10 ms earlier or later.
     """
     plane = rk.free_rocking(BENT, 0.1, r, engine="reference", duration=3.0)
-    space = free_rocking_spatial(Solid.from_section(BENT), 0.1, 0.0, r, duration=3.0)
+    space = rk.free_rocking(Solid.from_section(BENT), restitution=r, start=SpatialStart(0.1, 0.0), duration=3.0)
     np.testing.assert_allclose(space.impacts["time"][:6], plane.impacts["time"][:6], atol=1e-9)
     left, right = (BENT.side(foot).moment_of_inertia for foot in ("left", "right"))
     assert abs(math.sqrt(left / right) - 1.0) > 0.02

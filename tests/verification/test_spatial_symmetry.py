@@ -13,12 +13,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rocking as rk
+from rocking.dynamics import SpatialStart
 from rocking.dynamics.spatial import (
     ContactMode,
     SpatialBody,
     attitude,
-    free_rocking_spatial,
-    simulate_spatial,
 )
 
 TIMES = 10 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1
@@ -40,9 +39,9 @@ def test_turning_body_and_motion_turns_the_response(angle, seed):
     x, y, z = _records(seed)
     turned = math.cos(angle) * x - math.sin(angle) * y, math.sin(angle) * x + math.cos(angle) * y
     first, second = (
-        simulate_spatial(
-            TOWER, *(rk.GroundMotion(a, 0.02) for a in (*pair, 0.3 * z)), yaw=yaw, tilt=0.02,
-            azimuth=0.4 + yaw, duration=3.0,
+        rk.simulate(
+            TOWER, tuple(rk.GroundMotion(a, 0.02) for a in (*pair, 0.3 * z)), "housner",
+            start=SpatialStart(0.02, 0.4 + yaw, yaw), duration=3.0,
         )
         for pair, yaw in (((x, y), 0.0), (turned, angle))
     )  # fmt: skip
@@ -58,8 +57,15 @@ def test_turning_body_and_motion_turns_the_response(angle, seed):
 def test_a_mirrored_start_gives_the_mirrored_response(azimuth, spin):
     """Mirrored in the x-z plane: the same tilt, the opposite direction, to 1e-9 until the fourth impact."""
     assume(abs(math.sin(2.0 * azimuth)) > 0.05)  # on an edge with a spin it is left open which end stays
-    first = free_rocking_spatial(TOWER, 0.1, azimuth, angular_velocity=spin, duration=2.0)
-    other = free_rocking_spatial(TOWER, 0.1, -azimuth, angular_velocity=(-spin[0], spin[1], -spin[2]), duration=2.0)
+    first = rk.free_rocking(
+        TOWER, restitution="housner", start=SpatialStart(0.1, azimuth, angular_velocity=spin), duration=2.0
+    )
+    other = rk.free_rocking(
+        TOWER,
+        restitution="housner",
+        start=SpatialStart(0.1, -azimuth, angular_velocity=(-spin[0], spin[1], -spin[2])),
+        duration=2.0,
+    )
     until = first.impacts["time"][4] if first.impacts.size > 4 else 2.0
     keep = min(int((first.time < until).sum()), len(other.time))
     np.testing.assert_allclose(other.centre[:keep], first.centre[:keep] * [1.0, -1.0, 1.0], atol=1e-9)
@@ -68,7 +74,7 @@ def test_a_mirrored_start_gives_the_mirrored_response(azimuth, spin):
 def test_equal_components_move_a_square_body_along_its_diagonal():
     """The same pulse along x and y: the centre stays on the diagonal to 1e-11, over vertices only."""
     pulse = rk.pulses.sine(amplitude=3.5, period=0.8)
-    run = simulate_spatial(SQUARE, pulse, pulse)
+    run = rk.simulate(SQUARE, {"x": pulse, "y": pulse}, "housner")
     assert run.impacts.size > 10
     np.testing.assert_allclose(run.centre[:, 0], run.centre[:, 1], atol=1e-11)
     assert {contact for _, _, contact, _ in run.intervals} == {ContactMode.REST, ContactMode.VERTEX}
@@ -80,7 +86,12 @@ def test_similar_bodies_rock_alike(size, azimuth):
     """Of another size, with times as its root: the same contacts in the same order until both rest, impacts at
     corresponding times to 1e-9."""
     first, other = (
-        free_rocking_spatial(SpatialBody.box(0.5 * s, 0.6 * s, 2.0 * s), 0.1, azimuth, 0.6, rest_speed=1e-3)
+        rk.free_rocking(
+            SpatialBody.box(0.5 * s, 0.6 * s, 2.0 * s),
+            restitution=0.6,
+            start=SpatialStart(0.1, azimuth),
+            rest_speed=1e-3,
+        )
         for s in (1.0, size)
     )
     assert [interval[2:] for interval in other.intervals] == [interval[2:] for interval in first.intervals]

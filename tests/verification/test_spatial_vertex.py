@@ -12,10 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import rocking as rk
+from rocking.dynamics import SpatialStart
 from rocking.dynamics.spatial import (
     SpatialBody,
     attitude,
-    free_rocking_spatial,
 )
 from rocking.dynamics.spatial.flow import PivotFlow, value
 from rocking.dynamics.spatial.impact import law_of, projected
@@ -102,7 +103,7 @@ def test_the_order_of_the_steps_is_the_declared_one(order):
 def test_the_diagonal_impact_of_a_prism_is_the_reference():
     """Corner to opposite corner 59/71 at every impact, symmetric for ever; horizontal momentum 64/71."""
     for law, ratio in (("housner-3d", 59.0 / 71.0), ("horizontal-momentum-3d", 64.0 / 71.0)):
-        run = free_rocking_spatial(SQUARE, 0.12, 0.25 * math.pi, law, duration=2.5)
+        run = rk.free_rocking(SQUARE, restitution=law, start=SpatialStart(0.12, 0.25 * math.pi), duration=2.5)
         assert set(run.impacts["vertices"]) == {"0", "2"}
         left = run.impacts["energy_after"] / run.impacts["energy_before"]
         np.testing.assert_allclose(np.sqrt(left), ratio, rtol=1e-9)

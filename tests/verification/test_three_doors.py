@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking import conventions
 from rocking.motions.formats import write_motion
 
 with warnings.catch_warnings():  # it says that another client than httpx is coming
@@ -177,7 +178,7 @@ def in_python(case, record):
     found = []
     for choice in RESTITUTIONS[restitution][1]:
         if free is not None:
-            side = made.side("right" if free > 0.0 else "left", settings.get("gravity", rk.conventions.g))
+            side = made.side("right" if free > 0.0 else "left", settings.get("gravity", conventions.g))
             found.append(rk.free_rocking(made, free * side.slenderness_angle, choice, **settings))
             continue
         found.append(

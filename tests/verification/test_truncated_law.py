@@ -287,7 +287,7 @@ def test_each_impact_draws_from_its_side(name: str) -> None:
     """The n-th impact lands on a side with the quantile of that side at its share of the n-th number, to the bit."""
     law = RandomRestitution(TWO, 9)
     right, left = RockingSide(0.2, 3.0, 1.0, 0.95, share=0.4), RockingSide(0.25, 3.3, 1.0, 0.9, share=0.7)
-    rocker, options = Rocker(right, left, law, ""), Settings(rest_speed=1e-7, most_impacts=10_000)
+    rocker, options = Rocker(right, left, law, ""), Settings(rest_speed=1e-7, most_events=10_000)
     found = run(rocker, Segments.still(0.05, 400), options, engine=name, key=4, rotation=0.1)
     impacts = [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
     assert len(impacts) > 10

@@ -1,4 +1,6 @@
-"""What rocks: blocks, sections of any shape, mass points."""
+"""What rocks: blocks, sections of any shape, mass points, solids."""
+
+from typing import TYPE_CHECKING
 
 from rocking.bodies import shapes
 from rocking.bodies.block import Block
@@ -7,5 +9,15 @@ from rocking.bodies.mass_points import MassPoints
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
 from rocking.bodies.side import Side
+from rocking.lazy import exports
 
-__all__ = ["Block", "Body", "MassPoints", "Region", "Section", "Side", "shapes"]
+if TYPE_CHECKING:
+    from rocking.bodies import solid
+    from rocking.bodies.solid import Part, Solid
+
+__all__ = ["Block", "Body", "MassPoints", "Part", "Region", "Section", "Side", "Solid", "shapes", "solid"]
+
+__getattr__, __dir__ = exports(
+    "rocking.bodies",
+    {"Part": "rocking.bodies.solid", "Solid": "rocking.bodies.solid", "solid": "rocking.bodies.solid"},
+)

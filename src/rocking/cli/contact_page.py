@@ -7,9 +7,9 @@ from typing import Any
 from rocking.cli.options import in_unit
 from rocking.cli.simulate_question import Question, restitution_from
 from rocking.conventions import LENGTH_UNITS, Assumed, given_or_assumed
-from rocking.dynamics.planar import PlanarResponse, Regime, Start, simulate_with_contact
+from rocking.dynamics import PlanarResponse, free_rocking, simulate
 from rocking.errors import RockingError
-from rocking.outcome import Outcome
+from rocking.outcome import Outcome, Regime
 from rocking.report.facts.response import finite, moved_facts, still_rocking_facts
 
 _FIRST = 12
@@ -30,15 +30,12 @@ def contact_response(question: Question, restitution: str, bounce: float) -> Pla
 
     bounce: Newton's coefficient of normal velocities [-].
     """
-    response = simulate_with_contact(
-        question.body,
-        question.motion,
-        question.friction,
-        bounce=bounce,
-        restitution=None if restitution == COMPLEMENTARITY else restitution_from(restitution),
-        scale=question.scale,
-        gravity=question.settings.gravity,
-        start=Start(rotation=question.rotation),
+    law = None if restitution == COMPLEMENTARITY else restitution_from(restitution)
+    contact = {"friction": question.friction, "bounce": bounce, "gravity": question.settings.gravity}
+    response: PlanarResponse = (
+        free_rocking(question.body, question.rotation, law, **contact)
+        if question.motion is None
+        else simulate(question.body, question.motion, law, scale=question.scale, **contact)
     )
     if response.outcome is Outcome.FAILED:
         raise RockingError(f"there is no response: {response.status.value}")

@@ -14,23 +14,19 @@ from rocking.cli.inputs import motion_from, refuse, solid_from
 from rocking.cli.output import check_files
 from rocking.cli.simulate_question import ResponseComparison, SimulateOptions
 from rocking.conventions import g
+from rocking.dynamics import simulate
 from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.planar import PlanarResponse
-from rocking.dynamics.response import Response
-from rocking.dynamics.spatial import SpatialResponse, simulate_spatial
+from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.spatial import SpatialResponse
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
 from rocking.report.facts.response import other_facts, response_facts
-
-DEFAULT = "housner-3d"
-"""Restitution of a body in space if none is asked for: the plastic impact without slip."""
 
 _PLANE = ("width", "height", "depth", "angle", "semi_diagonal", "free", "friction", "contact", "bounce", "linear")
 _RECORD = ("format", "units", "time_step", "component", "vertical", "vertical_file")
 _MESH = ("unit", "density", "up", "fill_holes", "base_tolerance")
-Component = GroundMotion | Pulse | None
 _OF_FILES = ("format", "units", "time_step")
 
 
@@ -166,8 +162,7 @@ def answer_of_solid(asked: SimulateOptions, files: ResponseFiles, *, as_json: bo
     names = values["component_y"], values["component_z"]
     moved = components((_along_x(values), values["motion_y"], values["motion_z"]), asked.some(_RECORD), names)
     file = solid_from(Path(values["body"]), **asked.some(_MESH))
-    word = values["restitution"] if "restitution" in asked.typed else DEFAULT
-    response = _computed_solid(file.solid, moved, word, values["scale"], values["gravity"])
+    response = _computed_solid(file.solid, moved, values["restitution"], values["scale"], values["gravity"])
     written = files.written(response, lambda: _drawn_solid(response))
     if as_json:
         print(spatial_page.as_json(response, file))
@@ -186,10 +181,10 @@ def _along_x(values: dict[str, Any]) -> str | None:
 
 
 def _computed_solid(
-    solid: Solid, moved: tuple[Any, Any, Any], restitution: str, scale: float, gravity: float | None
+    solid: Solid, motion: dict[str, Motion], restitution: str, scale: float, gravity: float | None
 ) -> SpatialResponse:
     pull = g if gravity is None else checks.positive("--gravity", gravity, "m/s2")
-    response = simulate_spatial(solid, *moved, restitution=_law(restitution), scale=scale, gravity=pull)
+    response = simulate(solid, motion, _law(restitution), scale=scale, gravity=pull)
     if response.outcome is Outcome.FAILED:
         raise RockingError(f"there is no response: {response.status.value}")
     return response
@@ -199,7 +194,7 @@ def _law(word: str) -> str | float:
     try:
         return float(word)
     except ValueError:
-        return word if word.lower().endswith("-3d") else f"{word}-3d"
+        return word
 
 
 def _drawn_solid(response: SpatialResponse) -> Any:
@@ -210,7 +205,7 @@ def _drawn_solid(response: SpatialResponse) -> Any:
 
 def components(
     words: tuple[str | None, str | None, str | None], told: dict[str, Any], names: tuple[str | None, str | None]
-) -> tuple[Component, Component, Component]:
+) -> dict[str, Motion]:
     """Return the motion along x, y and z."""
     if all(word is None for word in words):
         raise InvalidValueError(
@@ -222,18 +217,13 @@ def components(
     along_x = None if x is None else motion_from(x, **(told if _is_file(x) or not shared else _but_shared(told)))
     along_y = _other(y, shared, names[0], "y")
     along_z = _other(z, shared, names[1], "z")
-    if isinstance(along_x, GroundMotion) and along_x.vertical is not None:
-        if along_z is not None:
-            raise InvalidValueError(
-                "the vertical motion is given twice: by --vertical or --vertical-file and --motion-z"
-            )
-        up = along_x.vertical
-        along_z = along_x.changed("its vertical part", acceleration=up, vertical=None)
-        along_x = along_x.changed("its horizontal part", vertical=None)
-    return along_x, along_y, along_z
+    if isinstance(along_x, GroundMotion) and along_x.vertical is not None and along_z is not None:
+        raise InvalidValueError("the vertical motion is given twice: by --vertical or --vertical-file and --motion-z")
+    moved = {"x": along_x, "y": along_y, "z": along_z}
+    return {axis: motion for axis, motion in moved.items() if motion is not None}
 
 
-def _other(word: str | None, shared: dict[str, Any], name: str | None, axis: str) -> Component:
+def _other(word: str | None, shared: dict[str, Any], name: str | None, axis: str) -> Motion | None:
     option = f"--component-{axis}"
     if word is None:
         if name is not None:

@@ -15,7 +15,7 @@ from rocking.report.facts.verdict import ModelAgreement
 _FIRST = 10
 """Impacts that are printed."""
 
-_IN_PYTHON = "simulate_with_contact(body, motion, friction=...)"
+_IN_PYTHON = "simulate(body, motion, friction=...)"
 
 
 def show(answer: ResponseComparison, length: str = "m", acceleration: str = "m/s2") -> None:

@@ -16,7 +16,7 @@ _ROUNDING = 1e-9
 
 
 LEAVES = "the body would leave the ground, which pure rocking cannot do"
-_FOLLOWS = "simulate_with_contact(body, motion, friction=...) follows it"
+_FOLLOWS = "simulate(body, motion, friction=...) follows it"
 
 
 @dataclass(frozen=True)

@@ -2,14 +2,13 @@
 
 import math
 import os
-import warnings
 from functools import cache
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from rocking import checks
+from rocking import checks, errors
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.settings import Settings
@@ -64,7 +63,7 @@ def chosen(asked: str, law: ImpactLaw | None = None) -> str:
     if asked == "fast":
         module()
     if asked == "auto" and not available():
-        warnings.warn(f"{_NOT_BUILT}; the reference engine runs instead", SlowEngineWarning, stacklevel=4)
+        errors.warn(f"{_NOT_BUILT}; the reference engine runs instead", SlowEngineWarning)
         return "reference"
     return "fast" if asked == "auto" else asked
 
@@ -180,5 +179,5 @@ def common(settings: Settings, law: ImpactLaw) -> Arrays:
     return {
         "kind": law.kind, "at": law.at, "value": law.factors.ravel(), "seed": law.seed,
         "gravity": settings.gravity, "longest_step": settings.longest_step, "rest": settings.rest_speed,
-        "most_impacts": settings.most_impacts, "linear": settings.linear, "isa": instruction_set(),
+        "most_impacts": settings.most_events, "linear": settings.linear, "isa": instruction_set(),
     }  # fmt: skip

@@ -1,6 +1,6 @@
 """`simulate_many`: every body under every motion at every scale with every restitution, as a labelled dataset."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,12 +9,12 @@ import numpy as np
 from rocking import checks, conventions, plausibility, quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.histories import settings_of
+from rocking.dynamics.components import components_of, in_plane, in_space
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.lost_contact import contact_words, flags
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
-from rocking.dynamics.settings import SHORTEST_STEP
+from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -38,16 +38,23 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     threads: int | None = None,
     twin: bool = False,
     progress: Callable[[int], None] | None = None,
-    **options: Any,
+    start: Any = None,
+    duration: float | None = None,
+    linear: bool = False,
+    rest_speed: float | None = None,
+    most_events: int = 100_000,
+    longest_step: float | None = None,
+    order: int | None = None,
+    tolerance: float | None = None,
 ) -> "xr.Dataset":
     """Return the outcome of every combination of bodies, motions, scales and restitutions.
 
     Parameters
     ----------
-    bodies : Body or sequence of Body
-        The bodies.
-    motions : GroundMotion or Pulse, or a sequence of them
-        All records or all pulses.
+    bodies : Body, Solid or SpatialBody, or a sequence of them
+        All plane bodies, or all in space; of the latter one that cannot be gives its histories a status.
+    motions : GroundMotion, Pulse or mapping as for `simulate`, or a sequence of them
+        Of plane bodies all records or all pulses; in space None for ground at rest.
     restitution : as for `simulate`, or a list of such
         Laws that change from impact to impact cannot be mixed with others.
     scale : float or array_like
@@ -63,15 +70,21 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
         verdict does (`twin_change`, `twin_flips`): what the integration leaves open. It takes three times as long.
     progress : callable, optional
         Called with the number of histories done since the last call.
-    **options
-        Fields of `Settings`.
+    start : SpatialStart or sequence of them, optional
+        How bodies in space lean at the start; upright at rest if not given. Plane bodies start at rest.
+    duration : float, optional
+        How long to follow bodies in space [s]; if not given, to the end of the motion, on ground at rest 300 / p. After
+        that a history goes on until its energy decides whether it overturns.
+    linear, rest_speed, most_events, longest_step, order, tolerance
+        How to integrate: see `Settings`.
 
     Returns
     -------
     xarray.Dataset
-        Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units. Every history
-        ends with its motion: energy then decides the outcome and the peak of the swings to come, whose impacts are
-        not counted. Its attributes say which engine ran.
+        Over ``body, motion, scale, restitution``: outcome, status, peak_rotation and more, with units; in space over
+        ``start`` too, with peak_tilt and the direction of overturning. Every history ends with its motion: energy then
+        decides the outcome and the peak of the swings to come, whose impacts are not counted. Its attributes say which
+        engine ran, and why bodies in space were refused.
 
     Raises
     ------
@@ -94,8 +107,21 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     from rocking.errors import extra
 
     xarray = extra("xarray", "simulate_many")
-    settings = settings_of(gravity, options)
-    body_list, motion_list = _several("bodies", bodies, (Body,)), _several("motions", motions, (GroundMotion, Pulse))
+    given: dict[str, Any] = {
+        "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
+        "longest_step": longest_step, "order": order, "tolerance": tolerance,
+    }  # fmt: skip
+    several: list[Any] = list(bodies) if isinstance(bodies, (list, tuple)) else [bodies]
+    if any(map(in_space, several)) and not any(isinstance(body, Body) for body in several):
+        if twin:
+            raise InvalidValueError("twin is nothing for bodies in space; ask with another tolerance")
+        settings = Settings(**given, mechanics="space, many")
+        return _in_space(several, motions, restitution, scale, start, settings, duration, engine, threads, progress)
+    if start is not None or duration is not None:
+        raise InvalidValueError("plane bodies start at rest and move as long as the ground: no start, no duration")
+    settings = Settings(**given)
+    body_list = _several("bodies", bodies, (Body,))
+    motion_list = [in_plane(motion) for motion in _several("motions", motions, (GroundMotion, Pulse, Mapping))]
     choices = restitution if isinstance(restitution, (list, tuple)) else [restitution]
     scales = _scales(scale)
     plausibility.warn(plausibility.of_scaled(motion_list, scales))
@@ -133,11 +159,23 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
             "engine": f"fast ({instruction_set()})" if work else "reference",
             "contact": contact_words(results["lost_contact"]),
             "seed": getattr(law, "seed", 0),
-            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in vars(settings).items()},
+            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in settings.stated.items()},
             **{f"work_{k}": v for k, v in work.items()},
         },
     )
     return made
+
+
+def _in_space(bodies: list[Any], motions: Any, restitution: Any, scale: Any, start: Any, *how: Any) -> "xr.Dataset":
+    from rocking.dynamics.spatial_batch.many import batch_in_space
+
+    several = list(motions) if isinstance(motions, Sequence) else [motions]
+    components = [None if motion is None else components_of(motion) for motion in several]
+    starts = list(start) if isinstance(start, Sequence) else start
+    choices = (
+        list(restitution) if isinstance(restitution, Sequence) and not isinstance(restitution, str) else restitution
+    )
+    return batch_in_space(bodies, components, choices, scale, starts, *how).to_xarray()
 
 
 def _twin(results: dict[str, Any], again: dict[str, Any]) -> dict[str, FloatArray]:

@@ -157,7 +157,7 @@ class Reference:
         self._note(EventKind.IMPACT, time, -old * speed, -old * after, r)
         self.u, self.rate = self._alpha, -after
         self._move(tau)
-        if self.impacts >= self.settings.most_impacts:
+        if self.impacts >= self.settings.most_events:
             return _Ended(Outcome.FAILED, Status.TOO_MANY_EVENTS)
         if self.stretch >= self.count:
             return self._conclude()

@@ -156,7 +156,7 @@ class Response(Exportable):
         return None if self.outcome is Outcome.FAILED else self.least_force < 0.0
 
     def with_contact(self, friction: float | None = None) -> "PlanarResponse":
-        """Return what the body does if it may slide, hop and fly: the same question to `simulate_with_contact`.
+        """Return what the body does if it may slide, hop and fly: the same question to `simulate` with friction.
 
         Parameters
         ----------
@@ -174,7 +174,8 @@ class Response(Exportable):
         InvalidValueError
             If the coefficient of restitution changes from impact to impact.
         """
-        from rocking.dynamics.planar import Start, simulate_with_contact
+        from rocking.dynamics.planar.histories import response_with_contact
+        from rocking.dynamics.planar.start import Start
 
         rocker, run = self.rocker, self.trajectory
         if rocker.law.kind:
@@ -183,10 +184,10 @@ class Response(Exportable):
         for mu in (friction,) if friction is not None else (10.0, 3.0, 1.0):
             with warnings.catch_warnings():  # what was asked has been doubted
                 warnings.simplefilter("ignore", PlausibilityWarning)
-                found = simulate_with_contact(
-                    self.body, self.motion, mu, start=start,
-                    restitution={f: getattr(rocker, f).coefficient for f in ("left", "right")},
-                    scale=self.scale, duration=self.segments.count * self.segments.step, gravity=self.settings.gravity,
+                found = response_with_contact(
+                    self.body, self.motion, mu, {f: getattr(rocker, f).coefficient for f in ("left", "right")},
+                    Settings(self.settings.gravity, mechanics="contact"), start=start, scale=self.scale,
+                    duration=self.segments.count * self.segments.step,
                 )  # fmt: skip
             if found.outcome is not Outcome.FAILED:
                 break

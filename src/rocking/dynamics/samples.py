@@ -60,7 +60,7 @@ def provenance(response: "Response") -> dict[str, Any]:
         "motion_provenance": motion_provenance(motion),
         "scale": response.scale,
         "random_key": response.key,
-        **{f"setting_{k}": v for k, v in vars(response.settings).items()},
+        **{f"setting_{k}": v for k, v in response.settings.stated.items()},
     }
 
 

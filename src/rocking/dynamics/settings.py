@@ -1,6 +1,8 @@
-"""What an engine is told beside the body and the motion."""
+"""How to integrate: what every engine is told beside the body and the motion."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +15,32 @@ ORDERS = (4, 6, 8)
 SHORTEST_STEP = 1e-6
 """Least `Settings.longest_step` [-]."""
 
+# usual, least and most value of what the mechanics have of their own; the others are the same for all
+_OWN: dict[str, dict[str, tuple[float, float, float]]] = {
+    "rocking": {
+        "rest_speed": (0.001, 0.0, 0.1),
+        "longest_step": (0.15, SHORTEST_STEP, 1.0),
+        "order": (8, 4, 8),
+        "tolerance": (1e-15, 1e-17, 1e-3),
+    },
+    "contact": {"rest_speed": (1e-7, 1e-12, 0.1), "tolerance": (1e-15, 1e-17, 1e-3)},
+    "space": {
+        "rest_speed": (1e-5, 1e-7, 0.01),
+        "longest_step": (1.0, SHORTEST_STEP, 1.0),
+        "order": (28, 2, 40),
+        "tolerance": (1e-17, 1e-20, 1e-2),
+    },
+    "space, many": {
+        "rest_speed": (1e-5, 1e-7, 0.01),
+        "longest_step": (0.6, SHORTEST_STEP, 1.0),
+        "tolerance": (1e-13, 1e-20, 1e-2),
+    },
+}
+_HINTS = {
+    ("rocking", "rest_speed"): "the flights must be short for the sum to hold",
+    ("contact", "rest_speed"): "bounces accumulate: zero would never end",
+}
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -23,60 +51,114 @@ class Settings:
     gravity : float
         Acceleration of gravity [m/s2].
     linear : bool
-        Slender-linear equations: sine and cosine of the angles replaced by angle and one.
-    rest_speed : float
-        Speed after an impact, over p alpha, below which the impacts to come may be summed up to rest instead of being
-        resolved one by one; that is done only where they provably end before the body could rise again [-].
-    most_impacts : int
-        A history with more impacts is stopped, with a status that says so.
-    longest_step : float
-        Longest Taylor step of the fast engine as p times time [-].
-    order : {4, 6, 8}
-        Order of the fast engine. With order 8, records whose samples are so close that order 6 leaves out less than a
-        hundredth of what order 8 may leave out at the longest step are followed with order 6, under many g only if they
-        are closer still. Orders 4 and 6 by themselves exist only for many histories at once (`simulate_many`), with the
-        nonlinear equations and motions without a vertical part; elsewhere they are refused. The reference engine
-        chooses its own order.
-    tolerance : float
-        Bound on the last two terms of a Taylor step of the reference engine, over the angle alpha [-].
+        Slender-linear equations: sine and cosine of the angles replaced by angle and one. Rocking alone has them.
+    rest_speed : float, optional
+        Speed below which a motion ends at once [-]. Rocking alone: after an impact, over p alpha (.001); the impacts
+        to come are then summed up to rest instead of being resolved one by one, only where they provably end before
+        the body could rise again. With contact: of a bounce or a rocking motion after an impact, over sqrt(g R)
+        (1e-7); its energy is booked as lost in that impact. In space: of a vertex that leaves the ground and would
+        fall back at once, over sqrt(g R) (1e-5); its square is the energy, over that of overturning, at which a body
+        comes to rest.
+    most_events : int
+        A history with more impacts and changes of contact is stopped, with a status that says so.
+    longest_step : float, optional
+        Longest Taylor step as p times time [-]; .15 in the fast engine, 1 in space (.6 for many bodies, there as p +
+        |angular velocity| times time); with contact there is none.
+    order : int, optional
+        Order of the Taylor series. Rocking alone: 4, 6 or 8 (8), of the fast engine. With order 8, records whose
+        samples are so close that order 6 leaves out less than a hundredth of what order 8 may leave out at the longest
+        step are followed with order 6, under many g only if they are closer still. Orders 4 and 6 by themselves exist
+        only for many histories at once (`simulate_many`), with the nonlinear equations and motions without a vertical
+        part; elsewhere they are refused. In space: the highest, from 2 to 40 (28). Other engines choose their own.
+    tolerance : float, optional
+        Bound on the last two terms of a Taylor step: over the angle alpha (and the size R with contact) 1e-15; for
+        quaternions of unit length 1e-17 in space (1e-13 for many bodies) [-].
+    mechanics : {"rocking", "contact", "space", "space, many"}
+        Whose usual values and ranges these are.
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range.
+        If a value is outside its range, or these mechanics have no such setting.
+
+    Examples
+    --------
+    >>> Settings().rest_speed, Settings(mechanics="space").rest_speed
+    (0.001, 1e-05)
     """
 
+    # what is None here is a number after __post_init__, where these mechanics have it
     gravity: float = conventions.g
     linear: bool = False
-    rest_speed: float = 0.001
-    most_impacts: int = 100_000
-    longest_step: float = 0.15
-    order: int = 8
-    tolerance: float = 1e-15
+    rest_speed: float = None  # type: ignore[assignment]
+    most_events: int = 100_000
+    longest_step: float = None  # type: ignore[assignment]
+    order: int = None  # type: ignore[assignment]
+    tolerance: float = None  # type: ignore[assignment]
+    mechanics: str = "rocking"
 
     def __post_init__(self) -> None:
         """Check every value."""
-        hint = "the flights must be short for the sum to hold"
+        own = _OWN[self.mechanics]
         made: dict[str, float] = {
             "gravity": checks.within("gravity", self.gravity, 0.0, 1e6, unit="m/s2", open_low=True),
-            "rest_speed": checks.within("rest_speed", self.rest_speed, 0.0, 0.1, hint=hint),
-            "longest_step": checks.within("longest_step", self.longest_step, SHORTEST_STEP, 1.0),
-            "tolerance": checks.within("tolerance", self.tolerance, 1e-17, 1e-3),
-            "most_impacts": _whole("most_impacts", self.most_impacts),
-            "order": _whole("order", self.order),
+            "most_events": _whole(
+                "most_events", self.most_events, 1, 10_000_000 if "space" in self.mechanics else math.inf
+            ),
         }
+        for name in ("rest_speed", "longest_step", "order", "tolerance"):
+            value: Any = getattr(self, name)
+            if name not in own:
+                if value is not None:
+                    raise InvalidValueError(f"{name} is no setting of {self.mechanics}; {self._has(own)}")
+                continue
+            usual, least, most = own[name]
+            value = usual if value is None else value
+            hint = _HINTS.get((self.mechanics, name), "")
+            if name == "order":
+                made[name] = _whole(name, value, int(least), int(most), ORDERS if self.mechanics == "rocking" else ())
+            else:
+                made[name] = checks.within(name, value, least, most, hint=hint)
         linear: object = self.linear
         if not isinstance(linear, bool):
             raise InvalidValueError(f"linear must be True or False, got {self.linear!r}")
-        if made["order"] not in ORDERS:
-            raise InvalidValueError(f"order must be one of {ORDERS}, got {self.order!r}")
-        for name, value in made.items():  # numbers of one kind: 9 and 9.0 are the same settings
-            object.__setattr__(self, name, value)
+        if linear and self.mechanics != "rocking":
+            raise InvalidValueError(f"linear equations are no setting of {self.mechanics}; {self._has(own)}")
+        for name, number in made.items():  # numbers of one kind: 9 and 9.0 are the same settings
+            object.__setattr__(self, name, number)
         plausibility.warn(plausibility.of_gravity(self.gravity))
 
+    def _has(self, own: dict[str, Any]) -> str:
+        return f"it has gravity, most_events, {', '.join(own)}"
 
-def _whole(name: str, value: object) -> int:
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
-        allowed = f"one of {ORDERS}" if name == "order" else "a whole number >= 1"
-        raise InvalidValueError(f"{name} must be {allowed}, got {value!r:.60}")
-    return int(value)
+    @property
+    def stated(self) -> dict[str, Any]:
+        """Values by name, of the settings that these mechanics have."""
+        return {
+            field.name: getattr(self, field.name)
+            for field in fields(self)
+            if field.name in {"gravity", "most_events", *_OWN[self.mechanics]}
+            or (field.name == "linear" and self.mechanics == "rocking")
+        }
+
+
+def settings_of(gravity: float, options: dict[str, Any]) -> Settings:
+    """Return the settings of a call.
+
+    gravity: acceleration of gravity [m/s2].
+    """
+    known = {field.name for field in fields(Settings)} - {"mechanics"}
+    unknown = sorted(set(options) - known)
+    if unknown:
+        raise InvalidValueError(f"no option named {unknown[0]!r}; there are {', '.join(sorted(known))}")
+    return Settings(gravity=gravity, **options)
+
+
+def _whole(name: str, value: object, least: int = 1, most: float = math.inf, among: tuple[int, ...] = ()) -> int:
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not whole or not least <= value <= most or (among and value not in among):  # type: ignore[operator]
+        limits = (
+            f"one of {among}" if among else "a whole number " + (f"in [{least}, {most}]" if most < math.inf else ">= 1")
+        )
+        raise InvalidValueError(f"{name} must be {limits}, got {value!r:.60}")
+    return int(value)  # type: ignore[call-overload,no-any-return]

@@ -8,8 +8,8 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray, g
-from rocking.dynamics.histories import settings_of
 from rocking.dynamics.response import Motion
+from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.plots.overturning_map import CLASSES, FIRST, LATER, SECOND
 from rocking.plots.study_words import PEAK, note, plain, plain_log

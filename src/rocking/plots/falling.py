@@ -1,32 +1,35 @@
 """Which way a body falls: share and direction of overturning by the azimuth of the shaking, by model of restitution."""
 
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
-from rocking.dynamics.spatial_batch.result import SpatialBatch
 from rocking.errors import InvalidValueError
 from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, in_journal_style, new_figure
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 HEIGHT = 3.1
 _SECTORS = 36
+_DIMENSIONS = ("body", "motion", "scale", "restitution", "start")
 _BOTH, _NONE, _UNKNOWN = "#BDBDBD", "white", "#222222"
 
 
 @in_journal_style
-def falling_picture(batch: SpatialBatch, azimuths: Any, base: Any = None) -> "Figure":
+def falling_picture(results: "xr.Dataset", azimuths: Any, base: Any = None) -> "Figure":
     """Draw how often a body falls by the direction of the shaking, which way, and where two restitutions differ.
 
     Parameters
     ----------
-    batch : SpatialBatch
-        One body under one record turned to every azimuth, at ascending scales, with two restitutions.
+    results : xarray.Dataset
+        Of `simulate_many`: one body under one record turned to every azimuth, at ascending scales, with two
+        restitutions.
     azimuths : array_like
         Of its motions: direction of their first component, from x towards y, ascending [rad].
     base : array_like, shape (n, 2), optional
@@ -40,26 +43,24 @@ def falling_picture(batch: SpatialBatch, azimuths: Any, base: Any = None) -> "Fi
     Raises
     ------
     InvalidValueError
-        If the batch has several bodies or starts, not two restitutions, or another number of motions than azimuths.
+        If there are several bodies or starts, not two restitutions, or another number of motions than azimuths.
 
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.dynamics.spatial import SpatialBody
-    >>> from rocking.dynamics.spatial_batch import simulate_spatial_batch
     >>> pulse, angles = rk.pulses.sine(amplitude=4.0, period=0.8), np.linspace(0.0, 2.0 * np.pi, 8, endpoint=False)
-    >>> motions = [(pulse.scaled(np.cos(a)), pulse.scaled(np.sin(a))) for a in angles]
-    >>> box, scales = SpatialBody.box(0.5, 0.4, 2.0), np.linspace(0.5, 2.0, 4)
-    >>> found = simulate_spatial_batch(box, motions, ["housner-3d", "ked-3d"], scales=scales)
-    >>> len(falling_picture(found, angles).axes)
+    >>> motions = [{"x": pulse.scaled(np.cos(a)), "y": pulse.scaled(np.sin(a))} for a in angles]
+    >>> box = rk.dynamics.SpatialBody.box(0.5, 0.4, 2.0)
+    >>> results = rk.simulate_many(box, motions, ["housner", "ked"], scale=np.linspace(0.5, 2.0, 4))
+    >>> len(falling_picture(results, angles).axes)
     3
     """
     angles = checks.real_array("azimuths", azimuths, "rad")
-    counts = batch.shape
+    counts = tuple(results.sizes.get(name, 0) for name in _DIMENSIONS)
     if counts[0] != 1 or counts[4] != 1 or counts[3] != 2 or angles.shape != (counts[1],) or counts[1] < 2:
         raise InvalidValueError(
-            f"the batch must have one body and start, two restitutions and a motion for each of {angles.size} "
-            f"azimuths, got (body, motion, scale, restitution, start) = {counts}"
+            f"results must have one body and start, two restitutions and a motion for each of {angles.size} "
+            f"azimuths, got ({', '.join(_DIMENSIONS)}) = {counts}"
         )
     figure, panels = new_figure(DOUBLE, HEIGHT)
     panels[0].remove()
@@ -67,15 +68,15 @@ def falling_picture(batch: SpatialBatch, azimuths: Any, base: Any = None) -> "Fi
     share = figure.add_subplot(grid[0, 0], projection="polar")
     rose = figure.add_subplot(grid[0, 1], projection="polar")
     difference = figure.add_subplot(grid[0, 2])
-    _share(share, batch, angles)
-    _rose(rose, batch, None if base is None else checks.real_array("base", base, "m"))
-    _difference(difference, batch, angles)
+    _share(share, results, angles)
+    _rose(rose, results, None if base is None else checks.real_array("base", base, "m"))
+    _difference(difference, results, angles)
     return figure
 
 
-def _look(batch: SpatialBatch, number: int) -> tuple[str, Any, str]:
+def _look(results: "xr.Dataset", number: int) -> tuple[str, Any, str]:
     """Colour, line and label of a restitution."""
-    name = str(batch.labels["restitution"][number])
+    name = str(results["restitution"].values[number])
     style = MODEL_STYLE.get(name.removesuffix("-3d"), {"color": INK, "linestyle": "-", "label": f"r = {name}"})
     return style["color"], style["linestyle"], style["label"]
 
@@ -92,12 +93,13 @@ def _compass(axes: "Axes", letter: str, title: str) -> None:
         label.set_zorder(5.0)
 
 
-def _share(axes: "Axes", batch: SpatialBatch, angles: FloatArray) -> None:
-    with np.errstate(invalid="ignore"):  # a direction without any result has no share
-        over = np.nansum(batch.overturned, axis=2)[0, :, :, 0] / np.isfinite(batch.overturned).sum(axis=2)[0, :, :, 0]
+def _share(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None:
+    with warnings.catch_warnings():  # a direction without any result has no share
+        warnings.simplefilter("ignore", RuntimeWarning)
+        over = results["overturned"].mean("scale").values[0, :, :, 0]
     closed = np.append(angles, angles[0] + 2.0 * np.pi)
     for k in range(2):
-        color, line, label = _look(batch, k)
+        color, line, label = _look(results, k)
         share = 100.0 * np.append(over[:, k], over[0, k])
         axes.plot(closed, share, linewidth=1.1, color=color, linestyle=line, label=label)
     top = max(10.0, 10.0 * np.ceil(10.0 * np.nanmax(over, initial=0.0)))
@@ -109,14 +111,14 @@ def _share(axes: "Axes", batch: SpatialBatch, angles: FloatArray) -> None:
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.24), ncols=2, borderaxespad=0.0)
 
 
-def _rose(axes: "Axes", batch: SpatialBatch, base: FloatArray | None) -> None:
+def _rose(axes: "Axes", results: "xr.Dataset", base: FloatArray | None) -> None:
     edges = (np.arange(_SECTORS + 1) - 0.5) * 2.0 * np.pi / _SECTORS
     tops = []
     for k in range(2):
-        fell = batch.overturned[0, :, :, k, 0] == 1.0
-        where = np.mod(batch.direction[0, :, :, k, 0][fell] - edges[0], 2.0 * np.pi) + edges[0]
+        fell = results["overturned"].values[0, :, :, k, 0] == 1.0
+        where = np.mod(results["direction"].values[0, :, :, k, 0][fell] - edges[0], 2.0 * np.pi) + edges[0]
         part = 100.0 * np.histogram(where, edges)[0] / max(1, fell.sum())
-        color, line, _ = _look(batch, k)
+        color, line, _ = _look(results, k)
         axes.stairs(part, edges, fill=False, linewidth=1.1, color=color, linestyle=line)
         tops.append(float(part.max()))
     top = max(5.0, 5.0 * np.ceil(max(tops) / 5.0))
@@ -136,15 +138,15 @@ def _rose(axes: "Axes", batch: SpatialBatch, base: FloatArray | None) -> None:
     _compass(axes, "b", "Where it lies, by 10 degrees")
 
 
-def _difference(axes: "Axes", batch: SpatialBatch, angles: FloatArray) -> None:
+def _difference(axes: "Axes", results: "xr.Dataset", angles: FloatArray) -> None:
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
-    over = batch.overturned[0, :, :, :, 0]
+    over = results["overturned"].values[0, :, :, :, 0]
     classes = np.nan_to_num(over[..., 0] + 2.0 * over[..., 1], nan=4.0)  # one without a result leaves it open
-    looks = [_look(batch, k) for k in range(2)]
+    looks = [_look(results, k) for k in range(2)]
     colors = [_NONE, looks[0][0], looks[1][0], _BOTH, _UNKNOWN]
-    scales = np.array(batch.labels["scale"], dtype=np.float64)
+    scales = results["scale"].values
     mesh = axes.pcolormesh(
         np.degrees(angles), scales, classes.T, cmap=ListedColormap(colors), vmin=-0.5, vmax=4.5, shading="nearest",
         rasterized=True,

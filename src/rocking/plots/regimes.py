@@ -118,7 +118,7 @@ def regimes_picture(response: PlanarResponse) -> "Figure":
     Parameters
     ----------
     response : PlanarResponse
-        What `simulate_with_contact` returned.
+        What `simulate` returned of a plane body with friction.
 
     Returns
     -------
@@ -128,9 +128,8 @@ def regimes_picture(response: PlanarResponse) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.dynamics.planar.histories import simulate_with_contact
     >>> pulse = rk.pulses.sine(amplitude=4.0, period=0.8)
-    >>> len(regimes_picture(simulate_with_contact(rk.Block(width=1.0, height=2.0), pulse, friction=0.3)).axes)
+    >>> len(regimes_picture(rk.simulate(rk.Block(width=1.0, height=2.0), pulse, None, friction=0.3)).axes)
     4
     """
     figure, axes = new_figure(DOUBLE, 5.2, rows=4, sharex=True, height_ratios=[1.5, 1.0, 0.8, 1.2])

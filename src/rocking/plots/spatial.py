@@ -33,7 +33,7 @@ def spatial_picture(response: SpatialResponse) -> "Figure":
     Parameters
     ----------
     response : SpatialResponse
-        What `simulate_spatial` or `free_rocking_spatial` returned.
+        What `simulate` or `free_rocking` returned of a body in space.
 
     Returns
     -------
@@ -42,8 +42,8 @@ def spatial_picture(response: SpatialResponse) -> "Figure":
 
     Examples
     --------
-    >>> from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial
-    >>> response = free_rocking_spatial(SpatialBody.box(1.0, 1.0, 4.0), tilt=0.1, azimuth=0.3, duration=2.0)
+    >>> from rocking.dynamics import SpatialBody, SpatialStart, free_rocking
+    >>> response = free_rocking(SpatialBody.box(1.0, 1.0, 4.0), start=SpatialStart(0.1, 0.3), duration=2.0)
     >>> len(spatial_picture(response).axes)
     4
     """

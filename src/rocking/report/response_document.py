@@ -162,5 +162,5 @@ def _again(asked: ReportSubject, first: Response) -> list[Block]:
 
 
 def _how(first: Response) -> str:
-    told = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in vars(first.settings).items())
+    told = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in first.settings.stated.items())
     return f"engine {first.engine}; {told}; energy adds up to {first.energy.closure:.1e} of its largest."

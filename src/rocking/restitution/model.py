@@ -71,7 +71,7 @@ class RestitutionModel(ABC):
     Examples
     --------
     >>> import rocking as rk
-    >>> class Half(rk.RestitutionModel):
+    >>> class Half(rk.restitution.RestitutionModel):
     ...     name = "half"
     ...
     ...     def raw_coefficient(self, body, onto):

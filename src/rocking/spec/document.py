@@ -232,7 +232,7 @@ class SettingsTable(JobTable):
     gravity: Positive | None = None
     linear: bool | None = None
     rest_speed: float | None = None
-    most_impacts: int | None = None
+    most_events: int | None = None
     longest_step: float | None = None
     order: int | None = None
     tolerance: float | None = None

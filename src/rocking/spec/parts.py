@@ -135,7 +135,7 @@ class Parts:
     @property
     def options(self) -> dict[str, Any]:
         """Settings and engine, as the studies take them."""
-        return {**vars(self.settings), "engine": self.document.settings.engine}
+        return {**self.settings.stated, "engine": self.document.settings.engine}
 
     @property
     def only_choice(self) -> Any:

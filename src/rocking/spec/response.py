@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import DEFAULT_FRICTION
-from rocking.dynamics.histories import free_rocking, simulate
+from rocking.dynamics import free_rocking, simulate
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
@@ -55,12 +55,14 @@ class ResponseQuestion:
 
     def answered_with(self, restitution: Any) -> Response:
         """Return the response with one restitution."""
-        how = {**vars(self.settings), "engine": self.engine}
+        how = {**self.settings.stated, "engine": self.engine}
         with warnings.catch_warnings():  # whoever shows the response shows its doubts
             warnings.simplefilter("ignore", PureRockingWarning)
             if self.motion is None:
-                return free_rocking(self.body, self.rotation, restitution, **how)
-            return simulate(self.body, self.motion, restitution, scale=self.scale, **how)
+                response: Response = free_rocking(self.body, self.rotation, restitution, **how)
+            else:
+                response = simulate(self.body, self.motion, restitution, scale=self.scale, **how)
+            return response
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,10 @@ from rocking.bodies import Block
 from rocking.conventions import FloatArray
 from rocking.dynamics.batch import PIECE
 from rocking.dynamics.engine import RESULTS, Arrays
-from rocking.dynamics.histories import settings_of
 from rocking.dynamics.impact_law import ConstantRestitution
 from rocking.dynamics.lost_contact import contact_words, flags
 from rocking.dynamics.response import Motion
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra
 from rocking.quantities import HISTORY, attributes
 from rocking.studies.histories import Histories, Product

@@ -107,7 +107,7 @@ class Histories(ABC):
             "content": self.content(),
             "motions": {"class": full_name(type(self.motions)), **self.motions.description()},
             "law": described_law(self.law),
-            "settings": dict(vars(self.settings)),
+            "settings": self.settings.stated,
             "engine": self.engine,
         }
 

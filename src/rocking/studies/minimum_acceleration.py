@@ -9,8 +9,8 @@ from rocking import conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.engine import Arrays
-from rocking.dynamics.histories import settings_of
 from rocking.dynamics.response import Motion
+from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.studies.crossings import Crossings
 from rocking.studies.minimum_search import Cases, Effort, searched

@@ -8,7 +8,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.engine import Arrays
-from rocking.dynamics.histories import settings_of
+from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.studies._axes import axis_of
 from rocking.studies.axis import Axis

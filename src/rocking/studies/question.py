@@ -111,7 +111,7 @@ class Question:
             "motion_provenance": "; ".join(getattr(motion, "provenance", ())) or repr(motion),
             "restitution": self.rocker.label,
             "seed": int(getattr(self.law, "seed", 0)),
-            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in vars(self.settings).items()},
+            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
             **{f"work_{k}": v for k, v in work.items()},
         }
 

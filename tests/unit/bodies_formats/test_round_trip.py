@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rocking as rk
+from rocking import conventions
 from rocking.bodies.formats import body_from_toml, body_to_toml
 from rocking.errors import InvalidValueError
 
@@ -116,6 +117,6 @@ def test_units_scale_lengths_and_nothing_else():
         body_from_toml(
             f'units = "{u}"\n[trapezoid]\nbase = {1 / k!r}\ntop = {0.5 / k!r}\nheight = {3 / k!r}\ndepth = {1 / k!r}'
         )
-        for u, k in rk.conventions.LENGTH_UNITS.items()
+        for u, k in conventions.LENGTH_UNITS.items()
     ]
     assert all(math.isclose(body.mass, bodies[0].mass, rel_tol=1e-14) for body in bodies)

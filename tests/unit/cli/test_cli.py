@@ -50,7 +50,7 @@ def test_cor_options(capsys, tmp_path):
     """Unit, angle, one foot, chosen models, interface factor, identities, own model and picture all do their work."""
     own = tmp_path / "mine.py"
     own.write_text(
-        "import rocking as rk\nclass Mine(rk.RestitutionModel):\n    name = 'mine'\n"
+        "import rocking as rk\nclass Mine(rk.restitution.RestitutionModel):\n    name = 'mine'\n"
         "    def raw_coefficient(self, body, onto):\n        return 0.5\n",
         encoding="utf-8",
     )
@@ -134,7 +134,7 @@ def test_model_of_the_user_is_told_like_the_others(capsys, tmp_path):
     """A class in a file is named, with its title, as `rocking models ked` is."""
     own = tmp_path / "mine.py"
     own.write_text(
-        "import rocking as rk\nclass Mine(rk.RestitutionModel):\n    name = 'mine'\n    title = 'of mine'\n"
+        "import rocking as rk\nclass Mine(rk.restitution.RestitutionModel):\n    name = 'mine'\n    title = 'of mine'\n"
         "    def raw_coefficient(self, body, onto):\n        return 0.5\n",
         encoding="utf-8",
     )

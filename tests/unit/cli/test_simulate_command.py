@@ -26,7 +26,7 @@ STATUE = Path(__file__).parents[3] / "examples" / "bodies" / "statue_on_pedestal
 MINE = """import rocking as rk
 
 
-class Mine(rk.RestitutionModel):
+class Mine(rk.restitution.RestitutionModel):
     name = "mine"
 
     def raw_coefficient(self, body, onto):

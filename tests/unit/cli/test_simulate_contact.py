@@ -37,10 +37,8 @@ def test_json_is_python_to_the_last_digit(capsys):
     """Body, friction, bounce, restitution, scale and gravity reach the engine: the same numbers as in Python."""
     words = ("--friction", "0.3", "--bounce", "0.1", "--scale", "-2", "--gravity", "9.81", "--restitution", "housner")
     answer = answered(capsys, *SQUAT, SINE, *words)
-    response = rk.simulate_with_contact(
-        rk.Block(width=1.0, height=1.0), rk.pulses.sine(3.2, 0.8), 0.3, bounce=0.1, restitution="housner", scale=-2.0,
-        gravity=9.81,
-    )  # fmt: skip
+    block, pulse = rk.Block(width=1.0, height=1.0), rk.pulses.sine(3.2, 0.8)
+    response = rk.simulate(block, pulse, "housner", friction=0.3, bounce=0.1, scale=-2.0, gravity=9.81)
     assert answer["outcome"] == response.outcome.name.lower()
     assert answer["summary"] == response.summary
     assert [tuple(row.values()) for row in answer["modes"]] == response.regimes.tolist()
@@ -115,7 +113,7 @@ def test_the_warning_names_the_option(capsys):
     """Where pure rocking takes more friction than there is, the page says what to type."""
     page = run(capsys, *SLENDER, SINE, "--friction", "0.2")[1]
     assert "--contact follows it" in page
-    assert "simulate_with_contact" not in page
+    assert "friction=..." not in page
 
 
 REFUSED = {

@@ -37,7 +37,7 @@ def test_a_library_that_is_missing_below_is_told(capsys, tmp_path, monkeypatch):
 
 def test_a_history_without_a_result_is_refused(capsys, monkeypatch):
     """Where an engine stops, the sentence says why, and no number is printed."""
-    few = rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, most_impacts=3)
+    few = rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, most_events=3)
     monkeypatch.setattr(Question, "answered_with", lambda self, restitution: few)
     code, out, err = run(capsys, *SIZE, "--free", "0.5")
     assert (code, out) == (2, "")

@@ -101,6 +101,6 @@ def test_contact_says_it(capsys):
     for words in (page, end["sentence"], told["summary"]):
         assert f"still rocking about one foot when the computation ends at {end['time_s']:.4g} s" in words
     block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.2, 0.8)
-    whole = rk.simulate_with_contact(block, pulse, 10.0, restitution="ked", duration=60.0)
+    whole = rk.simulate(block, pulse, "ked", friction=10.0, duration=60.0)
     assert not whole.still_rocking
     assert "still" not in whole.summary

@@ -8,23 +8,26 @@ import pytest
 from scipy.io import loadmat
 
 import rocking as rk
+from rocking.dynamics import SpatialStart
 from rocking.dynamics.planar import Start
 from rocking.errors import InvalidValueError
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 SQUAT = rk.Block(width=1.2, height=2.0)
-BOX = rk.SpatialBody.box(0.5, 0.5, 2.0)
+BOX = rk.dynamics.SpatialBody.box(0.5, 0.5, 2.0)
 WAVE = rk.GroundMotion(3.5 * np.sin(0.4 * np.arange(60)), 0.03, name="wave", provenance=("made by hand",))
 RESPONSES = {
     "pure": rk.simulate(BODY, WAVE, "housner"),
     "pure, at rest": rk.simulate(BODY, rk.pulses.sine(1.0, 0.5), "ked"),
-    "slide and rock": rk.simulate_with_contact(SQUAT, rk.pulses.sine(9.0, 0.9), 0.62),
-    "slide": rk.simulate_with_contact(SQUAT, WAVE, 0.2),
-    "no force": rk.simulate_with_contact(SQUAT, None, 2.5, start=Start(rotation=0.1, horizontal_velocity=1.0)),
-    "rest": rk.simulate_with_contact(SQUAT, WAVE, 1.0, scale=0.1),
-    "corner": rk.free_rocking_spatial(BOX, 0.1, 0.7, duration=1.0),
-    "space, at rest": rk.simulate_spatial(BOX, WAVE, scale=0.1, duration=1.0),
-    "space, overturned": rk.simulate_spatial(BOX, WAVE, WAVE, scale=4.0),
+    "slide and rock": rk.simulate(SQUAT, rk.pulses.sine(9.0, 0.9), None, friction=0.62),
+    "slide": rk.simulate(SQUAT, WAVE, None, friction=0.2),
+    "no force": rk.free_rocking(
+        SQUAT, restitution=None, friction=2.5, start=Start(rotation=0.1, horizontal_velocity=1.0)
+    ),
+    "rest": rk.simulate(SQUAT, WAVE, None, friction=1.0, scale=0.1),
+    "corner": rk.free_rocking(BOX, restitution="housner", start=SpatialStart(0.1, 0.7), duration=1.0),
+    "space, at rest": rk.simulate(BOX, WAVE, "housner", scale=0.1, duration=1.0),
+    "space, overturned": rk.simulate(BOX, {"x": WAVE, "y": WAVE}, "housner", scale=4.0),
 }
 STRUCTS = {"impact": "impacts", "interval": "intervals"}
 every = pytest.mark.parametrize("kind", RESPONSES)

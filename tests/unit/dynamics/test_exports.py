@@ -34,7 +34,7 @@ RESPONSES = {
     "beyond the top": rk.free_rocking(BLOCK, 0.3, "ked"),
     "within the first step": WITHIN,
     "vertical": rk.simulate(BLOCK, SHAKEN_UP, "ked", scale=-0.5),
-    "stopped": rk.free_rocking(BLOCK, 0.1, 0.95, most_impacts=4, duration=3.0, linear=True),
+    "stopped": rk.free_rocking(BLOCK, 0.1, 0.95, most_events=4, duration=3.0, linear=True),
 }
 UNITS = {
     "time": "s", "rotation": "rad", "angular_velocity": "rad/s", "ground_acceleration": "m/s2", "kinetic_energy": "J",

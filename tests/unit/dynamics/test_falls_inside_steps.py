@@ -129,7 +129,7 @@ def test_after_rest_in_one_step(name: str) -> None:
 
 def test_stopped_before_anything_happened() -> None:
     """A history that is stopped at its very start has no energy and no forces, and the error says why."""
-    response = rk.free_rocking(BLOCK, 1e-20, angular_velocity=-0.1, most_impacts=1, duration=1.0)
+    response = rk.free_rocking(BLOCK, 1e-20, angular_velocity=-0.1, most_events=1, duration=1.0)
     for what in ("energy", "contact"):
         with pytest.raises(InvalidValueError, match="no response at any time above 0 s: stopped: more impacts"):
             getattr(response, what)

@@ -13,8 +13,8 @@ from rocking.dynamics.impact_law import ConstantRestitution, interpolated, unifo
 from rocking.errors import InvalidValueError
 
 # these take rows, whatever their type
-SPEED: Any = rk.SpeedRestitution
-RANDOM: Any = rk.RandomRestitution
+SPEED: Any = rk.dynamics.SpeedRestitution
+RANDOM: Any = rk.dynamics.RandomRestitution
 BLOCK = rk.Block(width=0.5, height=2.0)
 ENGINES = [
     pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
@@ -59,8 +59,8 @@ def test_draws_are_uniform_and_independent() -> None:
 
 def test_random_law_by_seed_and_key() -> None:
     """The same seed, history and impact give the same draw whatever the speed; any other gives another."""
-    law, same = (rk.RandomRestitution.normal(0.9, 0.03, seed=3) for _ in range(2))
-    other = rk.RandomRestitution.normal(0.9, 0.03, seed=4)
+    law, same = (rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=3) for _ in range(2))
+    other = rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=4)
     draw = law.factor(1.0, 7, 2)
     assert draw == same.factor(99.0, 7, 2)
     assert len({draw, other.factor(1.0, 7, 2), law.factor(1.0, 8, 2), law.factor(1.0, 7, 3)}) == 4
@@ -69,7 +69,7 @@ def test_random_law_by_seed_and_key() -> None:
 @pytest.mark.parametrize(("mean", "deviation"), [(0.9, 0.03), (0.99, 0.2), (0.0, 0.5), (1.0, 1.0), (0.5, 1e-3)])
 def test_normal_law_is_the_cut_normal(mean: float, deviation: float) -> None:
     """Draws stay in [0, 1], their mean is that of the cut normal within 1 %, and they follow its distribution."""
-    law = rk.RandomRestitution.normal(mean, deviation, seed=1)
+    law = rk.dynamics.RandomRestitution.normal(mean, deviation, seed=1)
     draws = np.array([law.factor(0.0, 0, k) for k in range(3000)])
     assert 0.0 <= draws.min() <= draws.max() <= law.largest <= 1.0
     exact = stats.truncnorm((0.0 - mean) / deviation, (1.0 - mean) / deviation, mean, deviation)
@@ -79,14 +79,14 @@ def test_normal_law_is_the_cut_normal(mean: float, deviation: float) -> None:
 
 def test_the_distribution_test_rejects() -> None:
     """Negative control: a law whose deviation is a fifth larger is told from the one that was asked for."""
-    law = rk.RandomRestitution.normal(0.5, 0.12, seed=1)
+    law = rk.dynamics.RandomRestitution.normal(0.5, 0.12, seed=1)
     draws = np.array([law.factor(0.0, 0, k) for k in range(3000)])
     assert stats.kstest(draws, stats.norm(0.5, 0.10).cdf).pvalue < 1e-3
 
 
 def test_law_of_a_sample() -> None:
     """Draws from measured values lie between the least and the largest, with their median in the middle."""
-    law = rk.RandomRestitution.of_sample([0.9, 0.7, 0.8], seed=2)
+    law = rk.dynamics.RandomRestitution.of_sample([0.9, 0.7, 0.8], seed=2)
     assert (law.factors[0], law.factors[512], law.largest) == (0.7, 0.8, 0.9)
     draws = [law.factor(0.0, k, 0) for k in range(500)]
     assert 0.7 <= min(draws) < 0.72
@@ -137,7 +137,9 @@ def test_random_law_in_a_response(name: str) -> None:
 
 
 @pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
-@pytest.mark.parametrize("law", [SPEED([0.0, 0.4], [0.95, 0.8]), rk.RandomRestitution.normal(0.9, 0.05, seed=8)])
+@pytest.mark.parametrize(
+    "law", [SPEED([0.0, 0.4], [0.95, 0.8]), rk.dynamics.RandomRestitution.normal(0.9, 0.05, seed=8)]
+)
 def test_both_engines_give_the_same_coefficients(law: Any) -> None:
     """Impact by impact the two engines agree: coefficients to 1e-10, and the draws to the last bit or two."""
     fast, slow = impacts_of(law, "fast", 3), impacts_of(law, "reference", 3)
@@ -181,14 +183,14 @@ def test_bad_distributions() -> None:
     bad: Any
     for bad in (-0.1, 1.1, math.nan, None, "1"):
         with pytest.raises(InvalidValueError, match="mean must be"):
-            rk.RandomRestitution.normal(bad, 0.1, seed=1)
+            rk.dynamics.RandomRestitution.normal(bad, 0.1, seed=1)
         with pytest.raises(InvalidValueError, match="deviation must be"):
-            rk.RandomRestitution.normal(0.5, bad, seed=1)
+            rk.dynamics.RandomRestitution.normal(0.5, bad, seed=1)
     with pytest.raises(InvalidValueError, match=r"deviation must be in \(0, 1\], got 0"):
-        rk.RandomRestitution.normal(0.5, 0.0, seed=1)
+        rk.dynamics.RandomRestitution.normal(0.5, 0.0, seed=1)
     for values, message in (([0.5], "values must be a row"), ([0.5, math.nan], "values"), ([0.5, 1.2], r"\[0, 1\]")):
         with pytest.raises(InvalidValueError, match=message):
-            rk.RandomRestitution.of_sample(values, seed=1)
+            rk.dynamics.RandomRestitution.of_sample(values, seed=1)
 
 
 class Worn(rk.dynamics.ImpactLaw):
@@ -223,7 +225,7 @@ def test_a_law_beyond_its_largest_factor() -> None:
         rk.free_rocking(rk.Block(width=0.5, height=2.0), 0.1, Wild())
 
 
-class Capped(rk.SpeedRestitution):
+class Capped(rk.dynamics.SpeedRestitution):
     """A table with a cap that the table does not know."""
 
     def factor(self, speed: float, key: int, impact: int) -> float:
@@ -239,6 +241,6 @@ def test_a_law_derived_from_a_table() -> None:
 
 def test_ends_of_a_cut_normal_stand_a_quarter_of_a_step_inside() -> None:
     """N(.9, .05) cut to [0, 1], as 5 quantiles: at 1/20, 1/4, 1/2, 3/4 and 19/20 of what is left."""
-    law = rk.RandomRestitution.normal(0.9, 0.05, seed=1, points=5)
+    law = rk.dynamics.RandomRestitution.normal(0.9, 0.05, seed=1, points=5)
     wanted = stats.truncnorm((0.0 - 0.9) / 0.05, (1.0 - 0.9) / 0.05, 0.9, 0.05).ppf([0.05, 0.25, 0.5, 0.75, 0.95])
     np.testing.assert_allclose(law.factors, wanted, rtol=1e-12)

@@ -18,8 +18,8 @@ ENGINES = [
 ]
 every_engine = pytest.mark.parametrize("name", ENGINES)
 # these take rows, whatever their type
-SPEED: Any = rk.SpeedRestitution
-RANDOM: Any = rk.RandomRestitution
+SPEED: Any = rk.dynamics.SpeedRestitution
+RANDOM: Any = rk.dynamics.RandomRestitution
 BODIES = [rk.Block(width=0.5, height=2.0), rk.Block(width=0.4, height=2.4), rk.Block(width=1.0, height=2.0)]
 T = np.arange(61)
 MOTIONS = [
@@ -110,7 +110,7 @@ def test_both_engines(tables: dict[str, Any]) -> None:
 @every_engine
 def test_stopped_histories_are_told(name: str, tables: dict[str, Any]) -> None:
     """With two impacts allowed the others are stopped by status; histories of fewer keep their bits."""
-    short = rk.simulate_many(BODIES, MOTIONS, CHOICES, scale=SCALES, engine=name, most_impacts=2)
+    short = rk.simulate_many(BODIES, MOTIONS, CHOICES, scale=SCALES, engine=name, most_events=2)
     whole = tables[name]
     few = whole["impacts"].to_numpy() < 2
     assert 0 < few.sum() < few.size
@@ -158,7 +158,7 @@ def test_models_as_objects() -> None:
 @pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
 def test_a_dataset_says_what_it_is() -> None:
     """Engine, seed, bodies and motions can be read off a dataset."""
-    law = rk.RandomRestitution.normal(0.9, 0.01, seed=7)
+    law = rk.dynamics.RandomRestitution.normal(0.9, 0.01, seed=7)
     result = rk.simulate_many([rk.Block(width=0.5, height=2.0)], rk.pulses.sine(3.0, 0.6), law)
     assert result.attrs["engine"].startswith("fast (")
     assert result.attrs["seed"] == 7

@@ -20,12 +20,12 @@ LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)]
 def test_body_that_overturns_says_so_by_the_same_word_everywhere():
     """Rocking, with contact, in space and in batches: one enumeration, by identity and by code."""
     pulse = sine(amplitude=6.0, period=1.0)
-    plane, contact = rk.simulate(LEANING, pulse), rk.simulate_with_contact(LEANING, pulse, 0.9)
-    block = rk.SpatialBody.box(0.5, 0.7, 2.0)
-    space = rk.simulate_spatial(block, pulse)
+    plane, contact = rk.simulate(LEANING, pulse), rk.simulate(LEANING, pulse, None, friction=0.9)
+    block = rk.dynamics.SpatialBody.box(0.5, 0.7, 2.0)
+    space = rk.simulate(block, pulse, "housner")
     assert plane.outcome == contact.outcome == space.outcome == rk.Outcome.OVERTURNED
     assert all(isinstance(response.status, Status) for response in (plane, contact, space))
-    batches = rk.simulate_many(LEANING, pulse), rk.simulate_spatial_batch(block, pulse)
+    batches = rk.simulate_many(LEANING, pulse), rk.simulate_many(block, pulse, "housner")
     assert [int(np.ravel(b.outcome)[0]) for b in batches] == [rk.Outcome.OVERTURNED.code] * 2
 
 

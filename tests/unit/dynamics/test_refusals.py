@@ -135,9 +135,9 @@ def test_the_base_of_the_laws() -> None:
 def test_points_of_a_distribution(points: Any) -> None:
     """A distribution is stood for by a whole number of quantiles from 2 to 100,000; both ends are taken."""
     with pytest.raises(InvalidValueError, match=r"points must be a whole number in \[2, 100000\], got"):
-        rk.RandomRestitution.normal(0.5, 0.1, seed=1, points=points)
+        rk.dynamics.RandomRestitution.normal(0.5, 0.1, seed=1, points=points)
     for count in (2, 100_000):
-        assert rk.RandomRestitution.normal(0.5, 0.1, seed=1, points=count).factors.size == count
+        assert rk.dynamics.RandomRestitution.normal(0.5, 0.1, seed=1, points=count).factors.size == count
 
 
 # ---- many histories -------------------------------------------------------------------------------------------------
@@ -152,7 +152,9 @@ def test_bodies_and_motions(bad: Any, shown: str) -> None:
     pytest.importorskip("xarray")
     with pytest.raises(InvalidValueError, match=f"bodies must be one or more of Body, got {shown}"):
         rk.simulate_many(bad, PULSE)
-    with pytest.raises(InvalidValueError, match=f"motions must be one or more of GroundMotion, Pulse, got {shown}"):
+    with pytest.raises(
+        InvalidValueError, match=f"motions must be one or more of GroundMotion, Pulse, Mapping, got {shown}"
+    ):
         rk.simulate_many(BLOCK, bad)
     with pytest.raises(InvalidValueError, match=r"bodies must be one or more of Body, got Sinusoids.* at index 1"):
         rk.simulate_many([BLOCK, PULSE], PULSE)  # type: ignore[list-item]

@@ -173,7 +173,7 @@ def test_overturned_after_several_impacts(name: str) -> None:
 @every_engine
 def test_stopped(name: str) -> None:
     """A history that is stopped has no outcome, says why, and its samples end where it was stopped."""
-    response = let_go(name, most_impacts=3)
+    response = let_go(name, most_events=3)
     assert (response.outcome, response.status) == (Outcome.FAILED, Status.TOO_MANY_EVENTS)
     assert response.summary == "no result: stopped: more impacts and changes of contact than allowed"
     assert math.isnan(response.peak_rotation)

@@ -24,7 +24,7 @@ ENGINES = [
 STOOD = {
     "rocked": lambda: rk.free_rocking(BODY, 0.1, 0.9),
     "no uplift": lambda: rk.simulate(BODY, rk.pulses.sine(1.0, 0.5), "ked"),
-    "stopped": lambda: rk.free_rocking(BODY, 0.1, 0.95, most_impacts=4, duration=3.0),
+    "stopped": lambda: rk.free_rocking(BODY, 0.1, 0.95, most_events=4, duration=3.0),
 }
 
 

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking import conventions
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 
 # these take rows, whatever their type
-SPEED: Any = rk.SpeedRestitution
-RANDOM: Any = rk.RandomRestitution
+SPEED: Any = rk.dynamics.SpeedRestitution
+RANDOM: Any = rk.dynamics.RandomRestitution
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSE = rk.pulses.sine(amplitude=3.0, period=0.6)
 RECORD = rk.GroundMotion(np.sin(np.arange(30.0)), 0.05)
@@ -47,7 +48,10 @@ DOORS = (shaken, let_go, many)
 )  # fmt: skip
 @pytest.mark.parametrize("value", NO_NUMBERS)
 def test_no_numbers(door: Callable[..., Any], name: str, value: Any) -> None:
-    """Whatever is not one finite number is refused under its name."""
+    """Whatever is not one finite number is refused under its name; no setting is the usual one."""
+    if value is None and name in {"tolerance", "longest_step", "rest_speed"}:
+        assert repr(door(**{name: None})) == repr(door())
+        return
     with pytest.raises(InvalidValueError, match=f"{name} must be"):
         door(**{name: value})
 
@@ -73,7 +77,7 @@ def test_degrees_instead_of_radians(door: Callable[..., Any], degrees: float) ->
 @pytest.mark.filterwarnings("ignore::rocking.errors.PureRockingWarning")
 def test_speeds(door: Callable[..., Any], share: float) -> None:
     """Beyond 100 p an angular velocity is refused, with the range; up to there it is not."""
-    p = math.sqrt(0.75 * rk.conventions.g / math.hypot(0.25, 1.0))
+    p = math.sqrt(0.75 * conventions.g / math.hypot(0.25, 1.0))
     with pytest.raises(InvalidValueError, match=r"angular_velocity must be in \[-.*\] rad/s, got .*; degrees\?"):
         door(angular_velocity=share * p)
     thrown = door(angular_velocity=math.copysign(99.9999, share) * p)
@@ -103,7 +107,7 @@ def test_scales_of_many(value: Any) -> None:
 def test_no_bodies(body: Any) -> None:
     """What is no body is refused by every door."""
     for door in (shaken, let_go):
-        with pytest.raises(InvalidValueError, match="body must be a Block, Section or MassPoints, got"):
+        with pytest.raises(InvalidValueError, match=r"must be a Block, (a )?Section(, | or )MassPoints"):
             door(body=body)
     with pytest.raises(InvalidValueError, match="bodies must be one or more of Body"):
         many(bodies=[BLOCK, body])
@@ -112,9 +116,9 @@ def test_no_bodies(body: Any) -> None:
 @pytest.mark.parametrize("motion", [None, 1.0, "sine", [0.0, 1.0], np.ones(30), RECORD.segments(), BLOCK])
 def test_no_motions(motion: Any) -> None:
     """What is no motion is refused, arrays too: their step would be a guess."""
-    with pytest.raises(InvalidValueError, match="motion must be a GroundMotion or a pulse, got"):
+    with pytest.raises(InvalidValueError, match=r"motion must be a GroundMotion, a pulse, or .*, got"):
         shaken(motion=motion)
-    with pytest.raises(InvalidValueError, match="motions must be one or more of GroundMotion, Pulse"):
+    with pytest.raises(InvalidValueError, match="motions must be one or more of GroundMotion, Pulse, Mapping"):
         many(motions=[RECORD, motion])
 
 
@@ -167,7 +171,7 @@ def test_names(door: Callable[..., Any]) -> None:
     for engine in ("quick", "", "Fa st", None, 1, ["fast"]):
         with pytest.raises(InvalidValueError, match="engine must be one of auto, fast, reference, got"):
             door(engine=engine)
-    with pytest.raises(InvalidValueError, match="no option named 'dt'; there are gravity, linear"):
+    with pytest.raises(TypeError, match="unexpected keyword argument 'dt'"):
         door(dt=0.01)
 
 

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from rocking.bodies import Block, MassPoints, Region, Section
-from rocking.dynamics.histories import free_rocking, simulate
+from rocking.dynamics import free_rocking, simulate
 from rocking.errors import InvalidValueError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+import rocking as rk
 from rocking.bodies import Block
-from rocking.dynamics.planar import Regime, friction_demand, simulate_with_contact
+from rocking.dynamics.planar import Regime, friction_demand
 from rocking.errors import InvalidValueError
 from rocking.motions.pulses import sine
 from rocking.plots.regimes import regime_map_picture, regimes_picture
@@ -41,7 +42,7 @@ def test_map_refuses_what_it_cannot_draw(options, words):
 
 def test_response_is_drawn_over_its_regimes(tmp_path):
     """The curves are the samples, the bands cover the time axis once, and the file is the same twice."""
-    response = simulate_with_contact(Block(width=1.2, height=2.0), sine(amplitude=9.0, period=0.9), 0.62)
+    response = rk.simulate(Block(width=1.2, height=2.0), sine(amplitude=9.0, period=0.9), None, friction=0.62)
     figure = regimes_picture(response)
     time, rotation = max((line.get_data() for line in figure.axes[0].lines), key=lambda pair: len(pair[0]))
     assert np.array_equal(time, response.time)

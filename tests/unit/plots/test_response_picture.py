@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from rocking.bodies import Block
-from rocking.dynamics.histories import free_rocking, simulate
+from rocking.dynamics import free_rocking, simulate
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine

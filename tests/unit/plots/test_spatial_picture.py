@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial, simulate_spatial
+from rocking.dynamics import SpatialStart
+from rocking.dynamics.spatial import SpatialBody
 from rocking.plots.spatial import spatial_picture
 from rocking.plots.style import write
 
@@ -14,7 +15,9 @@ from rocking.plots.style import write
 @pytest.fixture(scope="module")
 def wobble():
     """A square box let go from a lean off its axes."""
-    return free_rocking_spatial(SpatialBody.box(1.0, 1.0, 4.0), 0.1, 0.4, duration=3.0)
+    return rk.free_rocking(
+        SpatialBody.box(1.0, 1.0, 4.0), restitution="housner", start=SpatialStart(0.1, 0.4), duration=3.0
+    )
 
 
 def test_the_curves_are_the_response(wobble):
@@ -34,8 +37,10 @@ def test_pictures_of_all_kinds_are_written_the_same_every_time(wobble, tmp_path)
     cylinder = SpatialBody.cylinder(0.5, 2.0)
     runs = [
         wobble,
-        simulate_spatial(SpatialBody.box(1.0, 1.0, 4.0), pulse),
-        free_rocking_spatial(cylinder, 0.1, angular_velocity=(0.3, 0.0, 0.1), duration=2.0),
+        rk.simulate(SpatialBody.box(1.0, 1.0, 4.0), pulse, "housner"),
+        rk.free_rocking(
+            cylinder, restitution="housner", start=SpatialStart(0.1, angular_velocity=(0.3, 0.0, 0.1)), duration=2.0
+        ),
     ]
     for number, run in enumerate(runs):
         first, second = (write(spatial_picture(run), tmp_path / f"{number}-{k}.png").read_bytes() for k in range(2))

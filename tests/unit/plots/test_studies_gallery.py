@@ -9,6 +9,7 @@ from matplotlib.collections import PolyCollection
 from scipy import stats
 
 import rocking as rk
+from rocking import conventions
 from rocking.errors import InvalidValueError
 from rocking.plots.cloud import cloud_picture
 from rocking.plots.crossings_of_many import crossings_of_many_picture
@@ -115,7 +116,7 @@ def test_cloud(cloudy):
     assert len(areas) == 4
     # the lowest area ends at the lognormal curve of overturning, the uppermost at one
     corners = areas[0].get_paths()[0].vertices
-    edge = corners[(corners[:, 1] > 1e-6) & (corners[:, 0] > 0.25 * rk.conventions.g)]  # where the ground lifts it
+    edge = corners[(corners[:, 1] > 1e-6) & (corners[:, 0] > 0.25 * conventions.g)]  # where the ground lifts it
     fit = cloudy.fits["overturned"]
     curve = stats.norm.cdf(np.log(edge[:, 0] / fit.median) / fit.dispersion)
     np.testing.assert_allclose(edge[:, 1], curve, rtol=1e-9)
@@ -142,12 +143,12 @@ def test_crossings_of_many():
     assert [panel.get_title(loc="left") for panel in figure.axes] == ["r = 0.85", "r = 0.95"]
     one = found["r = 0.85"][1]
     bars = [path.vertices[:, 0] for path in first.collections[1].get_paths()]
-    shown = sorted((each.min() * rk.conventions.g, each.max() * rk.conventions.g) for each in bars)
+    shown = sorted((each.min() * conventions.g, each.max() * conventions.g) for each in bars)
     np.testing.assert_allclose(shown, one.overturning_intervals, rtol=1e-12)
     assert len(shown) == 2  # the block stands again between
-    assert first.lines[0].get_xdata()[0] * rk.conventions.g == pytest.approx(one.minimum, rel=1e-12)
+    assert first.lines[0].get_xdata()[0] * conventions.g == pytest.approx(one.minimum, rel=1e-12)
     cut = crossings_of_many_picture(found, ["a", "b", "c"], until=6.0)
-    assert cut.axes[0].get_xlim()[1] * rk.conventions.g == pytest.approx(6.0, rel=1e-12)
+    assert cut.axes[0].get_xlim()[1] * conventions.g == pytest.approx(6.0, rel=1e-12)
     for names, words in ((["a"], "must have 1 Crossings"), ([], "1 to 60 lanes")):
         with pytest.raises(InvalidValueError, match=words):
             crossings_of_many_picture(found, names)

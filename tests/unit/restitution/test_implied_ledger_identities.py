@@ -129,7 +129,7 @@ def test_identity_report_catches_a_broken_model():
     """Negative control: a model that sees metres, kilograms and direction fails scale, density, mirror, round
     trip."""
 
-    class Bad(rk.RestitutionModel):
+    class Bad(rk.restitution.RestitutionModel):
         """Sees what it should not."""
 
         name = "bad"
@@ -143,7 +143,7 @@ def test_identity_report_catches_a_broken_model():
 def test_twins_have_the_same_mass_centre_and_inertia():
     """A model that sees nothing but mass, centre, inertia and feet holds "inertia alone", for a heavy body too."""
 
-    class Seen(rk.RestitutionModel):
+    class Seen(rk.restitution.RestitutionModel):
         """Sees mass, height, inertia and feet."""
 
         name = "seen"

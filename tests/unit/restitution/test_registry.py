@@ -10,7 +10,7 @@ from rocking.restitution import Interface, Ked, ShiftedImpulse, model, models, r
 BODY = rk.Block(width=1.0, height=2.0).with_feet(0.1, 1)
 
 
-class Half(rk.RestitutionModel):
+class Half(rk.restitution.RestitutionModel):
     """A user's own model."""
 
     name = "half"
@@ -192,7 +192,7 @@ def test_register_refuses(value):
     with pytest.raises(InvalidValueError, match="a restitution model is a subclass"):
         register(value)
 
-    class Nameless(rk.RestitutionModel):
+    class Nameless(rk.restitution.RestitutionModel):
         """No name."""
 
         def raw_coefficient(self, body, onto):

@@ -218,8 +218,8 @@ def test_contents_that_are_not_plain_are_refused():
 def test_numbers_of_settings_are_of_one_kind():
     """9 and 9.0, or numbers of another library, are the same settings with the same key."""
     base = product()
-    one = replace(base, settings=Settings(gravity=9, order=np.int64(8), most_impacts=np.int32(500)))
-    two = replace(base, settings=Settings(gravity=9.0, order=8, most_impacts=500))
+    one = replace(base, settings=Settings(gravity=9, order=np.int64(8), most_events=np.int32(500)))
+    two = replace(base, settings=Settings(gravity=9.0, order=8, most_events=500))
     assert one.key() == two.key()
     assert type(one.settings.gravity) is float
     narrow = replace(base, settings=Settings(gravity=np.float32(9.8), longest_step=np.float16(0.125)))

@@ -166,7 +166,7 @@ def test_vertical_motion_lowers_the_start():
 
 def test_failed_histories_are_counted():
     """Histories stopped for too many impacts are counted and set aside; if all are, that is an error."""
-    found = minimum_overturning_acceleration(BLOCK, noise(), 0.9, points=40, levels=0, most_impacts=3, threads=1)
+    found = minimum_overturning_acceleration(BLOCK, noise(), 0.9, points=40, levels=0, most_events=3, threads=1)
     assert 0 < found.failed < found.samples
     assert FAILED not in found.modes
     with pytest.raises(InvalidValueError, match="could be computed"):

@@ -5,6 +5,7 @@ import pytest
 
 import rocking as rk
 from rocking.app.studies.results import contours_of
+from rocking.dynamics.spatial_batch import SpatialBatch
 from rocking.motions.pulses import sine
 from rocking.outcome import Outcome, Status, overturned
 from rocking.plots.falling import falling_picture
@@ -27,7 +28,7 @@ def test_outcomes_as_numbers():
 def test_batches_and_maps_say_so():
     """Two impacts allowed: rows that need more have no result, and the share of falls is that of the others."""
     pulses = [sine(amplitude=a, period=0.8) for a in (2.0, 3.0, 4.0, 6.0)]
-    found = rk.simulate_many(LEANING, pulses, 0.9, most_impacts=2)
+    found = rk.simulate_many(LEANING, pulses, 0.9, most_events=2)
     failed = (found["status"] == Status.TOO_MANY_EVENTS.code).to_numpy().ravel()
     assert failed.any()
     assert np.array_equal(np.isnan(found["overturned"].to_numpy().ravel()), failed)
@@ -37,7 +38,7 @@ def test_batches_and_maps_say_so():
     assert float(found["overturned"].mean()) != pytest.approx(fell.mean())  # negative control: no result as standing
     ratios = np.linspace(0.5, 4.0, 6)
     axes = ("frequency_ratio", ratios), ("amplitude_ratio", ratios)
-    mapped = rk.overturning_map(LEANING, pulses[0], *axes, 0.9, most_impacts=2)
+    mapped = rk.overturning_map(LEANING, pulses[0], *axes, 0.9, most_events=2)
     assert np.array_equal(np.isnan(mapped["overturned"]), mapped["mode"] == -3)
     assert np.array_equal(mapped["overturned"] == 1.0, mapped["mode"] >= 0)
 
@@ -47,7 +48,7 @@ def test_fragilities_say_so(body):
     """Of failed histories it is not known whether they rocked or fell; counts, curves and shares leave them out."""
     records = [rk.GroundMotion(np.sin(np.arange(200) * w), 0.01) for w in (0.05, 0.08, 0.11, 0.14, 0.2)]
     levels = [1.0, 4.0, 6.0, 9.0, 14.0]
-    whole, cut = (multiple_stripes(body, records, levels, 0.9, states=(0.5,), **o) for o in ({}, {"most_impacts": 2}))
+    whole, cut = (multiple_stripes(body, records, levels, 0.9, states=(0.5,), **o) for o in ({}, {"most_events": 2}))
     failed = cut.responses.outcome == NONE
     assert 0 < failed.sum() == cut.failed < failed.size
     for state in cut.states:
@@ -67,7 +68,7 @@ def spatial_batch(outcome):
     values = {"outcome": codes.ravel(), "direction": np.zeros(codes.size)}
     values |= {"still_rocking": (codes.ravel() == STANDS).astype(np.int64)}
     labels = {"motion": ["a", "b"], "scale": list(range(1, 1 + len(outcome))), "restitution": ["housner-3d", "ked-3d"]}
-    return rk.SpatialBatch(codes.shape, values, "none", labels)
+    return SpatialBatch(codes.shape, values, "none", labels)
 
 
 def test_space_says_so():
@@ -79,10 +80,10 @@ def test_space_says_so():
     assert np.isnan(batch.still_rocking[0, 0, 2:]).all()
     for found in (batch.to_xarray()["still_rocking"].to_numpy(), batch.exported().columns["still_rocking"].values):
         assert np.array_equal(found.ravel(), batch.still_rocking.ravel(), equal_nan=True)
-    figure = falling_picture(batch, np.array([0.0, np.pi]))
+    figure = falling_picture(batch.to_xarray(), np.array([0.0, np.pi]))
     assert figure.axes[0].lines[0].get_ydata().tolist() == [50.0] * 3
     assert "0.0 % differ" in figure.axes[2].get_title(loc="left")
-    nothing = falling_picture(spatial_batch([NONE]), np.array([0.0, np.pi]))
+    nothing = falling_picture(spatial_batch([NONE]).to_xarray(), np.array([0.0, np.pi]))
     assert np.isnan(nothing.axes[0].lines[0].get_ydata()).all()
 
 

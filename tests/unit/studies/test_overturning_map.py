@@ -207,7 +207,7 @@ def test_levels_are_refused(refine):
 
 def test_random_restitution():
     """Random coefficients: every cell draws its own, as in `simulate_many`; refinement is refused."""
-    law = rk.RandomRestitution.normal(0.9, 0.03, seed=3)
+    law = rk.dynamics.RandomRestitution.normal(0.9, 0.03, seed=3)
     scales = np.linspace(0.5, 1.0, 30)
     found = overturning_map(BLOCK, noise(), ("scale", scales), ("semi_diagonal", [1.5]), law, threads=1)
     body = BLOCK.scaled(size=1.5 / BLOCK.semi_diagonal)

@@ -87,8 +87,8 @@ def test_what_a_spectrum_says_of_itself():
 def test_a_law_has_no_single_coefficient():
     """With a law of impact the coordinate is missing and the attribute names the law; with models it is the model's."""
     laws = {
-        "of the speed: 0.7 to 0.9 times ked": rk.SpeedRestitution([0.0, 1.0], [0.9, 0.7], times="ked"),
-        "at random: 0.8 to 0.9 times 1": rk.RandomRestitution([0.8, 0.9], 1),
+        "of the speed: 0.7 to 0.9 times ked": rk.dynamics.SpeedRestitution([0.0, 1.0], [0.9, 0.7], times="ked"),
+        "at random: 0.8 to 0.9 times 1": rk.dynamics.RandomRestitution([0.8, 0.9], 1),
     }
     for words, law in laws.items():
         found = rocking_spectrum(PULSES[0], ANGLES, PERIODS, law, threads=1)

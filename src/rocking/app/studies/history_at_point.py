@@ -14,7 +14,7 @@ from rocking.app.studies.opened import OpenStudy
 from rocking.app.studies.results import meaning, plain
 from rocking.bodies import Block, Body
 from rocking.bodies.formats.body_writer import body_to_toml
-from rocking.dynamics.histories import simulate
+from rocking.dynamics import simulate
 from rocking.dynamics.response import Motion, Response
 from rocking.errors import InvalidValueError, PureRockingWarning
 from rocking.motions.motion import GroundMotion
@@ -315,7 +315,7 @@ def _responded(
     asked = ResponseQuestion(
         variation.body, motion.motion, {variation.label: variation.restitution}, job.parts.settings, engine, scale=scale
     )
-    how = {**vars(asked.settings), "engine": engine, "key": place.number}
+    how = {**asked.settings.stated, "engine": engine, "key": place.number}
     with warnings.catch_warnings():  # the answer shows its doubts
         warnings.simplefilter("ignore", PureRockingWarning)
         return asked, simulate(asked.body, motion.motion, variation.restitution, scale=scale, **how)

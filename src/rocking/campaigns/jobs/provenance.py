@@ -33,7 +33,7 @@ def provenance(job: "Job") -> dict[str, Any]:
         "histories": histories.count,
         "histories_key": histories.key(),
         "restitution": [_model(label, choice) for label, choice in job.parts.choices.items()],
-        "settings": dict(vars(job.parts.settings)),
+        "settings": job.parts.settings.stated,
         "engine": _engine(job),
         "seeds": _seeds(job),
         "motions": _motions(job),

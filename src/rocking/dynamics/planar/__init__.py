@@ -1,8 +1,7 @@
 """Rest, sliding, rocking, sliding while rocking, and flight of a plane body, with friction and impacts."""
 
-from rocking.dynamics.planar.histories import simulate_with_contact
+from rocking.dynamics.planar.ground_contact import GroundContact
 from rocking.dynamics.planar.response import PlanarResponse
-from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
 from rocking.dynamics.planar.shenton import analytic_regime, friction_demand, regime_at_start, regime_map
 from rocking.dynamics.planar.start import Start
 from rocking.outcome import Regime
@@ -10,12 +9,10 @@ from rocking.outcome import Regime
 __all__ = [
     "GroundContact",
     "PlanarResponse",
-    "PlanarSettings",
     "Regime",
     "Start",
     "analytic_regime",
     "friction_demand",
     "regime_at_start",
     "regime_map",
-    "simulate_with_contact",
 ]

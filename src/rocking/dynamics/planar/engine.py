@@ -14,6 +14,7 @@ from rocking.dynamics.planar.choosing import TOLERANCE, NextMode, choose, weight
 from rocking.dynamics.planar.course import ModeSeries, course
 from rocking.dynamics.planar.footing import BOTH, Footing
 from rocking.dynamics.planar.ground import GroundSeries
+from rocking.dynamics.planar.ground_contact import GroundContact
 from rocking.dynamics.planar.history import History
 from rocking.dynamics.planar.impact import Struck, cleaned, largest_speed, strike
 from rocking.dynamics.planar.imposed import strike_with
@@ -21,9 +22,9 @@ from rocking.dynamics.planar.log import Blow, Log
 from rocking.dynamics.planar.margins import Kind, consistent, first_end, margins
 from rocking.dynamics.planar.mode import FLIGHT, REST, Mode
 from rocking.dynamics.planar.power_series import value
-from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
 from rocking.dynamics.planar.state import PlanarState, away, kept, kinetic
 from rocking.dynamics.planar.stirring import stirring
+from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, shifted
 from rocking.motions.segments import Segments
 from rocking.outcome import Status
@@ -46,7 +47,7 @@ class Planar:
         footing: Footing,
         segments: Segments,
         law: GroundContact,
-        settings: PlanarSettings,
+        settings: Settings,
         scale: float = 1.0,
     ) -> None:
         vertical = np.zeros_like(segments.horizontal) if segments.vertical is None else segments.vertical

@@ -64,7 +64,7 @@ def provenance(response: "PlanarResponse") -> dict[str, Any]:
         "motion": "none: ground at rest" if motion is None else motion.name,
         "motion_provenance": motion_provenance(motion),
         "scale": response.scale,
-        **{f"setting_{k}": v for k, v in vars(response.settings).items()},
+        **{f"setting_{k}": v for k, v in response.settings.stated.items()},
     }
 
 

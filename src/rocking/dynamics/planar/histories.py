@@ -1,7 +1,6 @@
-"""The question that users ask: what does the body do when its feet may slide, hop and bounce."""
+"""One plane body whose feet may slide, hop and bounce."""
 
 import math
-from dataclasses import fields
 from typing import Any
 
 from rocking import checks, conventions, plausibility
@@ -9,10 +8,11 @@ from rocking.bodies import Body
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.planar.engine import Planar
 from rocking.dynamics.planar.footing import Footing
+from rocking.dynamics.planar.ground_contact import GroundContact
 from rocking.dynamics.planar.response import PlanarResponse
-from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
 from rocking.dynamics.planar.start import Start
 from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -23,66 +23,23 @@ _FINE, _AFTER, _FREE = 0.1, 15.0, 60.0
 _MOST_SAMPLES = 2_000_000
 
 
-def simulate_with_contact(
+def response_with_contact(  # noqa: PLR0913 - what the front door hands on
     body: Body,
     motion: GroundMotion | Pulse | None,
     friction: float,
+    restitution: Any,
+    settings: Settings,
     *,
     bounce: float = 0.0,
-    restitution: Any = None,
+    start: Start,
     scale: float = 1.0,
     duration: float | None = None,
-    **options: Any,
 ) -> PlanarResponse:
-    """Return how a body rests, slides, rocks, slides while it rocks, and flies.
+    """Return how a body rests, slides, rocks, slides while it rocks, and flies; on ground at rest without a motion.
 
-    Impacts follow from complementarity: Newton's restitution `bounce` for velocities away from the ground, Coulomb
-    friction along it, both feet at the same instant. With much friction and no bounce a slender block keeps Housner's
-    coefficient, and one squatter than h / b = 1 / sqrt(2) stops.
-
-    Parameters
-    ----------
-    body : Body
-        Block, Section or MassPoints, standing on its two feet.
-    motion : GroundMotion or Pulse, optional
-        The motion; None for ground at rest.
-    friction : float
-        Coulomb's coefficient mu, from 0 to 1e6 [-].
-    bounce : float
-        Newton's coefficient e_N, in [0, 1) [-].
-    restitution : str, RestitutionModel, float or mapping, optional
-        Coefficient of restitution for rocking impacts, theta_dot_after / theta_dot_before without slip, as for
-        `simulate`. It fixes where the resultant of the impulses acts; if that takes more friction than there is, the
-        foot slides off under the friction there is (see `rocking.dynamics.planar.imposed`). Landings from flight keep
-        to complementarity.
-    scale : float
-        Factor on both components of the motion [-].
-    duration : float, optional
-        How long to follow the body [s]; if not given, the motion and 15 sqrt(R / g) after it. One that leans beyond
-        its slenderness angle then is followed, on ground at rest, until it lies or leans less: `outcome` needs it.
-    **options
-        ``start`` (a `Start`), ``gravity`` [m/s2], and further fields of `PlanarSettings`.
-
-    Returns
-    -------
-    PlanarResponse
-        Positions, regimes, impacts, sliding, forces, energy, outcome.
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is outside its range.
-
-    Examples
-    --------
-    >>> import rocking as rk
-    >>> block = rk.Block(width=1.0, height=1.0)
-    >>> response = simulate_with_contact(block, rk.pulses.rectangular(4.0, 0.5), friction=0.3)
-    >>> response.outcome.name, bool(response.sliding_distance > 0.0)
-    ('SLID', True)
+    restitution: None for impacts by complementarity alone; scale: factor on the motion [-]; duration: how long to
+    follow the body [s]; if not given, the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest.
     """
-    start = _start(options.pop("start", None))
-    settings = _settings(options)
     footing = Footing.of_body(body)
     law = GroundContact(
         friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
@@ -96,23 +53,7 @@ def simulate_with_contact(
     return PlanarResponse(body, motion, footing, law, settings, segments, scale, history)
 
 
-def _start(given: object) -> Start:
-    if given is None:
-        return Start()
-    if not isinstance(given, Start):
-        raise InvalidValueError(f"start must be a Start(rotation=..., ...), got {given!r:.60}")
-    return given
-
-
-def _settings(options: dict[str, Any]) -> PlanarSettings:
-    known = {f.name for f in fields(PlanarSettings)}
-    unknown = sorted(set(options) - known)
-    if unknown:
-        raise InvalidValueError(f"no option named {unknown[0]!r}; there are start, {', '.join(sorted(known))}")
-    return PlanarSettings(**{"gravity": conventions.g, **options})
-
-
-def _imposed(body: Body, restitution: Any, settings: PlanarSettings) -> tuple[float, float] | None:
+def _imposed(body: Body, restitution: Any, settings: Settings) -> tuple[float, float] | None:
     if restitution is None:
         return None
     if isinstance(restitution, ImpactLaw):

@@ -13,9 +13,10 @@ from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.planar.books import PlanarEnergy, PlanarForces, energy_of, forces_of
 from rocking.dynamics.planar.events import impacts_of, places_of, regimes_of
 from rocking.dynamics.planar.footing import Footing
+from rocking.dynamics.planar.ground_contact import GroundContact
 from rocking.dynamics.planar.history import History
 from rocking.dynamics.planar.log import SAMPLED
-from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -30,7 +31,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class PlanarResponse(Exportable):
-    """What `simulate_with_contact` returns.
+    """What `simulate` returns of a plane body with friction.
 
     Parameters
     ----------
@@ -42,7 +43,7 @@ class PlanarResponse(Exportable):
         The body as the equations see it.
     law : ContactLaw
         Friction and restitution.
-    settings : PlanarSettings
+    settings : Settings
         How it was integrated.
     segments : Segments
         The motion as it was integrated [m/s2].
@@ -56,7 +57,7 @@ class PlanarResponse(Exportable):
     motion: GroundMotion | Pulse | None
     footing: Footing
     law: GroundContact
-    settings: PlanarSettings
+    settings: Settings
     segments: Segments = field(repr=False)
     scale: float
     history: History = field(repr=False)

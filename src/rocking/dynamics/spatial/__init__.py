@@ -1,10 +1,9 @@
 """Bodies in space: rocking about edges and vertices, rolling on rims, under three components of motion."""
 
-from rocking.dynamics.spatial.histories import free_rocking_spatial, simulate_spatial
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
 from rocking.dynamics.spatial.response import SpatialResponse
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.dynamics.spatial.settings import SpatialSettings
+from rocking.dynamics.spatial.start import SpatialStart
 from rocking.outcome import ContactMode
 
 __all__ = [
@@ -12,7 +11,5 @@ __all__ = [
     "SpatialBody",
     "SpatialImpactLaw",
     "SpatialResponse",
-    "SpatialSettings",
-    "free_rocking_spatial",
-    "simulate_spatial",
+    "SpatialStart",
 ]

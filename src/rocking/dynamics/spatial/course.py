@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.dynamics.settings import Settings
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.spatial.trajectory import SpatialEvent, SpatialEventKind, SpatialTrajectory, StepPiece
 from rocking.dynamics.taylor import slope, turning_points
@@ -21,7 +21,7 @@ _HALVINGS = 60
 class IntegrationState:
     """The record of a history."""
 
-    def __init__(self, body: SpatialBody, settings: SpatialSettings) -> None:
+    def __init__(self, body: SpatialBody, settings: Settings) -> None:
         self.body, self.settings = body, settings
         self.pieces: list[StepPiece] = []
         self.events: list[SpatialEvent] = []

@@ -48,7 +48,7 @@ def provenance(response: "SpatialResponse") -> dict[str, Any]:
         "base_m": np.ravel(body.base).tolist(),
         "restitution": response.law.label,
         **{f"motion_{axis}": name for axis, name in zip(("x", "y", "vertical"), response.names, strict=True)},
-        **{f"setting_{k}": v for k, v in vars(response.settings).items()},
+        **{f"setting_{k}": v for k, v in response.settings.stated.items()},
     }
 
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.dynamics.settings import Settings
 from rocking.dynamics.spatial import attitude, events, flow, release, resting
 from rocking.dynamics.spatial import stance as stances
 from rocking.dynamics.spatial.attitude import cross
@@ -16,7 +17,6 @@ from rocking.dynamics.spatial.landing import CLOSED, laid_down, landed, rim_land
 from rocking.dynamics.spatial.rocker import SpatialBody
 from rocking.dynamics.spatial.rolling import RollingFlow
 from rocking.dynamics.spatial.selection import Continuation, SpatialState, of_forces
-from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.stance import Stance
 from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory, StepPiece
 from rocking.outcome import ContactMode, Outcome, Status
@@ -30,9 +30,7 @@ _PATIENCE, _MOST_LATE = 300.0, 10_000  # time over 1 / p, and steps, after the e
 class SpatialReference:
     """One history."""
 
-    def __init__(
-        self, body: SpatialBody, ground: SpatialGround, law: SpatialImpactLaw, settings: SpatialSettings
-    ) -> None:
+    def __init__(self, body: SpatialBody, ground: SpatialGround, law: SpatialImpactLaw, settings: Settings) -> None:
         self.body, self.ground, self.law, self.settings = body, ground, law, settings
         self.p = body.frequency(settings.gravity)
         self.slow = settings.rest_speed * math.sqrt(settings.gravity * body.size)

@@ -11,12 +11,12 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
+from rocking.dynamics.settings import Settings
 from rocking.dynamics.spatial import attitude
 from rocking.dynamics.spatial.events import NEARLY_FLAT
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import SpatialImpactLaw
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial.trajectory import SpatialEventKind, SpatialTrajectory
 from rocking.errors import InvalidValueError
 from rocking.outcome import ContactMode, Outcome, Status
@@ -44,7 +44,7 @@ for the points to stick [N s], what stays, and its vertices."""
 
 @dataclass(frozen=True, eq=False)
 class SpatialResponse(Exportable):
-    """What `simulate_spatial` returns; everything that takes time is computed when first asked for.
+    """What `simulate` returns of a body in space; everything that takes time is computed when first asked for.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class SpatialResponse(Exportable):
         The motion as it was integrated [m/s2].
     law : SpatialImpactLaw
         What impacts cost.
-    settings : SpatialSettings
+    settings : Settings
         How it was integrated.
     time : ndarray
         Times of the samples, to the end or until the body lies [s].
@@ -69,7 +69,7 @@ class SpatialResponse(Exportable):
     body: SpatialBody
     ground: SpatialGround = field(repr=False)
     law: SpatialImpactLaw
-    settings: SpatialSettings
+    settings: Settings
     time: FloatArray = field(repr=False)
     trajectory: SpatialTrajectory = field(repr=False)
     end: float

@@ -274,7 +274,10 @@ def _attribute(body: Any, names: tuple[str, ...]) -> Any:
     for name in names:
         if getattr(body, name, None) is not None:
             return getattr(body, name)
-    raise InvalidValueError(f"a body in space needs {' or '.join(names)}, got {type(body).__name__} without")
+    raise InvalidValueError(
+        f"body must be a Block, a Section, MassPoints or one in space; a body in space needs {' or '.join(names)}, got "
+        f"{type(body).__name__} without"
+    )
 
 
 def _finite(name: str, values: Any, shape: tuple[int, ...], unit: str) -> FloatArray:

@@ -5,14 +5,14 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.dynamics.settings import Settings
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.dynamics.spatial.start import SpatialStart
 from rocking.dynamics.spatial_batch import tables
 from rocking.dynamics.spatial_batch.laws import batch_law
 from rocking.dynamics.spatial_batch.rows import RowTable
-from rocking.dynamics.spatial_batch.run import stock_of
-from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
-from rocking.dynamics.spatial_batch.start import SpatialStart
+from rocking.dynamics.spatial_batch.run import limits_of, stock_of
 
 COURSE = np.dtype(
     [
@@ -38,18 +38,18 @@ def course_of(
     *,
     scale: float = 1.0,
     start: SpatialStart | None = None,
-    settings: SpatialBatchSettings | None = None,
+    settings: Settings | None = None,
 ) -> np.ndarray:
     """Return the course of a history as the compiled engine computes it in any batch, bit for bit.
 
     horizon: how long to follow the body [s]; scale: factor on the motion [-]. Returns with the fields of `COURSE`, in
     order of time.
     """
-    made = settings or SpatialBatchSettings()
+    made = settings or Settings(mechanics="space, many")
     laws, starts, horizons = [batch_law(restitution)], [start or SpatialStart()], np.array([[horizon]])
     table = RowTable((1, 1, 1, 1, 1), np.array([scale]), laws, starts, horizons)
     numbers, choices = table.piece(0, 1)
     results, counts = np.empty((1, tables.RESULTS)), np.empty((1, tables.COUNTS), np.int64)
     stock = stock_of([body], [ground], table, made.gravity)
-    rows: FloatArray = stock.trace(numbers, choices, results, counts, **made.limits)
+    rows: FloatArray = stock.trace(numbers, choices, results, counts, **limits_of(made))
     return rows.view(COURSE)[:, 0]

@@ -1,11 +1,10 @@
 """The compiled engine as Python sees it: whether it is there, and which instructions it uses."""
 
 import os
-import warnings
 from functools import cache
 from types import ModuleType
 
-from rocking import checks
+from rocking import checks, errors
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
 _NOT_BUILT = (
@@ -46,7 +45,7 @@ def chosen(asked: str) -> str:
     if asked == "fast":
         module()
     if asked == "auto" and not available():
-        warnings.warn(f"{_NOT_BUILT}; the reference engine runs instead, row by row", SlowEngineWarning, stacklevel=3)
+        errors.warn(f"{_NOT_BUILT}; the reference engine runs instead, row by row", SlowEngineWarning)
         return "reference"
     return "fast" if asked == "auto" else asked
 

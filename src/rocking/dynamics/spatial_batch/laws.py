@@ -44,5 +44,5 @@ def batch_law(restitution: Any) -> BatchLaw:
         return BatchLaw(law, law.label, CODES[law.label])
     raise InvalidValueError(
         f"restitution in a batch must be one of {', '.join(CODES)}, or a coefficient in [0, 1], got {law.label!r:.60}; "
-        "simulate_spatial takes any law"
+        "one history, by simulate, takes any law"
     )

@@ -1,13 +1,15 @@
-"""`simulate_spatial_batch`: every body under every motion at every scale with every restitution and start."""
+"""Every body in space under every motion at every scale with every restitution and start."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from rocking import checks, conventions, plausibility
+from rocking import checks, plausibility
+from rocking.dynamics.settings import Settings
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.rocker import SpatialBody
+from rocking.dynamics.spatial.start import SpatialStart
 from rocking.dynamics.spatial_batch import engine as engines
 from rocking.dynamics.spatial_batch.ground import joined
 from rocking.dynamics.spatial_batch.laws import batch_law
@@ -15,77 +17,29 @@ from rocking.dynamics.spatial_batch.provenance import provenance
 from rocking.dynamics.spatial_batch.result import SpatialBatch
 from rocking.dynamics.spatial_batch.rows import RowTable
 from rocking.dynamics.spatial_batch.run import run_compiled, run_reference
-from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
-from rocking.dynamics.spatial_batch.start import SpatialStart
 from rocking.errors import InvalidValueError, RockingError
 
 _LONG = 300.0
 
 
-def simulate_spatial_batch(  # noqa: PLR0913 - every one of them is a question that users ask
+def batch_in_space(  # noqa: PLR0913, PLR0917 - what the front door hands on
     bodies: Any,
     motions: Any = None,
     restitution: Any = "housner-3d",
-    *,
     scales: Any = 1.0,
     start: SpatialStart | Sequence[SpatialStart] | None = None,
-    gravity: float = conventions.g,
+    settings: Settings | None = None,
     duration: float | None = None,
     engine: str = "auto",
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
-    **options: Any,
 ) -> SpatialBatch:
     """Return the outcome of every combination of bodies, motions, scales, restitutions and starts in space.
 
-    Parameters
-    ----------
-    bodies : SpatialBody, any object that `simulate_spatial` takes, or a sequence of such
-        The bodies; one that cannot be gives its rows a status, and the reason in `refused`.
-    motions : GroundMotion, Pulse, tuple of up to three of them, or list of such, optional
-        A tuple has the components x, y and vertical, None for a direction without; ground at rest if not given.
-    restitution : str, float, law, or list of such
-        "housner-3d", "horizontal-momentum-3d", "ked-3d", "ked-3d-point", or a coefficient from 0 to 1.
-    scales : float or array_like
-        Factors on the motions [-].
-    start : SpatialStart or sequence of them, optional
-        Initial conditions; standing upright at rest if not given.
-    gravity : float
-        Acceleration of gravity [m/s2].
-    duration : float, optional
-        How long to follow the bodies [s]; if not given, to the end of the motion, on ground at rest 300 / p. After
-        that a history goes on until its energy decides whether it overturns.
-    engine : {"auto", "fast", "reference"}
-        Which engine; the reference engine takes thousands of times as long.
-    threads : int, optional
-        Threads of the compiled engine; the results do not depend on them.
-    progress : callable, optional
-        Called with the number of histories done since the last call.
-    **options
-        Fields of `SpatialBatchSettings`.
-
-    Returns
-    -------
-    SpatialBatch
-        Outcome, status, peak tilt, direction of overturning and more, and which engine ran.
-
-    Raises
-    ------
-    InvalidValueError
-        If an argument is none of these, the combination is empty, or the compiled engine does not know such a base.
-    MissingExtraError
-        If engine="fast" and it was not built.
-
-    Examples
-    --------
-    >>> import rocking as rk
-    >>> boxes = [SpatialBody.box(0.5, 0.4, height) for height in (1.5, 2.0)]
-    >>> record = rk.pulses.sine(amplitude=4.0, period=0.8)
-    >>> batch = simulate_spatial_batch(boxes, (record, record.scaled(0.5)), scales=[0.2, 0.8, 3.0])
-    >>> batch.overturned[:, 0, :, 0, 0].tolist()
-    [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]]
+    motions: tuples of components; scales: factors on them [-]; duration: how long to follow the bodies [s]; the
+    reference engine takes thousands of times as long as the compiled one.
     """
-    settings = SpatialBatchSettings.of(gravity, options)
+    settings = settings or Settings(mechanics="space, many")
     made, refused = _bodies(bodies)
     grounds, names = _grounds(motions, duration)
     laws = [batch_law(choice) for choice in _listed("restitution", restitution)]
@@ -98,7 +52,7 @@ def simulate_spatial_batch(  # noqa: PLR0913 - every one of them is a question t
     if progress is not None and not callable(progress):
         raise InvalidValueError(f"progress must be a function of the histories done, or None, got {progress!r:.60}")
     shape = (len(made), len(grounds), factors.size, len(laws), len(starts))
-    horizons = np.array([[_horizon(body, ground, duration, gravity) for ground in grounds] for body in made])
+    horizons = np.array([[_horizon(body, ground, duration, settings.gravity) for ground in grounds] for body in made])
     table = RowTable(shape, factors, laws, starts, horizons)
     if engines.chosen(engine) == "fast":
         values, used = run_compiled(made, grounds, table, settings, threads, progress)

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from rocking.dynamics.exportable import motion_provenance
+from rocking.dynamics.settings import Settings
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
-from rocking.dynamics.spatial_batch.start import SpatialStart
+from rocking.dynamics.spatial.start import SpatialStart
 
 _FEW = 100
 """Up to so many bodies are spelled out; of more of them the digest alone is kept."""
@@ -20,7 +20,7 @@ def provenance(
     bodies: Sequence[SpatialBody | None],
     motions: Sequence[Any],
     starts: Sequence[SpatialStart],
-    settings: SpatialBatchSettings,
+    settings: Settings,
     duration: float | None,
 ) -> dict[str, Any]:
     """Return of what a batch was computed, beside its labels.
@@ -28,7 +28,7 @@ def provenance(
     duration: how long bodies were followed, where given [s]. Returns numbers and words; bodies and starts as JSON, and
     a digest of all bodies.
 
-    >>> made = provenance([SpatialBody.box(1.0, 1.0, 4.0)], [None], [SpatialStart()], SpatialBatchSettings(), None)
+    >>> made = provenance([SpatialBody.box(1.0, 1.0, 4.0)], [None], [SpatialStart()], Settings(), None)
     >>> made["duration_s"], len(json.loads(made["bodies"]))
     ('to the end of the motion', 1)
     """
@@ -37,7 +37,7 @@ def provenance(
     leaning = [[s.tilt, s.azimuth, s.yaw, *np.ravel(s.angular_velocity).tolist()] for s in starts if s.valid]
     return {
         "duration_s": "to the end of the motion" if duration is None else float(duration),
-        **{f"setting_{name}": value for name, value in vars(settings).items()},
+        **{f"setting_{name}": value for name, value in settings.stated.items()},
         "motions": json.dumps([[motion_provenance(part) for part in _parts(motion)] for motion in motions]),
         "starts": json.dumps(leaning),
         **few,

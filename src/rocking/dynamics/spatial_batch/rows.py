@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.spatial.start import SpatialStart
 from rocking.dynamics.spatial_batch.laws import BatchLaw
-from rocking.dynamics.spatial_batch.start import SpatialStart
 from rocking.dynamics.spatial_batch.tables import ROW
 
 

@@ -8,16 +8,15 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.settings import Settings
 from rocking.dynamics.spatial.ground import SpatialGround
 from rocking.dynamics.spatial.impact import law_of
 from rocking.dynamics.spatial.reference import SpatialReference
 from rocking.dynamics.spatial.rocker import SpatialBody
-from rocking.dynamics.spatial.settings import SpatialSettings
 from rocking.dynamics.spatial_batch import engine, tables
 from rocking.dynamics.spatial_batch.one import results_of
 from rocking.dynamics.spatial_batch.result import FLOATS, WHOLES
 from rocking.dynamics.spatial_batch.rows import RowTable
-from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, Status
 
@@ -53,11 +52,22 @@ def stock_of(bodies: Bodies, grounds: Sequence[SpatialGround], table: RowTable, 
     )
 
 
+def limits_of(settings: Settings) -> dict[str, Any]:
+    """Return settings as the compiled engine names them."""
+    return {
+        "gravity": settings.gravity,
+        "rest_speed": settings.rest_speed,
+        "tolerance": settings.tolerance,
+        "longest": settings.longest_step,
+        "most_events": settings.most_events,
+    }
+
+
 def run_compiled(
     bodies: Bodies,
     grounds: Sequence[SpatialGround],
     table: RowTable,
-    settings: SpatialBatchSettings,
+    settings: Settings,
     threads: int | None,
     progress: Progress,
 ) -> tuple[Results, str]:
@@ -71,7 +81,7 @@ def run_compiled(
     for first in range(0, len(table), PIECE):
         last = min(first + PIECE, len(table))
         numbers, choices = table.piece(first, last)
-        stock.run(numbers, choices, results[first:last], counts[first:last], threads=crew, **settings.limits)
+        stock.run(numbers, choices, results[first:last], counts[first:last], threads=crew, **limits_of(settings))
         if progress is not None:
             progress(last - first)
     used = f"fast ({engine.instruction_set()}; Taylor, order up to 16, tolerance {settings.tolerance:g})"
@@ -82,12 +92,14 @@ def run_reference(
     bodies: Bodies,
     grounds: Sequence[SpatialGround],
     table: RowTable,
-    settings: SpatialBatchSettings,
+    settings: Settings,
     progress: Progress,
 ) -> tuple[Results, str]:
     """Return the results of all rows by the reference engine."""
     results, counts = np.full((len(table), tables.RESULTS), np.nan), np.empty((len(table), tables.COUNTS), np.int64)
-    fields = SpatialSettings(settings.gravity, settings.rest_speed, settings.most_events)
+    fields = Settings(
+        settings.gravity, rest_speed=settings.rest_speed, most_events=settings.most_events, mechanics="space"
+    )
     for k in range(len(table)):
         numbers, choices = table.piece(k, k + 1)
         law = int(np.unravel_index(k, table.shape)[3])
@@ -105,7 +117,7 @@ def named(results: FloatArray, counts: IntArray) -> Results:
 
 
 def _one(
-    body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: SpatialSettings
+    body: SpatialBody | None, ground: SpatialGround, law: Any, row: FloatArray, settings: Settings
 ) -> tuple[FloatArray, list[int]]:
     codes = [Outcome.FAILED.code, Status.INVALID.code, -1, -1]
     refused = np.full(tables.RESULTS, math.nan), [*codes, 0, 0, 0, 0, 0]

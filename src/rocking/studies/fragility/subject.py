@@ -13,10 +13,9 @@ from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.batch import PIECE, SIDES
 from rocking.dynamics.engine import Arrays, empty_results
-from rocking.dynamics.histories import settings_of
 from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
-from rocking.dynamics.settings import Settings
+from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility._measures import IntensityMeasure, RockingScale, measure
 from rocking.studies.histories import Histories, HistoryTable, Product
@@ -149,7 +148,7 @@ class Subject:
             "measure_unit": self.measure.unit,
             "restitution": self.rocker.label,
             **sides,
-            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in vars(self.settings).items()},
+            **{f"setting_{k}": int(v) if isinstance(v, bool) else v for k, v in self.settings.stated.items()},
         }
 
 

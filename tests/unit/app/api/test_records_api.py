@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking import conventions
 from rocking.app.errors import NotFound, TooLarge
 from rocking.app.records import RecordStore
 from rocking.app.settings import Limits
@@ -176,7 +177,7 @@ def test_a_motion_has_the_numbers_of_the_library(client):
     """Intensity measures and spectrum of the scaled record equal those of the library to the last digit."""
     record = sent(client, COLUMNS, units="g").json()["record"]
     answer = client.post("/api/motion", json={"motion": {"record": record, "units": "g", "scale": -1.7}}).json()
-    acceleration = np.array([float(line.split()[1]) for line in COLUMNS.decode().splitlines()]) * rk.conventions.g
+    acceleration = np.array([float(line.split()[1]) for line in COLUMNS.decode().splitlines()]) * conventions.g
     motion = rk.GroundMotion(acceleration, 0.01).scaled(-1.7)
     assert answer["peak_acceleration_m_s2"] == motion.peak
     from rocking.motions.intensity import arias_intensity

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking import conventions
 from rocking.campaigns.jobs import Job, JobFolder, export, exports_of
 from rocking.campaigns.jobs.comparison import comparison, comparison_table
 from rocking.errors import InvalidValueError
@@ -79,7 +80,7 @@ def test_tables(campaign, tmp_path):
     row = gained[0]
     block = rk.Block(width=0.5, height=2.0)
     period = 2.0 * np.pi / (float(row["frequency_ratio"]) * block.frequency_parameter)
-    amplitude = float(row["amplitude_ratio"]) * rk.conventions.g * np.tan(block.slenderness_angle)
+    amplitude = float(row["amplitude_ratio"]) * conventions.g * np.tan(block.slenderness_angle)
     outcomes = [rk.simulate(block, rk.pulses.sine(amplitude, period), r).outcome for r in ("housner", "ked")]
     assert outcomes == [rk.Outcome.ROCKED, rk.Outcome.OVERTURNED]
 

@@ -16,7 +16,7 @@ from rocking.restitution.from_file import model_in_file
 MINE = """import rocking as rk
 
 
-class Mine(rk.RestitutionModel):
+class Mine(rk.restitution.RestitutionModel):
     name = "mine"
 
     def raw_coefficient(self, body, onto):
@@ -94,7 +94,8 @@ def test_model_travels_with_its_source(own: Path) -> None:
     sent = pickle.dumps(made)
     (own / "mine.py").unlink()
     code = "import pickle, sys, rocking as rk; made = pickle.load(sys.stdin.buffer)\n"
-    code += "print(type(made).__name__, made.raw_coefficient(None, None), isinstance(made, rk.RestitutionModel))"
+    code += "print(type(made).__name__, made.raw_coefficient(None, None), "
+    code += "isinstance(made, rk.restitution.RestitutionModel))"
     told = subprocess.run([sys.executable, "-c", code], input=sent, capture_output=True, check=True).stdout
     assert told.split() == [b"Mine", b"0.9", b"True"]
     (own / "mine.py").write_text(MINE.format(value=0.9) + "# a remark\n", encoding="utf-8")

@@ -143,7 +143,7 @@ def test_the_label_says_what_is_cut_off():
     with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the distribution"):
         (label,) = job_of("mean = 0.9\ndeviation = 0.05", "histories", body=text, rest="").parts.choices
     with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the distribution"):
-        told = rk.simulate_many(body, rk.pulses.sine(3.0, 0.6), rk.RandomRestitution.normal(0.9, 0.05, seed=8))
+        told = rk.simulate_many(body, rk.pulses.sine(3.0, 0.6), rk.dynamics.RandomRestitution.normal(0.9, 0.05, seed=8))
     words = " (of the distribution 9.78 % onto right cut off, where impacts would create energy)"
     assert label == f"drawn per impact: 0.9 +- 0.05, seed 8{words}"
     assert str(told["restitution"].values[0]).endswith(words)

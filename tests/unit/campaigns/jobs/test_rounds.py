@@ -201,7 +201,7 @@ def test_nothing_to_find(tmp_path):
 
 def test_bodies_that_fail_alone(tmp_path):
     """Where no history can be computed a row says so, and the others have their numbers."""
-    words = text_of("minimum").replace("[minimum]", "[settings]\nmost_impacts = 1\n[minimum]")
+    words = text_of("minimum").replace("[minimum]", "[settings]\nmost_events = 1\n[minimum]")
     folder = JobFolder.create(tmp_path / "c", Job.of_text(words))
     folder.run(workers=1)
     columns = answer(folder).tables["minima"].columns

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import rocking as rk
 from rocking.bodies import Block
 from rocking.dynamics import simulate
 from rocking.dynamics.impact_law import SpeedRestitution
@@ -17,14 +18,14 @@ from rocking.dynamics.planar import (
     Start,
     friction_demand,
     regime_at_start,
-    simulate_with_contact,
 )
 from rocking.dynamics.planar.engine import Planar
 from rocking.dynamics.planar.export import SAMPLES
 from rocking.dynamics.planar.footing import Footing
+from rocking.dynamics.planar.ground_contact import GroundContact
 from rocking.dynamics.planar.log import Log
 from rocking.dynamics.planar.mode import Mode
-from rocking.dynamics.planar.settings import GroundContact, PlanarSettings
+from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import rectangular, sine
@@ -39,7 +40,7 @@ BODY = Block(width=1.0, height=2.0)
 @pytest.fixture(scope="module")
 def rocked():
     """Sliding, rocking and impacts under a sine pulse."""
-    return simulate_with_contact(Block(width=1.2, height=2.0), sine(amplitude=9.0, period=0.9), 0.62)
+    return rk.simulate(Block(width=1.2, height=2.0), sine(amplitude=9.0, period=0.9), None, friction=0.62)
 
 
 def test_of_two_changes_at_one_time_the_last_counts():
@@ -54,11 +55,11 @@ def test_outcomes_of_five_bodies(rocked):
     """Rest, sliding, rocking, both, overturning: each has its sentence, with "overturned" only where it did."""
     pulse = rectangular(4.0, 0.5)
     found = [
-        simulate_with_contact(BODY, rectangular(1.0, 0.5), 0.5),
-        simulate_with_contact(BODY, pulse, 0.3),
-        simulate_with_contact(BODY, rectangular(6.0, 0.1), 1.0),
+        rk.simulate(BODY, rectangular(1.0, 0.5), None, friction=0.5),
+        rk.simulate(BODY, pulse, None, friction=0.3),
+        rk.simulate(BODY, rectangular(6.0, 0.1), None, friction=1.0),
         rocked,
-        simulate_with_contact(Block(width=0.2, height=2.0), pulse, 0.6),
+        rk.simulate(Block(width=0.2, height=2.0), pulse, None, friction=0.6),
     ]
     expected = [
         Outcome.NO_UPLIFT,
@@ -78,7 +79,7 @@ def test_outcomes_of_five_bodies(rocked):
 def test_body_that_rests_is_only_looked_up():
     """A minute of ground that never moves the body: no sample moves, and the forces are its weight."""
     motion = GroundMotion(np.full(6001, 0.5), 0.01)
-    response = simulate_with_contact(BODY, motion, 0.4)
+    response = rk.simulate(BODY, motion, None, friction=0.4)
     assert not response.rotation.any()
     assert not response.displacement.any()
     assert response.forces.vertical[100] == pytest.approx(BODY.mass * G, rel=1e-14)
@@ -159,7 +160,7 @@ def test_csv_needs_a_folder(rocked, tmp_path):
         ({"rest_speed": 0.0}, "rest_speed must be in"),
         ({"most_events": 0}, "most_events must be"),
         ({"tolerance": 1.0}, "tolerance must be in"),
-        ({"order": 8}, "no option named 'order'"),
+        ({"order": 8}, "order is no setting of contact"),
         ({"start": 0.1}, "start must be a Start"),
         ({"restitution": 1.5}, "would create energy"),
         ({"restitution": SpeedRestitution((0.0, 1.0), (1.0, 0.9))}, "laws that change"),
@@ -169,9 +170,9 @@ def test_csv_needs_a_folder(rocked, tmp_path):
 )
 def test_bad_input_is_refused(options, words):
     """Each refusal names the value and its range."""
-    given = {"body": BODY, "motion": rectangular(4.0, 0.5), "friction": 0.3, **options}
+    given = {"body": BODY, "motion": rectangular(4.0, 0.5), "friction": 0.3, "restitution": None, **options}
     with pytest.raises(InvalidValueError, match=words):
-        simulate_with_contact(**given)
+        rk.simulate(**given)
 
 
 @pytest.mark.parametrize(
@@ -185,13 +186,13 @@ def test_bad_starts_are_refused(wrong):
 
 def test_settings_are_frozen_values():
     """Defaults pass their own checks."""
-    assert PlanarSettings().rest_speed == 1e-7
+    assert Settings(mechanics="contact").rest_speed == 1e-7
     assert GroundContact(0.5) == GroundContact(0.5, 0.0, None)
 
 
 def test_too_many_events_are_a_status():
     """A history that is cut by its limit has no result."""
-    response = simulate_with_contact(BODY, None, 0.5, bounce=0.9, start=Start(height=0.1), most_events=5)
+    response = rk.free_rocking(BODY, restitution=None, friction=0.5, bounce=0.9, start=Start(height=0.1), most_events=5)
     assert response.status is Status.TOO_MANY_EVENTS
     assert response.outcome is Outcome.FAILED
     assert "no result" in response.summary
@@ -199,18 +200,18 @@ def test_too_many_events_are_a_status():
 
 def test_start_with_a_foot_that_hits_the_ground():
     """A body that starts flat and turning rocks; one thrown down on its base stops at once."""
-    turning = simulate_with_contact(BODY, None, 1.0, start=Start(angular_velocity=0.5), duration=0.1)
+    turning = rk.free_rocking(BODY, restitution=None, friction=1.0, start=Start(angular_velocity=0.5), duration=0.1)
     assert turning.rotation[-1] > 0.0
     assert turning.impacts.size == 0
-    thrown = simulate_with_contact(BODY, None, 1.0, start=Start(vertical_velocity=-1.0), duration=0.1)
+    thrown = rk.free_rocking(BODY, restitution=None, friction=1.0, start=Start(vertical_velocity=-1.0), duration=0.1)
     assert thrown.impacts.size == 1
     assert thrown.energy.lost_in_impacts[-1] == pytest.approx(0.5 * BODY.mass, rel=1e-14)
 
 
 def test_scale_is_a_factor_on_the_motion():
     """Half of 8 m/s2 is 4 m/s2, bitwise."""
-    one = simulate_with_contact(BODY, rectangular(8.0, 0.2), 0.3, scale=0.5)
-    other = simulate_with_contact(BODY, rectangular(4.0, 0.2), 0.3)
+    one = rk.simulate(BODY, rectangular(8.0, 0.2), None, friction=0.3, scale=0.5)
+    other = rk.simulate(BODY, rectangular(4.0, 0.2), None, friction=0.3)
     assert np.array_equal(one.displacement, other.displacement)
 
 
@@ -218,7 +219,9 @@ def test_long_steps_are_cut_where_series_need_it():
     """Straight lines of 2 s sampled at 2 s and at 0.02 s are one motion: rotations agree to 1e-11 rad."""
     coarse = GroundMotion([0.0, 7.0, -6.0, 0.0], 2.0)
     fine = GroundMotion(np.interp(np.arange(301) * 0.02, [0.0, 2.0, 4.0, 6.0], [0.0, 7.0, -6.0, 0.0]), 0.02)
-    long, short = (simulate_with_contact(Block(width=2.2, height=3.0), m, 0.66, duration=3.0) for m in (coarse, fine))
+    long, short = (
+        rk.simulate(Block(width=2.2, height=3.0), m, None, friction=0.66, duration=3.0) for m in (coarse, fine)
+    )
     times = np.linspace(0.0, 3.0, 50)
     assert "SLIDE" in long.regimes["regime"]
     assert np.max(np.abs(long.at(times) - short.at(times))) < 1e-11
@@ -226,7 +229,7 @@ def test_long_steps_are_cut_where_series_need_it():
 
 def test_paradox_at_the_start_leaves_empty_tables():
     """Without a contact force at time zero there are no regimes and no impacts, but still a sentence."""
-    response = simulate_with_contact(BODY, None, 2.5, start=Start(rotation=0.1, horizontal_velocity=1.0))
+    response = rk.free_rocking(BODY, restitution=None, friction=2.5, start=Start(rotation=0.1, horizontal_velocity=1.0))
     assert response.status is Status.NO_CONTACT_FORCE
     assert response.regimes.size == 0
     assert response.impacts.size == 0
@@ -238,7 +241,9 @@ def test_numbers_that_run_out():
     footing, law = Footing.of_body(BODY), GroundContact(0.6)
     for push in ([0.0, 1e200, 1e200], [0.0, 1e305, -1e305]):
         with np.errstate(all="ignore"):
-            found = Planar(footing, Segments.between_samples(1e80, np.array(push)), law, PlanarSettings()).run()
+            found = Planar(
+                footing, Segments.between_samples(1e80, np.array(push)), law, Settings(mechanics="contact")
+            ).run()
         assert found.status is Status.NOT_FINITE
 
 
@@ -267,9 +272,7 @@ def test_any_history_keeps_its_books_and_stays_above_the_ground(
     """Random bodies and pulses: a result, energy closed to 1e-10, feet never under the ground, forces that press."""
     body = Block(width=width, height=2.0)
     pulse = sine(amplitude=amplitude, period=period)
-    response = simulate_with_contact(
-        body, pulse, friction, bounce=bounce, restitution=restitution, duration=period + 1.0
-    )
+    response = rk.simulate(body, pulse, restitution, friction=friction, bounce=bounce, duration=period + 1.0)
     assert response.status is Status.GOOD
     assert response.energy.closure < 1e-10
     for lever in (-0.5 * width, 0.5 * width):
@@ -283,32 +286,32 @@ def test_summary_tells_the_largest_rotation_in_degrees(rocked):
     told = re.search(r"largest rotation (\S+) degrees, slid (\S+) m in all", rocked.summary)
     largest = math.degrees(np.abs(rocked.rotation).max())
     assert [float(each) for each in told.groups()] == pytest.approx([largest, rocked.sliding_distance], rel=5e-3)
-    assert "rotation" not in simulate_with_contact(BODY, rectangular(4.0, 0.5), 0.3).summary
+    assert "rotation" not in rk.simulate(BODY, rectangular(4.0, 0.5), None, friction=0.3).summary
 
 
 def test_response_goes_on_as_long_as_its_docstring_says():
     """15 sqrt(R / g) after a motion and 60 on ground at rest, to a step of at most a tenth; as long as asked for; and
     a duration far below a step is one step."""
     slow = math.sqrt(math.hypot(0.5, 1.0) / G)
-    after = simulate_with_contact(BODY, rectangular(1.0, 0.5), 0.5)
-    alone = simulate_with_contact(BODY, None, 0.5)
+    after = rk.simulate(BODY, rectangular(1.0, 0.5), None, friction=0.5)
+    alone = rk.free_rocking(BODY, restitution=None, friction=0.5)
     assert 0.0 <= after.time[-1] - (0.5 + 15.0 * slow) < after.time[1] <= 0.1 * slow
     assert alone.time[-1] == pytest.approx(60.0 * slow, rel=1e-12)
     assert alone.time[1] <= 0.1 * slow * (1.0 + 1e-12)
     record = GroundMotion(np.full(50, 0.5), 0.01)
-    assert simulate_with_contact(BODY, record, 0.4, duration=0.2).time[-1] == pytest.approx(0.2, rel=1e-12)
-    assert simulate_with_contact(BODY, record, 0.4, duration=1e-13).time.tolist() == [0.0, 0.01]
+    assert rk.simulate(BODY, record, None, friction=0.4, duration=0.2).time[-1] == pytest.approx(0.2, rel=1e-12)
+    assert rk.simulate(BODY, record, None, friction=0.4, duration=1e-13).time.tolist() == [0.0, 0.01]
 
 
 def test_a_single_event_is_the_least_limit():
     """A body that rests has none, and may be held to one."""
-    assert simulate_with_contact(BODY, rectangular(1.0, 0.5), 0.5, most_events=1).status is Status.GOOD
+    assert rk.simulate(BODY, rectangular(1.0, 0.5), None, friction=0.5, most_events=1).status is Status.GOOD
 
 
 @pytest.mark.parametrize("push", [1e-16, 1e-13])
 def test_without_friction_any_push_uses_all_of_it(push):
     """A push of rounding size moves nothing, and all the friction there is, none, is used: 1, not more."""
-    response = simulate_with_contact(BODY, GroundMotion(np.full(20, push), 0.01), 0.0, duration=0.2)
+    response = rk.simulate(BODY, GroundMotion(np.full(20, push), 0.01), None, friction=0.0, duration=0.2)
     assert response.outcome is Outcome.NO_UPLIFT
     assert response.friction_usage == 1.0
 
@@ -316,7 +319,7 @@ def test_without_friction_any_push_uses_all_of_it(push):
 @pytest.mark.parametrize("rotation", [1.2, -1.2])
 def test_dropped_without_turning_beyond_balance(rotation):
     """A body that falls without turning, its centre beyond the lower foot, was over from the start."""
-    response = simulate_with_contact(BODY, None, 0.5, start=Start(rotation=rotation, height=1.0))
+    response = rk.free_rocking(BODY, restitution=None, friction=0.5, start=Start(rotation=rotation, height=1.0))
     assert response.outcome is Outcome.OVERTURNED
     assert response.overturning_time == 0.0
 
@@ -326,7 +329,7 @@ def test_forces_of_a_body_that_rests_follow_the_motion():
     with m ((g + a_z) b + a h) / (2 b)."""
     time = np.arange(60) * 0.02
     push, lift = 1.5 * np.sin(9.0 * time), 0.8 * np.cos(7.0 * time)
-    response = simulate_with_contact(BODY, GroundMotion(push, 0.02, vertical=lift), 0.6, duration=1.0)
+    response = rk.simulate(BODY, GroundMotion(push, 0.02, vertical=lift), None, friction=0.6, duration=1.0)
     assert response.outcome is Outcome.NO_UPLIFT
     count = len(response.time)
     assert count == 51
@@ -343,5 +346,5 @@ def test_an_asymmetric_body_passes_its_own_feet(side):
     The former way, a line between the ends of a step, was .1 and .5 ms off.
     """
     body, push = Block(width=1.0, height=3.0).with_feet(0.15, 0.8), rectangular(5.0 * side, 1.0)
-    found = simulate_with_contact(body, push, 20.0, restitution=0.6)
+    found = rk.simulate(body, push, 0.6, friction=20.0)
     assert found.overturning_time == pytest.approx(simulate(body, push, 0.6).overturning_time, abs=1e-11)

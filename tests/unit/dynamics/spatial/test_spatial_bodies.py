@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import ContactMode, SpatialBody, SpatialSettings, attitude
+from rocking.dynamics import Settings
+from rocking.dynamics.spatial import ContactMode, SpatialBody, attitude
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial, law_of
 from rocking.dynamics.spatial.landing import landed, started
@@ -178,7 +179,7 @@ def test_laws_by_name_by_number_and_by_interface():
 def test_settings_out_of_range_are_refused(bad):
     """Each setting has a range, and says so."""
     with pytest.raises(InvalidValueError, match="must be"):
-        SpatialSettings(**bad)
+        Settings(**bad, mechanics="space")
 
 
 def test_of_two_contact_sets_the_larger_stays():
@@ -258,6 +259,6 @@ def test_the_point_at_rest_that_is_nearest_to_a_new_stance():
 
 def test_at_least_one_event_is_allowed():
     """Both ends of the range of most_events."""
-    assert SpatialSettings(most_events=1).most_events == 1
+    assert Settings(most_events=1, mechanics="space").most_events == 1
     with pytest.raises(InvalidValueError, match="most_events"):
-        SpatialSettings(most_events=0)
+        Settings(most_events=0, mechanics="space")

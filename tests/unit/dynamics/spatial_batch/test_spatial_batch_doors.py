@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody, SpatialSettings
+from rocking import conventions
+from rocking.dynamics import Settings
+from rocking.dynamics.spatial import SpatialBody, SpatialStart
 from rocking.dynamics.spatial.ground import ground_of
 from rocking.dynamics.spatial.impact import FixedSpatial
-from rocking.dynamics.spatial_batch import SpatialStart, engine, run, simulate_spatial_batch
+from rocking.dynamics.spatial_batch import engine, run
 from rocking.dynamics.spatial_batch.ground import joined
 from rocking.dynamics.spatial_batch.laws import batch_law
-from rocking.dynamics.spatial_batch.settings import SpatialBatchSettings
+from rocking.dynamics.spatial_batch.many import batch_in_space
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning, UnknownModelError
 from rocking.outcome import Status
 
@@ -33,7 +35,7 @@ def test_every_combination_has_a_place():
     """Five axes in the stated order, with results that follow the inputs along each of them."""
     bodies = [BOX, SpatialBody.box(2.0, 2.0, 1.0)]
     starts = [SpatialStart(), SpatialStart(0.05, 0.3)]
-    batch = simulate_spatial_batch(bodies, [RECORD, PULSE], ["housner-3d", 0.9], scales=[0.0, 0.5, 1.0], start=starts)
+    batch = batch_in_space(bodies, [RECORD, PULSE], ["housner-3d", 0.9], scales=[0.0, 0.5, 1.0], start=starts)
     assert batch.outcome.shape == (2, 2, 3, 2, 2)
     assert len(batch) == 48
     assert (batch.outcome[:, :, 0, :, 0] == 0).all()  # no motion, no uplift
@@ -45,7 +47,7 @@ def test_every_combination_has_a_place():
 @built
 def test_labels_and_units_go_along():
     """The labelled dataset has every result with its unit, names, scales, and the engine that ran."""
-    batch = simulate_spatial_batch(BOX, PULSE, scales=[0.5, 1.0])
+    batch = batch_in_space(BOX, PULSE, scales=[0.5, 1.0])
     data = batch.to_xarray()
     assert dict(data.sizes) == {"body": 1, "motion": 1, "scale": 2, "restitution": 1, "start": 1}
     assert data["peak_tilt"].attrs["units"] == "rad"
@@ -57,11 +59,11 @@ def test_labels_and_units_go_along():
 @built
 def test_a_bad_row_touches_no_other():
     """NaN and infinite scales and starts and an impossible body get a status; the other rows keep their bits."""
-    good = simulate_spatial_batch([BOX], RECORD, scales=[0.5, 1.0], start=[SpatialStart(), SpatialStart(0.04)])
+    good = batch_in_space([BOX], RECORD, scales=[0.5, 1.0], start=[SpatialStart(), SpatialStart(0.04)])
     top_heavy = {"mass": 1.0, "centre": (2.0, 0.0, 1.0), "inertia": np.eye(3), "base": BOX.base}
     bodies = [type("Loose", (), top_heavy)(), BOX]
     starts = [SpatialStart(), SpatialStart(math.nan), SpatialStart(0.04), SpatialStart(2.0)]
-    mixed = simulate_spatial_batch(bodies, RECORD, scales=[math.nan, 0.5, math.inf, 1.0], start=starts)
+    mixed = batch_in_space(bodies, RECORD, scales=[math.nan, 0.5, math.inf, 1.0], start=starts)
     kept = np.ix_([1], [0], [1, 3], [0], [0, 2])
     for name in good.values:
         np.testing.assert_array_equal(mixed[name][kept], good[name], strict=True)
@@ -71,9 +73,7 @@ def test_a_bad_row_touches_no_other():
     assert np.isnan(mixed.peak_tilt[bad]).all()
     assert "above the inside of the base" in mixed.refused[0]
     assert (good.status == Status.GOOD.code).all() or (good.overturned == 1.0).any()
-    refused = [
-        simulate_spatial_batch(bodies, RECORD, scales=[math.nan], engine=engine) for engine in ("fast", "reference")
-    ]
+    refused = [batch_in_space(bodies, RECORD, scales=[math.nan], engine=engine) for engine in ("fast", "reference")]
     for name, values in refused[0].values.items():
         np.testing.assert_array_equal(refused[1].values[name], values, strict=True)
 
@@ -102,16 +102,18 @@ def test_starts_that_are_none(bad):
 def test_threads_pieces_and_order_leave_the_bits(monkeypatch):
     """One thread or three, pieces of any size, rows forwards or backwards: the same bits; another step is not."""
     bodies = [SpatialBody.box(0.4 + 0.05 * k, 0.5, 1.8) for k in range(6)]
-    first = simulate_spatial_batch(bodies, RECORD, scales=[0.6, 0.9], threads=1)
-    assert _same(first, simulate_spatial_batch(bodies, RECORD, scales=[0.6, 0.9], threads=3))
+    first = batch_in_space(bodies, RECORD, scales=[0.6, 0.9], threads=1)
+    assert _same(first, batch_in_space(bodies, RECORD, scales=[0.6, 0.9], threads=3))
     calls = []
     monkeypatch.setattr(run, "PIECE", 5)
-    assert _same(first, simulate_spatial_batch(bodies, RECORD, scales=[0.6, 0.9], threads=2, progress=calls.append))
+    assert _same(first, batch_in_space(bodies, RECORD, scales=[0.6, 0.9], threads=2, progress=calls.append))
     assert calls == [5, 5, 2]
-    back = simulate_spatial_batch(bodies[::-1], RECORD, scales=[0.9, 0.6])
+    back = batch_in_space(bodies[::-1], RECORD, scales=[0.9, 0.6])
     for name in first.values:
         np.testing.assert_array_equal(back[name][::-1, :, ::-1], first[name])
-    other = simulate_spatial_batch(bodies, RECORD, scales=[0.6, 0.9], tolerance=1e-8)
+    other = batch_in_space(
+        bodies, RECORD, scales=[0.6, 0.9], settings=Settings(tolerance=1e-8, mechanics="space, many")
+    )
     assert not _same(first, other)
 
 
@@ -121,9 +123,9 @@ def test_the_reference_engine_serves_row_by_row():
     bodies = [BOX, SpatialBody.box(0.7, 0.5, 2.5)]
     starts = [SpatialStart(), SpatialStart(0.03, 0.7), SpatialStart(math.nan)]
     given, told = {"scales": [0.3, 0.8, 2.5], "start": starts}, []
-    fast = simulate_spatial_batch(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], **given)
+    fast = batch_in_space(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], **given)
     given |= {"engine": "reference", "progress": told.append}
-    slow = simulate_spatial_batch(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], **given)
+    slow = batch_in_space(bodies, RECORD, ["housner-3d", "ked-3d", 0.9], **given)
     assert sum(told) == slow.status.size
     assert "reference" in slow.engine
     for name in ("outcome", "status", "over_contact", "over_number", "impacts", "uplifts", "events"):
@@ -138,10 +140,10 @@ def test_the_reference_engine_serves_row_by_row():
 @built
 def test_still_ground_ends_at_rest():
     """A body that is let go on ground at rest comes to rest and stays: rocked, with no end of the motion given."""
-    batch = simulate_spatial_batch(BOX, start=SpatialStart(0.02, 0.4))
+    batch = batch_in_space(BOX, start=SpatialStart(0.02, 0.4))
     assert batch.outcome.item() == rk.Outcome.ROCKED.code
     assert batch["impacts"].item() > 10
-    pushed = simulate_spatial_batch(BOX, start=SpatialStart(angular_velocity=(0.0, 3.0, 0.0)))
+    pushed = batch_in_space(BOX, start=SpatialStart(angular_velocity=(0.0, 3.0, 0.0)))
     assert pushed.overturned.item() == 1.0
     assert pushed.direction.item() == pytest.approx(0.0, abs=1e-9)
 
@@ -153,10 +155,10 @@ def test_ground_at_rest_is_followed_for_300_over_p(size):
     acosh(2) / p and then every 2 acosh(2) / p: 114 times, whatever its size; half as long, half as often."""
     body = SpatialBody.box(0.2 * size, 0.2 * size, 4.0 * size)
     start = SpatialStart(0.5 * math.atan(0.05))
-    p = math.sqrt(0.75 * rk.conventions.g / (size * math.hypot(0.1, 2.0)))
+    p = math.sqrt(0.75 * conventions.g / (size * math.hypot(0.1, 2.0)))
     half = math.acosh(2.0)
     for duration, length in ((None, 300.0), (150.0 / p, 150.0)):
-        batch = simulate_spatial_batch(body, None, 1.0, start=start, duration=duration)
+        batch = batch_in_space(body, None, 1.0, start=start, duration=duration)
         assert batch["impacts"].item() == pytest.approx((length + half) / (2.0 * half), abs=1.5)
 
 
@@ -167,7 +169,7 @@ def test_bases_of_many_sides(sides):
     angle = 2.0 * np.pi * np.arange(sides) / sides
     base = 0.3 * np.column_stack([np.cos(angle), np.sin(angle)])
     body = SpatialBody(100.0, np.array([0.0, 0.0, 1.0]), np.diag([40.0, 40.0, 5.0]), base)
-    assert simulate_spatial_batch(body, RECORD)["uplifts"].item() > 0
+    assert batch_in_space(body, RECORD)["uplifts"].item() > 0
 
 
 @built
@@ -177,7 +179,7 @@ def test_what_the_engine_does_not_know_is_refused_in_words():
     base = np.column_stack([np.cos(angle), np.sin(angle)])
     many = SpatialBody(1.0, np.array([0.0, 0.0, 1.0]), np.eye(3), base)
     with pytest.raises(InvalidValueError, match="at most 64"):
-        simulate_spatial_batch(many, RECORD)
+        batch_in_space(many, RECORD)
 
 
 def test_laws_by_name_number_and_object():
@@ -204,7 +206,7 @@ def test_ked_without_matter_is_a_status():
     """A body that does not know of what it consists cannot take ked-3d; its rows say so, others go on."""
     bare = SpatialBody(BOX.mass, BOX.centre, BOX.inertia, BOX.base)
     for law in ("ked-3d", "ked-3d-point"):
-        batch = simulate_spatial_batch([bare, BOX], RECORD, law)
+        batch = batch_in_space([bare, BOX], RECORD, law)
         assert batch.status.ravel().tolist()[0] == Status.INVALID.code
         assert batch.status.ravel().tolist()[1] != Status.INVALID.code
 
@@ -221,8 +223,6 @@ def test_ked_without_matter_is_a_status():
         ({"threads": 0}, "threads"),
         ({"progress": 3}, "progress"),
         ({"duration": -1.0}, "duration"),
-        ({"tolerance": 1.0}, "tolerance"),
-        ({"most_steps": 3}, "most_steps"),
     ],
 )
 def test_arguments_out_of_range_are_named(change, words):
@@ -230,16 +230,16 @@ def test_arguments_out_of_range_are_named(change, words):
     if "threads" in change and not engine.available():
         pytest.skip("the batch engine was not built")
     with pytest.raises(InvalidValueError, match=words):
-        simulate_spatial_batch(**({"bodies": BOX, "motions": PULSE} | change))
+        batch_in_space(**({"bodies": BOX, "motions": PULSE} | change))
 
 
 def test_without_the_compiled_engine_the_reference_serves(monkeypatch):
     """Asked for by name it is an error that says what to do; otherwise a warning, and the reference engine."""
     monkeypatch.setattr(engine, "_module", lambda: None)
     with pytest.raises(MissingExtraError, match="make engine"):
-        simulate_spatial_batch(BOX, PULSE, engine="fast")
+        batch_in_space(BOX, PULSE, engine="fast")
     with pytest.warns(SlowEngineWarning, match="row by row"):
-        batch = simulate_spatial_batch(BOX, PULSE, scales=0.1)
+        batch = batch_in_space(BOX, PULSE, scales=0.1)
     assert "reference" in batch.engine
 
 
@@ -249,14 +249,14 @@ def test_an_instruction_set_that_is_not_there_is_refused(monkeypatch):
     found = []
     for isa in engine.module().instruction_sets():
         monkeypatch.setenv("ROCKING_ISA", isa)
-        found.append(simulate_spatial_batch(BOX, RECORD, scales=[0.5, 1.0, 2.0]))
+        found.append(batch_in_space(BOX, RECORD, scales=[0.5, 1.0, 2.0]))
         assert isa in found[-1].engine
     for first, second in itertools.pairwise(found):
         np.testing.assert_array_equal(first.outcome, second.outcome)
         np.testing.assert_allclose(first.peak_tilt, second.peak_tilt, rtol=1e-6)
     monkeypatch.setenv("ROCKING_ISA", "abacus")
     with pytest.raises(InvalidValueError, match="abacus"):
-        simulate_spatial_batch(BOX, RECORD)
+        batch_in_space(BOX, RECORD)
 
 
 @pytest.mark.parametrize("until", [math.inf, 1.234, 0.5])
@@ -287,13 +287,13 @@ def test_a_start_knows_whether_it_can_be(wrong):
     assert SpatialStart(0.2, 7.0, -3.0, (0.1, -20.0, 3.0)).valid
     assert not SpatialStart(**wrong).valid
     if engine.available():
-        batch = simulate_spatial_batch(BOX, None, start=[SpatialStart(**wrong), SpatialStart(0.02)], duration=0.1)
+        batch = batch_in_space(BOX, None, start=[SpatialStart(**wrong), SpatialStart(0.02)], duration=0.1)
         assert batch.status.ravel().tolist()[0] == Status.INVALID.code
         assert batch.status.ravel().tolist()[1] == Status.GOOD.code
 
 
 def test_settings_of_the_batch_are_those_of_one_history():
     """But for step and tolerance, which each engine has its own."""
-    batch, one = SpatialBatchSettings(), SpatialSettings()
+    batch, one = Settings(mechanics="space, many"), Settings(mechanics="space")
     for name in ("gravity", "rest_speed", "most_events"):
         assert getattr(batch, name) == getattr(one, name)

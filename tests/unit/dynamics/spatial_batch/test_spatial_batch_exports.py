@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody
-from rocking.dynamics.spatial_batch import SpatialStart, engine, simulate_spatial_batch
+from rocking import conventions
+from rocking.dynamics.spatial import SpatialBody, SpatialStart
+from rocking.dynamics.spatial_batch import engine
+from rocking.dynamics.spatial_batch.many import batch_in_space
 from rocking.dynamics.spatial_batch.result import FLOATS, WHOLES
 from rocking.errors import InvalidValueError
 
@@ -23,7 +25,7 @@ def batch():
     """Two bodies, two scales, two laws, two starts; the second body is none."""
     loose = type("Loose", (), {"mass": 1.0, "centre": (2.0, 0.0, 1.0), "inertia": np.eye(3), "base": BOX.base})()
     starts = [SpatialStart(), SpatialStart(0.05, 0.3)]
-    return simulate_spatial_batch([BOX, loose], (PULSE, PULSE), ["housner-3d", 0.9], scales=[0.5, 2.5], start=starts)
+    return batch_in_space([BOX, loose], (PULSE, PULSE), ["housner-3d", 0.9], scales=[0.5, 2.5], start=starts)
 
 
 def _row(batch, number):
@@ -66,7 +68,7 @@ def test_a_netcdf_file_keeps_axes_units_and_provenance(batch, tmp_path):
         assert list(data["restitution"].values) == ["housner-3d", "0.9"]
         told = data.attrs
     assert told["software"] == f"rocking {rk.__version__}"
-    assert told["setting_gravity"] == rk.conventions.g
+    assert told["setting_gravity"] == conventions.g
     assert json.loads(told["bodies"])[0]["mass_kg"] == BOX.mass
     assert json.loads(told["bodies"])[1] is None
     assert "1" in json.loads(told["refused"])
@@ -86,9 +88,9 @@ def test_a_matlab_file_has_columns_and_units(batch, tmp_path):
 
 def test_another_body_has_another_digest(batch):
     """The digest stands for the bodies: the same again, another with a millimetre more."""
-    same = simulate_spatial_batch([BOX], PULSE).provenance["bodies_sha256"]
-    assert same == simulate_spatial_batch([BOX], PULSE, scales=2.0).provenance["bodies_sha256"]
-    other = simulate_spatial_batch([SpatialBody.box(0.501, 0.6, 2.0)], PULSE).provenance["bodies_sha256"]
+    same = batch_in_space([BOX], PULSE).provenance["bodies_sha256"]
+    assert same == batch_in_space([BOX], PULSE, scales=2.0).provenance["bodies_sha256"]
+    other = batch_in_space([SpatialBody.box(0.501, 0.6, 2.0)], PULSE).provenance["bodies_sha256"]
     assert same != other
 
 

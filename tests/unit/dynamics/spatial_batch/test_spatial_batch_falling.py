@@ -5,7 +5,7 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics.spatial import SpatialBody
-from rocking.dynamics.spatial_batch import engine, simulate_spatial_batch
+from rocking.dynamics.spatial_batch import engine
 from rocking.errors import InvalidValueError
 from rocking.plots.falling import falling_picture
 
@@ -19,9 +19,9 @@ MOTIONS = [(PULSE.scaled(np.cos(a)), PULSE.scaled(np.sin(a))) for a in ANGLES]
 
 def test_lines_show_the_share_of_scales():
     """The two lines of the first panel are the shares of overturning in percent, closed round; a control is not."""
-    batch = simulate_spatial_batch(BOX, MOTIONS, ["housner-3d", 0.95], scales=np.linspace(0.5, 3.0, 9))
+    batch = rk.simulate_many(BOX, MOTIONS, ["housner-3d", 0.95], scale=np.linspace(0.5, 3.0, 9))
     figure = falling_picture(batch, ANGLES, [(0.25, 0.2), (-0.25, 0.2), (-0.25, -0.2), (0.25, -0.2)])
-    share = 100.0 * batch.overturned[0, :, :, :, 0].mean(axis=1)
+    share = 100.0 * batch["overturned"].mean("scale").values[0, :, :, 0]
     assert 0.0 < share.mean() < 100.0
     for k, line in enumerate(figure.axes[0].lines):
         drawn = np.asarray(line.get_ydata())
@@ -33,7 +33,7 @@ def test_lines_show_the_share_of_scales():
 def test_a_batch_of_another_shape_is_refused():
     """One restitution, or fewer azimuths than motions: an error that shows the shape."""
     with pytest.raises(InvalidValueError, match="two restitutions"):
-        falling_picture(simulate_spatial_batch(BOX, MOTIONS), ANGLES)
-    two = simulate_spatial_batch(BOX, MOTIONS, ["housner-3d", 0.9])
+        falling_picture(rk.simulate_many(BOX, MOTIONS), ANGLES)
+    two = rk.simulate_many(BOX, MOTIONS, ["housner-3d", 0.9])
     with pytest.raises(InvalidValueError, match="each of 5"):
         falling_picture(two, ANGLES[:5])

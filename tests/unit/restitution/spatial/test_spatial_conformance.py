@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+import rocking as rk
 from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder, frustum
-from rocking.dynamics.spatial import SpatialBody, free_rocking_spatial
+from rocking.dynamics import SpatialStart
+from rocking.dynamics.spatial import SpatialBody
 from rocking.dynamics.spatial.impact import ModelLaw, law_of
 from rocking.errors import InvalidValueError
 from rocking.restitution.spatial import LeaningImpact, SpatialModel, spatial_model, spatial_models
@@ -91,7 +93,7 @@ def test_every_model_is_a_law_of_histories(name):
         law = law_of(given, body)
         assert isinstance(law, ModelLaw)
         assert law.label == name
-    run = free_rocking_spatial(body, 0.08, 0.5, name, duration=1.0)
+    run = rk.free_rocking(body, restitution=name, start=SpatialStart(0.08, 0.5), duration=1.0)
     assert run.impacts.size > 0
     assert run.law.label == name
 
@@ -108,6 +110,6 @@ def test_a_model_of_ones_own_rocks():
         def on_edge(self, impact, direction):
             return 0.0
 
-    run = free_rocking_spatial(SpatialBody.box(1.0, 1.0, 4.0), 0.1, restitution=Dead(), duration=3.0)
+    run = rk.free_rocking(SpatialBody.box(1.0, 1.0, 4.0), restitution=Dead(), start=SpatialStart(0.1), duration=3.0)
     assert run.impacts["energy_after"][0] == 0.0
     assert run.law.label == "dead-3d"

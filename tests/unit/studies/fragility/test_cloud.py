@@ -10,6 +10,7 @@ import pytest
 from scipy import stats
 
 import rocking as rk
+from rocking import conventions
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.studies.fragility._cloud import cloud, cloud_plan
@@ -68,7 +69,7 @@ def test_three_parts_of_the_probability(found):
     """No rocking, below, beyond and overturned add up to one, and each is what its definition says."""
     found = dataclasses.replace(found, least=1e-9)  # no history of these is lifted by less
     assert found.barely_lifted == 0
-    levels, threshold = np.array([2.0, 2.6, 4.0, 8.0]), rk.conventions.g * 0.25
+    levels, threshold = np.array([2.0, 2.6, 4.0, 8.0]), conventions.g * 0.25
     parts = found.parts(levels, 0.3)
     np.testing.assert_allclose(sum(parts.values()), 1.0, rtol=1e-14)
     assert parts["no rocking"].tolist() == [1.0, 0.0, 0.0, 0.0]

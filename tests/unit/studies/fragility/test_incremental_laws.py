@@ -16,7 +16,7 @@ LEVELS = np.linspace(2.0, 12.0, 11)
 
 def test_random_coefficients_have_no_crossing():
     """Coefficients drawn anew for every history leave no crossing to search: refused, and stripes take them."""
-    law = rk.RandomRestitution(np.array([0.9, 1.0]), seed=3)
+    law = rk.dynamics.RandomRestitution(np.array([0.9, 1.0]), seed=3)
     with pytest.raises(InvalidValueError, match="drawn anew"):
         incremental(BLOCK, PULSES, LEVELS, restitution=law)
     assert multiple_stripes(BLOCK, PULSES, LEVELS, restitution=law).failed == 0

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking import conventions
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.studies.fragility.stripes import multiple_stripes, stripes_plan
@@ -71,7 +72,7 @@ def test_counts_against_single_simulations(stripes):
 
 def test_rocking_is_no_matter_of_probability(stripes):
     """Under horizontal motions PGA alone decides: no history contradicts g tan(alpha), and no curve is fitted."""
-    assert stripes.uplift.threshold == pytest.approx(rk.conventions.g * 0.25, rel=1e-14)
+    assert stripes.uplift.threshold == pytest.approx(conventions.g * 0.25, rel=1e-14)
     assert (stripes.uplift.checked, stripes.uplift.contradictions) == (12 * LEVELS.size, 0)
     assert "rocking" not in stripes.fits
     assert stripes.counts["rocking"].tolist() == [0, 12, 12, 12, 12, 12]
@@ -161,7 +162,7 @@ def test_names_and_threshold_make_each_motion_once():
     subject = Subject.of(BLOCK, lazy, 0.9, "pga", {})
     for _ in range(3):
         assert subject.names == [f"noise {k}" for k in range(12)]
-        assert subject.uplift_threshold == pytest.approx(rk.conventions.g * 0.25)
+        assert subject.uplift_threshold == pytest.approx(conventions.g * 0.25)
     assert lazy.made == 12
 
 

@@ -1,0 +1,293 @@
+"""The front door: how does a body rock under a motion, and how when it is let go."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from rocking import conventions, errors
+from rocking.bodies import Body
+from rocking.dynamics.components import Component, components_of, in_plane, in_space
+from rocking.dynamics.histories import response_of_rocking
+from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError, PureRockingWarning
+
+if TYPE_CHECKING:
+    from rocking.bodies.solid import Solid
+    from rocking.dynamics.planar import PlanarResponse, Start
+    from rocking.dynamics.spatial import SpatialBody, SpatialResponse, SpatialStart
+
+AnyMotion = Motion | Mapping[str, Motion] | tuple[Component, ...]
+"""A motion along x, or components by direction, or in the order x, y, z."""
+
+
+@overload
+def simulate(
+    body: Body, motion: AnyMotion, restitution: Any = "ked", *, friction: None = None, **options: Any
+) -> Response: ...
+@overload
+def simulate(
+    body: Body, motion: AnyMotion, restitution: Any = "ked", *, friction: float, **options: Any
+) -> "PlanarResponse": ...
+@overload
+def simulate(
+    body: "Solid | SpatialBody", motion: AnyMotion, restitution: Any = "ked", **options: Any
+) -> "SpatialResponse": ...
+def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what the answer hangs on
+    body: Any,
+    motion: Any,
+    restitution: Any = "ked",
+    *,
+    friction: float | None = None,
+    bounce: float = 0.0,
+    scale: float = 1.0,
+    rotation: float = 0.0,
+    angular_velocity: Any = 0.0,
+    start: "Start | SpatialStart | None" = None,
+    gravity: float = conventions.g,
+    duration: float | None = None,
+    engine: str = "auto",
+    key: int = 0,
+    linear: bool = False,
+    rest_speed: float | None = None,
+    most_events: int = 100_000,
+    longest_step: float | None = None,
+    order: int | None = None,
+    tolerance: float | None = None,
+) -> Any:
+    """Return how a body moves under a ground motion.
+
+    A plane body rocks about its feet; with `friction` it may also slide, hop and fly. A body in space turns about the
+    edges and vertices of its base, or rolls on its rim, and does not slip; where it would leave the ground, the history
+    stops and says so. A round base under two components rolls and has no impacts, so that the restitution does not
+    matter; after it has rolled through lying nearly flat, small causes have large effects.
+
+    Parameters
+    ----------
+    body : Body, Solid or SpatialBody
+        A plane body (Block, Section, MassPoints), or one in space, with mass, centre, inertia and base.
+    motion : GroundMotion, Pulse, mapping or tuple
+        The motion along x; or ``{"x": .., "y": .., "z": ..}``, z upwards, or up to three in that order, all starting at
+        time zero. A record is taken as straight lines between its samples, a pulse exactly. A plane body takes x and z.
+    restitution : str, RestitutionModel, float, mapping or ImpactLaw
+        Model or its name, coefficient, ``{"left": r, "right": r}``, or a law (`SpeedRestitution`,
+        `RandomRestitution`). With friction it holds for rocking impacts, theta_dot_after / theta_dot_before without
+        slip: it fixes where the resultant of the impulses acts; if that takes more friction than there is, the foot
+        slides off under the friction there is. Landings from flight, and with None all impacts, follow from
+        complementarity. In space a model of `rocking.restitution.spatial`, with or without its "-3d" ("ked" needs the
+        distribution of mass, which a Solid, a box and a cylinder have), a coefficient from 0 to 1 (that share of the
+        angular velocity goes on, in the direction of the plastic impact), or any object with `velocity_after` and
+        `label`.
+    friction : float, optional
+        Coulomb's coefficient mu between body and ground, from 0 to 1e6 [-]: the body may slide, hop and fly. If not
+        given, it rocks alone, and a `PureRockingWarning` says where the ground would have to pull, and what the body
+        then does.
+    bounce : float
+        Newton's coefficient of normal velocities, in [0, 1), with friction [-].
+    scale : float
+        Factor on all components of the motion [-].
+    rotation, angular_velocity : float
+        theta [rad] and theta' [rad/s] of a plane body at the start.
+    start : Start or SpatialStart, optional
+        Instead of these: a plane body with friction that is also lifted or pushed along, or how a body in space leans.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    duration : float, optional
+        How long to follow the body [s]; if not given, the motion and 15 / p (with friction 15 sqrt(R / g)) after it.
+        With friction, one that leans beyond its slenderness angle then is followed, on ground at rest, until it lies or
+        leans less: `outcome` needs it.
+    engine : {"auto", "fast", "reference"}
+        Which engine; which one ran is in `Response.engine`. The fast one is for rocking alone.
+    key : int
+        Number of the history, for random coefficients.
+    linear, rest_speed, most_events, longest_step, order, tolerance
+        How to integrate: see `Settings`.
+
+    Returns
+    -------
+    Response, PlanarResponse or SpatialResponse
+        Of a plane body, of one with friction, of one in space: motion, impacts, energy, forces, outcome.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or these mechanics do not know it.
+    MissingExtraError
+        If engine="fast" and it was not built.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> block = rk.Block(width=0.5, height=2.0)
+    >>> pulse = rk.pulses.sine(amplitude=3.0, period=0.6)
+    >>> rk.simulate(block, pulse, restitution="housner").outcome.name
+    'ROCKED'
+    >>> squat = rk.simulate(rk.Block(width=1.0, height=1.0), rk.pulses.rectangular(4.0, 0.5), friction=0.3)
+    >>> squat.outcome.name, bool(squat.sliding_distance > 0.0)
+    ('SLID', True)
+    >>> box = rk.dynamics.SpatialBody.box(width=0.5, depth=0.5, height=2.0)
+    >>> response = rk.simulate(box, {"x": pulse, "y": pulse.scaled(0.4)}, "housner")
+    >>> response.outcome.name, response.intervals[1][2].name
+    ('ROCKED', 'EDGE')
+    """
+    settings = {
+        "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
+        "longest_step": longest_step, "order": order, "tolerance": tolerance,
+    }  # fmt: skip
+    alone = {"rotation": rotation, "angular_velocity": angular_velocity, "engine": engine, "key": key}
+    moved = components_of(motion) if in_space(body) else in_plane(motion)
+    how = {"scale": scale, "duration": duration}
+    return _response(body, moved, restitution, settings, alone, {"friction": friction, "bounce": bounce}, start, how)
+
+
+@overload
+def free_rocking(
+    body: Body, rotation: float = 0.0, restitution: Any = "ked", *, friction: None = None, **options: Any
+) -> Response: ...
+@overload
+def free_rocking(
+    body: Body, rotation: float = 0.0, restitution: Any = "ked", *, friction: float, **options: Any
+) -> "PlanarResponse": ...
+@overload
+def free_rocking(
+    body: "Solid | SpatialBody", rotation: float = 0.0, restitution: Any = "ked", **options: Any
+) -> "SpatialResponse": ...
+def free_rocking(  # type: ignore[misc]  # noqa: PLR0913 - as for `simulate`
+    body: Any,
+    rotation: float = 0.0,
+    restitution: Any = "ked",
+    *,
+    friction: float | None = None,
+    bounce: float = 0.0,
+    angular_velocity: Any = 0.0,
+    start: "Start | SpatialStart | None" = None,
+    gravity: float = conventions.g,
+    duration: float | None = None,
+    engine: str = "auto",
+    key: int = 0,
+    linear: bool = False,
+    rest_speed: float | None = None,
+    most_events: int = 100_000,
+    longest_step: float | None = None,
+    order: int | None = None,
+    tolerance: float | None = None,
+) -> Any:
+    """Return how a body moves when it is let go, or pushed, on ground at rest.
+
+    Parameters
+    ----------
+    body : Body, Solid or SpatialBody
+        As for `simulate`.
+    rotation : float
+        theta of a plane body at the start, positive to the right; how far a body in space leans towards x [rad].
+    restitution : str, RestitutionModel, float, mapping or ImpactLaw
+        As for `simulate`.
+    friction, bounce : float, optional
+        As for `simulate` [-].
+    angular_velocity : float, or array_like of shape (3,) in space
+        theta' at the start, in space in axes of the ground [rad/s].
+    start : Start or SpatialStart, optional
+        Instead of rotation and angular_velocity.
+    gravity : float
+        Acceleration of gravity [m/s2].
+    duration : float, optional
+        How long to follow the body [s]; if not given, until it rests or lies, or 300 / p; with friction 60 sqrt(R / g).
+    engine : {"auto", "fast", "reference"}
+        Which engine.
+    key : int
+        Number of the history, for random coefficients.
+    linear, rest_speed, most_events, longest_step, order, tolerance
+        How to integrate: see `Settings`.
+
+    Returns
+    -------
+    Response, PlanarResponse or SpatialResponse
+        As of `simulate`; the motion is None.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or these mechanics do not know it.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> block = rk.Block(width=1.0, height=4.0)
+    >>> response = rk.free_rocking(block, rotation=0.5 * block.slenderness_angle, restitution=0.9, gravity=9.81)
+    >>> round(4.0 * float(response.impacts["time"][0]), 9)
+    2.793372816
+    >>> from rocking.dynamics import SpatialBody, SpatialStart
+    >>> leaning = SpatialStart(tilt=0.1, azimuth=0.25 * 3.141592653589793)  # corner to opposite corner: r = 59 / 71
+    >>> first = rk.free_rocking(SpatialBody.box(1.0, 1.0, 4.0), restitution="housner", start=leaning).impacts[0]
+    >>> round(float((first["energy_after"] / first["energy_before"]) ** 0.5) / 59.0 * 71.0, 12)
+    1.0
+    """
+    settings = {
+        "gravity": gravity, "linear": linear, "rest_speed": rest_speed, "most_events": most_events,
+        "longest_step": longest_step, "order": order, "tolerance": tolerance,
+    }  # fmt: skip
+    alone = {"rotation": rotation, "angular_velocity": angular_velocity, "engine": engine, "key": key}
+    contact = {"friction": friction, "bounce": bounce}
+    moved = (None, None, None) if in_space(body) else None
+    return _response(body, moved, restitution, settings, alone, contact, start, {"duration": duration})
+
+
+def _response(  # noqa: PLR0917 - what the two questions have in common
+    body: Any,
+    motion: Any,
+    restitution: Any,
+    settings: dict[str, Any],
+    alone: dict[str, Any],
+    contact: dict[str, Any],
+    start: Any,
+    how: dict[str, Any],
+) -> Any:
+    state = {name: alone[name] for name in ("rotation", "angular_velocity")}
+    if start is not None and any(np.any(value) for value in state.values()):
+        raise InvalidValueError("give either start or rotation and angular_velocity, got both")
+    if in_space(body):
+        from rocking.dynamics.spatial.histories import response_in_space
+        from rocking.dynamics.spatial.rocker import SpatialBody
+        from rocking.dynamics.spatial.start import SpatialStart
+
+        body = SpatialBody.of(body)
+        _refuse("a body in space", {**contact, "engine": alone["engine"], "key": alone["key"]})
+        spin = state["angular_velocity"] if np.ndim(state["angular_velocity"]) else (0.0, 0.0, 0.0)
+        if not np.ndim(state["angular_velocity"]) and state["angular_velocity"]:
+            raise InvalidValueError("angular_velocity of a body in space must be three numbers [rad/s], got one")
+        leaning = _start(start, SpatialStart) or SpatialStart(state["rotation"], angular_velocity=spin)
+        return response_in_space(
+            body, motion, restitution, Settings(**settings, mechanics="space"), start=leaning, **how
+        )
+    friction = contact["friction"]
+    if friction is None:
+        _refuse("a body without friction=, which rocks alone", {"bounce": contact["bounce"], "start": start})
+        response = response_of_rocking(body, motion, restitution, Settings(**settings), **alone, **how)
+        for sentence in response.doubts():
+            errors.warn(sentence, PureRockingWarning)
+        return response
+    from rocking.dynamics.planar.histories import response_with_contact
+    from rocking.dynamics.planar.start import Start
+
+    _refuse("a body with friction", {"engine": alone["engine"], "key": alone["key"]})
+    return response_with_contact(
+        body, motion, friction, restitution, Settings(**settings, mechanics="contact"), bounce=contact["bounce"],
+        start=_start(start, Start) or Start(**state), **how,
+    )  # fmt: skip
+
+
+_USUAL = {"friction": (None,), "bounce": (0.0,), "engine": ("auto", "reference"), "key": (0,), "start": (None,)}
+
+
+def _refuse(what: str, options: dict[str, Any]) -> None:
+    """Refuse what these mechanics do not know."""
+    for name, value in options.items():
+        if not any(value is usual or value == usual for usual in _USUAL[name]):
+            raise InvalidValueError(f"{name} is nothing for {what}, got {value!r:.60}")
+
+
+def _start(start: Any, kind: type) -> Any:
+    if start is not None and not isinstance(start, kind):
+        raise InvalidValueError(f"start must be a {kind.__name__}(...), got {start!r:.60}")
+    return start
