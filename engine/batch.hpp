@@ -101,12 +101,12 @@ inline double strength_of(const Shake& shake, double over_gravity) {
 // Parts into which a stretch is cut. A ground that shakes with many g moves the body faster than gravity does.
 inline double parts_of(const Shake& shake, double p, double over_gravity, double longest_step) {
     const double reach = p * shake.step * std::sqrt(std::max(1.0, 0.5 * strength_of(shake, over_gravity)));
-    return std::max(1.0, std::ceil(reach / longest_step));
+    return std::max(1.0, std::ceil(reach / longest_step));  // Eq. 53
 }
 
 // Reach, p times a step under 1 g, up to which order 6 leaves out less, reach^7 / 7! of p alpha, than a hundredth of what
 // order 8 may leave out at its longest step: as good, and quicker.
-inline double reach_of_order_six(double longest_step) { return std::pow(std::pow(longest_step, 9) / 7200.0, 1.0 / 7.0); }
+inline double reach_of_order_six(double longest_step) { return std::pow(std::pow(longest_step, 9) / 7200.0, 1.0 / 7.0); }  // Eq. 54
 
 // Whether all steps of a row are so short that order 6 takes the place of order 8. Under b g a rotation goes wrong by some
 // reach^5 b^3 / 70 of alpha in a step.

@@ -30,15 +30,15 @@ ROCKING_KERNEL
 ROCKING_INLINE void Kernel<G, U, N, D, Z, L>::force_at(int i, double sine, double cosine, double speed, double push, double weight) {
     const double half = 0.5 * lever[i], square = kappa[i], spin = speed * speed;
     const double moment = square * (L ? fma(weight, std::asin(sine), push) : fma(weight, sine, push * cosine));
-    const double up = fma(square, weight, half * fma(moment, sine, spin * cosine));
-    const double along = std::fabs(fma(square, push, half * fma(moment, cosine, -spin * sine)));
+    const double up = fma(square, weight, half * fma(moment, sine, spin * cosine));  // Eq. 33
+    const double along = std::fabs(fma(square, push, half * fma(moment, cosine, -spin * sine)));  // Eq. 34
     if ((up < least[i] * square) | (along > demand[i] * up)) note_force(i, up, along, square);
 }
 
 ROCKING_KERNEL
 void Kernel<G, U, N, D, Z, L>::note_force(int i, double up, double along, double square) {
     least[i] = std::min(least[i], up / square);
-    demand[i] = up > 0.0 ? std::max(demand[i], along / up) : std::numeric_limits<double>::infinity();
+    demand[i] = up > 0.0 ? std::max(demand[i], along / up) : std::numeric_limits<double>::infinity();  // Eq. 35
 }
 
 // Just before an impact.

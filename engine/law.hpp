@@ -20,14 +20,14 @@ inline std::uint64_t mixed(std::uint64_t z) {
 inline double uniform(std::uint64_t seed, std::int64_t key, std::int64_t impact) {
     const std::uint64_t z =
         mixed(mixed(mixed(seed) + static_cast<std::uint64_t>(key)) + static_cast<std::uint64_t>(impact));
-    return static_cast<double>(z >> 11) * 0x1p-53;
+    return static_cast<double>(z >> 11) * 0x1p-53;  // Eq. 43
 }
 
 inline double interpolated(const std::vector<double>& at, const std::vector<double>& value, double x) {
     if (!(x > at.front())) return value.front();
     if (x >= at.back()) return value.back();
     const std::size_t k = std::upper_bound(at.begin(), at.end(), x) - at.begin();
-    return value[k - 1] + (value[k] - value[k - 1]) * ((x - at[k - 1]) / (at[k] - at[k - 1]));
+    return value[k - 1] + (value[k] - value[k - 1]) * ((x - at[k - 1]) / (at[k] - at[k - 1]));  // Eq. 44
 }
 
 }  // namespace ROCKING_ISA

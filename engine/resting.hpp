@@ -14,7 +14,7 @@ void Kernel<G, U, N, D, Z, L>::holding(int i, int side, std::int64_t at, double*
     const double* a = motions.data + at;
     if (D == 1) {
         constexpr int hop = Z ? 2 : 1;
-        d[0] = s.sine + side * lane.ax * a[0] * s.cosine;
+        d[0] = s.sine + side * lane.ax * a[0] * s.cosine;  // Eq. 24
         d[1] = side * lane.ax * (a[hop] - a[0]) * s.cosine;
         if (Z) {
             d[0] += lane.az * a[1] * s.sine;
@@ -101,9 +101,9 @@ bool Kernel<G, U, N, D, Z, L>::window(int i, std::int64_t stretches, double most
     w.low[0] = least_weight * lane.sides[0].sine + least * lane.sides[0].cosine;
     w.low[1] = least_weight * lane.sides[1].sine - most * lane.sides[1].cosine;
     if (!(w.low[0] > 0.0 && w.low[1] > 0.0)) return false;
-    w.variation = varies * std::max(lane.sides[0].cosine / w.low[0], lane.sides[1].cosine / w.low[1]);
+    w.variation = varies * std::max(lane.sides[0].cosine / w.low[0], lane.sides[1].cosine / w.low[1]);  // Eq. 38
     if (Z) w.variation += weight_varies * std::max(lane.sides[0].sine / w.low[0], lane.sides[1].sine / w.low[1]);
-    w.steepness = std::max(std::fabs(least_weight), std::fabs(most_weight)) + std::max(std::fabs(least), std::fabs(most));
+    w.steepness = std::max(std::fabs(least_weight), std::fabs(most_weight)) + std::max(std::fabs(least), std::fabs(most));  // Eq. 39
     return true;
 }
 
@@ -125,7 +125,7 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const double across = value_of<D>(d, tau[i]), r = largest(i, lane.side < 0), q = largest(i, lane.side > 0), lost = 1.0 - r * q;
     const double one = s.p * s.p * lane.step * lane.step, other = o.p * o.p * lane.step * lane.step;
     // the flights under the moments of now, as a guess of the time they take
-    const double flights = 2.0 * after * (other * across + q * one * held), rate = one * held * (other * across) * lost;
+    const double flights = 2.0 * after * (other * across + q * one * held), rate = one * held * (other * across) * lost;  // Eq. 37
     if (!(across > 0.0 && flights < kLongest * rate)) return false;
     const double left = 1.0 - tau[i], guess = 1.5 * (flights / rate);
     const std::int64_t rest_of_it = (last[i] - idx[i]) / stride;
@@ -144,9 +144,9 @@ bool Kernel<G, U, N, D, Z, L>::comes_to_rest(int i, double after) const {  // [r
     const double low = w.low[k], low_ = w.low[1 - k], x = 0.5 * (w.variation + kHeights);
     if (!(x <= 1.0)) return false;
     const double gain = 1.0 + x + x * x;  // more than exp(x)
-    const double heights = w.steepness * (after * after) * (gain * gain) / std::min(one * low * low, other * low_ * low_);
+    const double heights = w.steepness * (after * after) * (gain * gain) / std::min(one * low * low, other * low_ * low_);  // Eq. 40
     if (!(2.2 * heights * (1.0 + q * q) <= kHeights * (1.0 - r * r * q * q) && heights <= 0.3)) return false;
-    const double all = 2.0 * after * gain * (1.0 / (one * low) + q / (other * low_)) / (lost * (1.0 - heights));
+    const double all = 2.0 * after * gain * (1.0 / (one * low) + q / (other * low_)) / (lost * (1.0 - heights));  // Eq. 16
     return all <= end;
 }
 

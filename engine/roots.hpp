@@ -34,7 +34,7 @@ inline double polished(const double* c, const double* d, double low, double high
         const double y = value_of<degree>(c, x), slope = value_of<degree - 1>(d, x);
         if (y == 0.0) return x;
         (y > 0.0 ? low : high) = x;
-        double next = x - y / slope;
+        double next = x - y / slope;  // Eq. 56
         if (!(next >= low && next <= high)) next = 0.5 * (low + high);
         const double move = std::fabs(next - x);
         // Newton's next error is at most move^2 * curve / |slope|

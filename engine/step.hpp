@@ -73,14 +73,14 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
                 if (Z && k > 0) f = fma(z[1][r + j], S[k - 1][j], f);
                 if (Z) f = fma(z[0][r + j], S[k][j], f);
                 if (L) {
-                    if (k <= D) f = f + b[k][r + j];
+                    if (k <= D) f = f + b[k][r + j];  // Eq. 15
                 } else {
                     ROCKING_UNROLL
-                    for (int m = (k < D ? k : D); m >= 0; --m) f = fma(b[m][r + j], C[k - m][j], f);
+                    for (int m = (k < D ? k : D); m >= 0; --m) f = fma(b[m][r + j], C[k - m][j], f);  // Eq. 14
                 }
                 if (k > 0) f = f * inverse;
                 w[j] = k == 0 ? f : w[j] + f;
-                V[k + 1][j] = f * qh[j];
+                V[k + 1][j] = f * qh[j];  // Eq. 48
                 V[k + 1][j].store(&fresh[k + 1][(r + j) * P]);
                 if (k == 0) continue;
                 const Pack far = abs(V[k + 1][j]);
@@ -96,8 +96,8 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
                     Pack s = V[k][j] * C[0][j], c = V[k][j] * S[0][j];
                     ROCKING_UNROLL
                     for (int m = k - 1; m >= 0; --m) {
-                        s = fma(V[m][j], C[k - m][j], s);
-                        c = fma(V[m][j], S[k - m][j], c);
+                        s = fma(V[m][j], C[k - m][j], s);  // Eq. 49
+                        c = fma(V[m][j], S[k - m][j], c);  // Eq. 50
                     }
                     S[k + 1][j] = k > 0 ? s * inverse : s;
                     C[k + 1][j] = k > 0 ? c * Pack(-1.0 / (k + 1)) : Pack(0.0) - c;
@@ -117,7 +117,7 @@ void Kernel<G, U, N, D, Z, L>::step(int base, int count, Bits& flagged, Bits& ne
             const Pack sag = Pack(0.5) * (max(zero - V[1][j], zero) + (size[j] - signs));
             const Pack y0 = Pack::load(alpha + at) - u0, y1 = y0 - du, start = select(y0 == zero, away, y0);
             const Pack low = min(start, y1);
-            const Mask clear = (low > zero) & (fma(Pack(3.0), low, max(start, y1)) > sag);
+            const Mask clear = (low > zero) & (fma(Pack(3.0), low, max(start, y1)) > sag);  // Eq. 55
             // The velocity leaves the straight line between its ends by less than its sway.
             const Mask turns = ((v0 < zero) & (v1 >= zero)) | (sway[j] >= min(abs(V[0][j]), abs(vh)));
             const Mask turning = turns & (y0 + max(away, zero) + sag > Pack::load(peak + at));
@@ -195,7 +195,7 @@ void Kernel<G, U, N, D, Z, L>::forcing(int base, int j) {
         ROCKING_UNROLL
         for (int k = 0; k < D; ++k) {  // Taylor shift to t0
             ROCKING_UNROLL
-            for (int m = D - 1; m >= k; --m) p[m] = fma(t0, p[m + 1], p[m]);
+            for (int m = D - 1; m >= k; --m) p[m] = fma(t0, p[m + 1], p[m]);  // Eq. 51
         }
         Pack power = h;
         b[0][j] = p[0];

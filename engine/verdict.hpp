@@ -22,7 +22,7 @@ bool Kernel<G, U, N, D, Z, L>::beyond_return(int i) const {
     if (!(u[i] > -kHalfPi)) return true;
     double s, c;
     sine_cosine(-u[i], s, c);
-    return weight * s > back * c && weight > 0.0;
+    return weight * s > back * c && weight > 0.0;  // Eq. 36
 }
 
 // How far out a body that is not yet beyond return is looked at again: where it would be, as the ground shakes from now
@@ -105,11 +105,11 @@ void Kernel<G, U, N, D, Z, L>::falls(int i, double when) {
 ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::energy(const Side& s, double u_, double speed) {
     const double kinetic = 0.5 * speed * speed / (s.p * s.p);
-    if (L) return kinetic + 0.5 * (s.alpha * s.alpha - u_ * u_);
+    if (L) return kinetic + 0.5 * (s.alpha * s.alpha - u_ * u_);  // Eq. 30
     double a, b, c;
     sine_cosine(0.5 * (s.alpha + u_), a, c);
     sine_cosine(0.5 * (s.alpha - u_), b, c);
-    return kinetic + 2.0 * a * b;
+    return kinetic + 2.0 * a * b;  // Eq. 17
 }
 
 // Rotation |theta| at which a body of energy e turns round.
@@ -117,7 +117,7 @@ ROCKING_KERNEL
 double Kernel<G, U, N, D, Z, L>::height(const Side& s, double e) {
     if (L) return s.alpha - std::sqrt(std::max(0.0, s.alpha * s.alpha - 2.0 * e));
     const double half = std::sin(0.5 * s.alpha);
-    return s.alpha - 2.0 * std::asin(std::sqrt(std::max(0.0, half * half - 0.5 * e)));
+    return s.alpha - 2.0 * std::asin(std::sqrt(std::max(0.0, half * half - 0.5 * e)));  // Eq. 32
 }
 
 }  // namespace ROCKING_ISA

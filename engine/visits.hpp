@@ -117,7 +117,7 @@ bool Kernel<G, U, N, D, Z, L>::bounce(int i, double at, double speed) {
     touch(i, speed, push, weight);
     lane.side = -old;
     const Side& s = here(i);
-    const double r = law.kind == LawKind::constant ? s.r : coefficient(i, speed), after = r * speed;
+    const double r = law.kind == LawKind::constant ? s.r : coefficient(i, speed), after = r * speed;  // Eq. 28
     ++lane.impacts;
     if (trace) note(i, kImpact, now(i, at), -old * speed / lane.step, r * (-old * speed / lane.step), r);
     stand(i);
@@ -154,7 +154,7 @@ double Kernel<G, U, N, D, Z, L>::coefficient(int i, double speed) const {  // [r
     if (law.kind == LawKind::of_speed) return r * interpolated(law.at, law.value[side], speed / lane.step);
     if (law.kind == LawKind::random) {
         const double drawn = uniform(law.seed, rows.key[lane.row], lane.impacts);
-        return r * interpolated(law.at, law.value[side], rows.share[side][lane.row] * drawn);
+        return r * interpolated(law.at, law.value[side], rows.share[side][lane.row] * drawn);  // Eq. 41
     }
     return r;
 }

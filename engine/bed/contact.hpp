@@ -39,7 +39,7 @@ enum { kY, kTheta, kU, kW, kOmega };
 
 struct Place {  // gap = y - s sigma + zeta kappa, and its rate
     double y, sigma, kappa, dy, dsigma, dkappa, sine, cosine;
-    double gap(double s, double zeta) const { return y - s * sigma + zeta * kappa; }
+    double gap(double s, double zeta) const { return y - s * sigma + zeta * kappa; }  // Eq. 122
     double rate(double s, double zeta) const { return dy - s * dsigma + zeta * dkappa; }
 };
 
@@ -188,10 +188,10 @@ public:
     double force(std::int64_t i, const Place& x) const {
         if (mode[i] == Mode::away || mode[i] == Mode::lagging) return 0.0;
         const double share = p_.points.share[i], d = -gap(i, x), v = -rate(i, x);
-        if (mode[i] == Mode::spring) return p_.stiffness * share / (p_.rebound * p_.rebound) * (d - set(i));
+        if (mode[i] == Mode::spring) return p_.stiffness * share / (p_.rebound * p_.rebound) * (d - set(i));  // Eq. 120
         if (p_.law == kPlastic) return p_.stiffness * share * d;
-        if (p_.law == kKelvinVoigt) return share * (p_.stiffness * d + p_.damping * v);
-        return d > 0.0 ? share * p_.stiffness * power(d) * (1.0 + p_.viscosity * v) : 0.0;
+        if (p_.law == kKelvinVoigt) return share * (p_.stiffness * d + p_.damping * v);  // Eq. 117
+        return d > 0.0 ? share * p_.stiffness * power(d) * (1.0 + p_.viscosity * v) : 0.0;  // Eq. 118
     }
 
     double stored(std::int64_t i, const Place& x) const {
@@ -202,7 +202,7 @@ public:
             return p_.rebound > 0.0 ? 0.5 * f * f * p_.rebound * p_.rebound / (p_.stiffness * share) : 0.0;
         }
         if (p_.law == kKelvinVoigt) return 0.5 * share * p_.stiffness * d * d;
-        return share * p_.stiffness * power(d) * d / (p_.exponent + 1.0);
+        return share * p_.stiffness * power(d) * d / (p_.exponent + 1.0);  // Eq. 121
     }
 
     // Positive while the mode of point i holds; `which`: 0 or 1.

@@ -36,10 +36,11 @@ public:
         r.stored = l.stored;
         const bool held = p_.kind == kSticking || (p_.kind == kCoulomb && slip == 0);
         if (held) {
-            const double turn = turning / (p_.inertia + m * h * h);
+            const double turn = turning / (p_.inertia + m * h * h);  // Eq. 123
             r.shear = m * h * turn - along;
             r.slope = {at.dy, omega, 0.0, across / m, turn};
         } else {
+            // Eq. 124
             r.shear = p_.kind == kCoulomb ? -slip * p_.friction * l.force : -p_.friction * l.force * u / std::hypot(u, p_.creep);
             along += r.shear;
             const double turn = (turning - h * along) / p_.inertia;
@@ -65,6 +66,7 @@ public:
     double energy(const State& x, const Place& at, double travel, double elastic) const {
         const double u = x[kU] + p_.height * x[kOmega], w = x[kW], omega = x[kOmega];
         const double fall = at.sine * at.sine / (1.0 + at.cosine);
+        // Eq. 125
         return 0.5 * p_.mass * (u * u + w * w) + 0.5 * p_.inertia * omega * omega + p_.mass * p_.gravity * (x[kY] - p_.height * fall) +
                p_.mass * p_.push * (travel + p_.height * at.sine) + elastic;
     }

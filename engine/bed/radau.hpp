@@ -253,7 +253,7 @@ bool take_step(const Field& f, const Vector<N>& y, double h, const Vector<N>& un
     out.start = y;
     out.h = h;
     for (int k = 0; k < kStages; ++k)
-        for (std::size_t i = 0; i < N; ++i) out.stage[k][i] = y[i] + z[k][i];
+        for (std::size_t i = 0; i < N; ++i) out.stage[k][i] = y[i] + z[k][i];  // Eq. 131
     Vector<N> gap;
     for (std::size_t i = 0; i < N; ++i) {
         gap[i] = local.slope[i];

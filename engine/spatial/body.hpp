@@ -43,7 +43,7 @@ struct Body {
 
     Mat about(Vec point) const {
         const Vec arm = centre - point;
-        return inertia + mass * (diagonal(dot(arm, arm)) - outer(arm, arm));
+        return inertia + mass * (diagonal(dot(arm, arm)) - outer(arm, arm));  // Eq. 83
     }
     std::uint64_t every() const { return count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1; }
 };
@@ -125,14 +125,14 @@ inline void prepare(Body& body, const double* kept) {
 // Above zero where the centre of mass is beyond the contact, in the direction in which the body leans.
 inline double leaning_over(const Body& body, Vec up, Vec pivot) {
     const Vec arm = body.centre - pivot;
-    return arm.z - dot(up, arm) * up.z;
+    return arm.z - dot(up, arm) * up.z;  // Eq. 87
 }
 
 // How much higher the centre of mass is than at rest.
 inline double rise(const Body& body, Vec up, Vec pivot) {
     const Vec arm = body.centre - pivot;
     const double level2 = up.x * up.x + up.y * up.y, sunk = up.z > 0.0 ? level2 / (1.0 + up.z) : 1.0 - up.z;
-    return up.x * arm.x + up.y * arm.y - sunk * arm.z;
+    return up.x * arm.x + up.y * arm.y - sunk * arm.z;  // Eq. 86
 }
 
 }  // namespace ROCKING_ISA

@@ -30,11 +30,11 @@ inline double least_support(const Body& body, const Pivot& stance, Vec force, Ve
     const double normal = dot(force, up);
     const Vec arms = cross(up, moment);
     if (stance.contact == kEdge) {
-        const double second = dot(arms, stance.axis) / stance.length;
+        const double second = dot(arms, stance.axis) / stance.length;  // Eq. 92
         return lesser(normal - second, second);
     }
     if (stance.contact != kRest) return normal;
-    const Vec pressure = arms + normal * stance.at;
+    const Vec pressure = arms + normal * stance.at;  // Eq. 93
     if (body.round) return (normal * body.radius - std::sqrt(pressure.x * pressure.x + pressure.y * pressure.y)) / body.size;
     double least = normal;
     for (int i = 0; i < body.count; ++i) {
@@ -45,7 +45,7 @@ inline double least_support(const Body& body, const Pivot& stance, Vec force, Ve
 }
 
 inline double impulse_support(const Body& body, const State& s, const Pivot& stance, Vec velocity) {
-    const Vec push = body.mass * (cross(velocity, stance.arm) - cross(s.velocity, body.centre - s.pivot));
+    const Vec push = body.mass * (cross(velocity, stance.arm) - cross(s.velocity, body.centre - s.pivot));  // Eq. 90
     return least_support(body, stance, push, body.inertia * (velocity - s.velocity) + cross(stance.arm, push), s.up);
 }
 
@@ -96,7 +96,7 @@ inline Forces forces(const Body& body, const Pivot& stance, Vec velocity, Vec up
     const Vec gyroscopic = cross(velocity, stance.inertia * velocity), weight = body.mass * cross(stance.arm, field);
     const Vec rate = stance.contact == kRest ? Vec{} : with_momentum(stance, weight - gyroscopic);
     const Vec moment = stance.inertia * rate + gyroscopic - weight;
-    const Vec force = body.mass * (cross(rate, stance.arm) + cross(velocity, cross(velocity, stance.arm)) - field);
+    const Vec force = body.mass * (cross(rate, stance.arm) + cross(velocity, cross(velocity, stance.arm)) - field);  // Eq. 91
     return {rate, least_support(body, stance, force, moment, up)};
 }
 

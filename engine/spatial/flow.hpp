@@ -65,7 +65,7 @@ inline void series(const Pivot& pivot, const Four* state, double length, const d
         rate = rate + pivot.gyro[0] * all_of<0>(same) + pivot.gyro[1] * all_of<1>(same);
         Four rest = pivot.gyro[2] * all_of<2>(same) + pivot.gyro[3] * all_of<0>(other);
         rest = rest + pivot.gyro[4] * all_of<1>(other) + pivot.gyro[5] * all_of<2>(other);
-        rate = rate + rest;
+        rate = rate + rest;  // Eq. 22
         const Four a = turned<N>(x, xr, w, wr, k, inverse), b = turned<N>(y, yr, w, wr, k, inverse);
         const Four c = turned<N>(z, zr, w, wr, k, inverse);
         x[k + 1] = next_of(a), xr[k + 1] = mixed<2, 0, 1, 3>(a);

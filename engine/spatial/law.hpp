@@ -15,14 +15,14 @@ struct State {
 
 // About a pivot, the velocity that has a given angular momentum; about an edge only its component along that counts.
 inline Vec with_momentum(const Pivot& onto, Vec momentum) {
-    if (onto.contact == kEdge) return dot(onto.axis, momentum) / onto.about_axis * onto.axis;
+    if (onto.contact == kEdge) return dot(onto.axis, momentum) / onto.about_axis * onto.axis;  // Eq. 89
     return onto.inverse * momentum;
 }
 
 // Plastic impact without slip: the projection of the velocities in the kinetic metric.
 inline Vec projected(const Body& body, const State& s, const Pivot& onto) {
     const Vec speed = cross(s.velocity, body.centre - s.pivot);
-    return with_momentum(onto, body.inertia * s.velocity + body.mass * cross(onto.arm, speed));
+    return with_momentum(onto, body.inertia * s.velocity + body.mass * cross(onto.arm, speed));  // Eq. 88
 }
 
 // Only the horizontal velocities of the particles go on.
@@ -31,7 +31,7 @@ inline Vec level_only(const Body& body, const State& s, const Pivot& onto) {
     const Mat second = diagonal(half) - body.inertia;  // integral of x x^T about the centre
     const Vec speed = cross(s.velocity, body.centre - s.pivot), level = speed - dot(s.up, speed) * s.up;
     const Vec momentum = body.inertia * s.velocity + cross(s.up, second * cross(s.up, s.velocity));
-    return with_momentum(onto, momentum + body.mass * cross(onto.arm, level));
+    return with_momentum(onto, momentum + body.mass * cross(onto.arm, level));  // Eq. 102
 }
 
 // Twice the energy that the three stages of KED leave, from the moments of the landing stance in body axes.
@@ -48,7 +48,7 @@ inline double twice_kept(const State& s, const Pivot& onto) {
             total += u[i] * second[3 * i + j] * u[j];
             for (int k = 0; k < 3; ++k) {
                 total += 2.0 * u[i] * third[9 * i + 3 * j + k] * v[j][k];
-                for (int l = 0; l < 3; ++l) total += v[i][k] * v[j][l] * fourth[27 * i + 9 * j + 3 * k + l];
+                for (int l = 0; l < 3; ++l) total += v[i][k] * v[j][l] * fourth[27 * i + 9 * j + 3 * k + l];  // Eq. 106
             }
         }
     }
@@ -57,7 +57,7 @@ inline double twice_kept(const State& s, const Pivot& onto) {
 
 inline Vec scaled_to(const Pivot& onto, Vec direction, double twice) {
     const double left = dot(direction, onto.inertia * direction);
-    return left > 0.0 ? std::sqrt(greater(twice, 0.0) / left) * direction : direction;
+    return left > 0.0 ? std::sqrt(greater(twice, 0.0) / left) * direction : direction;  // Eq. 21
 }
 
 // k of a landing of the whole base in the direction of a step, not above 1; 1 where there is no step.
@@ -81,7 +81,7 @@ inline Vec about_impulse(const Body& body, const State& s, const Pivot& onto, Ve
     const Vec back = 0.5 * (1.0 - k) * body.mass * step, speed = cross(s.velocity, body.centre - s.pivot);
     const Vec momentum = body.inertia * s.velocity + body.mass * cross(onto.arm, speed) + cross(back, speed);
     if (onto.contact == kEdge) return dot(onto.axis, momentum) / (onto.about_axis + dot(back, onto.arm)) * onto.axis;
-    return inverse(onto.inertia + diagonal(dot(back, onto.arm)) - outer(onto.arm, back)) * momentum;
+    return inverse(onto.inertia + diagonal(dot(back, onto.arm)) - outer(onto.arm, back)) * momentum;  // Eq. 103
 }
 
 inline Vec by_position(const Body& body, const State& before, const Pivot& onto) {
@@ -109,7 +109,7 @@ inline Vec velocity_after(const Body& body, const State& s, const Pivot& onto, i
     if (law == kHousner) return plastic;
     const double before = dot(s.velocity, body.about(s.pivot) * s.velocity), size = dot(plastic, plastic);
     const double left = size > 0.0 ? dot(plastic, onto.inertia * plastic) / size : 0.0;
-    return scaled_to(onto, plastic, lesser(coefficient * coefficient * dot(s.velocity, s.velocity) * left, before));
+    return scaled_to(onto, plastic, lesser(coefficient * coefficient * dot(s.velocity, s.velocity) * left, before));  // Eq. 101
 }
 
 }  // namespace ROCKING_ISA

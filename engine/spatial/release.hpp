@@ -29,7 +29,7 @@ inline void multiply(const double* a, const double* b, int order, double* made) 
 // Vertical force per unit mass, up to the order of the series less two.
 inline void normal_force(const Step& step, double* made) {
     const double rate = 1.0 / (step.length * step.length);
-    for (int k = 0; k + 2 <= step.s.order; ++k) made[k] = (k + 2) * (k + 1) * rate * step.c[k + 2][2] - step.field[k][2];
+    for (int k = 0; k + 2 <= step.s.order; ++k) made[k] = (k + 2) * (k + 1) * rate * step.c[k + 2][2] - step.field[k][2];  // Eq. 96
 }
 
 // Vertical force per unit mass at the second end of an edge.
@@ -49,7 +49,7 @@ inline void second_force(const Pivot& edge, const Step& step, double* made) {
     multiply(b, square, top, part[1]);
     multiply(height, push, top, part[2]);
     for (int k = 0; k <= top; ++k)
-        made[k] = (part[2][k] - part[0][k] - part[1][k] - step.field[k][2] * edge.along) / edge.length;
+        made[k] = (part[2][k] - part[0][k] - part[1][k] - step.field[k][2] * edge.along) / edge.length;  // Eq. 97
 }
 
 // Acceleration of the gap of an end of an edge if the body turned about the other end alone.
@@ -73,7 +73,7 @@ inline void opening_of(const Body& body, const Pivot& edge, const Step& step, in
         lever[k] = solve * cross(leaves, step.up(k));
     }
     for (int k = 0; k <= top; ++k)
-        for (int j = 0; j <= k; ++j) made[k] += dot(lever[j], torque[k - j]);
+        for (int j = 0; j <= k; ++j) made[k] += dot(lever[j], torque[k - j]);  // Eq. 98
 }
 
 struct Release {

@@ -14,7 +14,7 @@ struct Motion {
 
 inline void shift(double* c, int order, double to, double width) {
     for (int k = 0; k < order; ++k)
-        for (int j = order - 1; j >= k; --j) c[j] += to * c[j + 1];
+        for (int j = order - 1; j >= k; --j) c[j] += to * c[j + 1];  // Eq. 51
     double power = 1.0;
     for (int k = 0; k <= order; ++k, power *= width) c[k] *= power;
 }
@@ -84,7 +84,7 @@ private:
         if (!body_.round) {
             for (int d = 0; d <= D; ++d)
                 c[d] = scale_ * (by_[row].x * a[3 * d] + by_[row].y * a[3 * d + 1] + by_[row].z * a[3 * d + 2]);
-            c[0] += gravity_ * by_[row].z;
+            c[0] += gravity_ * by_[row].z;  // Eq. 94
             return;
         }
         double weight[D + 1], arm[2][D + 1];
@@ -97,6 +97,7 @@ private:
         }
         const double square = body_.radius * body_.radius;
         for (int i = 0; row == 0 && i <= D; ++i)
+            // Eq. 95
             for (int j = 0; j <= D; ++j) c[i + j] += square * weight[i] * weight[j] - arm[0][i] * arm[0][j] - arm[1][i] * arm[1][j];
     }
 

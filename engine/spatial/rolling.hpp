@@ -52,7 +52,7 @@ private:
             slip_[k] += n_[j].x * rise_[k - j].y - n_[j].y * rise_[k - j].x;
             toward_[k] += n_[j].x * rise_[k - j].x + n_[j].y * rise_[k - j].y;
         }
-        drift_[k] = product(slip_, h_, k);
+        drift_[k] = product(slip_, h_, k);  // Eq. 99
         bend_[k] = {};
         for (int j = 0; j <= k; ++j) bend_[k] = bend_[k] + drift_[k - j] * Vec{-n_[j].y, n_[j].x, 0.0};
         arm_[k] = body_.radius * n_[k] + (k == 0 ? body_.centre : Vec{});
@@ -81,7 +81,7 @@ private:
         inertia_[k] = body_.mass * (diagonal(square) - spread);
         if (k == 0) inertia_[0] = inertia_[0] + body_.inertia, solve_ = inverse(inertia_[0]);
         Vec torque = body_.mass * crossed(arm_, weight_, k) - crossed(w_, momentum_, k);
-        for (int j = 1; j <= k; ++j) torque = torque - inertia_[j] * spin_[k - j];
+        for (int j = 1; j <= k; ++j) torque = torque - inertia_[j] * spin_[k - j];  // Eq. 23
         spin_[k] = solve_ * torque;
     }
 

@@ -58,7 +58,7 @@ class Side:
     @property
     def frequency_parameter(self) -> float:
         """Frequency parameter p = sqrt(m g R / I_O) [rad/s]."""
-        return math.sqrt(self.mass * self.gravity * self.semi_diagonal / self.moment_of_inertia)
+        return math.sqrt(self.mass * self.gravity * self.semi_diagonal / self.moment_of_inertia)  # Eq. 26
 
     @property
     def uplift_acceleration(self) -> float:

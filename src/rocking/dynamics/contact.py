@@ -110,7 +110,7 @@ def forces(intervals: DenseOutput, gravity: float) -> tuple[FloatArray, FloatArr
     f_x = np.where(resting, intervals.push, f_x)
     f_z = np.where(resting, gravity + intervals.lift, f_z)
     with np.errstate(divide="ignore", invalid="ignore"):
-        demand = np.where(f_z > 0.0, np.abs(f_x) / f_z, np.where(f_x == 0.0, 0.0, np.inf))
+        demand = np.where(f_z > 0.0, np.abs(f_x) / f_z, np.where(f_x == 0.0, 0.0, np.inf))  # Eq. 35
     return f_x, f_z, demand
 
 

@@ -30,8 +30,8 @@ def angular_acceleration(
     0.4
     """
     to_top = np.asarray(alpha) * side - rotation
-    sine, cosine = (to_top, np.ones_like(to_top)) if linear else (np.sin(to_top), np.cos(to_top))
-    return np.asarray(-np.square(p) * (np.asarray(weight) * sine + np.asarray(push) * cosine))
+    sine, cosine = (to_top, np.ones_like(to_top)) if linear else (np.sin(to_top), np.cos(to_top))  # Eq. 15
+    return np.asarray(-np.square(p) * (np.asarray(weight) * sine + np.asarray(push) * cosine))  # Eq. 14
 
 
 def holding_moment(side: Any, alpha: Any, push: Any, weight: Any = 1.0, *, linear: bool = False) -> FloatArray:
@@ -45,7 +45,7 @@ def holding_moment(side: Any, alpha: Any, push: Any, weight: Any = 1.0, *, linea
     0.0
     """
     sine, cosine = (np.asarray(alpha), 1.0) if linear else (np.sin(alpha), np.cos(alpha))
-    return np.asarray(np.asarray(weight) * sine + np.asarray(side) * np.asarray(push) * cosine)
+    return np.asarray(np.asarray(weight) * sine + np.asarray(side) * np.asarray(push) * cosine)  # Eq. 24
 
 
 def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: bool = False) -> FloatArray:
@@ -57,9 +57,9 @@ def energy(rotation: Any, angular_velocity: Any, alpha: Any, p: Any, *, linear: 
     size, angle = np.abs(rotation), np.asarray(alpha)
     kinetic = 0.5 * np.square(np.asarray(angular_velocity) / p)
     if linear:
-        return np.asarray(kinetic + size * (angle - 0.5 * size))
+        return np.asarray(kinetic + size * (angle - 0.5 * size))  # Eq. 30
     # cos a - cos b as a product keeps the digits of small rotations
-    return np.asarray(kinetic + 2.0 * np.sin(angle - 0.5 * size) * np.sin(0.5 * size))
+    return np.asarray(kinetic + 2.0 * np.sin(angle - 0.5 * size) * np.sin(0.5 * size))  # Eq. 17
 
 
 def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
@@ -68,7 +68,7 @@ def energy_at_top(alpha: Any, *, linear: bool = False) -> FloatArray:
     alpha: slenderness angle of the side [rad]. Returns ``1 - cos(alpha)`` [-].
     """
     angle = np.asarray(alpha)
-    return np.asarray(0.5 * np.square(angle) if linear else 2.0 * np.square(np.sin(0.5 * angle)))
+    return np.asarray(0.5 * np.square(angle) if linear else 2.0 * np.square(np.sin(0.5 * angle)))  # Eq. 31
 
 
 def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) -> FloatArray:
@@ -82,7 +82,7 @@ def turning_rotation(energy_over_mgr: Any, alpha: Any, *, linear: bool = False) 
     """
     angle = np.asarray(alpha)
     left = np.maximum(energy_at_top(angle, linear=linear) - energy_over_mgr, 0.0)
-    return np.asarray(angle - (np.sqrt(2.0 * left) if linear else 2.0 * each(math.asin, np.sqrt(0.5 * left))))
+    return np.asarray(angle - (np.sqrt(2.0 * left) if linear else 2.0 * each(math.asin, np.sqrt(0.5 * left))))  # Eq. 32
 
 
 def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of the equations
@@ -104,8 +104,8 @@ def reactions(  # noqa: PLR0917 - the state of body and ground, in the order of 
     psi = np.asarray(alpha) - np.asarray(side) * rotation
     outward = np.asarray(side) * acceleration  # |theta|''
     rate2 = np.square(angular_velocity)
-    f_x = horizontal + np.asarray(side) * semi_diagonal * (np.cos(psi) * outward + np.sin(psi) * rate2)
-    f_z = vertical + semi_diagonal * (np.sin(psi) * outward - np.cos(psi) * rate2)
+    f_x = horizontal + np.asarray(side) * semi_diagonal * (np.cos(psi) * outward + np.sin(psi) * rate2)  # Eq. 18
+    f_z = vertical + semi_diagonal * (np.sin(psi) * outward - np.cos(psi) * rate2)  # Eq. 18
     return np.asarray(f_x), np.asarray(f_z)
 
 
@@ -120,4 +120,4 @@ def friction_of_impact(height: float, old_lever: float, new_lever: float, coeffi
     0.352941176471
     """
     r = np.asarray(coefficient)
-    return np.asarray(height * (1.0 - r) / (old_lever + new_lever * r))
+    return np.asarray(height * (1.0 - r) / (old_lever + new_lever * r))  # Eq. 5

@@ -46,7 +46,7 @@ class RestoringMoments:
 
     def _holding(self, sign: int) -> FloatArray:
         sine, cosine = self._sines[sign], self._cosines[sign]
-        moment = self.push.vertical * sine + self.push.horizontal * (sign * cosine)
+        moment = self.push.vertical * sine + self.push.horizontal * (sign * cosine)  # Eq. 24
         moment[:, 0] += sine
         return moment
 
@@ -92,9 +92,9 @@ class RestoringMoments:
         }
         if not (low[1] > 0.0 and low[-1] > 0.0):
             return None
-        variation = x.variation * max(self._cosines[k] / low[k] for k in low)
+        variation = x.variation * max(self._cosines[k] / low[k] for k in low)  # Eq. 38
         variation += z.variation * max(self._sines[k] / low[k] for k in low)
-        steepness = max(abs(1.0 + z.least), abs(1.0 + z.most)) + max(abs(x.least), abs(x.most))
+        steepness = max(abs(1.0 + z.least), abs(1.0 + z.most)) + max(abs(x.least), abs(x.most))  # Eq. 39
         return Window(low, variation, steepness)
 
     def _release(self, sign: int, stretch: int, start: float) -> float:

@@ -376,7 +376,7 @@ class DrawnRestitution(ImpactLaw):
         if k in {0, table.size}:
             return float(k > 0)
         part = (most - table[k - 1]) / (table[k] - table[k - 1])
-        return float(self.at[k - 1] + (self.at[k] - self.at[k - 1]) * part)
+        return float(self.at[k - 1] + (self.at[k] - self.at[k - 1]) * part)  # Eq. 42
 
     def factor(self, speed: float, key: int, impact: int) -> float:
         """Return the draw for an impact, of a law that is the same for both sides.
@@ -416,7 +416,7 @@ class DrawnRestitution(ImpactLaw):
         float
             Coefficient or factor [-].
         """
-        return self.quantile(share * uniform(self.seed, key, 0 if self.per_history else impact), onto)
+        return self.quantile(share * uniform(self.seed, key, 0 if self.per_history else impact), onto)  # Eq. 41
 
 
 class RandomRestitution(DrawnRestitution):
@@ -457,12 +457,12 @@ def interpolated(at: FloatArray, values: FloatArray, x: float) -> float:
     if x >= at[-1]:
         return float(values[-1])
     k = int(np.searchsorted(at, x, side="right"))
-    return float(values[k - 1] + (values[k] - values[k - 1]) * ((x - at[k - 1]) / (at[k] - at[k - 1])))
+    return float(values[k - 1] + (values[k] - values[k - 1]) * ((x - at[k - 1]) / (at[k] - at[k - 1])))  # Eq. 44
 
 
 def uniform(seed: int, key: int, impact: int) -> float:
     """Return a number in [0, 1) that depends on seed, history and impact, on nothing else (splitmix64)."""
-    return (_mixed(_mixed(_mixed(seed) + key & _MASK) + impact & _MASK) >> 11) * 2.0**-53
+    return (_mixed(_mixed(_mixed(seed) + key & _MASK) + impact & _MASK) >> 11) * 2.0**-53  # Eq. 43
 
 
 def _mixed(z: int) -> int:

@@ -120,7 +120,7 @@ class DenseOutput:
                 a,
                 va,
                 ja,
-                10.0 * gap - 4.0 * rate + bend,
+                10.0 * gap - 4.0 * rate + bend,  # Eq. 57
                 -15.0 * gap + 7.0 * rate - 2.0 * bend,
                 6.0 * gap - 3.0 * rate + bend,
             ],
@@ -145,7 +145,7 @@ class DenseOutput:
         if self._segments.vertical is not None:
             lift = self._scale * _evaluated(self._segments.vertical, stretch, tau)
             force = force - lift * sine * self.side[:, None]
-        power = self.semi_diagonal[:, None] * force * velocity
+        power = self.semi_diagonal[:, None] * force * velocity  # Eq. 46
         return np.where(self.side != 0.0, applied(power, _WEIGHTS) * self.length, 0.0)
 
 

@@ -24,7 +24,7 @@ class ResponseEnergy:
     def gap(self) -> FloatArray:
         """What does not add up: kinetic + potential + lost - work - initial [J]."""
         stored = self.kinetic + self.potential
-        return np.asarray(stored + self.lost - self.work - stored[0], dtype=np.float64)
+        return np.asarray(stored + self.lost - self.work - stored[0], dtype=np.float64)  # Eq. 45
 
     @property
     def closure(self) -> float:

@@ -104,7 +104,7 @@ class Reference:
         weight[0] += 1.0
         self._note_force(self.u, self.rate, push[0], weight[0])
         kappa = (self._p * left) ** 2
-        terms = series(self.u, self.rate * left, kappa, push, weight, _ORDER, linear=self.settings.linear)
+        terms = series(self.u, self.rate * left, kappa, push, weight, _ORDER, linear=self.settings.linear)  # Eq. 14
         part = self._trusted_part(terms)
         if not part > 0.0:
             return _Ended(Outcome.FAILED, Status.NOT_FINITE)
@@ -128,7 +128,7 @@ class Reference:
         part = 1.0
         for k in (len(terms) - 2, len(terms) - 1):
             if abs(terms[k]) > bound:
-                part = min(part, (bound / abs(terms[k])) ** (1.0 / k))
+                part = min(part, (bound / abs(terms[k])) ** (1.0 / k))  # Eq. 52
         return part
 
     def _contact(self, gap: list[float]) -> float | None:
@@ -152,7 +152,7 @@ class Reference:
         self._note_force(self._alpha, speed, *self._ground_at(self.stretch, tau))
         old, self.side = self.side, -self.side
         r = self._coefficient(speed)
-        after = r * speed
+        after = r * speed  # Eq. 28
         self.impacts += 1
         self._note(EventKind.IMPACT, time, -old * speed, -old * after, r)
         self.u, self.rate = self._alpha, -after
@@ -269,10 +269,10 @@ class Reference:
         moment = weight * u + push if self.settings.linear else weight * sine + push * cosine  # u'' / p^2
         share, spin = self.rocker.side(self.side).inertia_ratio, rate / self._p
         spin *= spin  # a power would raise where this is infinite
-        up = weight - share * (moment * sine + spin * cosine)
-        along = push - share * (moment * cosine - spin * sine)
+        up = weight - share * (moment * sine + spin * cosine)  # Eq. 33
+        along = push - share * (moment * cosine - spin * sine)  # Eq. 34
         least, demand = self.forces
-        self.forces = min(least, up), max(demand, abs(along) / up) if up > 0.0 else math.inf
+        self.forces = min(least, up), max(demand, abs(along) / up) if up > 0.0 else math.inf  # Eq. 35
 
     def _note(self, kind: EventKind, time: float, before: float = 0.0, after: float = 0.0, r: float = 0.0) -> None:
         self.events.append(Event(time, kind, self.side, before, after, r))
@@ -312,7 +312,7 @@ class Reference:
         weight = 1.0 + self.later_light[self.stretch]
         if self.settings.linear:
             return bool(weight > 0.0 and weight * -self.u > back)
-        return bool(weight > 0.0 and weight * math.sin(-self.u) > back * math.cos(self.u))
+        return bool(weight > 0.0 and weight * math.sin(-self.u) > back * math.cos(self.u))  # Eq. 36
 
     def _trajectory(self, ended: _Ended) -> Trajectory:
         over, good = ended.outcome is Outcome.OVERTURNED, ended.status is Status.GOOD

@@ -33,7 +33,7 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     one, two = ((k.frequency_parameter * step) ** 2 for k in (side, other))
     r, q = rocker.largest(sign), rocker.largest(-sign)
     speed, lost = after * step, 1.0 - r * q
-    flights, rate = 2.0 * speed * (two * across + q * one * held), one * held * (two * across) * lost
+    flights, rate = 2.0 * speed * (two * across + q * one * held), one * held * (two * across) * lost  # Eq. 37
     if not flights < _LONGEST_WINDOW * rate:
         return False
     left, guess = 1.0 - tau, 1.5 * (flights / rate)
@@ -44,9 +44,9 @@ def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
     low, low_ = window.low[sign], window.low[-sign]
     x = 0.5 * (window.variation + _HEIGHTS)
     gain = 1.0 + x + x * x  # more than exp(x) up to x = 1
-    heights = window.steepness * (speed * gain) ** 2 / min(one * low * low, two * low_ * low_)
+    heights = window.steepness * (speed * gain) ** 2 / min(one * low * low, two * low_ * low_)  # Eq. 40
     small = 2.2 * heights * (1.0 + q * q) <= _HEIGHTS * (1.0 - (r * q) ** 2) and heights <= 0.3
     if not (x <= 1.0 and small):
         return False
-    total = 2.0 * speed * gain * (1.0 / (one * low) + q / (two * low_)) / (lost * (1.0 - heights))
+    total = 2.0 * speed * gain * (1.0 / (one * low) + q / (two * low_)) / (lost * (1.0 - heights))  # Eq. 16
     return bool(total <= left + (stretches - 1))

@@ -172,7 +172,7 @@ class Rocker:
                 side.frequency_parameter,
                 side.semi_diagonal,
                 float(coefficients[foot]),
-                body.mass * side.semi_diagonal**2 / side.moment_of_inertia,
+                body.mass * side.semi_diagonal**2 / side.moment_of_inertia,  # Eq. 27
                 shares[foot],
             )
             for foot, side in sides.items()

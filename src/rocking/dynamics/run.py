@@ -69,5 +69,5 @@ def rerun_finer(response: "Response") -> float:
     )  # fmt: skip
     if again.outcome is not first.outcome:
         return math.inf
-    change = np.abs(again.rotation[::2] - first.rotation)
+    change = np.abs(again.rotation[::2] - first.rotation)  # Eq. 47
     return float(np.nanmax(change))

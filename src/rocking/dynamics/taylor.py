@@ -26,7 +26,7 @@ def series(
     floor = _SMALLEST * (abs(u) + abs(rate))
     small = 0
     for k in range(order - 1):
-        force = sum(map(mul, weight, sines[k::-1])) + sum(map(mul, push, cosines[k::-1]))
+        force = sum(map(mul, weight, sines[k::-1])) + sum(map(mul, push, cosines[k::-1]))  # Eq. 48
         rates.append(kappa * force / (k + 1))
         coefficients.append(rates[-1] / (k + 2))
         small = small + 1 if abs(rates[-1]) <= floor and k >= len(push) + len(weight) else 0
@@ -35,8 +35,8 @@ def series(
         if linear:
             cosines.append(0.0)
         else:
-            sine = sum(map(mul, rates, cosines[k::-1])) / (k + 1)
-            cosine = -sum(map(mul, rates, sines[k::-1])) / (k + 1)
+            sine = sum(map(mul, rates, cosines[k::-1])) / (k + 1)  # Eq. 49
+            cosine = -sum(map(mul, rates, sines[k::-1])) / (k + 1)  # Eq. 50
             sines.append(sine)
             cosines.append(cosine)
     return coefficients
@@ -48,7 +48,7 @@ def shifted(polynomial: Sequence[float], to: float, width: float) -> list[float]
     n = len(c)
     for k in range(n - 1):
         for j in range(n - 2, k - 1, -1):
-            c[j] += to * c[j + 1]
+            c[j] += to * c[j + 1]  # Eq. 51
     return [value * width**k for k, value in enumerate(c)]
 
 
@@ -125,7 +125,7 @@ def _zero_between(polynomial: Sequence[float], low: float, high: float) -> float
     for _ in range(_HALVINGS):
         height, rate = value(polynomial, x), slope(polynomial, x)
         low, high = (x, high) if (height < 0.0) is rises else (low, x)
-        after = x - height / rate if rate else low
+        after = x - height / rate if rate else low  # Eq. 56
         after = after if low < after < high else 0.5 * (low + high)
         if abs(after - x) <= 2e-16 * abs(x):
             break

@@ -234,6 +234,6 @@ def _mixture(at: FloatArray, mean: FloatArray, sd: FloatArray) -> tuple[FloatArr
     for first in range(0, at.size, 64):
         part = slice(first, first + 64)
         z = (at[part, np.newaxis] - mean) / sd
-        below[part] = ndtr(z).mean(axis=1)
+        below[part] = ndtr(z).mean(axis=1)  # Eq. 137
         density[part] = (np.exp(-0.5 * z**2) / sd).mean(axis=1) / math.sqrt(2.0 * math.pi)
     return below, density

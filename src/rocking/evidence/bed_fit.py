@@ -68,7 +68,7 @@ def fit_bed(physics: Physics, data: DataSet | None = None, *, points: Sequence[i
     return BedFit(
         physics, n, dict(zip(physics.parameters, found[:-2].tolist(), strict=True)),
         math.exp(found[-2]), float(found[-1]), log_likelihood,
-        count * math.log(len(rows)) - 2.0 * log_likelihood, rmse(mean, rows.coefficient), mean,
+        count * math.log(len(rows)) - 2.0 * log_likelihood, rmse(mean, rows.coefficient), mean,  # Eq. 138
     )  # fmt: skip
 
 

@@ -223,7 +223,7 @@ def keep(path: Path) -> None:
 def calibrate_on(data: DataSet) -> Calibration:
     """Return the calibration on given measurements."""
     grid = posterior_grid(data)
-    return _summarised(normalised(grid.log_prior + grid.terms.sum(axis=-1)))
+    return _summarised(normalised(grid.log_prior + grid.terms.sum(axis=-1)))  # Eq. 136
 
 
 @dataclass(frozen=True, eq=False)
@@ -274,7 +274,7 @@ def normalised(log_weight: FloatArray) -> FloatArray:
     Returns of the same shape.
     """
     weight = np.exp(log_weight - log_weight.max())
-    return np.asarray(weight / weight.sum())
+    return np.asarray(weight / weight.sum())  # Eq. 136
 
 
 def interval_for(model: RestitutionModel, body: Body, *, onto: Foot = "right") -> Prediction:
@@ -334,8 +334,8 @@ def _geometry(body: Body | Any, onto: Foot) -> tuple[ImpactGeometry, FloatArray]
 
 
 def _log_prior() -> FloatArray:
-    eta: FloatArray = 0.5 * np.log1p(-_ETA) + 97.5 * np.log(_ETA)
-    k: FloatArray = -0.5 * ((_K - 0.6) / 0.12) ** 2
+    eta: FloatArray = 0.5 * np.log1p(-_ETA) + 97.5 * np.log(_ETA)  # Eq. 135
+    k: FloatArray = -0.5 * ((_K - 0.6) / 0.12) ** 2  # Eq. 135
     return eta[:, None, None, None] + k[None, :, None, None]
 
 
@@ -367,7 +367,7 @@ def _quantile(mean: FloatArray, sd: FloatArray, level: float) -> FloatArray:
     found = mean.mean(axis=0)
     for _ in range(100):
         z = (found - mean) / sd
-        excess = normal_cdf(z).mean(axis=0) - level
+        excess = normal_cdf(z).mean(axis=0) - level  # Eq. 137
         low, high = np.where(excess < 0.0, found, low), np.where(excess < 0.0, high, found)
         slope = (np.exp(-0.5 * z * z) / sd).mean(axis=0) / math.sqrt(2.0 * math.pi)
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -124,7 +124,7 @@ def errors_of_groups(
 def resampled(squares: FloatArray, weight: FloatArray) -> FloatArray:
     """Return root mean squares of the resamples."""
     # a sum and no product of matrices: the same on every processor
-    return np.asarray(np.sqrt((weight * squares).sum(axis=1) / weight.sum(axis=1)))
+    return np.asarray(np.sqrt((weight * squares).sum(axis=1) / weight.sum(axis=1)))  # Eq. 139
 
 
 def drawn(data: DataSet) -> FloatArray:

@@ -25,13 +25,13 @@ def interval_log_likelihood(low: FloatArray, high: FloatArray, mean: FloatArray,
     # both ends on the same side of zero keep their digits in the lower tail
     flip = a > 0.0
     a, b = np.where(flip, -b, a), np.where(flip, -a, b)
-    probability = ndtr(b) - ndtr(a)
+    probability = ndtr(b) - ndtr(a)  # Eq. 134
     deep = ~(probability > 1e-290)  # where the tail itself is too small a number, its logarithm is not
     if not deep.any():
         return np.log(probability)
     upper, lower = log_ndtr(b[deep]), log_ndtr(a[deep])
     found = np.log(probability, where=~deep, out=np.empty_like(probability))
-    found[deep] = upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-300)))
+    found[deep] = upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-300)))  # Eq. 134
     return found
 
 
@@ -46,7 +46,7 @@ def scatter(mean: FloatArray, floor: float, slope: float) -> FloatArray:
     mean: predicted coefficients [-]; floor: scale s of the scatter [-]; slope: power with which it grows with the loss,
     s (1 - r)^slope; 0 is a constant scatter [-]. Returns standard deviations [-].
     """
-    return np.asarray(floor * np.maximum(1.0 - mean, 1e-6) ** slope)
+    return np.asarray(floor * np.maximum(1.0 - mean, 1e-6) ** slope)  # Eq. 133
 
 
 def gaussian_bic(residuals: FloatArray, parameters: int) -> float:
@@ -56,7 +56,7 @@ def gaussian_bic(residuals: FloatArray, parameters: int) -> float:
     Returns lower is better; differences below 2 mean nothing, above 10 a lot.
     """
     n = residuals.size
-    return n * math.log(float(residuals @ residuals) / n) + (parameters + 1) * math.log(n)
+    return n * math.log(float(residuals @ residuals) / n) + (parameters + 1) * math.log(n)  # Eq. 138
 
 
 def fit_scatter(data: DataSet, mean: FloatArray) -> tuple[float, float, float]:
@@ -79,7 +79,7 @@ def rounding_bic(data: DataSet, mean: FloatArray, parameters: int) -> float:
     mean: predictions [-]; parameters: number of fitted parameters of the model; two more are those of the scatter [-].
     Returns -2 ln L + (parameters + 2) ln n.
     """
-    return -2.0 * fit_scatter(data, mean)[2] + (parameters + 2) * math.log(len(data))
+    return -2.0 * fit_scatter(data, mean)[2] + (parameters + 2) * math.log(len(data))  # Eq. 138
 
 
 def _maximise(function: Callable[[FloatArray], float], start: list[float]) -> tuple[list[float], float]:

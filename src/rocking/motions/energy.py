@@ -39,7 +39,7 @@ def arias_intensity(motion: GroundMotion, gravity: float = g) -> float:
     """
     motion = checked_motion(motion)
     gravity = checks.positive("gravity", gravity, "m/s2")
-    return 0.5 * math.pi / gravity * float(_husid(motion)[-1])
+    return 0.5 * math.pi / gravity * float(_husid(motion)[-1])  # Eq. 140
 
 
 def significant_times(motion: GroundMotion, start: float = 5.0, end: float = 95.0) -> tuple[float, float]:
@@ -81,13 +81,13 @@ def significant_duration(motion: GroundMotion, start: float = 5.0, end: float = 
     9.0
     """
     first, last = significant_times(motion, start, end)
-    return last - first
+    return last - first  # Eq. 142
 
 
 def _husid(motion: GroundMotion) -> FloatArray:
     """Return the integral of the squared acceleration up to each sample [m2/s3]."""
     squares = motion.acceleration**2
-    return np.concatenate([[0.0], np.cumsum(0.5 * motion.time_step * (squares[:-1] + squares[1:]))])
+    return np.concatenate([[0.0], np.cumsum(0.5 * motion.time_step * (squares[:-1] + squares[1:]))])  # Eq. 141
 
 
 def _crossing(motion: GroundMotion, total: FloatArray, fraction: float) -> float:

@@ -131,7 +131,7 @@ def cumulative_absolute_velocity(motion: GroundMotion) -> float:
     >>> cumulative_absolute_velocity(GroundMotion([1.0, -1.0], 1.0))
     1.0
     """
-    return float(np.trapezoid(np.abs(checked_motion(motion).acceleration), dx=motion.time_step))
+    return float(np.trapezoid(np.abs(checked_motion(motion).acceleration), dx=motion.time_step))  # Eq. 143
 
 
 def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
@@ -150,7 +150,7 @@ def housner_intensity(motion: GroundMotion, damping: float = 0.05) -> float:
         The intensity, by the trapezoidal rule with 0.01 s [m].
     """
     pseudo = response_spectrum(motion, HOUSNER_PERIODS, damping).pseudo_velocity
-    return float(np.trapezoid(pseudo, HOUSNER_PERIODS))
+    return float(np.trapezoid(pseudo, HOUSNER_PERIODS))  # Eq. 144
 
 
 def spectral_acceleration(motion: GroundMotion, period: float, damping: float = 0.05) -> float:
@@ -192,7 +192,7 @@ def normalised_acceleration(motion: GroundMotion, slenderness_angle: float, grav
     float
         The ratio [-].
     """
-    return peak_ground_acceleration(motion) / _threshold(slenderness_angle, gravity)
+    return peak_ground_acceleration(motion) / _threshold(slenderness_angle, gravity)  # Eq. 145
 
 
 def normalised_velocity(
@@ -217,7 +217,7 @@ def normalised_velocity(
         The ratio [-].
     """
     p = checks.positive("frequency_parameter", frequency_parameter, "rad/s")
-    return p * peak_ground_velocity(motion) / _threshold(slenderness_angle, gravity)
+    return p * peak_ground_velocity(motion) / _threshold(slenderness_angle, gravity)  # Eq. 146
 
 
 def intensity_measures(motion: GroundMotion) -> dict[str, Measure]:
@@ -254,4 +254,4 @@ def _threshold(slenderness_angle: float, gravity: float) -> float:
     alpha = checks.within(
         "slenderness_angle", slenderness_angle, 0.0, 0.5 * math.pi, unit="rad", open_low=True, open_high=True
     )
-    return checks.positive("gravity", gravity, "m/s2") * math.tan(alpha)
+    return checks.positive("gravity", gravity, "m/s2") * math.tan(alpha)  # Eq. 25

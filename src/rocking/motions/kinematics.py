@@ -26,7 +26,7 @@ def ground_velocity(motion: GroundMotion) -> FloatArray:
     """
     motion = checked_motion(motion)
     a = motion.acceleration
-    return _summed(0.5 * motion.time_step * (a[:-1] + a[1:]))
+    return _summed(0.5 * motion.time_step * (a[:-1] + a[1:]))  # Eq. 147
 
 
 def ground_displacement(motion: GroundMotion) -> FloatArray:
@@ -50,7 +50,7 @@ def ground_displacement(motion: GroundMotion) -> FloatArray:
     motion = checked_motion(motion)
     a, h = motion.acceleration, motion.time_step
     v = ground_velocity(motion)
-    return _summed(h * v[:-1] + h * h / 6.0 * (2.0 * a[:-1] + a[1:]))
+    return _summed(h * v[:-1] + h * h / 6.0 * (2.0 * a[:-1] + a[1:]))  # Eq. 148
 
 
 def largest_velocity(motion: GroundMotion) -> float:

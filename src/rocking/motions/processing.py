@@ -100,7 +100,7 @@ def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
     fraction = checks.within("fraction", fraction, 0.0, 0.5, open_low=True, hint="share of the duration at each end")
     place = np.linspace(0.0, 1.0, len(motion))
     edge = np.minimum(np.minimum(place, 1.0 - place) / fraction, 1.0)
-    window = 0.5 * (1.0 - cosine_sine(np.pi * edge)[0])
+    window = 0.5 * (1.0 - cosine_sine(np.pi * edge)[0])  # Eq. 154
     return _each(motion, lambda part: part.acceleration * window, f"cosine taper over {fraction:g} of each end")
 
 
@@ -141,7 +141,7 @@ def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) ->
     if isinstance(order, bool) or order not in range(1, 11):
         raise InvalidValueError(f"order must be a whole number from 1 to 10, got {order!r}")
     sections: Any = butter(int(order), [low, high], btype="bandpass", fs=1.0 / motion.time_step, output="sos")
-    pad = math.ceil(1.5 * order / low / motion.time_step)
+    pad = math.ceil(1.5 * order / low / motion.time_step)  # Eq. 155
 
     def filtered(part: GroundMotion) -> FloatArray:
         result: Any = sosfiltfilt(sections, np.pad(part.acceleration, pad), padtype=None)
@@ -173,7 +173,7 @@ def _trend(part: GroundMotion, order: int, fit: str) -> FloatArray:
         middle, ratio = (x * q * q).sum() / size, size / last
         before, p, slope_before, slope = (
             p,
-            (x - middle) * p - ratio * before,
+            (x - middle) * p - ratio * before,  # Eq. 153
             slope,
             p + (x - middle) * slope - ratio * slope_before,
         )

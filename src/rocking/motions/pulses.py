@@ -272,7 +272,7 @@ def mavroeidis_papageorgiou(velocity: float, period: float, cycles: float = 1.5,
     main = 2.0 * math.pi / period
     # the product of cosines is a sum of three; the start of the pulse, t = -gamma / (2 f), becomes time zero
     waves = tuple(
-        (-share * frequency, frequency, phase - frequency * 0.5 * cycles * period)
+        (-share * frequency, frequency, phase - frequency * 0.5 * cycles * period)  # Eq. 159
         for share, frequency in ((0.5, main), (0.25, main * (1.0 + 1.0 / cycles)), (0.25, main * (1.0 - 1.0 / cycles)))
     )
     title = f"Mavroeidis-Papageorgiou pulse, {velocity:.3g} m/s, {period:.3g} s"
@@ -411,7 +411,7 @@ def _closing_phase(n: int) -> float:
     turns = (2 * n + 1) * math.pi
 
     def gap(phase: float) -> float:
-        return math.cos(turns - phase) + (turns - 2.0 * phase) * math.sin(phase) - math.cos(phase)
+        return math.cos(turns - phase) + (turns - 2.0 * phase) * math.sin(phase) - math.cos(phase)  # Eq. 158
 
     low, high = 0.0, 0.25 * math.pi
     for _ in range(100):

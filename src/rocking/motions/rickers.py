@@ -12,7 +12,7 @@ from rocking.motions.pulse import Pulse
 _SQRT3 = math.sqrt(3.0)
 
 # maximum of (3 - z^2) z exp(-z^2 / 2), at z^2 = 3 - sqrt(6)
-_PEAK = math.sqrt(6.0) * math.sqrt(3.0 - math.sqrt(6.0)) * math.exp(-0.5 * (3.0 - math.sqrt(6.0)))
+_PEAK = math.sqrt(6.0) * math.sqrt(3.0 - math.sqrt(6.0)) * math.exp(-0.5 * (3.0 - math.sqrt(6.0)))  # Eq. 161
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,9 @@ class Ricker(Pulse):
         t = time - 0.5 * self.duration
         if self.shape == "symmetric":
             x2 = (math.pi / self.period * t) ** 2
-            part = (-0.5 * (self.period / math.pi) ** 2, t, 1.0 - 2.0 * x2)[derivative]
+            part = (-0.5 * (self.period / math.pi) ** 2, t, 1.0 - 2.0 * x2)[derivative]  # Eq. 160
             return self.amplitude * part * exponential(-x2)
         unit = _SQRT3 * self.period / (2.0 * math.pi)
         z = t / unit
-        part = (unit**2 * z, -unit * (z * z - 1.0), (z * z - 3.0) * z)[derivative]
+        part = (unit**2 * z, -unit * (z * z - 1.0), (z * z - 3.0) * z)[derivative]  # Eq. 161
         return self.amplitude / _PEAK * part * exponential(-0.5 * z * z)

@@ -39,7 +39,7 @@ def rotated(first: GroundMotion, second: GroundMotion, angle: float) -> tuple[Gr
     a, b = first.acceleration, second.acceleration
     what = f"turned by {angle:g} rad together with "
     return (
-        first.changed(what + repr(second.name), acceleration=c * a + s * b),
+        first.changed(what + repr(second.name), acceleration=c * a + s * b),  # Eq. 156
         second.changed(what + repr(first.name), acceleration=c * b - s * a),
     )
 
@@ -73,7 +73,7 @@ def rotd_pga(first: GroundMotion, second: GroundMotion, percentile: float) -> fl
     if percentile == 100.0:
         # between samples the point moves on a straight line, so that it is farthest at a sample
         return float(np.hypot(a, b).max())
-    peaks = np.array([np.abs(math.cos(t) * a + math.sin(t) * b).max() for t in ANGLES])
+    peaks = np.array([np.abs(math.cos(t) * a + math.sin(t) * b).max() for t in ANGLES])  # Eq. 156
     return float(np.percentile(peaks, percentile))
 
 

@@ -101,7 +101,7 @@ class Segments:
         weights = 2.0 / n * each(math.cos, np.outer(angles, np.arange(n)))
         weights[:, 0] *= 0.5
         # two stages: the small high coefficients come first, so that their rounding stays small
-        return cls(step, times(times(values, weights), _SHIFTED))
+        return cls(step, times(times(values, weights), _SHIFTED))  # Eq. 162
 
     def refined(self, parts: int) -> "Segments":
         """Return the same polynomials on shorter stretches.

@@ -63,7 +63,7 @@ class Sinusoids(Pulse):
                 power = 2 - derivative
                 total += amplitude * math.sin(phase) * time**power / (1.0, 1.0, 2.0)[power]
             elif derivative == 2:
-                total += amplitude * cosine_sine(frequency * time + phase)[1]
+                total += amplitude * cosine_sine(frequency * time + phase)[1]  # Eq. 157
             elif derivative == 1:
                 total -= amplitude / frequency * cosine_sine(frequency * time + phase)[0]
             else:

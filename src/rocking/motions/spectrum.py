@@ -65,12 +65,12 @@ class ResponseSpectrum:
     @property
     def pseudo_velocity(self) -> FloatArray:
         """PSV: Sd times the natural frequency [m/s]."""
-        return 2.0 * np.pi / self.periods * self.displacement
+        return 2.0 * np.pi / self.periods * self.displacement  # Eq. 149
 
     @property
     def pseudo_acceleration(self) -> FloatArray:
         """PSA: Sd times the squared natural frequency; equal to Sa only without damping [m/s2]."""
-        return (2.0 * np.pi / self.periods) ** 2 * self.displacement
+        return (2.0 * np.pi / self.periods) ** 2 * self.displacement  # Eq. 149
 
 
 def response_spectrum(motion: GroundMotion, periods: ArrayLike, damping: float = 0.05) -> ResponseSpectrum:
@@ -134,15 +134,15 @@ def phi(x: Any) -> tuple[Any, Any]:
     small, large = np.where(near, given, 0.0), np.where(near, 1.0, given)
     series = np.zeros_like(given)
     for k in range(20, 1, -1):
-        series = 1.0 / math.factorial(k) + small * series
-    first = (np.exp(large) - 1.0) / large
+        series = 1.0 / math.factorial(k) + small * series  # Eq. 152
+    first = (np.exp(large) - 1.0) / large  # Eq. 152
     return np.where(near, 1.0 + small * series, first)[()], np.where(near, series, (first - 1.0) / large)[()]
 
 
 def _largest(motion: GroundMotion, periods: FloatArray, damping: float) -> FloatArray:
     """Return displacement, velocity and absolute acceleration, one row a period: as many periods at once as fit."""
     # with the complex rate s, the state z = u' - conj(s) u obeys z' = s z - a, and u = Im z / Im s
-    rates = 2.0 * math.pi / periods * complex(-damping, math.sqrt(1.0 - damping * damping))
+    rates = 2.0 * math.pi / periods * complex(-damping, math.sqrt(1.0 - damping * damping))  # Eq. 150
     parts = np.ceil(POINTS_PER_PERIOD * motion.time_step / periods).astype(np.int64)
     result = np.empty((periods.size, 3))
     size = max(1, TOGETHER // len(motion))
@@ -183,7 +183,7 @@ def _states(motion: GroundMotion, rates: ComplexArray) -> ComplexArray:
     h, a = motion.time_step, motion.acceleration
     first, second = phi(rates * h)
     before, after = _blocks(a[None, :-1]), _blocks(a[None, 1:])
-    pushes = (-h * second)[:, None] * after + (-h * (first - second))[:, None] * before
+    pushes = (-h * second)[:, None] * after + (-h * (first - second))[:, None] * before  # Eq. 151
     found = np.zeros((rates.size, 1 + pushes.shape[0] * pushes.shape[2]), dtype=np.complex128)
     found[:, 1:] = _recurrence(pushes, np.exp(rates * h)).transpose(1, 2, 0).reshape(rates.size, -1)
     return found[:, : a.size]
@@ -251,7 +251,7 @@ def _raise(best: FloatArray, which: IntArray, left: Any, right: Any, step: float
 
 def _response(states: ComplexArray, ground: FloatArray, rates: ComplexArray) -> Pairs:
     """Return displacement, velocity and absolute acceleration, each with its rate of change."""
-    u = states.imag / rates.imag
+    u = states.imag / rates.imag  # Eq. 150
     v = states.real + rates.real * u
     omega2, friction = np.abs(rates) ** 2, -2.0 * rates.real
     absolute = -friction * v - omega2 * u

@@ -171,7 +171,7 @@ class ContactBedModel(InertiaModel):
         if not bool(read.all()):
             r = np.array(r)
             r[~read] = self._resolved(geometry, ~read)
-        return np.asarray(np.minimum(r, np.sqrt(geometry.old_gyration / geometry.new_gyration)))
+        return np.asarray(np.minimum(r, np.sqrt(geometry.old_gyration / geometry.new_gyration)))  # Eq. 29
 
     def _read(self, geometry: ImpactGeometry) -> BoolArray:
         """Whether the table serves: the bed is in it, it is good enough there, and the base does not slide."""
@@ -193,6 +193,7 @@ class ContactBedModel(InertiaModel):
         after = gyration + arm * new
         # the impulse of a plumb line far outside the table could lie behind it
         most = np.sqrt(geometry.old_gyration / geometry.new_gyration)
+        # Eq. 19
         return np.asarray(np.where(after > 0.0, (gyration - arm * old) / np.where(after > 0.0, after, 1.0), most))
 
     def _resolved(self, geometry: ImpactGeometry, where: BoolArray) -> FloatArray:

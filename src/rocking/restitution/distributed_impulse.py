@@ -79,7 +79,7 @@ class DistributedImpulse(InertiaModel):
         leaves = 1.0 + e * lowest + c * lowest**2 > 0.0
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = (1.0 + e * end + c * end**2) / (1.0 + e * start + c * start**2)
-            exponent = 0.5 * np.log(ratio) + 0.5 * e * _inverse_quadratic(c, e, start, end)
+            exponent = 0.5 * np.log(ratio) + 0.5 * e * _inverse_quadratic(c, e, start, end)  # Eq. 12
         return np.where(leaves, np.exp(-np.where(leaves, exponent, np.inf)), 0.0)
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
@@ -117,7 +117,7 @@ class DistributedImpulse(InertiaModel):
             behind = 1.0 + arm * sigma
             if behind.min() <= 0.0:
                 return 0.0
-            exponent += dot(_WEIGHTS, slope * arm / behind)
+            exponent += dot(_WEIGHTS, slope * arm / behind)  # Eq. 11
         return math.exp(-exponent)
 
 
@@ -133,7 +133,7 @@ def _centre_ahead(sigma: FloatArray, patches: FloatArray, end: float, q: float) 
         moment += _power_difference(near, far, q + 2.0)
     # no flat stretch ahead: the foot itself takes the impulse
     centre = np.divide(moment, force, out=np.zeros_like(sigma), where=force > 0.0)
-    return np.where(force > 0.0, sigma + reach * centre, end)
+    return np.where(force > 0.0, sigma + reach * centre, end)  # Eq. 111
 
 
 def _power_difference(near: FloatArray, far: FloatArray, power: float) -> FloatArray:

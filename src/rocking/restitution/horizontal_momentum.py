@@ -48,4 +48,4 @@ class HorizontalMomentum(InertiaModel):
         ndarray
             Coefficients [-].
         """
-        return (geometry.spread_y + geometry.height**2) / geometry.new_gyration
+        return (geometry.spread_y + geometry.height**2) / geometry.new_gyration  # Eq. 10

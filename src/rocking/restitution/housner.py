@@ -49,4 +49,5 @@ class Housner(InertiaModel):
         ndarray
             Coefficients, negative below the domain [-].
         """
+        # Eq. 2; Eq. 4, Mao et al. 2024
         return (geometry.base_gyration - geometry.old_lever * geometry.new_lever) / geometry.new_gyration

@@ -127,7 +127,7 @@ def _energy(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
 
 def _round_trip(body: Body, model: RestitutionModel, onto: Foot) -> IdentityCheck:
     there, back = model.coefficient(body, onto), model.coefficient(body, opposite(onto))
-    holds = there * back <= 1.0 + _EXACT
+    holds = there * back <= 1.0 + _EXACT  # Eq. 113
     return IdentityCheck("round trip", "an impact onto each foot gains nothing, r r' <= 1", 1.0, there * back, holds)
 
 

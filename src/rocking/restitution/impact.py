@@ -89,14 +89,14 @@ class ImpactGeometry:
     @property
     def base_gyration(self) -> FloatArray:
         """(I_C + m h^2) / m, about the point of the ground below the centre [m2]."""
-        return self.spread_x + self.spread_y + self.height**2
+        return self.spread_x + self.spread_y + self.height**2  # Eq. 108
 
     @property
     def old_gyration(self) -> FloatArray:
         """I_O / m about the old foot [m2]."""
-        return self.base_gyration + self.old_lever**2
+        return self.base_gyration + self.old_lever**2  # Eq. 108
 
     @property
     def new_gyration(self) -> FloatArray:
         """I_O' / m about the new foot [m2]."""
-        return self.base_gyration + self.new_lever**2
+        return self.base_gyration + self.new_lever**2  # Eq. 108

@@ -71,7 +71,7 @@ def energy_bound(body: Body, onto: Foot) -> float:
     1.0
     """
     old, new = body.side(opposite(checks.foot("onto", onto))), body.side(onto)
-    return math.sqrt(old.moment_of_inertia / new.moment_of_inertia)
+    return math.sqrt(old.moment_of_inertia / new.moment_of_inertia)  # Eq. 29
 
 
 def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implication:
@@ -111,7 +111,7 @@ def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implicat
     new, old = body.side(onto), body.side(opposite(checks.foot("onto", onto)))
     base_inertia = new.moment_of_inertia - new.mass * new.half_width**2
     lift = old.half_width + r * new.half_width
-    arm = base_inertia * (1.0 - r) / (new.mass * lift)
+    arm = base_inertia * (1.0 - r) / (new.mass * lift)  # Eq. 4
     direction = 1.0 if onto == "right" else -1.0
     bound = energy_bound(body, onto)
     return Implication(
@@ -119,8 +119,8 @@ def implied(body: Body, coefficient: float, *, onto: Foot = "right") -> Implicat
         impulse_arm=arm,
         impulse_ratio=arm / new.half_width,
         impulse_x=body.centre[0] + direction * arm,
-        friction_demand=new.centre_height * abs(1.0 - r) / lift,
-        energy_loss=1.0 - (r / bound) ** 2,
+        friction_demand=new.centre_height * abs(1.0 - r) / lift,  # Eq. 5
+        energy_loss=1.0 - (r / bound) ** 2,  # Eq. 109
         largest_coefficient=bound,
         within_base=-old.half_width * (1.0 + _SLACK) <= arm <= new.half_width * (1.0 + _SLACK),
         within_energy=r <= bound * (1.0 + _SLACK),

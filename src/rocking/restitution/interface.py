@@ -77,7 +77,7 @@ class Interface(RestitutionModel):
         float
             theta_dot_after / theta_dot_before [-].
         """
-        return self.eta * self.model.raw_coefficient(body, onto)
+        return self.eta * self.model.raw_coefficient(body, onto)  # Eq. 112
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
         """Return eta times the wrapped model's values.
@@ -92,4 +92,4 @@ class Interface(RestitutionModel):
         ndarray
             Of the same shape [-].
         """
-        return self.eta * self.model.raw_of_slenderness(slenderness)
+        return self.eta * self.model.raw_of_slenderness(slenderness)  # Eq. 112

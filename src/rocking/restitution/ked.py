@@ -66,6 +66,7 @@ class Ked(RestitutionModel):
         """
         if isinstance(body, Block):
             return float(self.raw_of_slenderness(np.array([body.slenderness_ratio]))[0])
+        # Eq. 6; Eq. 17, Mao et al. 2024
         return float(np.sqrt(projected_moment(body, onto) / body.side(onto).moment_of_inertia))
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
@@ -133,5 +134,5 @@ def _(body: MassPoints, onto: Foot) -> float:
     x, y = (body.points - np.array([body.local_feet[onto == "right"], 0.0])).T
     squared = x * x + y * y
     # a mass on the new foot itself has no velocity after the impact and contributes nothing
-    ratio = np.divide(y**4, squared, out=np.zeros_like(y), where=squared > 0.0)
+    ratio = np.divide(y**4, squared, out=np.zeros_like(y), where=squared > 0.0)  # Eq. 9
     return float((body.masses * ratio).sum())

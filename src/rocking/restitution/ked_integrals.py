@@ -38,7 +38,7 @@ def fill_rectangles(ratio: FloatArray, least: float, out: FloatArray) -> None:
         t -= 1.0
         t /= room
         out += t
-        out += 0.25
+        out += 0.25  # Eq. 7; Eq. 17, Mao et al. 2024
         np.sqrt(out, out=out)
     if least < _SERIES_BELOW:
         squat = ratio < _SERIES_BELOW
@@ -48,7 +48,7 @@ def fill_rectangles(ratio: FloatArray, least: float, out: FloatArray) -> None:
 def _series(t: FloatArray) -> FloatArray:
     # N/B^4 = pi l^4/8 - l^5/5 + l^7/21 - l^9/45 + ...
     t2 = t * t
-    return np.sqrt(3.0 * t * t2 * (np.pi / 8.0 + np.polyval(_SERIES, t2) * t) / (1.0 + t2))
+    return np.sqrt(3.0 * t * t2 * (np.pi / 8.0 + np.polyval(_SERIES, t2) * t) / (1.0 + t2))  # Eq. 7
 
 
 def ring_integral(ring: FloatArray) -> float:
@@ -69,7 +69,7 @@ def ring_integral(ring: FloatArray) -> float:
     sharp = ~(radial | smooth)
     total = _by_gauss(*(values[smooth] for values in (start[:, 1], end[:, 1], offset, u0, u1)))
     total += _by_formula(*(values[sharp] for values in (tau[:, 0], tau[:, 1], offset, u0, u1)))
-    return 0.25 * total
+    return 0.25 * total  # Eq. 8
 
 
 def _is_smooth(offset: FloatArray, u0: FloatArray, u1: FloatArray) -> BoolArray:
@@ -98,4 +98,4 @@ def _by_formula(c_x: FloatArray, c: FloatArray, p: FloatArray, u0: FloatArray, u
     logs = 2.0 * c * s * (s2 - c2) * p2 * p2 * each(math.log, (p2 + u1 * u1) / (p2 + u0 * u0))
     turn = each(math.atan2, p * (u1 - u0), p2 + u0 * u1)
     angles = (s2 * s2 - 6.0 * c2 * s2 + c2 * c2) * p2 * p2 * turn
-    return float((powers + logs + angles).sum())
+    return float((powers + logs + angles).sum())  # Eq. 114

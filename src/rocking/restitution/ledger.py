@@ -72,10 +72,10 @@ class EnergyLedger:
         squared = up**2 + from_new**2
         kept = np.divide(up**2, squared, out=np.zeros_like(squared), where=squared > 0.0)
         return {
-            "before": before * np.stack([up, -from_old], axis=-1),
-            "stage 1": before * np.stack([up, np.zeros_like(up)], axis=-1),
-            "stage 2": before * kept[..., None] * np.stack([up, -from_new], axis=-1),
-            "after": after * np.stack([up, -from_new], axis=-1),
+            "before": before * np.stack([up, -from_old], axis=-1),  # Eq. 6, Mao et al. 2024
+            "stage 1": before * np.stack([up, np.zeros_like(up)], axis=-1),  # Eq. 7, Mao et al. 2024
+            "stage 2": before * kept[..., None] * np.stack([up, -from_new], axis=-1),  # Eqs. 8, 9, Mao et al. 2024
+            "after": after * np.stack([up, -from_new], axis=-1),  # Eq. 12, Mao et al. 2024
         }
 
     def energy_density(self, x: FloatArray, y: FloatArray) -> dict[str, FloatArray]:
@@ -132,7 +132,8 @@ def energy_ledger(body: Body, *, onto: Foot = "right", angular_velocity: float =
     totals = {
         "before": half * body.side(opposite(onto)).moment_of_inertia,
         "stage 1": half * (moments.yy + moments.mass * moments.y**2),
-        "stage 2": half * kept,
+        "stage 2": half * kept,  # Eq. 11, Mao et al. 2024
     }
-    after = speed * float(np.sqrt(kept / inertia))
+    after = speed * float(np.sqrt(kept / inertia))  # Eq. 16, Mao et al. 2024
+    # Eq. 15, Mao et al. 2024
     return EnergyLedger(body, onto, speed, after, {**totals, "after": 0.5 * inertia * after**2})

@@ -124,8 +124,8 @@ class _Path:
                 reach[k] -= edge[k]
                 lever[k] -= 0.5 * square[k]
                 inertia[k] -= cube[k] / 3.0
-            v.append(push * (_product(theta, lever) - _product(y, reach)) / (k + 1))
-            omega.append(turn * (_product(theta, inertia) - _product(y, lever)) / (k + 1))
+            v.append(push * (_product(theta, lever) - _product(y, reach)) / (k + 1))  # Eq. 13
+            omega.append(turn * (_product(theta, inertia) - _product(y, lever)) / (k + 1))  # Eq. 13
             y.append(v[k] / (k + 1))
             theta.append(omega[k] / (k + 1))
         return series

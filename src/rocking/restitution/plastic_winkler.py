@@ -108,10 +108,10 @@ def _impact(kappa: float, back: float, edges: tuple[float, ...]) -> float:
     stretches = np.reshape(edges, (-1, 2))
     if float((stretches[:, 1] - stretches[:, 0]).sum()) <= 1e-9 * (1.0 + back):
         # feet without area: the whole impulse acts at the new one (Housner)
-        return (1.0 - kappa * back) / (1.0 + kappa)
+        return (1.0 - kappa * back) / (1.0 + kappa)  # Eq. 2
     left = land(kappa, back, stretches)
     # the bed leaves the body turning about its end; from there it steps onto the foot (Housner)
-    return left.velocity * (1.0 + kappa * left.end) / (1.0 + kappa)
+    return left.velocity * (1.0 + kappa * left.end) / (1.0 + kappa)  # Eq. 110
 
 
 @lru_cache(maxsize=1)

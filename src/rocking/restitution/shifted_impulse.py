@@ -80,4 +80,4 @@ def shifted(geometry: ImpactGeometry, k: FloatArray) -> FloatArray:
     k: positions of the impulse; broadcast against the geometry [-]. Returns coefficients [-].
     """
     arm, gyration = k * geometry.new_lever, geometry.base_gyration
-    return np.asarray((gyration - arm * geometry.old_lever) / (gyration + arm * geometry.new_lever))
+    return np.asarray((gyration - arm * geometry.old_lever) / (gyration + arm * geometry.new_lever))  # Eq. 3

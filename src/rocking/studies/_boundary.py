@@ -233,7 +233,7 @@ def bisected(lattice: Lattice, inside: Inside, numbers: IntArray, tolerance: flo
     rows = np.arange(numbers.size)
     for _ in range(_MOST_ROUNDS):
         low, high = points[rows, 0, along[rows]], points[rows, 1, along[rows]]
-        rows = rows[np.abs(high - low) > tolerance * np.maximum(np.abs(low), np.abs(high))]
+        rows = rows[np.abs(high - low) > tolerance * np.maximum(np.abs(low), np.abs(high))]  # Eq. 184
         if not rows.size:
             break
         middle = points[rows].mean(axis=1)

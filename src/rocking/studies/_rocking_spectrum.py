@@ -85,7 +85,7 @@ def rocking_spectrum(
     settings = settings_of(gravity, options)
     angles = _row("slenderness_angles", slenderness_angles, "rad")
     times = _row("periods", periods, "s")
-    sizes = 0.75 * settings.gravity * (0.5 * times / np.pi) ** 2
+    sizes = 0.75 * settings.gravity * (0.5 * times / np.pi) ** 2  # Eq. 180
     given = MotionList(motions)
     blocks = [Block.from_angle(float(alpha), float(size)) for alpha in angles for size in sizes]
     question = Question(blocks[0], given[0], restitution, settings, threads, engine)

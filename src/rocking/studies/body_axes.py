@@ -84,6 +84,6 @@ class RestitutionAxis(Axis):
         """Return the case with the coefficient; NaN, which the engine refuses, where it would create energy."""
         body = case.question.body
         inertia = [body.side(foot).moment_of_inertia for foot in FEET]
-        most = np.sqrt(min(inertia) / max(inertia)) * (1.0 + 1e-9)
+        most = np.sqrt(min(inertia) / max(inertia)) * (1.0 + 1e-9)  # Eq. 29
         allowed = np.where(values <= most, values, np.nan)
         return replace(case, sides={**case.sides, "r_right": allowed, "r_left": allowed})

@@ -73,7 +73,7 @@ class Case:
         """Ground acceleration that lifts the body: g tan alpha, or g alpha in the linear equations [m/s2]."""
         settings = self.question.settings
         alpha = self.slenderness_angle
-        return settings.gravity * (alpha if settings.linear else np.tan(alpha))
+        return settings.gravity * (alpha if settings.linear else np.tan(alpha))  # Eq. 25
 
     @property
     def values(self) -> dict[str, FloatArray]:

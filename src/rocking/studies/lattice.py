@@ -100,7 +100,7 @@ class Lattice:
         self.compute(self.base())
         i, j = self._differing_base(label)
         for level in range(1, self.levels + 1):
-            half = self.step >> level
+            half = self.step >> level  # Eq. 185
             i = (i[:, None] + np.array([0, half, 0, half])).ravel()
             j = (j[:, None] + np.array([0, 0, half, half])).ravel()
             self._compute_corners(i, j, half)

@@ -78,7 +78,7 @@ class Cases:
 
         points: how many for each case [-]. Returns in equal ratios [-].
         """
-        return np.asarray(np.geomspace(self.low, self.high, points, axis=1) / self.peak[:, None])
+        return np.asarray(np.geomspace(self.low, self.high, points, axis=1) / self.peak[:, None])  # Eq. 182
 
 
 def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Crossings | None, ...]:
@@ -100,7 +100,7 @@ def _range(
 ) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
     """Return the accelerations that lift the bodies, and between which to look."""
     both = np.stack([sides["alpha_right"], sides["alpha_left"]])
-    lifts = settings.gravity * (both if settings.linear else np.tan(both))
+    lifts = settings.gravity * (both if settings.linear else np.tan(both))  # Eq. 25
     light = isinstance(motion, GroundMotion) and motion.vertical is not None
     low = (_FROM_VERTICAL if light else _FROM) * lifts.min(axis=0)
     high = _TO * lifts.max(axis=0)

@@ -82,7 +82,7 @@ class Question:
         count = stretch.size
         if np.any(stretch != 1.0):
             self.check_stretching("an axis")
-        quick = {n: v * stretch if n in {"p_right", "p_left"} else v for n, v in values.items()}
+        quick = {n: v * stretch if n in {"p_right", "p_left"} else v for n, v in values.items()}  # Eq. 179
         rows = Rows.of(count, 0, key, **quick)
         found, work = self.batch.run(count, lambda a, b: part(rows, a, b), progress)
         for name in ("peak_time", "overturning_time", "first_uplift"):
@@ -149,4 +149,4 @@ def peak_ratio(peak: FloatArray, right: FloatArray, left: FloatArray) -> FloatAr
     peak: peak rotation with its sign [rad]; right, left: slenderness angles of the sides [rad]. Returns the ratio;
     beyond one is not overturning [-].
     """
-    return np.abs(peak) / np.where(np.asarray(peak) < 0.0, left, right)
+    return np.abs(peak) / np.where(np.asarray(peak) < 0.0, left, right)  # Eq. 181

@@ -77,7 +77,7 @@ class ScaleBrackets:
         tolerance: relative width [-].
         """
         (low, high), middle = self.ends.T, self.ends.mean(axis=1)
-        return np.flatnonzero((high - low > tolerance * high) & (middle > low) & (middle < high))
+        return np.flatnonzero((high - low > tolerance * high) & (middle > low) & (middle < high))  # Eq. 184
 
     def move(self, rows: IntArray, upper: BoolArray, middle: Samples) -> None:
         """Put one end of some brackets into their middles."""
@@ -167,7 +167,7 @@ def suspicious(s: Samples) -> BoolArray:
     steps = np.where(same, np.abs(np.diff(peak)), np.nan)
     steep = np.fmax(steps, np.fmax(np.append(steps[1:], np.nan), np.append(np.nan, steps[:-1])))
     with np.errstate(invalid="ignore"):
-        near = np.maximum(peak[1:], peak[:-1]) + steep >= 1.0
+        near = np.maximum(peak[1:], peak[:-1]) + steep >= 1.0  # Eq. 183
     return np.asarray(same & (near | _beside_largest(peak, same) | _beside_largest(s.time, same)))
 
 

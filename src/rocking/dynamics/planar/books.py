@@ -27,7 +27,7 @@ class PlanarEnergy:
         """What does not add up: kinetic + potential + lost - work - initial [J]."""
         stored = self.kinetic + self.potential
         lost = self.lost_in_impacts + self.lost_in_friction
-        return np.asarray(stored + lost - self.work - (stored[0] + lost[0]), dtype=np.float64)
+        return np.asarray(stored + lost - self.work - (stored[0] + lost[0]), dtype=np.float64)  # Eq. 45
 
     @property
     def closure(self) -> float:
@@ -59,7 +59,7 @@ def energy_of(response: "PlanarResponse") -> PlanarEnergy:
     u, w, spin = response.horizontal_velocity, response.vertical_velocity, response.angular_velocity
     return PlanarEnergy(
         response.time,
-        0.5 * mass * (u**2 + w**2 + j * spin**2),
+        0.5 * mass * (u**2 + w**2 + j * spin**2),  # Eq. 62
         mass * response.settings.gravity * response.rise,
         mass * response.sampled("work"),
         mass * response.sampled("impact_loss"),
@@ -77,5 +77,5 @@ def forces_of(response: "PlanarResponse") -> PlanarForces:
     left, right = response.sampled("normal_left"), response.sampled("normal_right")
     most = friction * (left + right)
     usage = np.zeros(most.size)
-    np.divide(np.abs(tangential), most, out=usage, where=most > 0.0)
+    np.divide(np.abs(tangential), most, out=usage, where=most > 0.0)  # Eq. 78
     return PlanarForces(response.time, mass * tangential, mass * left, mass * right, usage)

@@ -54,7 +54,7 @@ def choose(footing: Footing, state: PlanarState, ground: GroundSeries, friction:
     tried = [(mode, course(footing, state, mode, ground, friction, _ORDER)) for mode in candidates(footing, state)]
     possible = [(m, c, margins(footing, m, c, friction, weight)) for m, c in tried if c.stiff > 0.0]
     for tolerance in _LADDER:
-        good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]
+        good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]  # Eq. 20
         if good:
             same = all(_agree(good[0][1], other, footing.size) for _, other in good[1:])
             return NextMode(good[0][0], tolerance) if same else Status.AMBIGUOUS

@@ -79,8 +79,8 @@ def _flat(footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries
     x = twice(tangential - push, state.x, state.u, ground.unit) if mode.slip else padded([state.x], size)
     turn = tangential * footing.height
     normals = {
-        LEFT: (weight * footing.right + turn) / footing.base,
-        RIGHT: (weight * footing.left - turn) / footing.base,
+        LEFT: (weight * footing.right + turn) / footing.base,  # Eq. 63
+        RIGHT: (weight * footing.left - turn) / footing.base,  # Eq. 63
     }
     still = np.zeros(size)
     sliding = derivative(x) / ground.unit if mode.slip else still
@@ -90,8 +90,8 @@ def _flat(footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries
 def _flight(footing: Footing, state: PlanarState, ground: GroundSeries, order: int) -> ModeSeries:
     """No foot: parabolas above a ground that moves."""
     size = order + 1
-    x = twice(-padded(ground.push, size), state.x, state.u, ground.unit)
-    rise = twice(-padded(ground.lift, size), state.rise, state.w, ground.unit)
+    x = twice(-padded(ground.push, size), state.x, state.u, ground.unit)  # Eq. 64
+    rise = twice(-padded(ground.lift, size), state.rise, state.w, ground.unit)  # Eq. 64
     # products, not powers: those of negative numbers need not mirror those of positive ones in the last bit
     powers = np.cumprod([1.0, *(state.spin * ground.unit / k for k in range(1, size))])
     quarter = np.arange(size) % 4
@@ -101,7 +101,7 @@ def _flight(footing: Footing, state: PlanarState, ground: GroundSeries, order: i
     lowered[0] = 2.0 * math.sin(0.5 * state.rotation) ** 2  # 1 - cos(theta) without cancellation
     gaps = {}
     for foot in BOTH:
-        gap = rise - footing.lever(foot) * sines + footing.height * lowered
+        gap = rise - footing.lever(foot) * sines + footing.height * lowered  # Eq. 65
         if foot in state.touching:
             gap[0], gap[1] = 0.0, away(footing, state, foot) * ground.unit
         gaps[foot] = gap

@@ -139,7 +139,7 @@ class Planar:
             for k in (_ORDER - 1, _ORDER):
                 over = abs(c[k]) / (self.settings.tolerance * unit)
                 if over > 1.0:
-                    part = min(part, float(over) ** (-1.0 / k))
+                    part = min(part, float(over) ** (-1.0 / k))  # Eq. 52
         return part
 
     def _move(self, tau: float, reached: PlanarState, at: float) -> None:

@@ -67,11 +67,11 @@ class Footing:
         rotation: theta [rad]. Returns to the right and upwards [m].
         """
         d, sine, cosine = self.lever(foot), math.sin(rotation), math.cos(rotation)
-        return d * cosine - self.height * sine, -d * sine - self.height * cosine
+        return d * cosine - self.height * sine, -d * sine - self.height * cosine  # Eq. 58
 
     def rise_on(self, foot: int, rotation: float) -> float:
         """Return how far the centre is above its height at rest while a foot touches the ground.
 
         rotation: theta [rad]. Returns ``d sin(theta) - 2 h sin(theta / 2)^2``, exactly zero at theta = 0 [m].
         """
-        return self.lever(foot) * math.sin(rotation) - 2.0 * self.height * math.sin(0.5 * rotation) ** 2
+        return self.lever(foot) * math.sin(rotation) - 2.0 * self.height * math.sin(0.5 * rotation) ** 2  # Eq. 59

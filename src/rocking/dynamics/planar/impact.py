@@ -34,8 +34,9 @@ def strike(footing: Footing, state: PlanarState, friction: float, bounce: dict[i
     friction: Coulomb's coefficient [-]; bounce: e_N of each foot that touches [-]. Returns the state after it with the
     impulses; a status where there is no solution, where two of them differ, or where energy would be created.
     """
-    targets = {foot: -bounce[foot] * away(footing, state, foot) for foot in state.touching}
+    targets = {foot: -bounce[foot] * away(footing, state, foot) for foot in state.touching}  # Eq. 70
     speed = largest_speed(footing, state)
+    # Eq. 20
     good = [s for s in _solutions(footing, state, friction, targets) if _valid(footing, s, friction, targets, speed)]
     if not good:
         return Status.NO_CONTACT_FORCE
@@ -76,7 +77,7 @@ def _on_one(footing: Footing, state: PlanarState, foot: int, target: float) -> S
     """Momentum about the foot is kept but for what the bounce takes."""
     r_x, r_z = footing.arm(foot, state.rotation)
     j = footing.inertia
-    spin = (j * state.spin - r_z * state.u + r_x * (state.w - target)) / (j + r_x**2 + r_z**2)
+    spin = (j * state.spin - r_z * state.u + r_x * (state.w - target)) / (j + r_x**2 + r_z**2)  # Eq. 71
     after = state._replace(u=-(r_z * spin), w=target + r_x * spin, spin=spin)
     return Struck(after, {foot: after.w - state.w}, after.u - state.u, 0)
 
@@ -89,7 +90,7 @@ def _sliding_on_one(
     stiff = 1.0 + r_x * level / footing.inertia
     if not stiff > 0.0:
         return None
-    normal = (target - away(footing, state, foot)) / stiff
+    normal = (target - away(footing, state, foot)) / stiff  # Eq. 72
     spin = state.spin - normal * level / footing.inertia
     after = state._replace(u=state.u - pull * normal, w=target + r_x * spin, spin=spin)
     return Struck(after, {foot: normal}, -(pull * normal), slip)
@@ -97,13 +98,13 @@ def _sliding_on_one(
 
 def _on_both(footing: Footing, state: PlanarState, slip: int, pull: float, targets: dict[int, float]) -> Struck:
     left, right, base = footing.left, footing.right, footing.base
-    spin = (targets[LEFT] - targets[RIGHT]) / base
+    spin = (targets[LEFT] - targets[RIGHT]) / base  # Eq. 73
     w = (targets[LEFT] * right + targets[RIGHT] * left) / base
     total = w - state.w
     u = state.u - pull * total if slip else footing.height * spin
     tangential = u - state.u
     turn = tangential * footing.height + footing.inertia * (spin - state.spin)
-    normal = {LEFT: (total * right + turn) / base, RIGHT: (total * left - turn) / base}
+    normal = {LEFT: (total * right + turn) / base, RIGHT: (total * left - turn) / base}  # Eq. 73
     return Struck(state._replace(u=u, w=w, spin=spin), normal, tangential, slip)
 
 

@@ -25,7 +25,7 @@ def strike_with(footing: Footing, state: PlanarState, foot: int, friction: float
     would pull, or press the old foot into the ground.
     """
     place = foot * (1.0 - r) * (footing.inertia + footing.height**2)
-    place /= abs(footing.lever(-foot)) + r * abs(footing.lever(foot))
+    place /= abs(footing.lever(-foot)) + r * abs(footing.lever(foot))  # Eq. 4
     speed = abs(away(footing, state, foot)) + abs(along(footing, state, foot))
     slack = _ROUNDING * speed
     found = _stuck(footing, state, foot, place)
@@ -43,7 +43,7 @@ def strike_with(footing: Footing, state: PlanarState, foot: int, friction: float
 
 def _stuck(footing: Footing, state: PlanarState, foot: int, place: float) -> Struck:
     h, d, j = footing.height, footing.lever(foot), footing.inertia
-    spin = (j * state.spin + h * state.u + place * state.w) / (j + h * h + place * d)
+    spin = (j * state.spin + h * state.u + place * state.w) / (j + h * h + place * d)  # Eq. 74
     if abs(spin) <= _ROUNDING * abs(state.spin):
         spin = 0.0
     after = state._replace(u=h * spin, w=d * spin, spin=spin)
@@ -56,7 +56,7 @@ def _slid(footing: Footing, state: PlanarState, foot: int, place: float, slip: i
     stiff = 1.0 - d * turn
     if not stiff > 0.0:
         return None
-    normal = (d * state.spin - state.w) / stiff
+    normal = (d * state.spin - state.w) / stiff  # Eq. 75
     spin = state.spin + turn * normal
     after = state._replace(u=state.u - pull * normal, w=d * spin, spin=spin)
     return Struck(after, _shared(footing, place, normal), -(pull * normal), slip)

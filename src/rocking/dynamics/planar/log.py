@@ -72,7 +72,7 @@ class Log:
         lift[0] -= self.gravity
         along = integral(np.array(ground.push), derivative(course.x), at)
         up = integral(lift, derivative(course.rise), at)
-        self.work -= along + up
+        self.work -= along + up  # Eq. 46
         if course.sliding is not None and course.sliding.any():
             self.friction_loss -= course.unit * integral(course.tangential, course.sliding, at)
             self.slid += abs(course.unit * integral(np.ones(1), course.sliding, at))
@@ -89,7 +89,7 @@ class Log:
             normal = sum(value(c, instant) for c in course.normals.values())
             tangential = abs(value(course.tangential, instant))
             if tangential > 0.0 and normal > 0.0:
-                self.usage = max(self.usage, tangential / normal / friction if friction else 1.0)
+                self.usage = max(self.usage, tangential / normal / friction if friction else 1.0)  # Eq. 78
 
     def sample(self, row: int, state: PlanarState, mode: Mode, course: ModeSeries | None, at: float) -> None:
         """Write a sample."""

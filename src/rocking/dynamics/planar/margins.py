@@ -55,8 +55,8 @@ def margins(footing: Footing, mode: Mode, course: ModeSeries, friction: float, w
     elif mode.feet:
         most = np.asarray(friction * sum(course.normals.values()))
         scale = weight * (1.0 + friction)
-        found.append(Margin(Kind.SLIPPING, most - course.tangential, 0, scale))
-        found.append(Margin(Kind.SLIPPING, most + course.tangential, 0, scale))
+        found.append(Margin(Kind.SLIPPING, most - course.tangential, 0, scale))  # Eq. 69
+        found.append(Margin(Kind.SLIPPING, most + course.tangential, 0, scale))  # Eq. 69
     if mode.feet != BOTH:
         quarter = padded([0.5 * math.pi], course.rotation.size)
         found.append(Margin(Kind.LYING, quarter - course.rotation, 2, math.inf))

@@ -55,7 +55,7 @@ def friction_demand(body: Body, acceleration: float) -> float:
     if not abs(push) * height >= lever:
         raise InvalidValueError(f"acceleration must be at least b / h = {lever / height:g} to lift it, got {push:g}")
     spin = (abs(push) * height - lever) / (footing.inertia + lever**2 + height**2)
-    return abs(abs(push) - height * spin) / (1.0 + lever * spin)
+    return abs(abs(push) - height * spin) / (1.0 + lever * spin)  # Eq. 76
 
 
 def regime_at_start(
@@ -127,7 +127,7 @@ def analytic_regime(body: Body, acceleration: float, friction: float) -> Regime:
         return Regime.REST
     if friction < slender:
         return Regime.SLIDE
-    return Regime.ROCK if friction >= friction_demand(body, push) else Regime.SLIDE_ROCK
+    return Regime.ROCK if friction >= friction_demand(body, push) else Regime.SLIDE_ROCK  # Eq. 77
 
 
 def regime_map(body: Body, accelerations: FloatArray, frictions: FloatArray) -> IntArray:

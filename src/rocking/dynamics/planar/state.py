@@ -24,7 +24,7 @@ def along(footing: Footing, state: PlanarState, foot: int) -> float:
 
     Returns v_t, to the right; exactly zero where the foot was made to stick [m/s].
     """
-    return state.u + footing.arm(foot, state.rotation)[1] * state.spin
+    return state.u + footing.arm(foot, state.rotation)[1] * state.spin  # Eq. 60
 
 
 def away(footing: Footing, state: PlanarState, foot: int) -> float:
@@ -32,7 +32,7 @@ def away(footing: Footing, state: PlanarState, foot: int) -> float:
 
     Returns v_n, upwards; exactly zero where the foot was put to rest [m/s].
     """
-    return state.w - footing.arm(foot, state.rotation)[0] * state.spin
+    return state.w - footing.arm(foot, state.rotation)[0] * state.spin  # Eq. 61
 
 
 def kept(footing: Footing, state: PlanarState, feet: tuple[int, ...], *, stick: bool) -> PlanarState:
@@ -56,4 +56,4 @@ def kinetic(footing: Footing, state: PlanarState) -> float:
 
     Returns ``(x'^2 + z'^2 + (I_C / m) theta'^2) / 2`` [J/kg].
     """
-    return 0.5 * (state.u**2 + state.w**2 + footing.inertia * state.spin**2)
+    return 0.5 * (state.u**2 + state.w**2 + footing.inertia * state.spin**2)  # Eq. 62

@@ -13,6 +13,7 @@ def stirring(footing: Footing, push: FloatArray, lift: FloatArray, friction: flo
     stretches; in all others every margin stays above zero.
     """
     turn = push * footing.height
+    # Eq. 69
     held = [lift * footing.right + turn, lift * footing.left - turn, friction * lift - push, friction * lift + push]
     low = [m[:, 0] + np.minimum(m[:, 1:], 0.0).sum(axis=1) for m in held]
     return np.flatnonzero(np.min(low, axis=0) <= 0.0)

@@ -35,7 +35,7 @@ class _Stick:
     def acceleration(self, k: int, x: list[float], z: list[float], _: list[float]) -> float:
         """Coefficient k of theta''."""
         moment: float = sum(map(mul, self.lift, x[k::-1])) - sum(map(mul, self.push, z[k::-1]))
-        return -moment * (self.unit2 / (self.inertia + x[0] ** 2 + z[0] ** 2))
+        return -moment * (self.unit2 / (self.inertia + x[0] ** 2 + z[0] ** 2))  # Eq. 66
 
 
 class _Slide:
@@ -60,7 +60,7 @@ class _Slide:
         if k == 0:
             self.stiff = self.stiffness[0] / (self.inertia + x[0] ** 2)
         known = sum(map(mul, self.level, self.force[k::-1])) + sum(map(mul, self.stiffness[1:], self.found[::-1]))
-        self.found.append(-known / self.stiffness[0] if self.stiffness[0] else float("nan"))
+        self.found.append(-known / self.stiffness[0] if self.stiffness[0] else float("nan"))  # Eq. 67
         return self.found[-1]
 
 
@@ -91,8 +91,8 @@ def turning(
         spin.append(law.acceleration(k, x, z, spin) / (k + 1))
         rotation.append(spin[-1] / (k + 2))
         floor = max(floor, _SMALLEST * abs(spin[-1]), _SMALLEST * abs(spin[0]))
-        x_next = sum(map(mul, spin, z[k::-1])) / (k + 1)
-        z_next = -sum(map(mul, spin, x[k::-1])) / (k + 1)
+        x_next = sum(map(mul, spin, z[k::-1])) / (k + 1)  # Eq. 68
+        z_next = -sum(map(mul, spin, x[k::-1])) / (k + 1)  # Eq. 68
         x.append(x_next)
         z.append(z_next)
         small = small + 1 if abs(spin[-1]) <= floor and k >= least else 0

@@ -16,7 +16,7 @@ def rows_of(products: Sequence[Sequence[Any]]) -> Rows:
     """Return the rotation matrix that belongs to the products of the components of a quaternion."""
     (ss, sx, sy, sz), (_, xx, xy, xz), (_, _, yy, yz), (_, _, _, zz) = products
     return [
-        [ss + xx - yy - zz, 2.0 * (xy - sz), 2.0 * (xz + sy)],
+        [ss + xx - yy - zz, 2.0 * (xy - sz), 2.0 * (xz + sy)],  # Eq. 79
         [2.0 * (xy + sz), ss - xx + yy - zz, 2.0 * (yz - sx)],
         [2.0 * (xz - sy), 2.0 * (yz + sx), ss - xx - yy + zz],
     ]
@@ -58,7 +58,7 @@ def product(left: FloatArray, right: FloatArray) -> FloatArray:
 
     left, right: unit quaternions [-]. Returns their Hamilton product [-].
     """
-    scalar = left[0] * right[0] - dot(left[1:], right[1:])
+    scalar = left[0] * right[0] - dot(left[1:], right[1:])  # Eq. 80
     return np.concatenate([[scalar], left[0] * right[1:] + right[0] * left[1:] + cross(left[1:], right[1:])])
 
 
@@ -102,7 +102,7 @@ def tilt(quaternion: FloatArray) -> FloatArray:
     0.3
     """
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
-    return 2.0 * each(math.atan2, np.sqrt(x * x + y * y), np.sqrt(s * s + z * z))
+    return 2.0 * each(math.atan2, np.sqrt(x * x + y * y), np.sqrt(s * s + z * z))  # Eq. 81
 
 
 def azimuth(quaternion: FloatArray) -> FloatArray:
@@ -111,4 +111,4 @@ def azimuth(quaternion: FloatArray) -> FloatArray:
     quaternion: attitudes [-]. Returns from x towards y, in (-pi, pi]; zero for a body that does not lean [rad].
     """
     s, x, y, z = np.moveaxis(quaternion, -1, 0)
-    return each(math.atan2, y * z - s * x, x * z + s * y)
+    return each(math.atan2, y * z - s * x, x * z + s * y)  # Eq. 82

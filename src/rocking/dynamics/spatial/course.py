@@ -145,4 +145,4 @@ def _leaning_over(body: SpatialBody, up: FloatArray, pivot: FloatArray) -> float
     """Above zero where the centre of mass is beyond the contact, in the direction in which the body leans."""
     arm = body.centre - pivot
     # horizontal parts of arm and axis: a . b - (a . Z)(b . Z)
-    return float(arm[2] - dot(up, arm) * up[2])
+    return float(arm[2] - dot(up, arm) * up[2])  # Eq. 87

@@ -59,5 +59,5 @@ def _of_piece(response: "SpatialResponse", piece: StepPiece, stops: FloatArray) 
     q, w, place = piece.at(np.clip((times.ravel() - piece.start) / piece.length, 0.0, piece.until))
     body = response.body
     states = States(body, q, w, pivots(body, piece, q), place, np.zeros(len(q), dtype=np.int64))
-    power = -body.mass * (response.ground.at(times.ravel()) * states.centre_velocity).sum(axis=1)
+    power = -body.mass * (response.ground.at(times.ravel()) * states.centre_velocity).sum(axis=1)  # Eq. 46
     return applied(power.reshape(times.shape), _WEIGHTS) * half

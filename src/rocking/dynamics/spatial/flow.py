@@ -32,7 +32,7 @@ def turned(products: Sequence[Sequence[float]], share: float) -> list[float]:
     """Return a term of q (0, w) / 2, the rate of a quaternion."""
     (sx, sy, sz), (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = products
     half = 0.5 * share
-    return [-half * (xx + yy + zz), half * (sx + yz - zy), half * (sy + zx - xz), half * (sz + xy - yx)]
+    return [-half * (xx + yy + zz), half * (sx + yz - zy), half * (sy + zx - xz), half * (sz + xy - yx)]  # Eq. 22
 
 
 def carried(quaternion: FloatArray, field: FloatArray) -> list[float]:
@@ -80,7 +80,7 @@ class PivotFlow:
             # term k of the products with w of I w, q, the vertical, G and its derivatives
             made = np.add.reduce(rows[: k + 1, 3:, None] * rows[k::-1, None, :3], axis=0).tolist()
             (gx, gy, gz), (fx, fy, fz), share = cross_of(made[:3]), state[7:10], length / (k + 1)
-            torque = [gx + y * fz - z * fy, gy + z * fx - x * fz, gz + x * fy - y * fx]
+            torque = [gx + y * fz - z * fy, gy + z * fx - x * fz, gz + x * fy - y * fx]  # Eq. 22
             w = [share * sum(map(mul, row, torque)) for row in mobility]
             across = [part for i in range(7, len(made), 3) for part in cross_of(made[i : i + 3])]
             follows = [0.0, 0.0, 0.0, *state[10:], 0.0, 0.0, 0.0]
@@ -117,7 +117,7 @@ def trusted_part(quaternions: FloatArray, velocities: FloatArray, length: float,
     for k in (last - 1, last):
         size = max(float(np.abs(quaternions[k]).max()), length * float(np.abs(velocities[k]).max()) / spin)
         if size > tolerance:
-            part = min(part, (tolerance / size) ** (1.0 / k))
+            part = min(part, (tolerance / size) ** (1.0 / k))  # Eq. 52
     return part
 
 

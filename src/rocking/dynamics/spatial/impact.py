@@ -110,7 +110,7 @@ def projected(
     >>> bool(np.abs(ratio - diagonal).max() < 1e-14)
     True
     """
-    return PLASTIC.velocity_after(body, before, after, axis, UP, velocity)
+    return PLASTIC.velocity_after(body, before, after, axis, UP, velocity)  # Eq. 1
 
 
 class FixedSpatial:
@@ -152,7 +152,7 @@ class FixedSpatial:
             return made
         bound = body.kinetic(before, velocity) / left
         wanted = self.coefficient**2 * dot(velocity, velocity) / dot(made, made)
-        return np.asarray(math.sqrt(min(wanted, bound)) * made)
+        return np.asarray(math.sqrt(min(wanted, bound)) * made)  # Eq. 101
 
 
 def law_of(restitution: Any, body: SpatialBody | None = None) -> SpatialImpactLaw:

@@ -67,7 +67,7 @@ def _normal(body: SpatialBody, stance: Stance, step: Step) -> FloatArray:
     else:
         height = applied(step.up, body.centre - stance.pivot)
     k = np.arange(len(height))
-    rise = (k * (k - 1) * height)[2:] / step.length**2
+    rise = (k * (k - 1) * height)[2:] / step.length**2  # Eq. 96
     return rise - padded(step.field[2], len(rise))
 
 
@@ -82,7 +82,7 @@ def _second(body: SpatialBody, stance: Stance, step: Step) -> FloatArray:
     made -= cauchy(applied(step.up, cross(axis, cross(axis, about))), cauchy(spin, spin))
     made += cauchy(applied(step.up, arm), padded(applied(step.field.T, step.heading), n))
     made -= padded(step.field[2], n) * dot_of(axis, arm)
-    return made[: n - 2] / stance.length
+    return made[: n - 2] / stance.length  # Eq. 97
 
 
 def _opening(body: SpatialBody, stance: Stance, step: Step, which: int) -> FloatArray:
@@ -98,7 +98,7 @@ def _opening(body: SpatialBody, stance: Stance, step: Step, which: int) -> Float
         field += np.column_stack([cauchy(direction[:, i], strength) for i in range(3)])
     spin = applied(step.velocities, axis)
     torque = body.mass * cross(arm, field) - np.outer(cauchy(spin, spin), cross(axis, applied(inertia, axis)))
-    return dot(times(cross(leaves, step.up), inverse(inertia)), torque)[: n - 2]
+    return dot(times(cross(leaves, step.up), inverse(inertia)), torque)[: n - 2]  # Eq. 98
 
 
 def _axis(stance: Stance) -> FloatArray:

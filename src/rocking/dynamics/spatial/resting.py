@@ -66,14 +66,14 @@ def _holds(body: SpatialBody, accelerations: FloatArray, rotation: FloatArray, g
     if not body.round:
         inside = ((body.centre[:2] - body.vertices[:, :2]) * body.inward).sum(axis=1)
         tipping = times(body.inward, level)
-        return np.asarray(inside[None, :, None] * weight[:, None, :] - body.centre[2] * tipping)
+        return np.asarray(inside[None, :, None] * weight[:, None, :] - body.centre[2] * tipping)  # Eq. 94
     made = np.zeros((len(weight), 2, 2 * weight.shape[1] - 1))
     made[:, 1, : weight.shape[1]] = weight * body.size  # the ground must push
     for k, w in enumerate(weight):
         made[k, 0] = body.radius**2 * convolved(w, w)
         for axis in range(2):
             arm = body.centre[axis] * w - body.centre[2] * level[k, axis]
-            made[k, 0] -= convolved(arm, arm)
+            made[k, 0] -= convolved(arm, arm)  # Eq. 95
     return made
 
 

@@ -211,7 +211,7 @@ class SpatialBody:
     def lift(self) -> float:
         """Least rise of the centre of mass on the way to overturning [m]."""
         height = float(self.centre[2])
-        return self.reach**2 / (math.hypot(self.reach, height) + height)
+        return self.reach**2 / (math.hypot(self.reach, height) + height)  # Eq. 85
 
     def inertia_about(self, point: FloatArray) -> FloatArray:
         """Return the inertia tensor about a point of the body (Steiner).
@@ -227,7 +227,7 @@ class SpatialBody:
             In body axes [kg m2].
         """
         arm = self.centre - point
-        return np.asarray(self.inertia + self.mass * (dot(arm, arm) * np.eye(3) - np.outer(arm, arm)))
+        return np.asarray(self.inertia + self.mass * (dot(arm, arm) * np.eye(3) - np.outer(arm, arm)))  # Eq. 83
 
     def kinetic(self, point: FloatArray, velocity: FloatArray) -> float:
         """Return the kinetic energy of the body that turns about a point at rest.
@@ -244,7 +244,7 @@ class SpatialBody:
         float
             Energy [J].
         """
-        return 0.5 * dot(velocity, applied(self.inertia_about(point), velocity))
+        return 0.5 * dot(velocity, applied(self.inertia_about(point), velocity))  # Eq. 84
 
     def frequency(self, gravity: float) -> float:
         """Return the frequency parameter of the body about its nearest edge, p = sqrt(m g R / I) there.
@@ -266,7 +266,7 @@ class SpatialBody:
         found = []
         for point, axis in zip(points, axes, strict=True):
             arm = norm(np.cross(self.centre - point, axis))
-            found.append(math.sqrt(self.mass * gravity * arm / (2.0 * self.kinetic(point, axis))))
+            found.append(math.sqrt(self.mass * gravity * arm / (2.0 * self.kinetic(point, axis))))  # Eq. 26
         return min(found)
 
 

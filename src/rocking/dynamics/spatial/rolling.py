@@ -110,13 +110,14 @@ class RollingFlow:
             _add(vector, [share * part + by for part, by in zip(_crossed(vector, s.w, k), follows, strict=True)])
         _add(s.w, [share * spin[k] for spin in s.spin])
         _add([*s.n, s.h], [share * s.bend[0][k], share * s.bend[1][k], -share * fall])
-        _add(s.place, [-share * self.body.radius * part for part in traced])
+        _add(s.place, [-share * self.body.radius * part for part in traced])  # Eq. 100
 
     def _contact(self, s: _Series, k: int) -> None:
         """How fast the lowest point moves along the rim."""
         radius, centre = self.body.radius, self.body.centre.tolist() if k == 0 else (0.0, 0.0, 0.0)
         _add(s.rate_up, _crossed(s.up, s.w, k))
         (nx, ny), (x, y) = s.n, _back(s.rate_up[:2], k)
+        # Eq. 99
         s.slip.append(sum(map(mul, nx, y)) - sum(map(mul, ny, x)))  # t . Z'
         s.falling.append(sum(map(mul, nx, x)) + sum(map(mul, ny, y)))  # n . Z'
         s.drift.append(_term(s.slip, s.h, k))
@@ -160,5 +161,5 @@ class RollingFlow:
             for (a, b, c), (u, v, w) in ((row, earlier) for row in s.inertia)
         ]
         pull, turn = _crossed(s.arm, s.weight, k), _crossed(s.w, s.momentum, k)
-        torque = [mass * a - b - c for a, b, c in zip(pull, turn, taken, strict=True)]
+        torque = [mass * a - b - c for a, b, c in zip(pull, turn, taken, strict=True)]  # Eq. 23
         _add(s.spin, [sum(map(mul, row, torque)) for row in self.solve])

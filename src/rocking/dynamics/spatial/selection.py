@@ -134,8 +134,8 @@ def impulses(body: SpatialBody, state: SpatialState, stance: Stance, velocity: F
     velocity: angular velocity after, in body axes [rad/s]. Returns as of `supports` of the stance [N s].
     """
     new = body.centre - stance.pivot
-    push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))
-    moment = applied(body.inertia, velocity - state.velocity) + cross(new, push)
+    push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))  # Eq. 90
+    moment = applied(body.inertia, velocity - state.velocity) + cross(new, push)  # Eq. 90
     return stances.supports(body, stance, push, moment, state.up)
 
 
@@ -157,8 +157,8 @@ def forces(
         rate = stance.axis * (dot(stance.axis, weight - gyroscopic) / dot(stance.axis, applied(inertia, stance.axis)))
     else:
         rate = solution(inertia, weight - gyroscopic)
-    moment = applied(inertia, rate) + gyroscopic - weight
-    force = body.mass * (cross(rate, arm) + cross(velocity, cross(velocity, arm)) - field)
+    moment = applied(inertia, rate) + gyroscopic - weight  # Eq. 91
+    force = body.mass * (cross(rate, arm) + cross(velocity, cross(velocity, arm)) - field)  # Eq. 91
     return rate, stances.supports(body, stance, force, moment, up)
 
 

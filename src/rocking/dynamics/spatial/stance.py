@@ -69,11 +69,11 @@ def supports(body: SpatialBody, stance: Stance, force: FloatArray, moment: Float
     """
     normal = dot(force, up)
     if stance.axis is not None:
-        second = dot(cross(up, moment), stance.axis) / stance.length
+        second = dot(cross(up, moment), stance.axis) / stance.length  # Eq. 92
         return np.array([normal - second, second])
     if stance.contact is not ContactMode.REST:
         return np.array([normal])
-    pressure = cross(up, moment)[:2] + normal * stance.pivot[:2]
+    pressure = cross(up, moment)[:2] + normal * stance.pivot[:2]  # Eq. 93
     if body.round:
         return np.array([normal * body.radius - norm(pressure)]) / body.size
     inside = ((pressure - normal * body.vertices[:, :2]) * body.inward).sum(axis=1)
@@ -100,4 +100,4 @@ def rise(body: SpatialBody, pivot: FloatArray, up: FloatArray) -> float:
     level2 = float(up[0] ** 2 + up[1] ** 2)
     # 1 - cos(tilt) without the loss of digits
     sunk = level2 / (1.0 + up[2]) if up[2] > 0.0 else 1.0 - float(up[2])
-    return float(dot(up[:2], arm[:2]) - sunk * arm[2])
+    return float(dot(up[:2], arm[:2]) - sunk * arm[2])  # Eq. 86

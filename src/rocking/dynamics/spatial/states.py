@@ -70,7 +70,7 @@ class States:
         """How much higher the centre of mass is than at rest [m]."""
         up, arm = self.rotation[:, 2], self.body.centre - self.pivot
         sunk = 2.0 * np.square(self.quaternion[:, 1:3]).sum(axis=1)  # 1 - cos(tilt)
-        return np.asarray((up[:, :2] * arm[:, :2]).sum(axis=1) - sunk * arm[:, 2])
+        return np.asarray((up[:, :2] * arm[:, :2]).sum(axis=1) - sunk * arm[:, 2])  # Eq. 86
 
 
 def states_of(body: SpatialBody, trajectory: SpatialTrajectory, time: FloatArray) -> States:

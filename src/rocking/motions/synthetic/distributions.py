@@ -245,4 +245,4 @@ class Lognormal(Distribution):
         from scipy.special import ndtri
 
         first, last = self._normal(np.array([self.low, self.high]))
-        return self.median * math.exp(self.deviation * float(ndtri(first + share * (last - first))))
+        return self.median * math.exp(self.deviation * float(ndtri(first + share * (last - first))))  # Eq. 178

@@ -55,7 +55,7 @@ class KanaiTajimi:
     def variance(self) -> float:
         """Stationary variance of the acceleration, ``pi S0 w (1 + 4 z^2) / (2 z)`` [m2/s4]."""
         omega = 2.0 * math.pi * self.frequency
-        return math.pi * self.density * omega * (1.0 + 4.0 * self.damping**2) / (2.0 * self.damping)
+        return math.pi * self.density * omega * (1.0 + 4.0 * self.damping**2) / (2.0 * self.damping)  # Eq. 164
 
     def power(self, frequency: FloatArray) -> FloatArray:
         """Return the power spectral density of the acceleration.
@@ -72,7 +72,7 @@ class KanaiTajimi:
         """
         ratio = (frequency / self.frequency) ** 2
         coupling = 4.0 * self.damping**2 * ratio
-        return self.density * (1.0 + coupling) / ((1.0 - ratio) ** 2 + coupling)
+        return self.density * (1.0 + coupling) / ((1.0 - ratio) ** 2 + coupling)  # Eq. 163
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class Envelope:
     def __call__(self, time: FloatArray) -> FloatArray:
         """Return the factor, from 0 to 1, at times of at least zero."""
         up = np.minimum(time / self.rise, 1.0) ** 2 if self.rise > 0.0 else np.ones_like(time)
-        return up * exponential(-self.decay * np.maximum(time - self.plateau, 0.0))
+        return up * exponential(-self.decay * np.maximum(time - self.plateau, 0.0))  # Eq. 165
 
 
 def kanai_tajimi_motion(
@@ -181,7 +181,7 @@ def _stationary(layer: KanaiTajimi, omega: float, step: float, kicks: FloatArray
     move = transition(omega, zeta, step) * np.array([[1.0, omega], [1.0 / omega, 1.0]])
     (m00, m01), (m10, m11) = move.tolist()
     # Cholesky's factor of the covariance that a step adds, the identity less move times its transpose
-    s00 = math.sqrt(1.0 - (m00 * m00 + m01 * m01))
+    s00 = math.sqrt(1.0 - (m00 * m00 + m01 * m01))  # Eq. 166
     s10 = -(m00 * m10 + m01 * m11) / s00
     s11 = math.sqrt(1.0 - (m10 * m10 + m11 * m11) - s10 * s10)
     first, second = deviation * kicks.T

@@ -55,7 +55,7 @@ class GammaModulation:
         """Return the standard deviation at times of at least zero."""
         # in logarithms: the power alone can overflow
         grown = (self.a2 - 1.0) * logarithm(time) if self.a2 > 1.0 else np.zeros_like(time)
-        return exponential(logarithm(np.array(self.a1)) + grown - self.a3 * time)
+        return exponential(logarithm(np.array(self.a1)) + grown - self.a3 * time)  # Eq. 169
 
     def arias_intensity(self, gravity: float = g) -> float:
         """Return the expected Arias intensity of the whole motion.
@@ -72,7 +72,7 @@ class GammaModulation:
         """
         gravity = checks.positive("gravity", gravity, "m/s2")
         shape, rate = 2.0 * self.a2 - 1.0, 2.0 * self.a3
-        energy = 2.0 * math.log(self.a1) + math.lgamma(shape) - shape * math.log(rate)
+        energy = 2.0 * math.log(self.a1) + math.lgamma(shape) - shape * math.log(rate)  # Eq. 170
         return 0.5 * math.pi / gravity * math.exp(energy)
 
     def time_of(self, share: float) -> float:
@@ -150,7 +150,7 @@ def modulation_from_intensity(
     shape = float(f"{math.exp(log_shape):.11g}")
     rate = float(f"{_quantile(shape, MIDDLE) / middle:.11g}")
     energy = 2.0 * gravity * intensity / math.pi
-    size = math.exp(0.5 * (math.log(energy) + shape * math.log(rate) - math.lgamma(shape)))
+    size = math.exp(0.5 * (math.log(energy) + shape * math.log(rate) - math.lgamma(shape)))  # Eq. 170
     return GammaModulation(float(f"{size:.12g}"), 0.5 * (shape + 1.0), 0.5 * rate)
 
 

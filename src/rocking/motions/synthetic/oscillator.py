@@ -27,7 +27,7 @@ def transition(omega: float, damping: float, step: float) -> FloatArray:
     c, s = float(cosine[0]), float(sine[0]) / rate if rate > 0.0 else step
     decay = float(exponential(np.array([-damping * omega * step]))[0])
     own = damping * omega * s
-    return decay * np.array([[c + own, s], [-omega * omega * s, c - own]])
+    return decay * np.array([[c + own, s], [-omega * omega * s, c - own]])  # Eq. 167
 
 
 def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> FloatArray:
@@ -48,4 +48,4 @@ def highpassed(acceleration: FloatArray, time_step: float, frequency: float) -> 
     rest, end, speed = w2 * a - lag * slope, w2 * acceleration[1:] - lag * slope, w2 * slope
     (m00, m01), (m10, m11) = move.tolist()
     z, v = recurrence(move, (0.0, 0.0), end - (m00 * rest + m01 * speed), speed - (m10 * rest + m11 * speed))
-    return acceleration - 2.0 * w * v - w * w * z
+    return acceleration - 2.0 * w * v - w * w * z  # Eq. 168

@@ -108,17 +108,18 @@ class PointSource:
     @cached_property
     def moment(self) -> float:
         """Seismic moment, ``10^(1.5 M + 16.05)`` dyn cm [N m]."""
-        return float(_power(np.array(10.0), 1.5 * self.magnitude + 16.05 - 7.0))
+        return float(_power(np.array(10.0), 1.5 * self.magnitude + 16.05 - 7.0))  # Eq. 173
 
     @cached_property
     def corner_frequency(self) -> float:
         """Corner frequency, ``4.9e6 beta (stress / M0)^(1/3)`` in km/s, bar and dyn cm [Hz]."""
+        # Eq. 174
         return float(0.49 * self.shear_velocity * _power(np.array(self.stress_drop / self.moment), 1.0 / 3.0))
 
     @property
     def duration(self) -> float:
         """Duration of the motion, of the source and of the path [s]."""
-        return 1.0 / self.corner_frequency + self.path_duration * self.distance
+        return 1.0 / self.corner_frequency + self.path_duration * self.distance  # Eq. 175
 
     def geometric_spreading(self) -> float:
         """Return the factor of geometric spreading at the distance.
@@ -154,7 +155,7 @@ class PointSource:
         # f / Q(f) written so that zero frequency needs no division
         path = _power(frequency, 1.0 - self.quality[1]) * self.distance / (self.quality[0] * beta)
         loss = exponential(-np.pi * (path + self.kappa * frequency))
-        return np.asarray(constant * self.moment * self.geometric_spreading() * source * loss)
+        return np.asarray(constant * self.moment * self.geometric_spreading() * source * loss)  # Eq. 176
 
 
 def point_source_motion(
@@ -231,7 +232,7 @@ def window(place: FloatArray) -> FloatArray:
     """
     power = -PEAK_AT * math.log(LEVEL_AT_END) / (1.0 + PEAK_AT * (math.log(PEAK_AT) - 1.0))
     ratio = np.maximum(place, 0.0) / PEAK_AT
-    return exponential(power * (logarithm(ratio) + 1.0 - ratio))
+    return exponential(power * (logarithm(ratio) + 1.0 - ratio))  # Eq. 177
 
 
 def _power(base: FloatArray, exponent: float) -> FloatArray:

@@ -81,7 +81,7 @@ class NonstationaryFilter:
         ndarray
             Circular frequency [rad/s].
         """
-        return 2.0 * np.pi * np.maximum(self.frequency + self.slope * (time - self.middle), self.lowest)
+        return 2.0 * np.pi * np.maximum(self.frequency + self.slope * (time - self.middle), self.lowest)  # Eq. 171
 
 
 def nonstationary_motion(
@@ -172,4 +172,4 @@ def _unit_process(noise: FloatArray, omega: FloatArray, damping: float, step: fl
     total, squares = resonances(noise, omega, place, shared, (decay * cosine, decay * sine), lasting)
     # at the first sample nothing has come through yet
     squares[0] = 2.0
-    return total / np.sqrt(0.5 * squares)
+    return total / np.sqrt(0.5 * squares)  # Eq. 172

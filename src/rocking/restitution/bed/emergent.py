@@ -83,7 +83,7 @@ def status_of(counts: IntArray) -> BedStatus:
 
 
 def _ratio(energy: float, inertia: float, setup: Setup) -> float:
-    return math.sqrt(2.0 * max(energy, 0.0) / inertia) / setup.start.landing_velocity
+    return math.sqrt(2.0 * max(energy, 0.0) / inertia) / setup.start.landing_velocity  # Eq. 128
 
 
 def _mechanical(setup: Setup, row: dict[str, float]) -> float:

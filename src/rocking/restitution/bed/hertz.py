@@ -48,7 +48,7 @@ class Hertz(ContactLaw):
         LawNumbers
             Stiffness and exponent.
         """
-        return LawNumbers(LawKind.HUNT_CROSSLEY, 4.0 / 3.0 * self.modulus * self.radius**0.5, exponent=1.5)
+        return LawNumbers(LawKind.HUNT_CROSSLEY, 4.0 / 3.0 * self.modulus * self.radius**0.5, exponent=1.5)  # Eq. 119
 
     @property
     def label(self) -> str:

@@ -79,7 +79,7 @@ class KelvinVoigt(ContactLaw):
         modulus = checks.positive("modulus", modulus, "Pa", hint="GPa?")
         area = checks.positive("area", area, "m2")
         thickness = checks.length("thickness", thickness)
-        return cls(
+        return cls(  # Eq. 115
             checks.positive("confinement", confinement) * modulus * area / thickness, damping_ratio=damping_ratio
         )
 
@@ -97,7 +97,7 @@ class KelvinVoigt(ContactLaw):
             Stiffness and damping.
         """
         ratio = self.damping_ratio or 0.0
-        damping = 2.0 * ratio * (self.stiffness * mass) ** 0.5 if self.damping is None else self.damping
+        damping = 2.0 * ratio * (self.stiffness * mass) ** 0.5 if self.damping is None else self.damping  # Eq. 116
         return LawNumbers(LawKind.KELVIN_VOIGT, float(self.stiffness), float(damping))
 
     @property

@@ -68,14 +68,14 @@ def force(law: LawNumbers, depth: FloatArray, speed: FloatArray, deepest: FloatA
     """
     pressed = np.maximum(depth, 0.0)
     if law.kind is LawKind.KELVIN_VOIGT:
-        value = law.stiffness * depth + law.damping * speed
+        value = law.stiffness * depth + law.damping * speed  # Eq. 117
     elif law.kind is LawKind.HUNT_CROSSLEY:
-        value = law.stiffness * pressed**law.exponent * (1.0 + law.viscosity * speed)
+        value = law.stiffness * pressed**law.exponent * (1.0 + law.viscosity * speed)  # Eq. 118
     else:
         value = law.stiffness * depth
         if law.rebound > 0.0:
             square = law.rebound**2
-            unloading = law.stiffness / square * (depth - (1.0 - square) * deepest)
+            unloading = law.stiffness / square * (depth - (1.0 - square) * deepest)  # Eq. 120
             value = np.where(depth < deepest, np.minimum(value, unloading), value)
         else:
             value = np.where((depth >= deepest) & (speed > 0.0), value, 0.0)
@@ -93,8 +93,8 @@ def stored(law: LawNumbers, depth: FloatArray, deepest: FloatArray) -> FloatArra
         if law.rebound == 0.0:
             return np.zeros_like(pressed)
         value = force(law, depth, np.zeros_like(depth), np.maximum(deepest, depth))
-        return np.asarray(0.5 * value**2 * law.rebound**2 / law.stiffness)
-    return np.asarray(law.stiffness * pressed ** (law.exponent + 1.0) / (law.exponent + 1.0))
+        return np.asarray(0.5 * value**2 * law.rebound**2 / law.stiffness)  # Eq. 121
+    return np.asarray(law.stiffness * pressed ** (law.exponent + 1.0) / (law.exponent + 1.0))  # Eq. 121
 
 
 def depth_under(law: LawNumbers, load: float) -> float:

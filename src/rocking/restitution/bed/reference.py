@@ -41,7 +41,7 @@ class Field:
             depth, rate = -(x[Y] - at * x[THETA] + heights), -(x[W] - at * x[OMEGA])
         else:
             s, c = math.sin(x[THETA]), math.cos(x[THETA])
-            depth = -(x[Y] - at * s + heights * c)
+            depth = -(x[Y] - at * s + heights * c)  # Eq. 122
             rate = -(x[W] * c - x[U] * s - (at * c + heights * s) * x[OMEGA])
         value = self.bed.shares * force(self.setup.law, depth, rate, x[PAST:])
         return depth, rate, value
@@ -64,10 +64,10 @@ class Field:
             across = normal * c - m * g * c - m * a * s + m * (x[U] + h * x[OMEGA]) * x[OMEGA]
             turning += -moment * c - tilt * s - m * h * x[W] * x[OMEGA]
         if self.held:
-            turn = turning / (r.inertia + m * h * h)
+            turn = turning / (r.inertia + m * h * h)  # Eq. 123
             return np.array([0.0, across / m, turn]), m * h * turn - along, normal
         shear = -self.coefficient * normal
-        shear *= self.slip if self.kind is FrictionKind.COULOMB else x[U] / math.hypot(x[U], self.creep)
+        shear *= self.slip if self.kind is FrictionKind.COULOMB else x[U] / math.hypot(x[U], self.creep)  # Eq. 124
         turn = (turning - h * (along + shear)) / r.inertia
         return np.array([(along + shear) / m - h * turn, across / m, turn]), shear, normal
 
@@ -109,7 +109,7 @@ class Field:
         push = m * self.setup.push * (x[TRAVEL] + h * math.sin(x[THETA]))
         depth, _, _ = self.points(x)
         elastic = float((self.bed.shares * stored(self.setup.law, depth, x[PAST:])).sum())
-        return kinetic + weight + push + elastic, elastic
+        return kinetic + weight + push + elastic, elastic  # Eq. 125
 
     def settle(self, x: FloatArray, *, leaves: bool = False) -> None:
         """Decide whether the base sticks, where it is at rest."""

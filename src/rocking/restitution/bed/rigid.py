@@ -54,7 +54,7 @@ class RigidRocking:
         rotation: theta [rad]. Returns m g (lift + h (cos theta - 1)), zero at theta = 0 [J].
         """
         fall = 2.0 * self.height * math.sin(0.5 * rotation) ** 2
-        return self.mass * self.gravity * (self.lift(rotation) - self.lift(0.0) - fall)
+        return self.mass * self.gravity * (self.lift(rotation) - self.lift(0.0) - fall)  # Eq. 126
 
     def inertia_about(self, point: int) -> float:
         """Return the inertia of rocking about a point.
@@ -74,7 +74,7 @@ class RigidRocking:
         lever = s if small else s * math.cos(rotation) - h * math.sin(rotation)
         turning = self.mass * self.gravity * (h * math.sin(rotation) - s * (1.0 if small else math.cos(rotation)))
         spin = 0.0 if small else (s * math.sin(rotation) + h * math.cos(rotation)) * velocity**2
-        return self.mass * (self.gravity + lever * turning / self.inertia_about(point) - spin)
+        return self.mass * (self.gravity + lever * turning / self.inertia_about(point) - spin)  # Eq. 127
 
     def furthest(self, side: float) -> float:
         """Return the rotation of greatest potential on one side: rigid rocking beyond it topples.

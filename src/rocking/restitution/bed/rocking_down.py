@@ -108,7 +108,7 @@ def bed_free_rocking(
 
 def _velocity(rigid: RigidRocking, rotation: float) -> float:
     inertia = rigid.inertia_about(rigid.pivot(rotation))
-    return float(np.sqrt(2.0 * rigid.potential(rotation) / inertia))
+    return float(np.sqrt(2.0 * rigid.potential(rotation) / inertia))  # Eq. 128
 
 
 def _turned(setup: Setup, row: dict[str, float]) -> Setup:

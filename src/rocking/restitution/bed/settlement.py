@@ -26,7 +26,7 @@ def settlement(rigid: RigidRocking, law: LawNumbers, rotation: float, load: floa
     for _ in range(0 if shallow else 60):
         pressed = np.maximum(depth - above, 0.0)
         slope = law.exponent * law.stiffness * pressed ** (law.exponent - 1.0)
-        excess = dot(bed.shares, law.stiffness * pressed**law.exponent) - load
+        excess = dot(bed.shares, law.stiffness * pressed**law.exponent) - load  # Eq. 129
         down = excess / dot(bed.shares, np.where(pressed > 0.0, slope, 0.0))
         depth -= down
         if down <= 1e-15 * depth:

@@ -42,7 +42,7 @@ class SpatialHorizontalMomentum(SpatialModel):
         ndarray, shape (3,)
             Angular velocity [rad/s].
         """
-        return solved(impact.inertia, impact.level_momentum)
+        return solved(impact.inertia, impact.level_momentum)  # Eq. 102
 
     def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
         """Divide the angular momentum of the horizontal velocities by the moment of inertia about the edge.
@@ -59,4 +59,4 @@ class SpatialHorizontalMomentum(SpatialModel):
         float
             Angular velocity [rad/s].
         """
-        return dot(direction, impact.level_momentum) / dot(direction, applied(impact.inertia, direction))
+        return dot(direction, impact.level_momentum) / dot(direction, applied(impact.inertia, direction))  # Eq. 89

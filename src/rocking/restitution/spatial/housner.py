@@ -43,7 +43,7 @@ class SpatialHousner(SpatialModel):
         ndarray, shape (3,)
             Angular velocity [rad/s].
         """
-        return solved(impact.inertia, impact.angular_momentum)
+        return solved(impact.inertia, impact.angular_momentum)  # Eq. 88
 
     def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
         """Divide the angular momentum along the edge by the moment of inertia about it.
@@ -60,4 +60,4 @@ class SpatialHousner(SpatialModel):
         float
             Angular velocity [rad/s].
         """
-        return dot(direction, impact.angular_momentum) / dot(direction, applied(impact.inertia, direction))
+        return dot(direction, impact.angular_momentum) / dot(direction, applied(impact.inertia, direction))  # Eq. 89

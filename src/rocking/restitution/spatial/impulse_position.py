@@ -103,9 +103,9 @@ class ImpulsePosition:
         b_new, b_old, mass = new - middle, old + middle, found.mass
         over_foot = float((edge * (found.inertia * edge).sum(axis=1)).sum()) + mass * float(found.centre[2]) ** 2
         kept = self._projected(edge, new)
-        r = math.sqrt(max(kept, 0.0) / (over_foot + mass * b_new**2))
-        ahead = over_foot * (1.0 - r) / (mass * (r * b_new + b_old))
-        return (2.0 * ahead - (b_new - b_old)) / (b_new + b_old)
+        r = math.sqrt(max(kept, 0.0) / (over_foot + mass * b_new**2))  # Eq. 17, Mao et al. 2024
+        ahead = over_foot * (1.0 - r) / (mass * (r * b_new + b_old))  # Eq. 4
+        return (2.0 * ahead - (b_new - b_old)) / (b_new + b_old)  # Eq. 104
 
     def _projected(self, edge: FloatArray, offset: float) -> float:
         """Numerator of Eq. 17 about a level line at an offset from the origin of the solid's frame."""
@@ -198,7 +198,7 @@ def _of_cloud(cloud: FloatArray, edge: FloatArray, offset: float) -> float:
     cone = across * (ax * edge[1] - ay * edge[0]) + along * (ax * edge[0] + ay * edge[1]) + z * az
     square = z * z
     distance = np.maximum(across * across + square, 1e-300)
-    return 0.2 * float((cone * square * square / distance).sum())
+    return 0.2 * float((cone * square * square / distance).sum())  # Eq. 107
 
 
 def _height(points: FloatArray) -> FloatArray:

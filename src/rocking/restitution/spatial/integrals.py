@@ -103,7 +103,7 @@ def of_part(part: Part, point: FloatArray, features: Features, graded: tuple[Dis
         cone = (points * areas).sum(axis=1)
         scaled, degrees = features(points)
         total = total + gram(scaled, cone)
-    return part.density * total / (degrees[:, None] + degrees[None, :] + 3.0)
+    return part.density * total / (degrees[:, None] + degrees[None, :] + 3.0)  # Eq. 107
 
 
 def _height_squared(s: FloatArray) -> FloatArray:

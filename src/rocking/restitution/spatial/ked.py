@@ -66,7 +66,7 @@ class SpatialKedPoint(SpatialModel):
         twice = dot(direction, applied(impact.inertia, direction))
         if twice == 0.0:
             return direction
-        return direction * math.sqrt(2.0 * energy_left(impact) / twice)
+        return direction * math.sqrt(2.0 * energy_left(impact) / twice)  # Eq. 21
 
     def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
         """Return the angular velocity that the energy left gives, with the sign of the momentum left.
@@ -108,7 +108,7 @@ def energy_left(impact: RigidImpact) -> float:
     solid, onto = impact.placed_solid
     drift, gradient = applied(impact.level, impact.landing_velocity), times(impact.level, impact.spin)
     if isinstance(onto, Edge) and _is_plane(impact, onto, solid.size):
-        return 0.5 * dot(impact.velocity, onto.direction) ** 2 * line_moment(solid, onto)
+        return 0.5 * dot(impact.velocity, onto.direction) ** 2 * line_moment(solid, onto)  # Eq. 17, Mao et al. 2024
     return kept_moments(solid, onto).energy_left(drift, gradient)
 
 
@@ -130,9 +130,9 @@ def stage_velocities(impact: RigidImpact, points: FloatArray) -> tuple[FloatArra
     level = times(before, impact.level)
     if isinstance(impact.onto, Edge):
         allowed = _unit(np.cross(impact.onto.direction, arms))
-        return before, level, allowed * (allowed * level).sum(axis=1)[:, None]
+        return before, level, allowed * (allowed * level).sum(axis=1)[:, None]  # Eq. 105
     outward = _unit(arms)
-    return before, level, level - outward * (outward * level).sum(axis=1)[:, None]
+    return before, level, level - outward * (outward * level).sum(axis=1)[:, None]  # Eq. 105
 
 
 def _unit(vectors: FloatArray) -> FloatArray:

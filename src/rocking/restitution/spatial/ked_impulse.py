@@ -152,10 +152,10 @@ def _kept(impact: RigidImpact, step: FloatArray, k: float, axis: FloatArray | No
     """Velocity with the angular momentum about X, which lies behind the landing point by (1 - k)/2 of the step."""
     arm, back = impact.moments.centre, 0.5 * (1.0 - k) * impact.moments.mass * step
     momentum = impact.angular_momentum + _cross(back, _centre_velocity(impact))
-    inertia = impact.inertia + dot(back, arm) * np.eye(3) - arm[:, None] * back
+    inertia = impact.inertia + dot(back, arm) * np.eye(3) - arm[:, None] * back  # Eq. 103
     if axis is not None:
         return axis * (dot(axis, momentum) / dot(axis, applied(inertia, axis)))
-    return _solved(inertia, momentum)
+    return _solved(inertia, momentum)  # Eq. 103
 
 
 def _centre_velocity(impact: RigidImpact) -> FloatArray:

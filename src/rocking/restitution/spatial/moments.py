@@ -112,7 +112,7 @@ class KeptMoments:
             T'' [J].
         """
         state = self.coefficients(drift, gradient)
-        along = dot(state, applied(self.form, state))
+        along = dot(state, applied(self.form, state))  # Eq. 106
         if self.whole is None:
             return 0.5 * max(along, 0.0)
         mass, first, second = self.whole

@@ -115,7 +115,7 @@ class RigidImpact(ABC):
         spread = times(self._second, times(projection, self.spin).T)
         turning = np.array([spread[1, 2] - spread[2, 1], spread[2, 0] - spread[0, 2], spread[0, 1] - spread[1, 0]])
         shift = self.moments.mass * applied(skew(self.moments.centre), applied(projection, self.landing_velocity))
-        return turning + shift
+        return turning + shift  # Eq. 102
 
     def _energy(self, projection: FloatArray) -> float:
         gradient, drift, moments = (

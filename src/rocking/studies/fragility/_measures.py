@@ -101,7 +101,7 @@ class IntensityMeasure:
         >>> measure("arias").scaled(np.array([1.5]), 2.0).tolist()
         [6.0]
         """
-        return np.asarray(values * np.abs(factor) ** self.power, dtype=np.float64)
+        return np.asarray(values * np.abs(factor) ** self.power, dtype=np.float64)  # Eq. 229
 
     def factors(self, values: FloatArray, targets: FloatArray) -> FloatArray:
         """Return the factors that bring every motion to every target.
@@ -128,7 +128,7 @@ class IntensityMeasure:
                 f"measure must be one that grows with the motion, got {self.name!r}, which no factor changes; "
                 "cloud() takes it"
             )
-        return np.asarray((targets[None, :] / values[:, None]) ** (1.0 / self.power), dtype=np.float64)
+        return np.asarray((targets[None, :] / values[:, None]) ** (1.0 / self.power), dtype=np.float64)  # Eq. 229
 
 
 def spectral_measure(period: float, damping: float = 0.05) -> IntensityMeasure:
@@ -234,11 +234,11 @@ _NAMED = (
     ),
     IntensityMeasure(
         "pga/(g tan alpha)", "peak ground acceleration over the one that lifts", "-", 1,
-        lambda m, b: _pga(m) / b.threshold,
+        lambda m, b: _pga(m) / b.threshold,  # Eq. 145
     ),
     IntensityMeasure(
         "p pgv/(g tan alpha)", "peak ground velocity that knows how large the body is", "-", 1,
-        lambda m, b: b.frequency_parameter * _pgv(m) / b.threshold,
+        lambda m, b: b.frequency_parameter * _pgv(m) / b.threshold,  # Eq. 146
     ),
     IntensityMeasure("pgv/pga", "ratio of the peaks, a time scale", "s", 0, lambda m, _: _ratio(_pgv(m), _pga(m))),
     IntensityMeasure(

@@ -39,7 +39,7 @@ def resample(
     random = np.random.default_rng(seed)
     if kind == "parametric":
         trials = np.broadcast_to(counts.trials, (repetitions, counts.levels.size))
-        return random.binomial(trials.astype(np.int64), probability).astype(np.float64), trials
+        return random.binomial(trials.astype(np.int64), probability).astype(np.float64), trials  # Eq. 208
     if kind == "cases":
         cells = np.concatenate([counts.failures, counts.survivals]) / counts.trials.sum()
         drawn = random.multinomial(counts.observations, cells, size=repetitions).astype(np.float64)
@@ -61,7 +61,7 @@ def resample(
 def _drawn_clusters(counts: Counts, repetitions: int, seed: int) -> FloatArray:
     """Return how often each distinct cluster is drawn: a hundred thousand cost no more than their distinct outcomes."""
     share, number = counts.distinct_clusters[1], round(counts.distinct_clusters[1].sum())
-    drawn = np.random.default_rng(seed).multinomial(number, share / share.sum(), size=repetitions)
+    drawn = np.random.default_rng(seed).multinomial(number, share / share.sum(), size=repetitions)  # Eq. 209
     return drawn.astype(np.float64)
 
 
@@ -167,14 +167,14 @@ class BootstrapSample:
         if ends not in ENDS:
             raise InvalidValueError(f"ends must be one of {', '.join(ENDS)}, got {ends!r}")
         distance = many[0] if ends == "percentile" else many[0] - one[0]
-        distance = distance / many[1] if ends == "studentised" else distance
+        distance = distance / many[1] if ends == "studentised" else distance  # Eq. 210
         found, tail = self.curves.found[:, None], 0.5 * (1.0 - level)
         low = _order_statistic(np.where(found, distance, -np.inf), tail)
         high = -_order_statistic(np.where(found, -distance, -np.inf), tail)
         if ends == "percentile":
             return low, high
         unit = one[1][0] if ends == "studentised" else 1.0
-        return one[0][0] - high * unit, one[0][0] - low * unit
+        return one[0][0] - high * unit, one[0][0] - low * unit  # Eq. 210
 
     def _quantity(self, curves: FittedCurves, variate: float | None) -> FloatArray:
         if variate is None:
@@ -202,12 +202,12 @@ def curve_probability(curves: FittedCurves, scale: LogScale, levels: FloatArray)
     """
     from scipy.special import ndtr
 
-    return np.asarray(ndtr(curves.theta[0, 0] + curves.theta[0, 1] * scale.position(levels)))
+    return np.asarray(ndtr(curves.theta[0, 0] + curves.theta[0, 1] * scale.position(levels)))  # Eq. 190
 
 
 def _order_statistic(values: FloatArray, share: float) -> FloatArray:
     """Return the value below which a share of the rows lie, rounded outwards (B + 1 points make B + 1 equal parts)."""
-    place = int(np.floor(share * (values.shape[0] + 1))) - 1
+    place = int(np.floor(share * (values.shape[0] + 1))) - 1  # Eq. 211
     if place < 0:
         return np.full(values.shape[1], -np.inf)
     return np.asarray(np.partition(values, place, axis=0)[place])

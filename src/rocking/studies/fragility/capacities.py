@@ -93,7 +93,7 @@ class CapacitySample:
         at = (value - self.scale.center) / self.scale.spread
         theta = self._repeated(value - variate * dispersion, dispersion)
         # a curve that is high where the fractile should be has a low fractile
-        return _below(-(theta[:, 0] + theta[:, 1] * at), -float(self.original.theta[0] @ (1.0, at)))
+        return _below(-(theta[:, 0] + theta[:, 1] * at), -float(self.original.theta[0] @ (1.0, at)))  # Eq. 213
 
     def log_interval(self, variate: float | None, level: float) -> tuple[float, float]:
         """Return the interval of a logarithmic fractile or of the logarithmic dispersion.
@@ -118,7 +118,7 @@ class CapacitySample:
         )
         tail = 0.5 * (1.0 - level)
         step = -float(_variate(tail)) * (1.0 + 2.0 / records) / math.sqrt(records) * error
-        low = _end(lambda value: 1.0 - self.rarity(variate, value), start, -step, tail)
+        low = _end(lambda value: 1.0 - self.rarity(variate, value), start, -step, tail)  # Eq. 213
         return low, _end(lambda value: self.rarity(variate, value), start, step, tail)
 
     def variate_band(self, position: FloatArray, level: float) -> tuple[FloatArray, FloatArray]:

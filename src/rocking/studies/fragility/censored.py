@@ -123,7 +123,7 @@ def _likelihood(at: FloatArray, known: FloatArray, bounds: FloatArray) -> float:
 
     h, d = at
     z = h * known - d
-    return float(known.size * (math.log(h) - _LOG_OF_ROOT) - 0.5 * (z @ z) + log_ndtr(d - h * bounds).sum())
+    return float(known.size * (math.log(h) - _LOG_OF_ROOT) - 0.5 * (z @ z) + log_ndtr(d - h * bounds).sum())  # Eq. 214
 
 
 def _slopes(at: FloatArray, known: FloatArray, bounds: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -134,7 +134,7 @@ def _slopes(at: FloatArray, known: FloatArray, bounds: FloatArray) -> tuple[Floa
     # the hazard phi / Phi, without overflow in the tail
     hazard = np.exp(-0.5 * w * w - _LOG_OF_ROOT - log_ndtr(w))
     bend = hazard * (w + hazard)
-    gradient = np.array([known.size / h - z @ known - hazard @ bounds, z.sum() + hazard.sum()])
+    gradient = np.array([known.size / h - z @ known - hazard @ bounds, z.sum() + hazard.sum()])  # Eq. 215
     cross = float(known.sum() + bend @ bounds)
     hh = -known.size / h**2 - known @ known - bend @ (bounds * bounds)
     return gradient, np.array([[hh, cross], [cross, -known.size - bend.sum()]])

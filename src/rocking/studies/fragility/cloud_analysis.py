@@ -149,7 +149,7 @@ class CloudAnalysis:
             P(overturned) + P(rocked, not overturned) P(rotation exceeded | rocked, not overturned) [-].
         """
         parts = self.parts(level, rotation)
-        return parts["overturned"] + parts["exceeded"]
+        return parts["overturned"] + parts["exceeded"]  # Eq. 221
 
     def parts(self, level: Any, rotation: float) -> dict[str, FloatArray]:
         """Return the parts of the total probability, which add up to one.
@@ -177,7 +177,7 @@ class CloudAnalysis:
         return {
             "no rocking": 1.0 - rocks,
             "below": (rocks - over) * (1.0 - beyond),
-            "exceeded": (rocks - over) * beyond,
+            "exceeded": (rocks - over) * beyond,  # Eq. 221
             "overturned": over,
         }
 

@@ -207,7 +207,7 @@ def _rocked(analysis: CloudAnalysis) -> BoolArray:
 def _score(analysis: CloudAnalysis, columns: Mapping[str, FloatArray]) -> MeasureScore:
     line, rocked = analysis.regression, _rocked(analysis)
     dispersion, verdict = _overturning(analysis)
-    proficiency = line.scatter / abs(line.slope) if line.slope else math.inf
+    proficiency = line.scatter / abs(line.slope) if line.slope else math.inf  # Eq. 222
     return MeasureScore(
         analysis.subject.measure.name, analysis.subject.measure.unit, line.scatter, line.slope, proficiency,
         line.determination, dispersion, verdict,

@@ -114,7 +114,7 @@ def refined(brackets: OutcomeBrackets, outcomes: Outcomes, tolerance: float) -> 
     first = True
     while len(brackets):
         wanted = np.maximum(tolerance * brackets.high, 4.0 * np.spacing(brackets.high))
-        wide = brackets.high - brackets.low > wanted
+        wide = brackets.high - brackets.low > wanted  # Eq. 184
         done, brackets = done.joined(brackets.chosen(~wide)), brackets.chosen(wide)
         if len(brackets):
             parts = PARTS if first or len(brackets) <= FEW else 2

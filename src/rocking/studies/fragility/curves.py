@@ -93,6 +93,7 @@ class FragilityCurve:
         from scipy.special import ndtr
 
         with np.errstate(divide="ignore"):
+            # Eq. 190
             return np.asarray(ndtr(np.log(np.asarray(level, dtype=np.float64) / self.median) / self.dispersion))
 
 

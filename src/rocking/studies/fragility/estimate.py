@@ -31,7 +31,7 @@ class LogScale:
 
         levels: levels, > 0 [any unit]. Returns their positions [-].
         """
-        return (np.log(levels) - self.center) / self.spread
+        return (np.log(levels) - self.center) / self.spread  # Eq. 191
 
     def log_level(self, position: FloatArray) -> FloatArray:
         """Return the logarithms of levels.
@@ -90,7 +90,7 @@ def log_fractile(theta: FloatArray, scale: LogScale, variate: float | FloatArray
 
     theta: rows of a and b [-]; variate: standard normal variate of the probability [-]. Returns ln level [-].
     """
-    return scale.log_level((variate - theta[:, 0]) / theta[:, 1])
+    return scale.log_level((variate - theta[:, 0]) / theta[:, 1])  # Eq. 192
 
 
 def log_dispersion(theta: FloatArray, scale: LogScale) -> FloatArray:
@@ -98,7 +98,7 @@ def log_dispersion(theta: FloatArray, scale: LogScale) -> FloatArray:
 
     theta: rows of a and b, b > 0 [-]. Returns ln beta [-].
     """
-    return np.log(scale.spread / theta[:, 1])
+    return np.log(scale.spread / theta[:, 1])  # Eq. 193
 
 
 def standard_errors(theta: FloatArray, curvature: FloatArray, scale: LogScale, variate: float | None) -> FloatArray:
@@ -125,4 +125,4 @@ def quadratic_error(slope: FloatArray, curvature: FloatArray) -> FloatArray:
     determinant = h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2
     first, second = slope[:, 0], slope[:, 1]
     form = h[:, 1, 1] * first**2 - 2.0 * h[:, 0, 1] * first * second + h[:, 0, 0] * second**2
-    return np.asarray(np.sqrt(form / determinant))
+    return np.asarray(np.sqrt(form / determinant))  # Eq. 207

@@ -94,7 +94,7 @@ def goodness_of(
     found = _statistics(counts.failures[None], counts.trials[None], own, member)
     # discrete statistics tie, but for rounding
     beyond = [int(np.sum(s >= f[0] * (1.0 - 1e-9))) for s, f in zip(simulated, found, strict=True)]
-    tests = [Statistic(float(f[0]), (1 + n) / (1 + fitted.size)) for f, n in zip(found, beyond, strict=True)]
+    tests = [Statistic(float(f[0]), (1 + n) / (1 + fitted.size)) for f, n in zip(found, beyond, strict=True)]  # Eq. 226
     first = np.flatnonzero(np.diff(member, prepend=-1))
     total, observed = np.add.reduceat(counts.trials, first), np.add.reduceat(counts.failures, first)
     shares = np.add.reduceat(failures, first, axis=1) / total
@@ -127,9 +127,9 @@ def _statistics(z: FloatArray, n: FloatArray, p: FloatArray, member: IntArray) -
     from scipy.special import xlogy
 
     p = np.clip(p, 1e-300, 1.0 - 1e-16)
-    deviance = 2.0 * np.sum(xlogy(z, z / (n * p)) + xlogy(n - z, (n - z) / (n * (1.0 - p))), axis=1)
-    pearson = np.sum((z - n * p) ** 2 / (n * p * (1.0 - p)), axis=1)
+    deviance = 2.0 * np.sum(xlogy(z, z / (n * p)) + xlogy(n - z, (n - z) / (n * (1.0 - p))), axis=1)  # Eq. 223
+    pearson = np.sum((z - n * p) ** 2 / (n * p * (1.0 - p)), axis=1)  # Eq. 224
     first = np.flatnonzero(np.diff(member, prepend=-1))
     observed, expected, variance, total = (np.add.reduceat(v, first, axis=1) for v in (z, n * p, n * p * (1.0 - p), n))
-    grouped = np.sum((observed - expected) ** 2 / variance, axis=1)
-    return deviance, pearson, grouped, np.max(np.abs(observed - expected) / total, axis=1)
+    grouped = np.sum((observed - expected) ** 2 / variance, axis=1)  # Eq. 225
+    return deviance, pearson, grouped, np.max(np.abs(observed - expected) / total, axis=1)  # Eq. 225

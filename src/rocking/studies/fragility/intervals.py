@@ -65,14 +65,14 @@ class ConfidenceIntervals:
     @property
     def rise(self) -> float:
         """Likelihood ratio against a line that does not depend on the level, a chi-square of one degree [-]."""
-        return float(2.0 * (self.curves.value - flat_line(self.model)[1])[0])
+        return float(2.0 * (self.curves.value - flat_line(self.model)[1])[0])  # Eq. 205
 
     @property
     def covariance(self) -> FloatArray:
         """Covariance of (ln median, dispersion) [-]."""
         a, b = self.curves.theta[0]
         turn = self.scale.spread * np.array([[-1.0 / b, a / b**2], [0.0, -1.0 / b**2]])
-        return np.asarray(turn @ np.linalg.inv(self.curves.curvature[0]) @ turn.T)
+        return np.asarray(turn @ np.linalg.inv(self.curves.curvature[0]) @ turn.T)  # Eq. 207
 
     @property
     def standard_errors(self) -> dict[str, float]:
@@ -123,7 +123,7 @@ class ConfidenceIntervals:
                 middle = log_dispersion(self.curves.theta, self.scale)[0]
             else:
                 middle = log_fractile(self.curves.theta, self.scale, variate)[0]
-            ends = middle + SIDES * quantile * error
+            ends = middle + SIDES * quantile * error  # Eq. 206
             if method == "profile":
                 ends = self._profile(variate, quantile, error)
         low, high = _exp(ends)

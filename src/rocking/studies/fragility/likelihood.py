@@ -44,7 +44,7 @@ def tails(eta: FloatArray) -> Tails:
     scaled = erfcx(np.sqrt(0.5) * t)
     bell = np.exp(-0.5 * t * t)
     tail = 0.5 * scaled * bell
-    log_tail, log_body = np.log(0.5 * scaled) - 0.5 * t * t, np.log1p(-tail)
+    log_tail, log_body = np.log(0.5 * scaled) - 0.5 * t * t, np.log1p(-tail)  # Eq. 198
     tail_rate = np.sqrt(2.0 / np.pi) / scaled
     body_rate = bell / np.sqrt(2.0 * np.pi) / (1.0 - tail)
     tail_bend = tail_rate * (tail_rate - t)
@@ -89,7 +89,7 @@ class Probit:
 
         theta: rows of a and b [-]. Returns rows of standard normal variates [-].
         """
-        return theta[:, :1] + theta[:, 1:2] * self.position
+        return theta[:, :1] + theta[:, 1:2] * self.position  # Eq. 190
 
     def derivatives(self, theta: FloatArray) -> Derivatives:
         """Return the log likelihood with its gradient and minus its Hessian, the observed information.
@@ -102,9 +102,10 @@ class Probit:
         return self._of(tails(self.eta(theta)))
 
     def _of(self, at: Tails) -> Derivatives:
+        # Eq. 194
         value = np.sum(_times(self.failures, at.log_failure) + _times(self.survivals, at.log_survival), axis=1)
-        slope = self.failures * at.failure_rate - self.survivals * at.survival_rate
-        bend = self.failures * at.failure_bend + self.survivals * at.survival_bend
+        slope = self.failures * at.failure_rate - self.survivals * at.survival_rate  # Eq. 195
+        bend = self.failures * at.failure_bend + self.survivals * at.survival_bend  # Eq. 196
         return Derivatives(value, self._moments(slope, 2), _matrix(self._moments(bend, 3)))
 
     def _columns(self) -> Iterator[Self]:
@@ -119,7 +120,7 @@ class Probit:
         theta: rows of a and b [-]. Returns one matrix a row [-].
         """
         at = tails(self.eta(theta))
-        weight = (self.failures + self.survivals) * at.failure_rate * at.survival_rate
+        weight = (self.failures + self.survivals) * at.failure_rate * at.survival_rate  # Eq. 197
         return _matrix(self._moments(weight, 3))
 
     def _moments(self, weight: FloatArray, count: int) -> FloatArray:

@@ -98,7 +98,7 @@ def _newton_step(gradient: FloatArray, curvature: FloatArray) -> tuple[FloatArra
     scale = np.trace(np.abs(curvature), axis1=1, axis2=2) + np.linalg.norm(gradient, axis=1) + 1e-150
     uphill = scale[:, None, None] * np.eye(order)
     step = _solve(np.where(definite[:, None, None], curvature, uphill), gradient)
-    return step, np.where(definite, np.sum(gradient * step, axis=1), np.inf)
+    return step, np.where(definite, np.sum(gradient * step, axis=1), np.inf)  # Eq. 199
 
 
 def positive_definite(matrix: FloatArray) -> BoolArray:

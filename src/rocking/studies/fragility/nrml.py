@@ -131,8 +131,8 @@ def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float
     """
     if dispersion > 25.0:
         raise InvalidValueError(f"dispersion must be at most 25 for a finite standard deviation, got {dispersion:g}")
-    mean = median * math.exp(0.5 * dispersion**2)
-    return mean, mean * math.sqrt(math.expm1(dispersion**2))
+    mean = median * math.exp(0.5 * dispersion**2)  # Eq. 228
+    return mean, mean * math.sqrt(math.expm1(dispersion**2))  # Eq. 228
 
 
 def _description(model: FragilityModel, given: str) -> str:

@@ -108,7 +108,7 @@ class OrderedFit:
             raise InvalidValueError("im must be finite and >= 0, got a value that is not")
         rocked = _probability(level, self.rocked)
         worst = np.minimum(_probability(level, self.overturned), rocked)
-        return np.stack([1.0 - rocked, rocked - worst, worst], axis=-1)
+        return np.stack([1.0 - rocked, rocked - worst, worst], axis=-1)  # Eq. 217
 
 
 def fit_ordered(
@@ -164,7 +164,7 @@ def _probability(level: FloatArray, curve: Curve) -> FloatArray:
     from scipy.special import ndtr
 
     some = level > 0.0
-    return np.asarray(np.where(some, ndtr(np.log(np.where(some, level, 1.0) / curve[0]) / curve[1]), 0.0))
+    return np.asarray(np.where(some, ndtr(np.log(np.where(some, level, 1.0) / curve[0]) / curve[1]), 0.0))  # Eq. 190
 
 
 def difference_extremes(first: Curve, second: Curve) -> FloatArray:
@@ -179,5 +179,5 @@ def difference_extremes(first: Curve, second: Curve) -> FloatArray:
     x, y = 1.0 / s**2, 1.0 / t**2
     u, v = np.log(m), np.log(n)
     # (z - u)^2 / s^2 - (z - v)^2 / t^2 + 2 ln(s / t) = 0
-    roots = np.roots([x - y, -2.0 * (u * x - v * y), u * u * x - v * v * y + 2.0 * np.log(s / t)])
+    roots = np.roots([x - y, -2.0 * (u * x - v * y), u * u * x - v * v * y + 2.0 * np.log(s / t)])  # Eq. 189
     return np.asarray(roots.real[np.abs(roots.imag) <= 1e-9 * np.maximum(1.0, np.abs(roots.real))], dtype=np.float64)

@@ -52,7 +52,7 @@ class OrderedProbit:
         bend[-1] += self.ended[-1] * bottom.failure_bend
         bend[:-1] += between * p * (high + p)
         bend[1:] += between * q * (q - low)
-        return self._collected(float(value + np.sum(between * width)), first, bend, -between * p * q)
+        return self._collected(float(value + np.sum(between * width)), first, bend, -between * p * q)  # Eq. 216
 
     def _collected(self, value: float, first: FloatArray, bend: FloatArray, across: FloatArray) -> Derivatives:
         """Return the derivatives by thresholds and slope from those by the variate of each curve at each level."""
@@ -103,4 +103,4 @@ def _log_difference(high: FloatArray, low: FloatArray) -> FloatArray:
     flip = low > 0.0
     above, below = np.where(flip, -low, high), np.where(flip, -high, low)
     larger, smaller = tails(above).log_failure, tails(below).log_failure
-    return np.asarray(larger + np.log(-np.expm1(smaller - larger)))
+    return np.asarray(larger + np.log(-np.expm1(smaller - larger)))  # Eq. 216

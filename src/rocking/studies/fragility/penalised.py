@@ -66,18 +66,19 @@ class PenalisedProbit(Probit):
         q_slope = at.failure_bend + at.survival_bend - 2.0
         m = self._moments(weight, 3)
         first, second = self._moments(weight * q, 4), self._moments(weight * (q * q + q_slope), 5)
-        determinant = m[:, 0] * m[:, 2] - m[:, 1] ** 2
+        determinant = m[:, 0] * m[:, 2] - m[:, 1] ** 2  # Eq. 202
         vanished = ~(determinant > 1e-250)
         determinant = np.where(vanished, 1.0, determinant)
         gradient = np.stack([_slope(m, first, i) for i in range(2)], axis=1) / determinant[:, None]
         bend = np.stack([np.stack([_bend(m, first, second, i, j) for j in range(2)], axis=1) for i in range(2)], axis=1)
         hessian = bend / determinant[:, None, None] - gradient[:, :, None] * gradient[:, None, :]
+        # Eq. 202
         return Derivatives(np.where(vanished, -np.inf, 0.5 * np.log(determinant)), 0.5 * gradient, -0.5 * hessian)
 
 
 def _slope(m: FloatArray, p: FloatArray, i: int) -> FloatArray:
     """Return the derivative of the determinant with respect to coefficient i (a shifts no power of u, b one)."""
-    return p[:, i] * m[:, 2] + m[:, 0] * p[:, 2 + i] - 2.0 * m[:, 1] * p[:, 1 + i]
+    return p[:, i] * m[:, 2] + m[:, 0] * p[:, 2 + i] - 2.0 * m[:, 1] * p[:, 1 + i]  # Eq. 203
 
 
 def _bend(m: FloatArray, p: FloatArray, s: FloatArray, i: int, j: int) -> FloatArray:

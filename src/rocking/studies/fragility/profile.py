@@ -50,7 +50,7 @@ class Profile:
         return result
 
     def _root(self, value: FloatArray) -> FloatArray:
-        return np.asarray(np.sqrt(2.0 * np.maximum(self.value - value, 0.0)))
+        return np.asarray(np.sqrt(2.0 * np.maximum(self.value - value, 0.0)))  # Eq. 204
 
     def _descend(self, constraint: Constraint, start: FloatArray, stride: FloatArray) -> FloatArray:
         """Return where the root of the fall is the quantile: Newton's method on the root, which is nearly linear."""

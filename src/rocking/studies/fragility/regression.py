@@ -40,7 +40,7 @@ class Regression:
         margin = self.at(x) - y
         if self.scatter == 0.0:
             return np.asarray(margin > 0.0, dtype=np.float64)
-        return np.asarray(ndtr(margin / self.scatter))
+        return np.asarray(ndtr(margin / self.scatter))  # Eq. 220
 
     @property
     def p_value(self) -> float:
@@ -49,7 +49,7 @@ class Regression:
 
         if self.slope_error == 0.0:
             return 1.0 if self.slope == 0.0 else 0.0
-        return float(2.0 * stdtr(self.count - 2, -abs(self.slope) / self.slope_error))
+        return float(2.0 * stdtr(self.count - 2, -abs(self.slope) / self.slope_error))  # Eq. 219
 
     def summary(self) -> dict[str, Any]:
         """Return the line as plain values."""
@@ -75,10 +75,10 @@ def regression(x: FloatArray, y: FloatArray) -> Regression:
     spread, total = float(dx @ dx), float(dy @ dy)
     if not spread > (1e-12 * max(1.0, float(np.abs(x).max()))) ** 2 * count:
         raise InvalidValueError(f"a line needs points at different places, got {count} at {float(x.mean()):g}")
-    slope = float(dx @ dy) / spread
+    slope = float(dx @ dy) / spread  # Eq. 218
     residuals = dy - slope * dx
     left = float(residuals @ residuals)
-    scatter = math.sqrt(left / (count - 2))
+    scatter = math.sqrt(left / (count - 2))  # Eq. 218
     explained = 1.0 - left / total if total > 0.0 else 0.0
     intercept = float(y.mean() - slope * x.mean())
     return Regression(intercept, slope, scatter, scatter / math.sqrt(spread), explained, residuals)

@@ -31,7 +31,7 @@ def with_cluster_errors(counts: Counts, scale: LogScale, curves: FittedCurves, d
         rows = good[start : start + size]
         spread = _scores_squared(counts, scale, curves.theta[rows], drawn[rows])
         inverse = np.linalg.inv(curves.curvature[rows])
-        covariance = inverse @ spread @ inverse
+        covariance = inverse @ spread @ inverse  # Eq. 212
         least = LEAST * np.trace(covariance, axis1=1, axis2=2) + np.finfo(float).tiny ** 0.25
         curvature[rows] = np.linalg.inv(covariance + least[:, None, None] * np.eye(2))
     return replace(curves, curvature=curvature)

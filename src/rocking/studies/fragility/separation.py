@@ -57,8 +57,8 @@ def classify(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> In
         (Separation.NONE_FAILED, ~failed.any(axis=1)),
         (Separation.ALL_FAILED, ~survived.any(axis=1)),
         (Separation.SINGLE_LEVEL, (trials > 0.0).sum(axis=1) == 1),
-        (Separation.COMPLETE, last_survived < first_failed),
-        (Separation.QUASI_COMPLETE, last_survived == first_failed),
+        (Separation.COMPLETE, last_survived < first_failed),  # Eq. 200
+        (Separation.QUASI_COMPLETE, last_survived == first_failed),  # Eq. 200
         (Separation.DECREASING_SEPARATED, last_failed <= first_survived),
         (Separation.FLAT, np.abs(trend) <= FLATNESS * largest),
         (Separation.DECREASING, trend < 0.0),
@@ -96,4 +96,4 @@ def _trend(levels: FloatArray, failures: FloatArray, trials: FloatArray) -> tupl
     u = np.log(levels / levels[0])
     total = np.maximum(trials.sum(axis=1), 1.0)
     distance = u - ((trials @ u) / total)[:, None]
-    return np.sum(failures * distance, axis=1), np.sum(trials * np.abs(distance), axis=1)
+    return np.sum(failures * distance, axis=1), np.sum(trials * np.abs(distance), axis=1)  # Eq. 201

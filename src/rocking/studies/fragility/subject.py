@@ -54,7 +54,7 @@ class Subject:
         """What of the body the measures know: of the side that lifts first."""
         side = min(self.rocker.right, self.rocker.left, key=lambda s: s.slenderness_angle)
         alpha, gravity = side.slenderness_angle, self.settings.gravity
-        tangent = alpha if self.settings.linear else math.tan(alpha)
+        tangent = alpha if self.settings.linear else math.tan(alpha)  # Eq. 25
         return RockingScale(gravity * tangent, side.frequency_parameter, gravity)
 
     @cached_property

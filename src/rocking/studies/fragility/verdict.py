@@ -16,7 +16,7 @@ def bound_without_failure(trials: float, level: float = LEVEL) -> float:
     >>> round(bound_without_failure(40), 4)
     0.0722
     """
-    return float(1.0 - (1.0 - level) ** (1.0 / trials))
+    return float(1.0 - (1.0 - level) ** (1.0 / trials))  # Eq. 227
 
 
 def verdict_of(counts: Counts, separation: Separation, curve: tuple[float, float] | None, rise: float | None) -> str:

@@ -54,7 +54,7 @@ class Laboratory:
     def stiffness(self) -> float:
         """Stiffness of the whole bed: E A / t where a layer is given, m (2 pi f)^2 otherwise [N/m]."""
         if self.modulus_over_thickness is not None:
-            return self.modulus_over_thickness * self.width
+            return self.modulus_over_thickness * self.width  # Eq. 115
         return self.block.mass * (2.0 * math.pi * self.frequency) ** 2
 
     @property
@@ -74,7 +74,7 @@ def hardness_of(setup: Setup) -> float:
 
     Returns Hardness, as the model `contact-bed` takes it [-].
     """
-    return setup.start.speed * math.sqrt(setup.law.stiffness / setup.rigid.mass) / setup.rigid.gravity
+    return setup.start.speed * math.sqrt(setup.law.stiffness / setup.rigid.mass) / setup.rigid.gravity  # Eq. 130
 
 
 def measured(laboratories: Iterable[Laboratory], *, threads: int = 1) -> tuple[Sequence[Setup], BedImpacts]:

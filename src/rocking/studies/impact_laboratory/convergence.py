@@ -64,5 +64,5 @@ def step_convergence(tolerances: Any = (1e-4, 1e-5, 1e-6, 1e-7), laboratory: Lab
 def _converged(at: FloatArray, r: FloatArray, limit: float, ratio: FloatArray) -> Convergence:
     error = np.abs(r - limit)
     with np.errstate(divide="ignore", invalid="ignore"):
-        order = np.log(error[:-1] / error[1:]) / np.log(ratio)
+        order = np.log(error[:-1] / error[1:]) / np.log(ratio)  # Eq. 132
     return Convergence(at, r, error, order, limit)

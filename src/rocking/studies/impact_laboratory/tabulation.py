@@ -15,7 +15,7 @@ def impulse_position(coefficient: FloatArray, flatness: FloatArray, offset: Floa
     coefficient: theta_dot_after / theta_dot_before [-]; flatness, offset: of the bodies [-]. Returns kappa [-].
     """
     gyration = 1.0 / flatness - 1.0
-    arm = gyration * (1.0 - coefficient) / (1.0 + offset + coefficient * (1.0 - offset))
+    arm = gyration * (1.0 - coefficient) / (1.0 + offset + coefficient * (1.0 - offset))  # Eq. 4
     return np.asarray(arm + offset)
 
 

@@ -107,7 +107,7 @@ class Thresholds:
         dict of Light to str
             One sentence each, with the numbers.
         """
-        needed = math.ceil(math.log(0.5 * (1.0 - self.level)) / math.log(1.0 - self.overturning_green))
+        needed = math.ceil(math.log(0.5 * (1.0 - self.level)) / math.log(1.0 - self.overturning_green))  # Eq. 187
         level, most = percent(self.level), percent(self.overturning_green)
         return {
             Light.RED: f"At least {percent(self.overturning_red)} of the motions overturn the object.",
@@ -165,5 +165,5 @@ def share_interval(hits: int, count: int, level: float = 0.95) -> tuple[float, f
         raise InvalidValueError(f"hits must be in [0, count] with a count of at least 1, got {hits} of {count}")
     tail = 0.5 * (1.0 - level)
     low = 0.0 if hits == 0 else float(betaincinv(hits, count - hits + 1, tail))
-    high = 1.0 if hits == count else float(betaincinv(hits + 1, count - hits, 1.0 - tail))
+    high = 1.0 if hits == count else float(betaincinv(hits + 1, count - hits, 1.0 - tail))  # Eq. 186
     return low, high

@@ -155,7 +155,7 @@ def curve_distance(log_median: FloatArray, dispersion: FloatArray) -> tuple[Floa
     (m, n), (s, t) = log_median, dispersion
     # where the densities are equal: ((u - m)/s)^2 - ((u - n)/t)^2 + 2 ln(s/t) = 0, with u measured from m
     a, b = t**2 - s**2, s**2 * (n - m)
-    c = -(s**2) * (n - m) ** 2 + 2.0 * (s * t) ** 2 * np.log(s / t)
+    c = -(s**2) * (n - m) ** 2 + 2.0 * (s * t) ** 2 * np.log(s / t)  # Eq. 189
     root = np.sqrt(np.maximum(b**2 - a * c, 0.0))
     q = -(b + np.where(b < 0.0, -root, root))
     with np.errstate(divide="ignore", invalid="ignore"):

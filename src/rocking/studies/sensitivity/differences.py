@@ -110,7 +110,7 @@ def share_interval(share: float, size: float, level: float = LEVEL) -> tuple[flo
 
     tail, hits = 0.5 * (1.0 - level), share * size
     low = float(betaincinv(hits, size - hits + 1.0, tail)) if share > 0.0 else 0.0
-    high = float(betaincinv(hits + 1.0, size - hits, 1.0 - tail)) if share < 1.0 else 1.0
+    high = float(betaincinv(hits + 1.0, size - hits, 1.0 - tail)) if share < 1.0 else 1.0  # Eq. 186
     return low, high
 
 
@@ -158,7 +158,7 @@ def _effective(flipped: FloatArray, groups: np.ndarray | None) -> tuple[float, i
         return float(clusters), clusters
     excess = np.bincount(place, flipped - share)
     variance = clusters / (clusters - 1) * float(excess @ excess) / flipped.size**2
-    size = share * (1.0 - share) / variance if variance > 0.0 else float(flipped.size)
+    size = share * (1.0 - share) / variance if variance > 0.0 else float(flipped.size)  # Eq. 188
     return min(max(size * _student(flipped.size, clusters), 1.0), float(flipped.size)), clusters
 
 

@@ -103,7 +103,7 @@ class SampledRestitution(DrawnRestitution):
         ndarray
             Coefficients or factors [-].
         """
-        u, table = share * uniforms(self.seed, numbers), self.table(onto)
+        u, table = share * uniforms(self.seed, numbers), self.table(onto)  # Eq. 41
         above = np.clip(np.searchsorted(self.at, u, side="right"), 1, self.at.size - 1)  # of no body the share is NaN
         low, high = table[above - 1], table[above]
         return np.asarray(low + (high - low) * ((u - self.at[above - 1]) / (self.at[above] - self.at[above - 1])))
@@ -219,7 +219,7 @@ def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
     if keys.dtype.kind not in "iu":
         raise InvalidValueError(f"numbers must be whole numbers of histories, got {keys.dtype} {numbers!r:.40}")
     place = np.uint64(int(checks.within("impact", impact, 0, 2**53)))
-    words = _mixed(_mixed(_mixed(np.full(1, seed, np.uint64)) + keys.astype(np.uint64)) + place)
+    words = _mixed(_mixed(_mixed(np.full(1, seed, np.uint64)) + keys.astype(np.uint64)) + place)  # Eq. 43
     return np.asarray((words >> np.uint64(11)).astype(np.float64) * 2.0**-53)
 
 
