@@ -41,7 +41,7 @@ CORE = {
     "contact bed": ("restitution/bed/*.py",),
     "motions": ("motions/*.py", "motions/synthetic/*.py"),
     "readers": ("motions/formats/*.py",),
-    "fragility": ("studies/fragility/*.py",),
+    "fragility": ("statistics/*.py", "studies/fragility/*.py"),
     "evidence": ("evidence/*.py",),
 }
 NOT_NUMERICAL = ("export", "nrml", "lines.py", "tables.py", "words.py", "__init__")

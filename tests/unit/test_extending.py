@@ -1,15 +1,22 @@
 """What docs/extending.md says of a model, a pulse and a law of one's own is so."""
 
+import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.app.api.info import listed_measures
+from rocking.cli import main
 from rocking.dynamics import ImpactLaw
 from rocking.errors import InvalidValueError
-from rocking.motions import Pulse, pulses
+from rocking.motions import Measure, Pulse, intensity, intensity_measures, measure, measures, pulses, scaled_to
+from rocking.plots.study_words import axis_label, short_name
+from rocking.studies import SyntheticSet
+from rocking.studies.fragility import cloud, compare_measures
 
 PAGE = (Path(__file__).parents[2] / "docs" / "extending.md").read_text(encoding="utf-8")
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
@@ -50,6 +57,44 @@ def test_the_pulse_of_the_page():
         answers = {name: getattr(names["Versine"], name) for name in Pulse.__abstractmethods__ - {missing}}
         with pytest.raises(TypeError, match=missing):
             type("Incomplete", (Pulse,), answers)()
+
+
+def printed(capsys, *words):
+    """What a command that succeeds prints."""
+    with pytest.raises(SystemExit) as stop:
+        main(list(words))
+    assert stop.value.code in {0, None}
+    return capsys.readouterr().out
+
+
+def test_the_measure_of_the_page_is_at_every_door(monkeypatch, capsys, tmp_path):
+    """One entry, and commands, studies, scaling, sets of records, pictures, the page and NRML know the measure."""
+    _, names = section("An intensity measure")
+    rms = replace(names["rms"], openquake=("RMS", 0.5))
+    assert "rms" not in measures()
+    monkeypatch.setitem(intensity.MEASURES, "rms", rms)
+    record = rk.GroundMotion([0.0, 3.0, -4.0, 0.0], 0.1)
+    assert intensity_measures(record)["rms"] == Measure("root mean square of the acceleration", 2.5, "m/s2")
+    assert measure("RMS") is rms
+    assert scaled_to(record, "rms", 5.0).peak == 8.0
+    assert "so that RMS is 5 m/s2" in scaled_to(record, rms, 5.0).provenance[-1]
+    made = SyntheticSet("point-source", 2, 1, rms=1.0)
+    assert [rms.of(motion) for motion in (made[0], made[1])] == pytest.approx([1.0, 1.0], rel=1e-14)
+    assert made.description()["rms_m_s2"] == 1.0
+    pulse = ("motion", "sine:amplitude=3,period=0.8")
+    assert "root mean square of the acceleration" in printed(capsys, *pulse)
+    assert json.loads(printed(capsys, *pulse, "--json"))["intensity"]["rms_m_s2"] == pytest.approx(4.5**0.5, rel=1e-3)
+    file = tmp_path / "curves.xml"
+    words = ("fragility", "--width", "0.4", "--height", "1.6", "--synthetic", "point-source", "--count", "30")
+    more = ("--measure", "rms", "--levels", "0.2:1.4:25", "--nrml", str(file), "--common-dispersion")
+    assert "rms" in printed(capsys, *words, *more)
+    assert 'imt="RMS"' in file.read_text("utf-8")
+    assert axis_label("rms") == "root mean square of the acceleration [m/s$^2$]"
+    assert short_name("rms") == "RMS"
+    assert {"name": "rms", "words": rms.words, "unit": "m/s2"} in listed_measures()
+    shaken = [pulses.half_sine(a, t) for a in (3.0, 3.5, 4.0) for t in (0.2, 0.3, 0.4)]
+    found = cloud(rk.Block(width=0.4, height=1.6), shaken, 0.9, "rms")
+    assert {score.measure for score in compare_measures(found, ["rms", "pga"]).scores} == {"rms", "pga"}
 
 
 def test_a_pulse_is_known_by_name_once_it_is_listed(monkeypatch):

@@ -14,11 +14,11 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility._cloud import cloud
-from rocking.studies.fragility._incremental import incremental
+from rocking.studies.fragility.cloud_analysis import cloud
 from rocking.studies.fragility.curves import model_of
+from rocking.studies.fragility.incremental_dynamic_analysis import incremental
+from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
 from rocking.studies.fragility.nrml import to_nrml
-from rocking.studies.fragility.stripes import multiple_stripes
 
 HALF_SINE = {
     1: 1.3223965979078765668, 2: 1.8007239305607457817, 3: 2.2938723134392918526, 5: 3.2891467775230030447,

@@ -12,11 +12,10 @@ from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 from scipy.stats import norm
 
-from rocking.studies.fragility.constraints import FractileConstraint, SlopeConstraint
-from rocking.studies.fragility.estimate import LogScale, find_curves, log_dispersion, log_fractile, standard_errors
-from rocking.studies.fragility.likelihood import Probit
-from rocking.studies.fragility.lognormal import fit_lognormal
-from rocking.studies.fragility.profile import Profile
+from rocking.statistics.lognormal import fit_lognormal
+from rocking.statistics.maximum_likelihood import LogScale, find_curves, log_dispersion, log_fractile, standard_errors
+from rocking.statistics.probit import Probit
+from rocking.statistics.profiles import FractileConstraint, Profile, SlopeConstraint
 
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 STUDIES = 10_000 if CAMPAIGN else 1000

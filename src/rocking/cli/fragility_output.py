@@ -10,13 +10,13 @@ from rocking.cli import output
 from rocking.cli.fragility_question import FragilityAnswer, FragilityQuestion
 from rocking.cli.output import check_files
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility._incremental import IncrementalAnalysis
-from rocking.studies.fragility.separation import Separation
+from rocking.statistics.separation import Separation
+from rocking.studies.fragility.incremental_dynamic_analysis import IncrementalAnalysis
 from rocking.tables import Table, to_csv
 
 if TYPE_CHECKING:
+    from rocking.statistics.lognormal import LognormalFit
     from rocking.studies.fragility.curves import FragilityModel
-    from rocking.studies.fragility.lognormal import LognormalFit
 
 _CURVES = ("p58", "nrml", "excel", "mat", "netcdf")
 """Files of the curves of one restitution; they cannot be without a curve."""
@@ -86,8 +86,7 @@ class FragilityFiles:
                 write(model, path)
 
     def _model(self, answer: FragilityAnswer, name: str) -> "FragilityModel":
-        from rocking.studies.fragility.curves import model_of
-        from rocking.studies.fragility.nesting import nested
+        from rocking.studies.fragility.curves import model_of, nested
 
         model = model_of(answer.found, name)
         if self.common_dispersion:

@@ -14,7 +14,7 @@ from rocking.cli.inputs import is_body, motion_from
 from rocking.cli.simulate_question import refuse_reversed, restitution_from
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility._measures import IntensityMeasure, measure
+from rocking.motions.intensity import IntensityMeasure, measure
 from rocking.studies.fragility.states import limit_states
 from rocking.studies.fragility.subject import Subject, checked_levels
 from rocking.studies.motion_set import MotionList
@@ -99,7 +99,7 @@ class FragilityQuestion:
         options = {name: value for name, value in self.settings.items() if name != "threads"}
         subject = Subject.of(self.body, motions, next(iter(self.choices.values())), self.measure, options)
         low, high, count = _REACH
-        lifts = subject.scale.threshold if self.measure.name == "pga" else 1.0
+        lifts = 1.0 if self.measure.uplift is None else self.measure.uplift(subject.scale)
         return np.geomspace(low * lifts, high * lifts, count)
 
     def _computed(
@@ -145,7 +145,7 @@ def _levels(kind: str, wanted: IntensityMeasure, word: str | None) -> tuple[Floa
     if wanted.power == 0:
         raise InvalidValueError(f"no factor on a motion changes {wanted.name}: take it with --analysis cloud")
     if word is None:
-        if wanted.name not in {"pga", "pga/(g tan alpha)"}:
+        if wanted.uplift is None:
             raise InvalidValueError(f"which levels of {wanted.name}? Give --levels FIRST:LAST:COUNT in {wanted.unit}")
         return None, "g" if wanted.name == "pga" else ""
     values, written = output.row("--levels", word, "1" if wanted.unit == "-" else wanted.unit)

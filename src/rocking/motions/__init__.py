@@ -3,16 +3,21 @@
 from rocking.motions import pulses, synthetic
 from rocking.motions.energy import arias_intensity, significant_duration
 from rocking.motions.intensity import (
+    IntensityMeasure,
     Measure,
+    RockingScale,
     cumulative_absolute_velocity,
     housner_intensity,
     intensity_measures,
+    measure,
+    measures,
     normalised_acceleration,
     normalised_velocity,
     peak_ground_acceleration,
     peak_ground_displacement,
     peak_ground_velocity,
     spectral_acceleration,
+    spectral_measure,
 )
 from rocking.motions.kinematics import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
@@ -20,16 +25,18 @@ from rocking.motions.processing import bandpassed, demeaned, detrended, tapered
 from rocking.motions.pulse import Pulse
 from rocking.motions.resampling import padded, resampled, trimmed, trimmed_to_significant
 from rocking.motions.rotation import rotated, rotd_pga
-from rocking.motions.scaling import scaled_to_pga, scaled_to_pgv, scaled_to_sa
+from rocking.motions.scaling import scaled_to, scaled_to_pga, scaled_to_pgv, scaled_to_sa
 from rocking.motions.segments import Segments
 from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
 from rocking.motions.vertical import with_vertical
 
 __all__ = [
     "GroundMotion",
+    "IntensityMeasure",
     "Measure",
     "Pulse",
     "ResponseSpectrum",
+    "RockingScale",
     "Segments",
     "arias_intensity",
     "bandpassed",
@@ -40,6 +47,8 @@ __all__ = [
     "ground_velocity",
     "housner_intensity",
     "intensity_measures",
+    "measure",
+    "measures",
     "normalised_acceleration",
     "normalised_velocity",
     "padded",
@@ -51,11 +60,13 @@ __all__ = [
     "response_spectrum",
     "rotated",
     "rotd_pga",
+    "scaled_to",
     "scaled_to_pga",
     "scaled_to_pgv",
     "scaled_to_sa",
     "significant_duration",
     "spectral_acceleration",
+    "spectral_measure",
     "synthetic",
     "tapered",
     "trimmed",

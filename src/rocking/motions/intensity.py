@@ -1,44 +1,40 @@
 """How strong a motion is: intensity measures, by the definitions and rules of the field.
 
 Each says how it treats what lies between the samples: energies and areas take the trapezoidal rule of the samples,
-velocities and spectra the straight lines that also drive bodies.
+velocities and spectra the straight lines that also drive bodies. An entry in `MEASURES` is all that a measure needs:
+`rocking motion`, fragility, scaling, pictures and OpenQuake's files read it there.
 """
 
 import math
+import re
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from rocking import checks
-from rocking.conventions import g
-from rocking.motions.energy import arias_intensity, significant_duration, significant_times
+from rocking.conventions import FloatArray, g
+from rocking.errors import InvalidValueError
+from rocking.motions.energy import arias_intensity, significant_duration
 from rocking.motions.kinematics import largest_displacement, largest_velocity
 from rocking.motions.motion import GroundMotion, checked_motion
+from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
-
-__all__ = [
-    "Measure",
-    "arias_intensity",
-    "cumulative_absolute_velocity",
-    "housner_intensity",
-    "intensity_measures",
-    "normalised_acceleration",
-    "normalised_velocity",
-    "peak_ground_acceleration",
-    "peak_ground_displacement",
-    "peak_ground_velocity",
-    "significant_duration",
-    "significant_times",
-    "spectral_acceleration",
-]
 
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)
 """Periods of Housner's spectrum intensity [s]: every 0.01 s."""
 
+SAMPLES_PER_PERIOD = 4000
+"""Samples of the shortest period of a pulse: its measures are off by less than 1e-6, its PGA by nothing."""
+
+_NUMBER = r"\s*(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+)\s*"
+_SPECTRAL = re.compile(rf"sa\({_NUMBER}(?:,{_NUMBER})?\)")
+
 
 @dataclass(frozen=True)
 class Measure:
-    """One intensity measure.
+    """One intensity measure of one motion.
 
     Parameters
     ----------
@@ -239,15 +235,19 @@ def intensity_measures(motion: GroundMotion) -> dict[str, Measure]:
     Measure(name='peak ground acceleration', value=1.0, unit='m/s2')
     """
     return {
-        "pga": Measure("peak ground acceleration", peak_ground_acceleration(motion), "m/s2"),
-        "pgv": Measure("peak ground velocity", peak_ground_velocity(motion), "m/s"),
-        "pgd": Measure("peak ground displacement", peak_ground_displacement(motion), "m"),
-        "arias": Measure("Arias intensity", arias_intensity(motion), "m/s"),
-        "cav": Measure("cumulative absolute velocity", cumulative_absolute_velocity(motion), "m/s"),
-        "d5_95": Measure("significant duration 5-95 %", significant_duration(motion), "s"),
-        "d5_75": Measure("significant duration 5-75 %", significant_duration(motion, 5.0, 75.0), "s"),
-        "housner": Measure("Housner intensity", housner_intensity(motion), "m"),
+        name: Measure(one.words, one.of(motion), one.unit)
+        for name, one in MEASURES.items()
+        if one.is_listed and not one.needs_body
     }
+
+
+def key_with_unit(name: str, unit: str) -> str:
+    """Return a name with its unit, as keys of JSON have them.
+
+    >>> key_with_unit("pgv", "m/s"), key_with_unit("pga/(g tan alpha)", "-")
+    ('pgv_m_s', 'pga/(g tan alpha)')
+    """
+    return name if unit == "-" else f"{name}_{unit.replace('/', '_')}"
 
 
 def _threshold(slenderness_angle: float, gravity: float) -> float:
@@ -255,3 +255,349 @@ def _threshold(slenderness_angle: float, gravity: float) -> float:
         "slenderness_angle", slenderness_angle, 0.0, 0.5 * math.pi, unit="rad", open_low=True, open_high=True
     )
     return checks.positive("gravity", gravity, "m/s2") * math.tan(alpha)  # Eq. 25
+
+
+@dataclass(frozen=True)
+class RockingScale:
+    """What of a body some measures are divided by; without a body, gravity alone.
+
+    Parameters
+    ----------
+    threshold : float
+        Ground acceleration that lifts it: g tan(alpha), or g alpha of the slender-linear equations [m/s2].
+    frequency_parameter : float
+        p of the side that lifts first [rad/s].
+    gravity : float
+        Acceleration of gravity [m/s2].
+    """
+
+    threshold: float = math.nan
+    frequency_parameter: float = math.nan
+    gravity: float = g
+
+
+@dataclass(frozen=True)
+class IntensityMeasure:
+    """One measure of how strong a motion is.
+
+    Parameters
+    ----------
+    name : str
+        Its short name.
+    words : str
+        What it is.
+    unit : str
+        Its unit, of the SI; ``-`` if it has none.
+    power : int
+        It grows with this power of a factor on the motion: 1, 2 (Arias intensity) or 0 (ratios and durations).
+    of_motion : callable
+        Its value, of a record and what is known of the body.
+    symbol : str
+        How it is written in short; the name, if empty.
+    needs_body : bool
+        Whether a motion alone does not tell it.
+    is_listed : bool
+        Whether it stands in the table of a motion, where ratios of what stands there would say nothing new.
+    openquake : tuple of str and float, optional
+        What OpenQuake calls it, and one SI unit in the unit there; None if it is not known there.
+    uplift : callable, optional
+        Its value above which every horizontal motion lifts a body with equal sides and below which none does, of what
+        is known of the body; None if there is none.
+
+    Examples
+    --------
+    >>> MEASURES["pga"].of(GroundMotion([0.0, 1.0, -2.0], 0.1))
+    2.0
+    """
+
+    name: str
+    words: str
+    unit: str
+    power: int
+    of_motion: Callable[[GroundMotion, RockingScale], float]
+    symbol: str = ""
+    needs_body: bool = False
+    is_listed: bool = True
+    openquake: tuple[str, float] | None = None
+    uplift: Callable[[RockingScale], float] | None = None
+
+    def of(self, motion: GroundMotion, body: RockingScale | None = None) -> float:
+        """Return the measure of one motion.
+
+        Parameters
+        ----------
+        motion : GroundMotion
+            The motion; its horizontal part counts.
+        body : RockingScale, optional
+            What of the body counts.
+
+        Returns
+        -------
+        float
+            The value [unit of the measure].
+
+        Raises
+        ------
+        InvalidValueError
+            If the measure needs a body and there is none.
+        """
+        if self.needs_body and body is None:
+            raise InvalidValueError(f"{self.name} is known of a motion and a body, got the motion alone")
+        return self.of_motion(motion, body or RockingScale())
+
+    @property
+    def key(self) -> str:
+        """Name and unit, as keys of JSON have them, such as ``pga_m_s2``."""
+        return key_with_unit(self.name, self.unit)
+
+    def values(self, motions: Any, body: RockingScale) -> FloatArray:
+        """Return the measure of every motion.
+
+        Parameters
+        ----------
+        motions : MotionSet
+            Records, or pulses, which are sampled finely.
+        body : RockingScale
+            What of the body counts.
+
+        Returns
+        -------
+        ndarray
+            One value a motion [unit of the measure].
+
+        Raises
+        ------
+        InvalidValueError
+            If the measure of a motion is not a finite number above zero; the motion is named.
+        """
+        each = (sampled(motions[k]) for k in range(len(motions)))
+        strong = (self.of_motion(motion, body) if motion.peak > 0.0 else 0.0 for motion in each)
+        found = np.fromiter(strong, np.float64, len(motions))
+        bad = np.flatnonzero(~((found > 0.0) & np.isfinite(found)))
+        if bad.size:
+            raise InvalidValueError(
+                f"{self.name} of every motion must be finite and > 0 {self.unit}, got {found[bad[0]]:g} of motion "
+                f"{bad[0]}, {motions[int(bad[0])].name!r:.60}; zero throughout?"
+            )
+        return found
+
+    def scaled(self, values: FloatArray, factor: Any) -> FloatArray:
+        """Return what the measure becomes when motions are multiplied by a factor.
+
+        Parameters
+        ----------
+        values : ndarray
+            Of the motions as they are [unit of the measure].
+        factor : float or array_like
+            Factor on the motions [-].
+
+        Returns
+        -------
+        ndarray
+            Of the scaled motions [unit of the measure].
+
+        Examples
+        --------
+        >>> measure("arias").scaled(np.array([1.5]), 2.0).tolist()
+        [6.0]
+        """
+        return np.asarray(values * np.abs(factor) ** self.power, dtype=np.float64)  # Eq. 229
+
+    def check_grows(self) -> None:
+        """Refuse a measure that no factor on the motion changes.
+
+        Raises
+        ------
+        InvalidValueError
+            If its power is zero.
+        """
+        if self.power == 0:
+            raise InvalidValueError(
+                f"measure must be one that grows with the motion, got {self.name!r}, which no factor changes; "
+                "cloud() takes it"
+            )
+
+    def factors(self, values: FloatArray, targets: FloatArray) -> FloatArray:
+        """Return the factors that bring every motion to every target.
+
+        Parameters
+        ----------
+        values : ndarray, shape (motions,)
+            Of the motions as they are [unit of the measure].
+        targets : ndarray, shape (levels,)
+            Wanted values [unit of the measure].
+
+        Returns
+        -------
+        ndarray, shape (motions, levels)
+            Factors [-].
+
+        Raises
+        ------
+        InvalidValueError
+            If no factor changes the measure.
+        """
+        self.check_grows()
+        return np.asarray((targets[None, :] / values[:, None]) ** (1.0 / self.power), dtype=np.float64)  # Eq. 229
+
+
+def spectral_measure(period: float, damping: float = 0.05) -> IntensityMeasure:
+    """Return the pseudo-spectral acceleration at a period as a measure.
+
+    Parameters
+    ----------
+    period : float
+        Undamped natural period [s].
+    damping : float
+        Damping ratio, from 0 to below 1 [-].
+
+    Returns
+    -------
+    IntensityMeasure
+        Named ``sa(period)``, or ``sa(period,damping)`` if that is not 0.05.
+
+    Examples
+    --------
+    >>> spectral_measure(0.5).name
+    'sa(0.5)'
+    """
+    period = checks.positive("period", period, "s")
+    damping = checks.within("damping", damping, 0.0, 1.0, open_high=True, hint="a ratio, not a percentage")
+    name = f"sa({period!r})" if damping == 0.05 else f"sa({period!r},{damping!r})"
+    words = f"pseudo-spectral acceleration at {period:g} s with {100.0 * damping:g} % damping"
+    return IntensityMeasure(
+        name, words, "m/s2", 1, lambda m, _: spectral_acceleration(m, period, damping),
+        symbol=f"PSA({period:g} s, {damping:g})",
+        openquake=(f"SA({period!r})", 1.0 / g) if damping == 0.05 else None,
+    )  # fmt: skip
+
+
+def measures() -> dict[str, IntensityMeasure]:
+    """Return the measures that have names; ``sa(period)`` comes besides.
+
+    Returns
+    -------
+    dict of str to IntensityMeasure
+        By name, in the order of a table.
+
+    Examples
+    --------
+    >>> list(measures())
+    ['pga', 'pgv', 'pgd', 'pga/(g tan alpha)', 'p pgv/(g tan alpha)', 'pgv/pga', 'p pgv/pga', 'arias', 'cav', 'd5_95',
+     'd5_75', 'housner']
+    """
+    return dict(MEASURES)
+
+
+def measure(given: Any) -> IntensityMeasure:
+    """Return a measure by its name.
+
+    Parameters
+    ----------
+    given : str or IntensityMeasure
+        A key of `measures`, ``sa(period)`` or ``sa(period,damping)`` [s, -], or a measure of one's own.
+
+    Returns
+    -------
+    IntensityMeasure
+        The measure.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is none of that name.
+
+    Examples
+    --------
+    >>> measure("sa(1.0)").words
+    'pseudo-spectral acceleration at 1 s with 5 % damping'
+    """
+    if isinstance(given, IntensityMeasure):
+        return given
+    if isinstance(given, str):
+        if (name := checks.spelling(given, MEASURES)) in MEASURES:
+            return MEASURES[name]
+        if found := spectral_period(given):
+            return spectral_measure(*found)
+    known, why = ", ".join(MEASURES), checks.nearest(given, MEASURES)
+    raise InvalidValueError(f"measure must be one of {known}, or sa(period in s), got {given!r:.60}{why}")
+
+
+def spectral_period(name: str) -> tuple[float, float] | None:
+    """Return period and damping of a spectral measure by its name.
+
+    Returns period [s] and damping ratio [-]; None if the name is of another kind.
+
+    >>> spectral_period("sa(0.5)")
+    (0.5, 0.05)
+    """
+    found = _SPECTRAL.fullmatch(name)
+    return None if found is None else (float(found[1]), float(found[2] or 0.05))
+
+
+def sampled(motion: GroundMotion | Pulse) -> GroundMotion:
+    """Return a motion as a record: a pulse is sampled so finely that its measures are right to 1e-6.
+
+    Returns the motion itself, or the samples of the pulse [m/s2], the largest raised to its peak.
+    """
+    if not isinstance(motion, Pulse):
+        return motion
+    count = max(200, int(np.ceil(SAMPLES_PER_PERIOD * motion.fastest * motion.duration / (2.0 * np.pi))))
+    made = motion.sampled(motion.duration / count)
+    samples = np.array(made.acceleration)
+    top = int(np.argmax(np.abs(samples)))
+    samples[top] = np.copysign(motion.peak, samples[top])
+    return made.changed("the largest sample raised to the peak of the pulse", acceleration=samples)
+
+
+_NAMED = (
+    IntensityMeasure(
+        "pga", "peak ground acceleration", "m/s2", 1, lambda m, _: peak_ground_acceleration(m),
+        symbol="PGA", openquake=("PGA", 1.0 / g), uplift=lambda b: b.threshold,
+    ),
+    IntensityMeasure(
+        "pgv", "peak ground velocity", "m/s", 1, lambda m, _: peak_ground_velocity(m),
+        symbol="PGV", openquake=("PGV", 100.0),  # cm/s
+    ),
+    IntensityMeasure(
+        "pgd", "peak ground displacement", "m", 1, lambda m, _: peak_ground_displacement(m),
+        symbol="PGD", openquake=("PGD", 100.0),  # cm
+    ),
+    IntensityMeasure(
+        "pga/(g tan alpha)", "peak ground acceleration over the one that lifts", "-", 1,
+        lambda m, b: peak_ground_acceleration(m) / b.threshold,  # Eq. 145
+        symbol="PGA/(g tan alpha)", needs_body=True, uplift=lambda _: 1.0,
+    ),
+    IntensityMeasure(
+        "p pgv/(g tan alpha)", "peak ground velocity that knows how large the body is", "-", 1,
+        lambda m, b: b.frequency_parameter * peak_ground_velocity(m) / b.threshold,  # Eq. 146
+        symbol="p PGV/(g tan alpha)", needs_body=True,
+    ),
+    IntensityMeasure(
+        "pgv/pga", "ratio of the peaks, a time scale", "s", 0,
+        lambda m, _: peak_ground_velocity(m) / peak_ground_acceleration(m), symbol="PGV/PGA", is_listed=False,
+    ),
+    IntensityMeasure(
+        "p pgv/pga", "ratio of the peaks over the time scale of the body", "-", 0,
+        lambda m, b: b.frequency_parameter * peak_ground_velocity(m) / peak_ground_acceleration(m),
+        symbol="p PGV/PGA", needs_body=True,
+    ),
+    IntensityMeasure(
+        "arias", "Arias intensity", "m/s", 2, lambda m, b: arias_intensity(m, b.gravity),
+        symbol="Arias", openquake=("IA", 1.0),
+    ),
+    IntensityMeasure(
+        "cav", "cumulative absolute velocity", "m/s", 1, lambda m, _: cumulative_absolute_velocity(m),
+        symbol="CAV", openquake=("CAV", 1.0 / g),  # g s
+    ),
+    IntensityMeasure(
+        "d5_95", "significant duration 5-95 %", "s", 0, lambda m, _: significant_duration(m), symbol="D5-95"
+    ),
+    IntensityMeasure(
+        "d5_75", "significant duration 5-75 %", "s", 0, lambda m, _: significant_duration(m, 5.0, 75.0),
+        symbol="D5-75",
+    ),
+    IntensityMeasure("housner", "Housner intensity", "m", 1, lambda m, _: housner_intensity(m), symbol="Housner"),
+)  # fmt: skip
+MEASURES = {one.name: one for one in _NAMED}
+"""Every measure that has a name, in the order of a table; a new one is one more entry."""

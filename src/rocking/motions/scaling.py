@@ -1,9 +1,54 @@
-"""Motions scaled to a target: PGA, PGV or spectral acceleration."""
+"""Motions scaled to a target: any measure that grows with the motion."""
+
+from typing import Any
 
 from rocking import checks
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import peak_ground_acceleration, peak_ground_velocity, spectral_acceleration
+from rocking.motions import intensity
+from rocking.motions.intensity import RockingScale
 from rocking.motions.motion import GroundMotion
+
+
+def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingScale | None = None) -> GroundMotion:
+    """Return the motion scaled to a measure of its intensity.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; both components are multiplied by the factor of the horizontal one.
+    measure : str or IntensityMeasure
+        A name of `measures`, ``sa(period)``, or a measure of one's own; one that grows with the motion.
+    target : float
+        Value that it shall have [unit of the measure].
+    body : RockingScale, optional
+        What of a body counts, for measures that need one.
+
+    Returns
+    -------
+    GroundMotion
+        The scaled motion.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such measure, no factor changes it, it needs a body, or the motion has none of it.
+
+    Examples
+    --------
+    >>> from rocking.motions.energy import arias_intensity
+    >>> round(arias_intensity(scaled_to(GroundMotion([0.0, 1.0, -2.0], 0.1), "arias", 1.5)), 12)
+    1.5
+    """
+    one = intensity.measure(measure)
+    one.check_grows()
+    now, name = one.of(motion, body), one.symbol or one.name
+    target = checks.positive("target", target, one.unit)
+    if not now > 0.0:
+        raise InvalidValueError(f"motion must have {name} > 0 {one.unit} to be scaled, got {now:g}; zero throughout?")
+    factor = checks.number("factor", (target / now) ** (1.0 / one.power))
+    vertical = None if motion.vertical is None else motion.vertical * factor
+    what = f"multiplied by {factor!r} so that {name} is {target:g} {one.unit}"
+    return motion.changed(what, acceleration=motion.acceleration * factor, vertical=vertical)
 
 
 def scaled_to_pga(motion: GroundMotion, target: float) -> GroundMotion:
@@ -26,7 +71,7 @@ def scaled_to_pga(motion: GroundMotion, target: float) -> GroundMotion:
     >>> scaled_to_pga(GroundMotion([0.0, 1.0, -2.0], 0.1), 3.0).peak
     3.0
     """
-    return _scaled(motion, peak_ground_acceleration(motion), target, "PGA", "m/s2")
+    return scaled_to(motion, "pga", target)
 
 
 def scaled_to_pgv(motion: GroundMotion, target: float) -> GroundMotion:
@@ -44,7 +89,7 @@ def scaled_to_pgv(motion: GroundMotion, target: float) -> GroundMotion:
     GroundMotion
         The scaled motion.
     """
-    return _scaled(motion, peak_ground_velocity(motion), target, "PGV", "m/s")
+    return scaled_to(motion, "pgv", target)
 
 
 def scaled_to_sa(motion: GroundMotion, target: float, period: float, damping: float = 0.05) -> GroundMotion:
@@ -66,15 +111,4 @@ def scaled_to_sa(motion: GroundMotion, target: float, period: float, damping: fl
     GroundMotion
         The scaled motion.
     """
-    now = spectral_acceleration(motion, period, damping)
-    return _scaled(motion, now, target, f"PSA({float(period):g} s, {float(damping):g})", "m/s2")
-
-
-def _scaled(motion: GroundMotion, now: float, target: float, name: str, unit: str) -> GroundMotion:
-    target = checks.positive("target", target, unit)
-    if not now > 0.0:
-        raise InvalidValueError(f"motion must have {name} > 0 {unit} to be scaled, got {now:g}; zero throughout?")
-    factor = checks.number("factor", target / now)
-    vertical = None if motion.vertical is None else motion.vertical * factor
-    what = f"multiplied by {factor!r} so that {name} is {target:g} {unit}"
-    return motion.changed(what, acceleration=motion.acceleration * factor, vertical=vertical)
+    return scaled_to(motion, intensity.spectral_measure(period, damping), target)

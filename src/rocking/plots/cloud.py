@@ -8,8 +8,7 @@ import numpy as np
 from rocking.errors import InvalidValueError
 from rocking.plots.study_words import PEAK, axis_label, plain_log, short_name
 from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
-from rocking.studies.fragility.barely_lifted import clearly_lifted
-from rocking.studies.fragility.cloud_analysis import CloudAnalysis
+from rocking.studies.fragility.cloud_analysis import CloudAnalysis, clearly_lifted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,7 +45,7 @@ def cloud_picture(analysis: CloudAnalysis) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility._cloud import cloud
+    >>> from rocking.studies.fragility.cloud_analysis import cloud
     >>> pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.2, 3.0, 6.0, 2.9, 8.0)]
     >>> cloud_picture(cloud(rk.Block(width=0.4, height=1.6), pulses)).axes[1].get_xlabel()
     'peak ground acceleration [m/s$^2$]'

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rocking.studies.fragility.lognormal import LognormalFit
+    from rocking.statistics.lognormal import LognormalFit
 
 HEIGHT = 4.4
 _MOST, _MOST_STRIPES, _OUTCOMES = 12, 24, 8
@@ -64,7 +64,7 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility.stripes import multiple_stripes
+    >>> from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8, 1.0)]
     >>> found = multiple_stripes(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
     >>> fragility_picture(found).axes[1].get_xlabel()

@@ -9,7 +9,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.plots.study_words import PEAK, axis_label, geometric, plain_log
 from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
-from rocking.studies.fragility._incremental import IncrementalAnalysis
+from rocking.studies.fragility.incremental_dynamic_analysis import IncrementalAnalysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,7 +55,7 @@ def incremental_picture(analysis: IncrementalAnalysis) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility._incremental import incremental
+    >>> from rocking.studies.fragility.incremental_dynamic_analysis import incremental
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
     >>> found = incremental(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], restitution=0.9)
     >>> len(incremental_picture(found).axes)

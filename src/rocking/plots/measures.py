@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from rocking.errors import InvalidValueError
 from rocking.plots.study_words import plain, plain_log, short_name
 from rocking.plots.style import GREY, INK, PALE, SINGLE, in_journal_style, new_figure
-from rocking.studies.fragility.comparison import MeasureComparison
+from rocking.studies.fragility.measure_comparison import MeasureComparison
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,8 +43,8 @@ def measures_picture(found: MeasureComparison) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility._cloud import cloud
-    >>> from rocking.studies.fragility.comparison import compare_measures
+    >>> from rocking.studies.fragility.cloud_analysis import cloud
+    >>> from rocking.studies.fragility.measure_comparison import compare_measures
     >>> pulses = [rk.pulses.sine(a, t) for a in (2.6, 3.0, 3.4) for t in (0.3, 0.4, 0.5)]
     >>> found = compare_measures(cloud(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9), ["pga", "pgv"])
     >>> sorted(label.get_text() for label in measures_picture(found).axes[0].get_yticklabels())

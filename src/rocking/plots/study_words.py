@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.motions.intensity import MEASURES
 from rocking.plots.style import INK
 
 if TYPE_CHECKING:
@@ -14,8 +15,6 @@ SYMBOLS = {
     "frequency_ratio": r"$\omega_p\,/\,p$ [-]",
     "amplitude_ratio": r"$a_p\,/\,(g\,\tan\,\alpha)$ [-]",
     "scale": "factor on the motion [-]",
-    "pga": "peak ground acceleration [m/s$^2$]",
-    "pgv": "peak ground velocity [m/s]",
     "period": "period of the pulse [s]",
     "duration": "duration of the motion [s]",
     "semi_diagonal": "semi-diagonal R [m]",
@@ -24,29 +23,18 @@ SYMBOLS = {
     "width": "width [m]",
     "height": "height [m]",
     "restitution": "coefficient of restitution r [-]",
-    "pga/(g tan alpha)": r"PGA$\,/\,(g\,\tan\,\alpha)$ [-]",
-    "p pgv/(g tan alpha)": r"p PGV$\,/\,(g\,\tan\,\alpha)$ [-]",
-    "pgv/pga": "PGV / PGA [s]",
-    "arias": "Arias intensity [m/s]",
-    "cav": "cumulative absolute velocity [m/s]",
-    "housner": "Housner intensity [m]",
 }
-"""Labels of axes and of measures of intensity, by name."""
+"""Labels of axes, by name."""
 
-SHORT = {
-    "pga": "PGA",
-    "pgv": "PGV",
-    "pgd": "PGD",
-    "pgv/pga": "PGV / PGA",
-    "pga/(g tan alpha)": r"PGA$\,/\,(g\,\tan\,\alpha)$",
-    "p pgv/(g tan alpha)": r"p PGV$\,/\,(g\,\tan\,\alpha)$",
-    "p pgv/pga": "p PGV / PGA",
-    "arias": "Arias",
-    "cav": "CAV",
-    "housner": "Housner",
-    "d5_95": r"$D_{5-95}$",
+TYPESET = {
+    "/(g tan alpha)": r"$\,/\,(g\,\tan\,\alpha)$",
+    "/PGA": " / PGA",
+    "D5-95": "$D_{5-95}$",
+    "D5-75": "$D_{5-75}$",
 }
-"""Short names of measures."""
+"""How parts of the symbols of measures are drawn."""
+
+_UNITS = {"1": "-", "m/s2": "m/s$^2$", "": "-"}
 
 PEAK = r"peak rotation $\theta\,/\,\alpha$ [-]"
 
@@ -73,10 +61,13 @@ def axis_label(name: str, unit: str = "1", *, linear: bool = False) -> str:
     >>> axis_label("pgv"), axis_label("sa(0.5)", "m/s2")
     ('peak ground velocity [m/s]', 'Sa(0.5 s) [m/s$^2$]')
     """
-    if name in SYMBOLS:
-        return SYMBOLS[name].replace(r"\tan\,\alpha", r"\alpha") if linear else SYMBOLS[name]
-    shown = {"1": "-", "m/s2": "m/s$^2$", "": "-"}.get(unit, unit)
-    return f"{short_name(name)} [{shown}]"
+    words, one = SYMBOLS.get(name, short_name(name)), MEASURES.get(name)
+    if name not in SYMBOLS:
+        unit = unit if one is None else one.unit
+        # the symbol of a ratio says more than its words
+        words = words if one is None or "/" in words else one.words
+        words = f"{words} [{_UNITS.get(unit, unit)}]"
+    return words.replace(r"\tan\,\alpha", r"\alpha") if linear else words
 
 
 def short_name(name: str) -> str:
@@ -85,8 +76,11 @@ def short_name(name: str) -> str:
     >>> short_name("sa(1.0)"), short_name("pga")
     ('Sa(1.0 s)', 'PGA')
     """
-    if name in SHORT:
-        return SHORT[name]
+    if name in MEASURES:
+        symbol = MEASURES[name].symbol or plain(name)
+        for part, drawn in TYPESET.items():
+            symbol = symbol.replace(part, drawn)
+        return symbol
     return f"Sa({name[3:-1]} s)" if name.startswith("sa(") else plain(name)
 
 

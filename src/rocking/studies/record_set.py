@@ -7,8 +7,9 @@ from typing import Any
 from rocking import checks
 from rocking.dynamics.content import full_name
 from rocking.errors import InvalidValueError
+from rocking.motions.intensity import measure
 from rocking.motions.motion import GroundMotion
-from rocking.motions.scaling import scaled_to_pga, scaled_to_pgv
+from rocking.motions.scaling import scaled_to
 from rocking.motions.synthetic.distributions import Distribution
 from rocking.motions.synthetic.families import family
 from rocking.motions.synthetic.family import Family, whole
@@ -32,17 +33,16 @@ class SyntheticSet(MotionSet):
         How many motions [-].
     seed : int
         Seed of the set, at least 0 [-].
-    pga : float, optional
-        Peak ground acceleration to which each motion is scaled [m/s2].
-    pgv : float, optional
-        Peak ground velocity to which each motion is scaled, in place of the acceleration [m/s].
     time_step : float, optional
         Step between samples; that of the family if not given [s].
+    **level : float
+        To what each motion is scaled: one measure that grows with it, by name, such as ``pga=3.0``; none if not given
+        [unit of the measure].
 
     Raises
     ------
     InvalidValueError
-        If a value is outside its range, or both levels are given.
+        If a value is outside its range, several levels are given, or no factor changes the measure.
 
     Examples
     --------
@@ -57,16 +57,19 @@ class SyntheticSet(MotionSet):
         count: int,
         seed: int,
         *,
-        pga: float | None = None,
-        pgv: float | None = None,
         time_step: float | None = None,
+        **level: float | None,
     ) -> None:
         self.family = family(which)
         self.count, self.seed = whole("count", count, 1, MOST_MOTIONS), whole("seed", seed)
-        if pga is not None and pgv is not None:
-            raise InvalidValueError("motions can be scaled to pga or to pgv, not to both")
-        self.pga = None if pga is None else checks.positive("pga", pga, "m/s2")
-        self.pgv = None if pgv is None else checks.positive("pgv", pgv, "m/s")
+        given = {name: value for name, value in level.items() if value is not None}
+        if len(given) > 1:
+            raise InvalidValueError(f"motions can be scaled to {' or to '.join(given)}, not to both")
+        self.level: dict[str, float] = {}
+        for name, value in given.items():
+            one = measure(name)
+            one.check_grows()
+            self.level[one.name] = checks.positive(one.name, value, one.unit)
         step = self.family.time_step if time_step is None else time_step
         self.time_step = checks.positive("time_step", step, "s")
 
@@ -80,9 +83,9 @@ class SyntheticSet(MotionSet):
         if not 0 <= place < self.count:
             raise IndexError(f"motions are numbered 0 to {self.count - 1}, got {index}")
         motion = self.family.motion(self.seed, int(place), self.time_step)
-        if self.pga is not None:
-            return scaled_to_pga(motion, self.pga)
-        return motion if self.pgv is None else scaled_to_pgv(motion, self.pgv)
+        for name, value in self.level.items():
+            motion = scaled_to(motion, name, value)
+        return motion
 
     def description(self) -> dict[str, Any]:
         """Return family, distributions in the order of drawing, seed, level, and hashes of the first and last motion.
@@ -107,8 +110,8 @@ class SyntheticSet(MotionSet):
             "origin": self.family.origin,
             "count": self.count,
             "seed": self.seed,
-            "pga_m_s2": self.pga,
-            "pgv_m_s": self.pgv,
+            **dict.fromkeys(("pga_m_s2", "pgv_m_s")),
+            **{measure(name).key: value for name, value in self.level.items()},
             "time_step_s": self.time_step,
             "first": first,
             "last": last,

@@ -7,11 +7,11 @@ from rocking.checks import decimal_comma, nearest
 from rocking.cli import main
 from rocking.errors import RockingError, UnknownModelError
 from rocking.motions.formats.registry import format_named
+from rocking.motions.intensity import measure
 from rocking.motions.pulses import pulse
 from rocking.restitution import model
 from rocking.restitution.spatial import spatial_model, spatial_models
 from rocking.studies._axes import axis_of
-from rocking.studies.fragility._measures import measure
 
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=3,period=0.8"

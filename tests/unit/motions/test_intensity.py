@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.motions import GroundMotion
+from rocking.motions.energy import significant_times
 from rocking.motions.formats import read_motion
 from rocking.motions.intensity import (
     arias_intensity,
@@ -24,7 +25,6 @@ from rocking.motions.intensity import (
     peak_ground_displacement,
     peak_ground_velocity,
     significant_duration,
-    significant_times,
     spectral_acceleration,
 )
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rocking.errors import InvalidValueError
 from rocking.motions import GroundMotion
-from rocking.motions.intensity import significant_times
+from rocking.motions.energy import significant_times
 from rocking.motions.kinematics import ground_displacement, ground_velocity
 from rocking.motions.processing import bandpassed, demeaned, detrended, tapered
 from rocking.motions.resampling import padded, resampled, trimmed, trimmed_to_significant

@@ -13,10 +13,10 @@ from rocking.errors import InvalidValueError
 from rocking.plots.fragility import caption, fragility_picture, gathered, state_colors, symbol
 from rocking.plots.incremental import incremental_picture
 from rocking.plots.measures import measures_picture
-from rocking.studies.fragility._cloud import cloud
-from rocking.studies.fragility._incremental import incremental
-from rocking.studies.fragility.comparison import compare_measures
-from rocking.studies.fragility.stripes import multiple_stripes
+from rocking.studies.fragility.cloud_analysis import cloud
+from rocking.studies.fragility.incremental_dynamic_analysis import incremental
+from rocking.studies.fragility.measure_comparison import compare_measures
+from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
 
 G = 9.80665
 BLOCK = rk.Block(width=0.4, height=1.6)

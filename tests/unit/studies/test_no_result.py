@@ -10,7 +10,7 @@ from rocking.motions.pulses import sine
 from rocking.outcome import Outcome, Status, overturned
 from rocking.plots.falling import falling_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
-from rocking.studies.fragility.stripes import multiple_stripes
+from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
 from rocking.studies.minimum_search import Cases, Effort, searched
 
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])

@@ -61,7 +61,7 @@ def _constant() -> dict[str, Any]:
         "families": _families(),
         "formats": _formats(),
         "units": {"length": list(LENGTH_UNITS), "acceleration": list(ACCELERATION_UNITS)},
-        "measures": _measures(),
+        "measures": listed_measures(),
         "axes": _axes(),
         "study_kinds": [{"name": name, "table": NEEDS[name]} for name in KINDS],
     }
@@ -150,8 +150,9 @@ def _formats() -> list[dict[str, Any]]:
     ]
 
 
-def _measures() -> list[dict[str, Any]]:
-    from rocking.studies.fragility._measures import measures
+def listed_measures() -> list[dict[str, Any]]:
+    """Return the measures of intensity that have names."""
+    from rocking.motions.intensity import measures
 
     return [{"name": one.name, "words": one.words, "unit": one.unit} for one in measures().values()]
 

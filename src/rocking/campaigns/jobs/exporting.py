@@ -17,8 +17,8 @@ from rocking.campaigns.jobs.measures import MEASURES, measure_comparison, measur
 from rocking.campaigns.jobs.results import Results
 from rocking.campaigns.jobs.round_status import finished_rounds
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.agreement import FEWEST
-from rocking.studies.fragility.nesting import Crossing, check_crossing
+from rocking.statistics.goodness import FEWEST
+from rocking.studies.fragility.curves import Crossing, check_crossing
 from rocking.tables import (
     Grid,
     Table,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking.campaigns.jobs.findings import analyses
 from rocking.campaigns.jobs.folder import JobFolder
-from rocking.studies.fragility.nesting import Crossing, nested
+from rocking.studies.fragility.curves import Crossing, nested
 
 if TYPE_CHECKING:
     from rocking.studies.fragility.curves import FragilityModel

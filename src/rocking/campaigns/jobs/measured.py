@@ -7,8 +7,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility._measures import measure
-from rocking.studies.fragility.comparison import DEFAULT_MEASURES
+from rocking.motions.intensity import measure
+from rocking.studies.fragility.measure_comparison import DEFAULT_MEASURES
 from rocking.studies.motion_set import MotionList, MotionSet
 
 if TYPE_CHECKING:

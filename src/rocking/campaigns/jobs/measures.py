@@ -10,9 +10,8 @@ from rocking.campaigns.jobs.findings import analyses, refuse_unfinished
 from rocking.campaigns.jobs.folder import JobFolder
 from rocking.campaigns.jobs.measured import columns_of, measures_of
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.barely_lifted import clearly_lifted
-from rocking.studies.fragility.cloud_analysis import CloudAnalysis
-from rocking.studies.fragility.comparison import MeasureComparison, compare_measures
+from rocking.studies.fragility.cloud_analysis import CloudAnalysis, clearly_lifted
+from rocking.studies.fragility.measure_comparison import MeasureComparison, compare_measures
 from rocking.tables import Column, Table, text_array
 
 MEASURES = "measures"

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from rocking.motions.intensity import Measure, intensity_measures
+from rocking.motions.intensity import Measure, intensity_measures, key_with_unit
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
@@ -63,7 +63,7 @@ def motion_facts(motion: GroundMotion | Pulse, samples: GroundMotion, measures: 
         "warnings": list(motion.doubts),
         "provenance": list(motion.provenance) if isinstance(motion, GroundMotion) else [repr(motion)],
         "peak_vertical_acceleration_m_s2": None if samples.vertical is None else samples.peak_vertical,
-        "intensity": {f"{key}_{one.unit.replace('/', '_')}": one.value for key, one in measures.items()},
+        "intensity": {key_with_unit(key, one.unit): one.value for key, one in measures.items()},
     }
 
 

@@ -5,24 +5,26 @@ from typing import TYPE_CHECKING
 from rocking.lazy import exports
 
 if TYPE_CHECKING:
-    from rocking.studies.fragility._cloud import CloudAnalysis, cloud, cloud_plan
-    from rocking.studies.fragility._incremental import IncrementalAnalysis, incremental, incremental_plan
-    from rocking.studies.fragility._measures import IntensityMeasure, measure, measures, spectral_measure
-    from rocking.studies.fragility.bootstrap import BootstrapSample
-    from rocking.studies.fragility.capacities import CapacitySample
-    from rocking.studies.fragility.comparison import MeasureComparison, MeasureScore, compare_measures
-    from rocking.studies.fragility.counts import Counts, StateCounts, count_outcomes, count_states
-    from rocking.studies.fragility.crossings import OverturningInterval
+    from rocking.motions.intensity import IntensityMeasure, measure, measures, spectral_measure
+    from rocking.statistics.bootstrap import BootstrapSample, CapacitySample
+    from rocking.statistics.counts import Counts, StateCounts, count_outcomes, count_states
+    from rocking.statistics.goodness import Goodness
+    from rocking.statistics.lognormal import LognormalFit, fit_lognormal
+    from rocking.statistics.ordered_probit import OrderedFit, fit_ordered
+    from rocking.statistics.separation import Separation
+    from rocking.studies.fragility.cloud_analysis import CloudAnalysis, cloud, cloud_plan
     from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, model_of
-    from rocking.studies.fragility.export import to_csv, to_excel, to_mat, to_netcdf
-    from rocking.studies.fragility.goodness import Goodness
-    from rocking.studies.fragility.lognormal import LognormalFit, fit_lognormal
+    from rocking.studies.fragility.export import fema_p58_table, to_csv, to_excel, to_mat, to_netcdf
+    from rocking.studies.fragility.incremental_dynamic_analysis import (
+        IncrementalAnalysis,
+        incremental,
+        incremental_plan,
+    )
+    from rocking.studies.fragility.measure_comparison import MeasureComparison, MeasureScore, compare_measures
+    from rocking.studies.fragility.multiple_stripe_analysis import StripeAnalysis, multiple_stripes, stripes_plan
     from rocking.studies.fragility.nrml import to_nrml
-    from rocking.studies.fragility.ordered import OrderedFit, fit_ordered
-    from rocking.studies.fragility.separation import Separation
+    from rocking.studies.fragility.overturning_intervals import OverturningInterval
     from rocking.studies.fragility.states import LimitState, limit_states
-    from rocking.studies.fragility.stripes import StripeAnalysis, multiple_stripes, stripes_plan
-    from rocking.studies.fragility.tables import fema_p58_table
 
 __all__ = [
     "BootstrapSample",
@@ -70,41 +72,41 @@ __all__ = [
 __getattr__, __dir__ = exports(
     __name__,
     {
-        "BootstrapSample": "rocking.studies.fragility.bootstrap",
-        "CapacitySample": "rocking.studies.fragility.capacities",
-        "CloudAnalysis": "rocking.studies.fragility._cloud",
-        "Counts": "rocking.studies.fragility.counts",
+        "BootstrapSample": "rocking.statistics.bootstrap",
+        "CapacitySample": "rocking.statistics.bootstrap",
+        "CloudAnalysis": "rocking.studies.fragility.cloud_analysis",
+        "Counts": "rocking.statistics.counts",
         "FragilityCurve": "rocking.studies.fragility.curves",
         "FragilityModel": "rocking.studies.fragility.curves",
-        "Goodness": "rocking.studies.fragility.goodness",
-        "IncrementalAnalysis": "rocking.studies.fragility._incremental",
-        "IntensityMeasure": "rocking.studies.fragility._measures",
+        "Goodness": "rocking.statistics.goodness",
+        "IncrementalAnalysis": "rocking.studies.fragility.incremental_dynamic_analysis",
+        "IntensityMeasure": "rocking.motions.intensity",
         "LimitState": "rocking.studies.fragility.states",
-        "LognormalFit": "rocking.studies.fragility.lognormal",
-        "MeasureComparison": "rocking.studies.fragility.comparison",
-        "MeasureScore": "rocking.studies.fragility.comparison",
-        "OrderedFit": "rocking.studies.fragility.ordered",
-        "OverturningInterval": "rocking.studies.fragility.crossings",
-        "Separation": "rocking.studies.fragility.separation",
-        "StateCounts": "rocking.studies.fragility.counts",
-        "StripeAnalysis": "rocking.studies.fragility.stripes",
-        "cloud": "rocking.studies.fragility._cloud",
-        "cloud_plan": "rocking.studies.fragility._cloud",
-        "compare_measures": "rocking.studies.fragility.comparison",
-        "count_outcomes": "rocking.studies.fragility.counts",
-        "count_states": "rocking.studies.fragility.counts",
-        "fema_p58_table": "rocking.studies.fragility.tables",
-        "fit_lognormal": "rocking.studies.fragility.lognormal",
-        "fit_ordered": "rocking.studies.fragility.ordered",
-        "incremental": "rocking.studies.fragility._incremental",
-        "incremental_plan": "rocking.studies.fragility._incremental",
+        "LognormalFit": "rocking.statistics.lognormal",
+        "MeasureComparison": "rocking.studies.fragility.measure_comparison",
+        "MeasureScore": "rocking.studies.fragility.measure_comparison",
+        "OrderedFit": "rocking.statistics.ordered_probit",
+        "OverturningInterval": "rocking.studies.fragility.overturning_intervals",
+        "Separation": "rocking.statistics.separation",
+        "StateCounts": "rocking.statistics.counts",
+        "StripeAnalysis": "rocking.studies.fragility.multiple_stripe_analysis",
+        "cloud": "rocking.studies.fragility.cloud_analysis",
+        "cloud_plan": "rocking.studies.fragility.cloud_analysis",
+        "compare_measures": "rocking.studies.fragility.measure_comparison",
+        "count_outcomes": "rocking.statistics.counts",
+        "count_states": "rocking.statistics.counts",
+        "fema_p58_table": "rocking.studies.fragility.export",
+        "fit_lognormal": "rocking.statistics.lognormal",
+        "fit_ordered": "rocking.statistics.ordered_probit",
+        "incremental": "rocking.studies.fragility.incremental_dynamic_analysis",
+        "incremental_plan": "rocking.studies.fragility.incremental_dynamic_analysis",
         "limit_states": "rocking.studies.fragility.states",
-        "measure": "rocking.studies.fragility._measures",
-        "measures": "rocking.studies.fragility._measures",
+        "measure": "rocking.motions.intensity",
+        "measures": "rocking.motions.intensity",
         "model_of": "rocking.studies.fragility.curves",
-        "multiple_stripes": "rocking.studies.fragility.stripes",
-        "spectral_measure": "rocking.studies.fragility._measures",
-        "stripes_plan": "rocking.studies.fragility.stripes",
+        "multiple_stripes": "rocking.studies.fragility.multiple_stripe_analysis",
+        "spectral_measure": "rocking.motions.intensity",
+        "stripes_plan": "rocking.studies.fragility.multiple_stripe_analysis",
         "to_csv": "rocking.studies.fragility.export",
         "to_excel": "rocking.studies.fragility.export",
         "to_mat": "rocking.studies.fragility.export",

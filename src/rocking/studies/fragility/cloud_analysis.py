@@ -1,6 +1,7 @@
-"""The outcome of a cloud analysis: the line, the curves, and the three parts of the probability."""
+"""Cloud analysis: the motions as they are, a regression of the rotation on the measure, and overturning apart."""
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -8,26 +9,82 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking import checks
+from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.dynamics.engine import Arrays
 from rocking.errors import InvalidValueError, extra
-from rocking.studies.fragility.barely_lifted import LEAST, ClearShare, barely_lifted, clearly_lifted
-from rocking.studies.fragility.fits import fits_of
-from rocking.studies.fragility.regression import Regression, regression
-from rocking.studies.fragility.states import LimitState, Responses
-from rocking.studies.fragility.subject import Subject
-from rocking.studies.fragility.uplift import UpliftCheck, uplift_check
+from rocking.statistics.least_squares import Regression, regression
+from rocking.statistics.lognormal import LognormalFit, fit_lognormal
+from rocking.studies.fragility.states import LimitState, Responses, UpliftCheck, fits_of, limit_states, uplift_check
+from rocking.studies.fragility.subject import Motions, Progress, Subject, results_of
 from rocking.studies.histories import Product
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rocking.studies.fragility.lognormal import LognormalFit
+LEAST = 0.01
+"""Rotation over alpha below which a history counts as barely lifted, unless another one is chosen [-]."""
 
 DEFINITION = (
     "cloud: overturning is fitted to the outcome of each motion at its own level; among histories that rocked, not "
     "barely, and stayed standing, ln(theta/alpha) is a straight line in the ln of the measure; a rotation is exceeded "
     "by what overturned, and by what rocked beyond it"
 )
+
+
+def checked_least(least: float) -> float:
+    """Return the rotation below which a history counts as barely lifted, if it is one.
+
+    least: rotation over alpha, from 0 to below 1 [-]. Returns the same [-].
+    """
+    return checks.within("least", least, 0.0, 1.0, open_high=True, hint="a rotation over alpha")
+
+
+def clearly_lifted(responses: Responses, least: float) -> BoolArray:
+    """Return which histories rocked, not barely, and stayed standing.
+
+    least: rotation over alpha below which a history counts as barely lifted [-].
+    """
+    return np.asarray(responses.rocked & (responses.rotation >= least) & (responses.rotation > 0.0))
+
+
+def barely_lifted(responses: Responses, least: float) -> int:
+    """Return how many histories rocked barely.
+
+    least: rotation over alpha below which a history counts as barely lifted [-].
+    """
+    return int(np.sum(responses.rocked & ~clearly_lifted(responses, least)))
+
+
+class ClearShare:
+    """How many of the histories that rocked and stayed standing were clearly lifted, level by level.
+
+    A lognormal curve where the outcomes fix one, else their share at all levels.
+
+    levels: level of each history [unit of the measure]; least: rotation over alpha below which a history counts as
+    barely lifted [-].
+    """
+
+    def __init__(self, levels: FloatArray, responses: Responses, least: float) -> None:
+        rocked, clear = responses.rocked, clearly_lifted(responses, least)
+        self.share = float(clear.sum() / rocked.sum()) if rocked.any() else 1.0
+        self.fit: LognormalFit | None = None
+        if 0.0 < self.share < 1.0:
+            try:
+                self.fit = fit_lognormal(levels[rocked], clear[rocked])
+            except InvalidValueError:
+                # all at one level: there is no curve, and the share says all there is
+                self.fit = None
+
+    def at(self, levels: FloatArray) -> FloatArray:
+        """Return the share at levels of the measure.
+
+        levels: levels [unit of the measure]. Returns probability that what rocked and stayed standing was clearly
+        lifted [-].
+        """
+        if self.fit is None or not self.fit.exists:
+            return np.full(np.shape(levels), self.share)
+        return np.asarray(self.fit.probability(levels))
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +147,7 @@ class CloudAnalysis:
         return np.bincount(self._sorted[1][chosen], minlength=self.levels.size).astype(np.int64)
 
     @cached_property
-    def fits(self) -> "dict[str, LognormalFit]":
+    def fits(self) -> dict[str, LognormalFit]:
         """Lognormal curve of each state from the outcomes alone; none for rocking where a level decides it."""
         return fits_of(self.subject, self.states, self.motion_levels, self.responses)
 
@@ -221,3 +278,94 @@ def _told(analysis: CloudAnalysis) -> dict[str, Any]:
         return analysis.regression.summary()
     except InvalidValueError as error:
         return {"none": str(error)}
+
+
+def cloud_plan(
+    body: Body,
+    motions: Motions,
+    restitution: Any = "ked",
+    measure: Any = "pga",
+    states: Sequence[float] = (0.5,),
+    *,
+    factor: float = 1.0,
+    least: float = LEAST,
+    **options: Any,
+) -> tuple[Product, Callable[[Arrays], CloudAnalysis]]:
+    """Return the histories of a cloud analysis, and what makes the analysis of their results.
+
+    Parameters
+    ----------
+    body, motions, restitution, measure, states, factor, least, **options
+        As for `cloud`.
+
+    Returns
+    -------
+    histories : Product
+        What has to be computed, by a campaign for instance.
+    finish : callable
+        Takes the results of all histories and returns the `CloudAnalysis`.
+    """
+    subject = Subject.of(body, motions, restitution, measure, options)
+    factor, least = checks.positive("factor", factor), checked_least(least)
+    levels = subject.measure.scaled(subject.intensities, factor)
+    limits = limit_states(states)
+    histories = subject.product(np.array([factor]))
+
+    def finish(arrays: Arrays) -> CloudAnalysis:
+        responses = Responses.of(arrays, subject.rocker, (len(subject.motions),))
+        return CloudAnalysis(subject, levels, limits, histories, responses, least)
+
+    return histories, finish
+
+
+def cloud(
+    body: Body,
+    motions: Motions,
+    restitution: Any = "ked",
+    measure: Any = "pga",
+    states: Sequence[float] = (0.5,),
+    *,
+    factor: float = 1.0,
+    least: float = LEAST,
+    progress: Progress = None,
+    **options: Any,
+) -> CloudAnalysis:
+    """Take the motions as they are, and relate rotation and overturning to a measure of them.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    motions : GroundMotion or Pulse, a sequence of them, or MotionSet
+        All records or all pulses.
+    restitution : as for `simulate`
+        Model or its name, number, pair by side, or law.
+    measure : str or IntensityMeasure
+        A name of `measures`, or ``sa(period)``.
+    states : sequence of float
+        Rotations over alpha that count as states of their own [-].
+    factor : float
+        One factor on all motions [-].
+    least : float
+        Rotation over alpha below which a history counts as barely lifted, and is left out of the line [-].
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+    **options
+        ``gravity`` [m/s2], ``engine``, ``threads`` and fields of `Settings`.
+
+    Returns
+    -------
+    CloudAnalysis
+        Outcomes, the line and the curves.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> pulses = [rk.pulses.sine(a, 0.6) for a in (2.0, 2.6, 2.8, 3.0, 3.2, 6.0, 8.0)]
+    >>> found = cloud(rk.Block(width=0.4, height=1.6), pulses)
+    >>> {outcome.name: n for outcome, n in found.responses.counts().items()}
+    {'NO_UPLIFT': 1, 'ROCKED': 4, 'OVERTURNED': 2}
+    """
+    threads = options.pop("threads", None)
+    histories, finish = cloud_plan(body, motions, restitution, measure, states, factor=factor, least=least, **options)
+    return finish(results_of(histories, threads=threads, progress=progress))

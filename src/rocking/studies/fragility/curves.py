@@ -1,28 +1,35 @@
-"""Fragility curves apart from how they were found: what is exported, and what an analysis turns into."""
+"""Fragility curves apart from how they were found: what is exported, and what an analysis turns into.
+
+Curves of unlike dispersion always cross somewhere: where a worse state would be likelier than a lesser one, they are
+refused or fitted again with one dispersion.
+"""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, extra
-from rocking.studies.fragility.agreement import Agreement, Ends, Repeated, agreement_of, repeated_of
-from rocking.studies.fragility.ordered_probit import nested_curves
+from rocking.statistics.goodness import STATISTICS, Agreement, Ends, Repeated, agreement_of, ends_of, repeated_of
+from rocking.statistics.lognormal import LognormalFit, lognormal_probability
+from rocking.statistics.ordered_probit import ORDERED_METHODS, OrderedMethod, difference_extremes, nested_curves
 from rocking.studies.fragility.subject import Subject, checked_levels
-from rocking.studies.fragility.variables import variables_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rocking.studies.fragility.lognormal import LognormalFit
-    from rocking.studies.fragility.ordered import OrderedMethod
-
 CLAIMS = ("method", "verdict", "interval_method")
 """What is said of each curve wherever it goes."""
+
+_BOTH = ("state", "end")
+Crossing = Literal["refuse", "common-dispersion"]
+
+TOLERANCE = 1e-6
+"""Largest probability by which a worse state may be likelier than a lesser one in a file [-]."""
 
 
 @dataclass(frozen=True)
@@ -90,11 +97,7 @@ class FragilityCurve:
         >>> float(FragilityCurve("overturned", 3.0, 0.4).probability(3.0))
         0.5
         """
-        from scipy.special import ndtr
-
-        with np.errstate(divide="ignore"):
-            # Eq. 190
-            return np.asarray(ndtr(np.log(np.asarray(level, dtype=np.float64) / self.median) / self.dispersion))
+        return lognormal_probability(np.asarray(level, dtype=np.float64), self.median, self.dispersion)
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,10 +221,7 @@ def model_of(
     InvalidValueError
         If the method is unknown, no state has a curve, or there is no common dispersion.
     """
-    from rocking.studies.fragility.ordered import ORDERED_METHODS
-
-    if method not in ORDERED_METHODS:
-        raise InvalidValueError(f"method must be one of {', '.join(ORDERED_METHODS)}, got {method!r:.60}")
+    chosen = checks.one_of("method", method, ORDERED_METHODS)
     subject: Subject = analysis.subject
     found = {state: curve_of(state, fit) for state, fit in analysis.fits.items()}
     found = {
@@ -241,10 +241,10 @@ def model_of(
         source or analysis.definition, subject.uplift_threshold, about,
         {state: analysis.fits[state].verdict for state in without},
     )  # fmt: skip
-    return model if method == "separate" else with_common_dispersion(model)
+    return model if chosen == "separate" else with_common_dispersion(model)
 
 
-def curve_of(state: str, fit: "LognormalFit") -> FragilityCurve | None:
+def curve_of(state: str, fit: LognormalFit) -> FragilityCurve | None:
     """Return a fit as a curve.
 
     Returns none if the fit has no finite median and dispersion above zero.
@@ -260,7 +260,7 @@ def curve_of(state: str, fit: "LognormalFit") -> FragilityCurve | None:
 
 
 def with_evidence(
-    curve: FragilityCurve, fit: "LognormalFit", levels: FloatArray, bootstrap: int = 0, seed: int = 0
+    curve: FragilityCurve, fit: LognormalFit, levels: FloatArray, bootstrap: int = 0, seed: int = 0
 ) -> FragilityCurve:
     """Return a curve with its goodness of fit, and with intervals from the bootstrap where they are asked for.
 
@@ -300,3 +300,92 @@ def _common(curve: FragilityCurve, median: float, dispersion: float) -> Fragilit
     return replace(
         curve, median=median, dispersion=dispersion, method="common-dispersion", verdict=told.strip(), **none
     )
+
+
+def variables_of(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
+    """Return what is known of curves beside their parameters, over state.
+
+    Returns Dimensions, values and attributes by name; numbers are missing (NaN) where there is none or an end is open.
+    """
+    told = "95 % interval, missing where it is open, or there is none"
+    found: dict[str, Any] = {}
+    for name, of in (("median_95", unit), ("dispersion_95", "1")):
+        found[name] = (_BOTH, np.array([ends_of(getattr(curve, name)) for curve in curves]), _told(of, told))
+    agreements = [curve.agreement or Agreement() for curve in curves]
+    for name, words in STATISTICS.items():
+        value, p_value = np.array([each.numbers[name] for each in agreements]).T
+        found[name] = ("state", value, _told("1", words))
+        found[f"{name}_p_value"] = ("state", p_value, _told("1", f"p-value: {words}"))
+    found["agreement"] = ("state", np.array([each.words for each in agreements]))
+    return found | (_repeated(curves, levels, unit) if any(curve.repeated for curve in curves) else {})
+
+
+def _repeated(curves: Sequence[FragilityCurve], levels: int, unit: str) -> dict[str, Any]:
+    told = "95 % interval from the bootstrap, missing where it is open, or there is none"
+    each = [curve.repeated or Repeated() for curve in curves]
+    bands = np.array([one.band_at(levels) for one in each])
+    return {
+        "median_bootstrap_95": (_BOTH, np.array([ends_of(one.median_95) for one in each]), _told(unit, told)),
+        "dispersion_bootstrap_95": (
+            _BOTH,
+            np.array([ends_of(one.dispersion_95) for one in each]),
+            _told("1", told),
+        ),
+        "probability_bootstrap_95": (("state", "end", "level"), bands, _told("1", told)),
+        "bootstrap": ("state", np.array([one.words for one in each])),
+    }
+
+
+@dataclass(frozen=True)
+class Excess:
+    """Where the curve of a worse state lies highest above that of a lesser one."""
+
+    lesser: str  # lesser, worse: names of the states
+    worse: str
+    level: float  # where [unit of the measure]
+    size: float  # by how much [-]
+
+
+def largest_excess(model: FragilityModel, lowest: float, highest: float) -> Excess | None:
+    """Return where neighbouring curves are most out of order.
+
+    lowest, highest: levels between which they are compared, >= 0 [unit of the measure]. Returns none if no curve is
+    above the one before it.
+    """
+    found = None
+    for lesser, worse in zip(model.curves[:-1], model.curves[1:], strict=True):
+        with np.errstate(over="ignore", under="ignore"):
+            extremes = np.exp(difference_extremes(*((c.median, c.dispersion) for c in (lesser, worse))))
+        places = np.array([lowest, highest, *extremes[(extremes > lowest) & (extremes < highest)]])
+        apart = worse.probability(places) - lesser.probability(places)
+        k = int(np.argmax(apart))
+        if apart[k] > (0.0 if found is None else found.size):
+            found = Excess(lesser.state, worse.state, float(places[k]), float(apart[k]))
+    return found
+
+
+def nested(model: FragilityModel, crossing: Crossing = "refuse", highest: float | None = None) -> FragilityModel:
+    """Return curves that may be written: no worse state is likelier than a lesser one.
+
+    highest: largest level that readers of the file take; `FragilityModel.highest`, if not given [unit of the measure].
+    Returns the model itself if its curves do not cross, or the one with common dispersion if that was asked for.
+    """
+    if check_crossing(crossing) == "common-dispersion":
+        return with_common_dispersion(model)
+    worst = largest_excess(model, model.uplift_threshold or 0.0, model.highest if highest is None else highest)
+    if worst is None or worst.size <= TOLERANCE:
+        return model
+    raise InvalidValueError(
+        f"curves must not cross, but at {worst.level:.4g} {model.unit} {worst.worse!r} would be likelier than"
+        f" {worst.lesser!r} by {worst.size:.2g}, at most {TOLERANCE:g} is allowed; their dispersions differ:"
+        ' crossing="common-dispersion" fits one for all states'
+    )
+
+
+def check_crossing(crossing: Any) -> str:
+    """Return the way to treat curves that cross, or refuse what is none."""
+    return checks.one_of("crossing", crossing, get_args(Crossing))
+
+
+def _told(unit: str, words: str) -> dict[str, str]:
+    return {"units": unit, "long_name": words}

@@ -5,27 +5,17 @@ import re
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from rocking import checks, conventions
+from rocking import checks
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility._measures import spectral_period
-from rocking.studies.fragility.curves import FragilityModel
+from rocking.motions.intensity import MEASURES, spectral_measure, spectral_period
+from rocking.studies.fragility.curves import Crossing, FragilityModel, nested
 from rocking.studies.fragility.export import Destination
-from rocking.studies.fragility.nesting import Crossing, nested
 from rocking.tables import target_of
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 LOSS_CATEGORIES = ("structural", "nonstructural", "contents", "business_interruption", "occupants")
 
 _XML = re.compile("[\\t\\n\\r\\x20-\\ud7ff\\ue000-\\ufffd\\U00010000-\\U0010ffff]+")
-
-_TYPES = {
-    "pga": ("PGA", 1.0 / conventions.g),
-    "pgv": ("PGV", 100.0),
-    "pgd": ("PGD", 100.0),
-    "arias": ("IA", 1.0),
-    "cav": ("CAV", 1.0 / conventions.g),
-}
-"""Names of intensity measures there, and one SI unit in its: PGA and SA in g, PGV in cm/s, PGD in cm, CAV in g s."""
 
 
 def to_nrml(
@@ -109,14 +99,15 @@ def intensity_type(measure: str) -> tuple[str, float]:
     >>> intensity_type("pgv")
     ('PGV', 100.0)
     """
-    if measure in _TYPES:
-        return _TYPES[measure]
-    if (found := spectral_period(measure)) is not None and found[1] == 0.05:
-        return f"SA({found[0]!r})", 1.0 / conventions.g
-    raise InvalidValueError(
-        f"OpenQuake knows {', '.join(_TYPES)} and sa(period) with 5 % damping, got {measure!r:.60}; "
-        "fit the curves against one of these"
-    )
+    period = spectral_period(measure)
+    one = MEASURES.get(measure) if period is None else spectral_measure(*period)
+    if one is None or one.openquake is None:
+        known = ", ".join(name for name, each in MEASURES.items() if each.openquake)
+        raise InvalidValueError(
+            f"OpenQuake knows {known} and sa(period) with 5 % damping, got {measure!r:.60}; "
+            "fit the curves against one of these"
+        )
+    return one.openquake
 
 
 def moments_of_lognormal(median: float, dispersion: float) -> tuple[float, float]:

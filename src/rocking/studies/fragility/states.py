@@ -1,4 +1,8 @@
-"""How a history ended, in three states with levels between: no rocking, rocking beyond a level, overturned."""
+"""How a history ended, in three states with levels between, and the lognormal curve of each state.
+
+No rocking, rocking beyond a level, overturned. Whether a body rocks at all is certain once PGA is known: that is a
+check of the histories, not a curve.
+"""
 
 import math
 from collections.abc import Sequence
@@ -14,6 +18,9 @@ from rocking.dynamics.lost_contact import contact_words, lost_contact
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, of_results, overturned
 from rocking.quantities import attributes
+from rocking.statistics.counts import pooled
+from rocking.statistics.lognormal import LognormalFit, fit_counts
+from rocking.studies.fragility.subject import Subject
 
 
 @dataclass(frozen=True)
@@ -147,3 +154,53 @@ class Responses:
         """
         outcomes = Outcome.NO_UPLIFT, Outcome.ROCKED, Outcome.OVERTURNED
         return {outcome: int((self.outcome == outcome.code).sum()) for outcome in outcomes}
+
+
+@dataclass(frozen=True)
+class UpliftCheck:
+    """Whether the histories rocked exactly where rocking is known beforehand.
+
+    A body with equal sides under horizontal motions rocks if and only if PGA exceeds g tan(alpha): that is no matter of
+    probability, and no curve is fitted to it.
+    """
+
+    # level of the measure that lifts the body [unit of the measure]; None if no level of this measure decides
+    threshold: float | None
+    checked: int  # histories that were compared; those within 1e-9 of the threshold are not
+    contradictions: int  # histories that rocked below it or did not above it
+
+    @property
+    def verdict(self) -> str:
+        """The result in words."""
+        if self.threshold is None:
+            return "no level of this measure alone decides whether the body rocks"
+        return (
+            f"rocking is certain above {self.threshold:.6g} and impossible below: "
+            f"{self.contradictions} of {self.checked} histories contradict it"
+        )
+
+
+def uplift_check(subject: Subject, levels: FloatArray, responses: Responses) -> UpliftCheck:
+    """Compare which histories rocked with the threshold of uplift.
+
+    levels: level of the measure of each history [its unit].
+    """
+    threshold = subject.uplift_threshold
+    if threshold is None:
+        return UpliftCheck(None, 0, 0)
+    clear = responses.good & (np.abs(levels / threshold - 1.0) > 1e-9)
+    rocked = responses.exceed(LimitState("rocking", 0.0))
+    return UpliftCheck(threshold, int(clear.sum()), int((clear & (rocked != (levels > threshold))).sum()))
+
+
+def fits_of(
+    subject: Subject, states: Sequence[LimitState], levels: FloatArray, responses: Responses
+) -> dict[str, LognormalFit]:
+    """Return the lognormal curve of each state.
+
+    levels: level of the measure of each history [its unit].
+    """
+    wanted = [state for state in states if state.level > 0.0 or subject.uplift_threshold is None]
+    reached = [responses.exceed(state) == 1.0 for state in wanted]
+    counts = pooled(levels, responses.good, reached, subject.clusters)
+    return {state.name: fit_counts(each) for state, each in zip(wanted, counts, strict=True)}

@@ -17,7 +17,7 @@ from rocking.dynamics.response import Motion
 from rocking.dynamics.rocker import Rocker
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility._measures import IntensityMeasure, RockingScale, measure
+from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
 from rocking.studies.histories import Histories, HistoryTable, Product
 from rocking.studies.motion_set import MotionList, MotionSet, digest
 from rocking.version import SOFTWARE
@@ -68,10 +68,10 @@ class Subject:
 
         There is one for PGA, absolute or normalised, of a body with equal sides under horizontal motions.
         """
-        levels = {"pga": self.scale.threshold, "pga/(g tan alpha)": 1.0}
+        if self.measure.uplift is None:
+            return None
         equal = math.isclose(self.rocker.right.slenderness_angle, self.rocker.left.slenderness_angle, rel_tol=1e-12)
-        level = levels.get(self.measure.name)
-        return level if level is not None and equal and self._are_horizontal else None
+        return self.measure.uplift(self.scale) if equal and self._are_horizontal else None
 
     @cached_property
     def names(self) -> list[str]:

@@ -10,7 +10,7 @@ from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import peak_ground_acceleration, peak_ground_velocity
 from rocking.motions.motion import GroundMotion, checked_motion
-from rocking.motions.scaling import scaled_to_pga, scaled_to_pgv
+from rocking.motions.scaling import scaled_to
 from rocking.motions.synthetic.family import Family, whole
 from rocking.studies.record_set import SyntheticSet
 
@@ -157,8 +157,7 @@ class Hazard:
             The motions.
         """
         count = whole("count", count, 1, MOST_MOTIONS)
-        scale = {"pga": level.value} if level.kind == "PGA" else {"pgv": level.value}
-        motions = SyntheticSet(which, count, seed, **scale)
+        motions = SyntheticSet(which, count, seed, **{level.kind.lower(): level.value})
         made = []
         for k in range(count):
             made.append(motions[k])
@@ -249,8 +248,7 @@ class Hazard:
 def _scaled(record: GroundMotion, level: Level | None) -> GroundMotion:
     if level is None:
         return record
-    scale = scaled_to_pga if level.kind == "PGA" else scaled_to_pgv
     try:
-        return scale(record, level.value)
+        return scaled_to(record, level.kind.lower(), level.value)
     except InvalidValueError as error:
         raise InvalidValueError(f"{record.name!r:.80}: {error}") from error

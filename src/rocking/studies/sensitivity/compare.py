@@ -194,7 +194,7 @@ def fragility_sensitivity(
     Sensitivity
         Flips, and for every state the ratio of medians, difference of dispersions and distance of the curves.
     """
-    from rocking.studies.fragility.stripes import stripes_plan
+    from rocking.studies.fragility.multiple_stripe_analysis import stripes_plan
     from rocking.studies.fragility.subject import results_of
 
     threads, progress = options.pop("threads", None), options.pop("progress", None)

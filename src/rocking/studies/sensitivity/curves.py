@@ -9,7 +9,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, percent
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.estimate import LogScale, find_curves, log_dispersion, log_fractile
+from rocking.statistics.maximum_likelihood import LogScale, find_curves, log_dispersion, log_fractile
 
 _FEWEST = 0.975
 _WEIGHTS = 4_000_000

@@ -14,7 +14,7 @@ from rocking.app.studies.opened import OpenStudies, OpenStudy
 from rocking.app.studies.results import contours_of, plain, result_of
 from rocking.studies._overturning_map import overturning_map
 from rocking.studies._rocking_spectrum import rocking_spectrum
-from rocking.studies.fragility.stripes import multiple_stripes
+from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
 from rocking.studies.record_set import SyntheticSet
 
 Tables = dict[str, Any]

@@ -10,9 +10,9 @@ from rocking.campaigns.jobs import Job, analyses, export
 from rocking.campaigns.jobs.kinds import KINDS
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
-from rocking.studies.fragility._cloud import cloud
-from rocking.studies.fragility._incremental import incremental
-from rocking.studies.fragility.stripes import multiple_stripes
+from rocking.studies.fragility.cloud_analysis import cloud
+from rocking.studies.fragility.incremental_dynamic_analysis import incremental
+from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
 from rocking.studies.sensitivity import SampledRestitution
 
 xr = pytest.importorskip("xarray")

@@ -13,9 +13,8 @@ import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies.fragility._cloud import cloud, cloud_plan
-from rocking.studies.fragility.barely_lifted import ClearShare
-from rocking.studies.fragility.regression import regression
+from rocking.statistics.least_squares import regression
+from rocking.studies.fragility.cloud_analysis import ClearShare, cloud, cloud_plan
 from rocking.studies.fragility.states import Responses
 
 BLOCK = rk.Block(width=0.5, height=2.0)

@@ -10,8 +10,8 @@ from scipy import stats
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies.fragility._cloud import cloud, cloud_plan
-from rocking.studies.fragility.comparison import compare_measures, replace_measure
+from rocking.studies.fragility.cloud_analysis import cloud, cloud_plan
+from rocking.studies.fragility.measure_comparison import compare_measures, replace_measure
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 RANDOM = np.random.default_rng(11)

@@ -13,10 +13,17 @@ from scipy.io import loadmat
 import rocking as rk
 from rocking.errors import InvalidValueError, MissingExtraError, extra
 from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, model_of
-from rocking.studies.fragility.export import to_csv, to_excel, to_mat, to_netcdf
+from rocking.studies.fragility.export import (
+    fema_p58_table,
+    table,
+    to_csv,
+    to_excel,
+    to_mat,
+    to_netcdf,
+    with_added_dispersion,
+)
+from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
 from rocking.studies.fragility.nrml import intensity_type, moments_of_lognormal, to_nrml
-from rocking.studies.fragility.stripes import multiple_stripes
-from rocking.studies.fragility.tables import fema_p58_table, table, with_added_dispersion
 from rocking.tables import safe_cell
 
 CURVES = FragilityCurve("rotation > 0.5 alpha", 3.1, 0.25), FragilityCurve("overturned", 4.7, 0.4)

@@ -5,17 +5,14 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy import stats
 
 import rocking as rk
+from rocking.dynamics.impact_law import ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies.fragility._incremental import incremental, incremental_plan
-from rocking.studies.fragility.censored import fit_censored, fit_crossings, fit_moments
-from rocking.studies.fragility.crossings import OutcomeBrackets, brackets_of, intervals_of, refined
-from rocking.studies.fragility.stripes import multiple_stripes
+from rocking.studies.fragility.incremental_dynamic_analysis import incremental, incremental_plan
+from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
+from rocking.studies.fragility.overturning_intervals import OutcomeBrackets, brackets_of, intervals_of, refined
 
 BODY = rk.Block(width=0.4, height=1.6).with_feet(0.04, 0.4)
 PULSES = [rk.pulses.sine(1.0, period) for period in np.linspace(0.35, 0.9, 12)]
@@ -224,62 +221,6 @@ def test_many_brackets_are_halved_and_end_the_same():
     assert np.all(found.high - found.low <= 1e-10 * found.high)
 
 
-@settings(max_examples=15)
-@given(st.integers(0, 10**6), st.integers(0, 25))
-def test_censored_fit_against_scipy(seed, censored):
-    """Median and dispersion are those that scipy's own censored fit of a normal distribution finds."""
-    logs = np.random.default_rng(seed).normal(1.0, 0.4, 40)
-    limit = math.inf if censored == 0 else float(np.sort(logs)[40 - censored])
-    mask = logs >= limit
-    given_levels = np.exp(np.where(mask, min(limit, 50.0), logs))
-    mine = fit_censored(given_levels, mask)
-    data = stats.CensoredData.right_censored(np.log(given_levels), mask)
-    location, scale = stats.norm.fit(data) if mask.any() else (logs.mean(), logs.std())
-    # scipy's simplex search stops at 1e-4
-    assert math.log(mine.median) == pytest.approx(location, abs=3e-4)
-    assert mine.dispersion == pytest.approx(scale, abs=3e-4)
-    assert mine.censored == mask.sum()
-    assert ("censored" in mine.method) == mask.any()
-
-
-def test_censoring_matters():
-    """Negative control: leaving the censored motions out biases the median low; the fit with them does not."""
-    logs = np.random.default_rng(5).normal(0.0, 0.5, 4000)
-    mask = logs > 0.2
-    honest = fit_censored(np.exp(np.where(mask, 0.2, logs)), mask)
-    naive = fit_moments(np.exp(logs[~mask]))
-    # four standard errors of a mean of 4000, widened by censoring
-    assert abs(math.log(honest.median)) < 4.0 * 0.5 / math.sqrt(4000) * 1.5
-    assert math.log(naive.median) < -0.15
-
-
-def test_moments_and_their_limits():
-    """Mean and standard deviation of logarithms by hand; too few or equal levels are refused."""
-    fit = fit_moments(np.exp([0.0, 1.0, 2.0]))
-    assert (fit.median, fit.dispersion) == (pytest.approx(math.e, rel=1e-15), pytest.approx(1.0, rel=1e-15))
-    with pytest.raises(InvalidValueError):
-        fit_moments(np.array([1.0]))
-    with pytest.raises(InvalidValueError):
-        fit_censored(np.array([2.0, 2.0, 1.0]), np.array([False, False, True]))
-    with pytest.raises(InvalidValueError):
-        fit_censored(np.array([2.0, 3.0]), np.array([False, True]))
-    equal = fit_censored(np.array([2.0, 2.0, 3.0]), np.array([False, False, True]))
-    assert equal.median > 2.0
-    assert equal.probability(equal.median) == pytest.approx(0.5)
-    assert fit_moments(np.array([2.0, 2.0])).probability([1.9, 2.0]).tolist() == [0.0, 1.0]
-
-
-def test_crossings_with_and_without_bounds():
-    """All known: moments; some infinite: bounds at the highest level; too few or all equal: no fit."""
-    known = np.array([2.0, 3.0, 4.0])
-    assert fit_crossings(known, 9.0) == fit_moments(known)
-    bounded = fit_crossings(np.array([2.0, 3.0, math.inf]), 9.0)
-    assert bounded == fit_censored(np.array([2.0, 3.0, 9.0]), np.array([False, False, True]))
-    assert bounded.censored == 1
-    assert fit_crossings(np.array([2.0, math.inf]), 9.0) is None
-    assert fit_crossings(np.array([2.0, 2.0, math.inf]), 2.0) is None
-
-
 @pytest.mark.parametrize(
     "change", [{"tolerance": -1.0}, {"tolerance": 1.0}, {"levels": [3.0, 2.0]}, {"measure": "d5_95"}]
 )
@@ -287,3 +228,39 @@ def test_bad_questions_are_refused(change):
     """Nothing outside its range becomes a number."""
     with pytest.raises(InvalidValueError):
         incremental(**({"body": BODY, "motions": PULSES, "levels": [3.0, 4.0]} | change))
+
+
+BLOCK = rk.Block(width=0.4, height=1.6)
+FEW_LEVELS = np.linspace(2.0, 12.0, 11)
+
+
+def test_random_coefficients_have_no_crossing():
+    """Coefficients drawn anew for every history leave no crossing to search: refused, and stripes take them."""
+    law = rk.dynamics.RandomRestitution(np.array([0.9, 1.0]), seed=3)
+    with pytest.raises(InvalidValueError, match="drawn anew"):
+        incremental(BLOCK, PULSES, FEW_LEVELS, restitution=law)
+    assert multiple_stripes(BLOCK, PULSES, FEW_LEVELS, restitution=law).failed == 0
+
+
+class Slower(ImpactLaw):
+    """A law of one's own that always takes the coefficient."""
+
+    def factor(self, speed, key, impact):
+        return 1.0
+
+
+class Drawn(Slower):
+    """The same, which claims one draw a history."""
+
+    per_history = True
+
+
+def test_a_law_of_ones_own_is_taken_with_a_note():
+    """A factor of one gives the crossings of the plain coefficient, and the summary says what it takes for granted."""
+    own = incremental(BLOCK, PULSES[:2], [3.0, 6.0], restitution=Slower(), tolerance=1e-4)
+    plain = incremental(BLOCK, PULSES[:2], [3.0, 6.0], restitution=1.0, tolerance=1e-4)
+    np.testing.assert_allclose(own.first_crossings, plain.first_crossings, rtol=2e-4)
+    assert "law of one's own" in own.summary()["restitution note"]
+    assert plain.summary()["restitution note"] == ""
+    with pytest.raises(InvalidValueError, match="drawn anew"):
+        incremental(BLOCK, PULSES[:2], [3.0, 6.0], restitution=Drawn())

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.motions import intensity
-from rocking.studies.fragility._measures import RockingScale, measure, measures, spectral_measure, spectral_period
-from rocking.studies.fragility.sampling import sampled
+from rocking.motions.intensity import RockingScale, measure, measures, sampled, spectral_measure, spectral_period
 from rocking.studies.motion_set import MotionList
 
 BODY = RockingScale(threshold=2.5, frequency_parameter=1.6, gravity=9.80665)

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 import rocking as rk
+from rocking.motions.intensity import IntensityMeasure
 from rocking.outcome import Outcome
-from rocking.studies.fragility._cloud import cloud_plan
-from rocking.studies.fragility._measures import IntensityMeasure
-from rocking.studies.fragility.counts import count_outcomes
+from rocking.statistics.counts import count_outcomes, pooled
+from rocking.studies.fragility.cloud_analysis import cloud_plan
 from rocking.studies.fragility.curves import model_of
-from rocking.studies.fragility.pooling import pooled
-from rocking.studies.fragility.stripes import stripes_plan
+from rocking.studies.fragility.multiple_stripe_analysis import stripes_plan
 from rocking.studies.motion_set import MotionSet
 
 LEVELS = np.array([1.0, 2.0, 3.5, 5.0])
@@ -71,7 +70,7 @@ def test_many_motions_in_pieces(monkeypatch):
     good, reached, cluster = outcomes()
     levels = np.broadcast_to(LEVELS, good.shape)
     (whole,) = pooled(levels, good, [reached], cluster)
-    monkeypatch.setattr("rocking.studies.fragility.pooling._ROWS_AT_ONCE", 17)
+    monkeypatch.setattr("rocking.statistics.counts._ROWS_AT_ONCE", 17)
     (pieces,) = pooled(levels, good, [reached], cluster)
     assert np.array_equal(whole.distinct_clusters[0], pieces.distinct_clusters[0])
     assert np.array_equal(whole.distinct_clusters[1], pieces.distinct_clusters[1])

@@ -10,9 +10,9 @@ import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies.fragility.stripes import multiple_stripes, stripes_plan
+from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes, stripes_plan
+from rocking.studies.fragility.states import uplift_check
 from rocking.studies.fragility.subject import Subject, checked_levels
-from rocking.studies.fragility.uplift import uplift_check
 from rocking.studies.motion_set import MotionSet
 
 BLOCK = rk.Block(width=0.5, height=2.0)

@@ -14,9 +14,9 @@ from rocking.errors import InvalidValueError
 from rocking.spec.document import FragilityTable
 from rocking.spec.parts import Parts
 from rocking.spec.reading import located
-from rocking.studies.fragility._cloud import cloud_plan
-from rocking.studies.fragility._incremental import incremental_plan
-from rocking.studies.fragility.stripes import stripes_plan
+from rocking.studies.fragility.cloud_analysis import cloud_plan
+from rocking.studies.fragility.incremental_dynamic_analysis import incremental_plan
+from rocking.studies.fragility.multiple_stripe_analysis import stripes_plan
 from rocking.studies.fragility.subject import Subject
 from rocking.studies.histories import Product
 from rocking.studies.sensitivity.sampled import sampled

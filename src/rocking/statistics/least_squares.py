@@ -1,0 +1,134 @@
+"""A straight line through points, with what is known of its slope and scatter."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtr, stdtr
+
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+
+
+@dataclass(frozen=True, eq=False)
+class Regression:
+    """A line y = intercept + slope x by least squares.
+
+    Parameters
+    ----------
+    intercept, slope : float
+        The line [unit of y, and that over the unit of x].
+    scatter : float
+        Standard deviation of the residuals, with n - 2 degrees of freedom [unit of y].
+    slope_error : float
+        Standard error of the slope [unit of the slope].
+    determination : float
+        R squared: the share of the variance of y that the line explains [-].
+    residuals : ndarray
+        What is left of each y [unit of y].
+    """
+
+    intercept: float
+    slope: float
+    scatter: float
+    slope_error: float
+    determination: float
+    residuals: FloatArray
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return int(self.residuals.size)
+
+    def at(self, x: Any) -> FloatArray:
+        """Return the line.
+
+        Parameters
+        ----------
+        x : array_like
+            Places [unit of x].
+
+        Returns
+        -------
+        ndarray
+            Heights of the line [unit of y].
+        """
+        return np.asarray(self.intercept + self.slope * np.asarray(x, dtype=np.float64))
+
+    def probability_above(self, y: float, x: Any) -> FloatArray:
+        """Return the probability that a new point is above a height, for normal residuals.
+
+        Parameters
+        ----------
+        y : float
+            The height [unit of y].
+        x : array_like
+            Places [unit of x].
+
+        Returns
+        -------
+        ndarray
+            The probability, without the uncertainty of the line itself [-].
+        """
+        margin = self.at(x) - y
+        if self.scatter == 0.0:
+            return np.asarray(margin > 0.0, dtype=np.float64)
+        return np.asarray(ndtr(margin / self.scatter))  # Eq. 220
+
+    @property
+    def p_value(self) -> float:
+        """Probability of a slope at least this large if there were none: Student's t with n - 2 degrees of freedom."""
+        if self.slope_error == 0.0:
+            return 1.0 if self.slope == 0.0 else 0.0
+        return float(2.0 * stdtr(self.count - 2, -abs(self.slope) / self.slope_error))  # Eq. 219
+
+    def summary(self) -> dict[str, Any]:
+        """Return the line as plain values.
+
+        Returns
+        -------
+        dict
+            The numbers, the p-value of the slope and the number of points.
+        """
+        names = ("intercept", "slope", "scatter", "slope_error", "determination", "p_value", "count")
+        return {name: getattr(self, name) for name in names}
+
+
+def regression(x: FloatArray, y: FloatArray) -> Regression:
+    """Return the line of least squares.
+
+    Parameters
+    ----------
+    x, y : ndarray
+        At least three points, at different places [any units].
+
+    Returns
+    -------
+    Regression
+        The line.
+
+    Examples
+    --------
+    >>> line = regression(np.array([0.0, 1.0, 2.0]), np.array([1.0, 3.0, 5.0]))
+    >>> line.slope, line.intercept, line.scatter
+    (2.0, 1.0, 0.0)
+    """
+    count = int(np.size(x))
+    if count < 3 or np.shape(x) != np.shape(y):
+        raise InvalidValueError(
+            f"a line needs at least 3 points, got {count}; too few rocked, not barely, and stayed standing?"
+        )
+    if not (np.isfinite(x).all() and np.isfinite(y).all()):
+        raise InvalidValueError("points of a line must be finite, got NaN or infinity")
+    dx, dy = x - x.mean(), y - y.mean()
+    spread, total = float(dx @ dx), float(dy @ dy)
+    if not spread > (1e-12 * max(1.0, float(np.abs(x).max()))) ** 2 * count:
+        raise InvalidValueError(f"a line needs points at different places, got {count} at {float(x.mean()):g}")
+    slope = float(dx @ dy) / spread  # Eq. 218
+    residuals = dy - slope * dx
+    left = float(residuals @ residuals)
+    scatter = math.sqrt(left / (count - 2))  # Eq. 218
+    explained = 1.0 - left / total if total > 0.0 else 0.0
+    intercept = float(y.mean() - slope * x.mean())
+    return Regression(intercept, slope, scatter, scatter / math.sqrt(spread), explained, residuals)

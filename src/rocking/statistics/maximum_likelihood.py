@@ -1,0 +1,287 @@
+"""Likeliest curves of many data sets at once: damped Newton steps, each with the proof that it is a maximum.
+
+A curve is Phi(a + b u) with the position u of a level in a scale near one; standard errors are from the observed
+information, or from the scores of whole clusters.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, Self
+
+import numpy as np
+
+from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.statistics.counts import Counts
+from rocking.statistics.probit import Derivatives, PenalisedProbit, Probit, starts, tails
+from rocking.statistics.separation import Separation, classify
+
+DECREMENT = 1e-18
+"""Largest squared distance to the maximum, in standard errors, that counts as having arrived [-]."""
+
+SEARCH_STEPS = 60
+"""Most steps from each of several starts [-]."""
+
+STEPS = 200
+"""Most steps; a dozen are usual [-]."""
+
+DEFINITE = 1e-13
+"""Smallest determinant, over the product of the diagonal, of a curvature that counts as definite [-]."""
+
+LEAST = 1e-12
+"""Smallest share of the variance in any direction, so that the inverse of the covariance exists [-]."""
+
+FULLEST = 2_000_000
+"""Numbers that are held at once."""
+
+
+class Objective(Protocol):
+    """What can be maximised: many functions of the same few coefficients, one a row."""
+
+    def derivatives(self, theta: FloatArray) -> Derivatives:
+        """Return the values and derivatives.
+
+        theta: rows of coefficients [-].
+        """
+
+    def rows(self, index: Any) -> Self:
+        """Return some of the functions."""
+
+
+@dataclass(frozen=True, eq=False)
+class Maximum:
+    """Where many functions are largest."""
+
+    theta: FloatArray  # rows of coefficients [-]
+    value: FloatArray  # the functions there [-]
+    curvature: FloatArray  # minus their Hessians there [-]
+    decrement: FloatArray  # gradient times Newton step: the squared distance to the maximum in standard errors [-]
+    proven: BoolArray  # whether the decrement is below 1e-18 and the curvature positive definite there
+
+
+def maximise(objective: Objective, start: FloatArray, *, steps: int = STEPS) -> Maximum:
+    """Return the maxima of many functions, each of which must have one.
+
+    Of a function that grows without end the steps get lost far out, where gradient and curvature vanish alike: that the
+    maximum exists must be known beforehand.
+
+    start: rows of coefficients to start from [-].
+    """
+    theta = np.array(start, dtype=np.float64)
+    count, order = theta.shape
+    value, decrement = np.full(count, -np.inf), np.full(count, np.inf)
+    curvature = np.zeros((count, order, order))
+    active, step, factor = np.arange(count), np.zeros_like(theta), np.ones(count)
+    running = objective
+    for _ in range(steps):
+        trial = theta[active] + factor[:, None] * step
+        with np.errstate(over="ignore", invalid="ignore"):  # a trial too far out is refused for its value
+            at = running.derivatives(trial)
+        # rounding of the sum must not stop the last steps
+        better = at.value >= value[active] - 1e-12 * (1.0 + np.abs(at.value))
+        won = active[better]
+        theta[won], value[won], curvature[won] = trial[better], at.value[better], at.curvature[better]
+        step[better], decrement[won] = _newton_step(at.gradient[better], at.curvature[better])
+        factor = np.where(better, 1.0, 0.5 * factor)
+        keep = ~(better & (decrement[active] <= DECREMENT)) & (factor > 1e-12)
+        if not keep.all():
+            active, step, factor, running = active[keep], step[keep], factor[keep], running.rows(keep)
+        if not active.size:
+            break
+    proven = (decrement <= DECREMENT) & np.isfinite(value) & np.isfinite(theta).all(axis=1)
+    return Maximum(theta, value, curvature, decrement, proven)
+
+
+def maximise_from(objective: Objective, starts: FloatArray) -> Maximum:
+    """Return the largest of the maxima reached from several starts, for functions that may have more than one.
+
+    starts: coefficients to start from: first axis the starts, second the functions [-].
+    """
+    several, count, order = starts.shape
+    rows = objective.rows(np.tile(np.arange(count), several))
+    found = maximise(rows, starts.reshape(-1, order), steps=STEPS if several == 1 else SEARCH_STEPS)
+    value = np.where(found.proven, found.value, -np.inf).reshape(several, count)
+    best = np.argmax(value, axis=0) * count + np.arange(count)
+    return Maximum(*(part[best] for part in vars(found).values()))
+
+
+def _newton_step(gradient: FloatArray, curvature: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the step to the top of the parabola, or uphill where there is none, and the decrement."""
+    definite = positive_definite(curvature)
+    order = gradient.shape[1]
+    scale = np.trace(np.abs(curvature), axis1=1, axis2=2) + np.linalg.norm(gradient, axis=1) + 1e-150
+    uphill = scale[:, None, None] * np.eye(order)
+    step = _solve(np.where(definite[:, None, None], curvature, uphill), gradient)
+    return step, np.where(definite, np.sum(gradient * step, axis=1), np.inf)  # Eq. 199
+
+
+def positive_definite(matrix: FloatArray) -> BoolArray:
+    """Return which of many small symmetric matrices are positive definite beyond rounding."""
+    diagonal = np.diagonal(matrix, axis1=1, axis2=2)
+    finite: BoolArray = np.isfinite(matrix).all(axis=(1, 2)) & np.all(diagonal > 0.0, axis=1)
+    if matrix.shape[1] <= 2:
+        determinant = matrix[:, 0, 0] if matrix.shape[1] == 1 else _determinant(matrix)
+        return np.asarray(finite & (determinant > DEFINITE * np.prod(np.maximum(diagonal, 0.0), axis=1)))
+    safe = np.where(finite[:, None, None], matrix, np.eye(matrix.shape[1]))
+    lowest = np.linalg.eigvalsh(safe)[:, 0]
+    return np.asarray(finite & (lowest > DEFINITE * np.max(np.diagonal(safe, axis1=1, axis2=2), axis=1)))
+
+
+def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve many small systems; sizes one and two by Cramer's rule, a hundred times faster than one by one."""
+    if matrix.shape[1] == 1:
+        return right / matrix[:, 0]
+    if matrix.shape[1] > 2:
+        return np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0], dtype=np.float64)
+    first = matrix[:, 1, 1] * right[:, 0] - matrix[:, 0, 1] * right[:, 1]
+    second = matrix[:, 0, 0] * right[:, 1] - matrix[:, 1, 0] * right[:, 0]
+    return np.stack([first, second], axis=1) / _determinant(matrix)[:, None]
+
+
+def _determinant(matrix: FloatArray) -> FloatArray:
+    return matrix[:, 0, 0] * matrix[:, 1, 1] - matrix[:, 0, 1] * matrix[:, 1, 0]
+
+
+@dataclass(frozen=True)
+class LogScale:
+    """From logarithms of levels to numbers near one: u = (ln level - center) / spread."""
+
+    center: float  # center, spread: mean and standard deviation of the logarithms over the trials [-]
+    spread: float
+
+    @classmethod
+    def of(cls, counts: Counts) -> "LogScale":
+        """Return the scale of some data."""
+        logarithm = np.log(counts.levels)
+        center = float(np.average(logarithm, weights=counts.trials))
+        return cls(center, float(np.sqrt(np.average((logarithm - center) ** 2, weights=counts.trials))))
+
+    def position(self, levels: FloatArray) -> FloatArray:
+        """Return u.
+
+        levels: levels, > 0 [any unit]. Returns their positions [-].
+        """
+        return (np.log(levels) - self.center) / self.spread  # Eq. 191
+
+    def log_level(self, position: FloatArray) -> FloatArray:
+        """Return the logarithms of levels.
+
+        position: u [-]. Returns ln level [-].
+        """
+        return self.center + self.spread * position
+
+
+@dataclass(frozen=True, eq=False)
+class FittedCurves:
+    """Curves Phi(a + b u) found in many data sets of the same levels."""
+
+    theta: FloatArray  # rows of a and b; NaN where there is no rising curve [-]
+    curvature: FloatArray  # observed information of each [-]
+    value: FloatArray  # log likelihood of each, penalised where that was maximised [-]
+    found: BoolArray  # whether a rising curve was found and proven to be a maximum
+    penalised: BoolArray  # whether the penalised likelihood was maximised
+    separation: IntArray  # `Separation.number` of each data set
+
+
+def find_curves(
+    levels: FloatArray, scale: LogScale, failures: FloatArray, trials: FloatArray, *, penalised: bool = False
+) -> FittedCurves:
+    """Return the likeliest curves of many data sets; of those with a step, the penalised one.
+
+    levels: distinct levels, ascending [any unit]; failures, trials: one row a data set, one column a level [-].
+    """
+    kinds = classify(levels, failures, trials)
+    step = np.isin(kinds, [kind.number for kind in Separation if kind.step])
+    overlap = kinds == Separation.OVERLAP.number
+    count = kinds.size
+    firth = (overlap | step) if penalised else step
+    theta, value = np.full((count, 2), np.nan), np.full(count, np.nan)
+    curvature, found = np.full((count, 2, 2), np.nan), np.zeros(count, dtype=bool)
+    position = scale.position(levels)[None]
+    for model, which in ((Probit, overlap & ~firth), (PenalisedProbit, firth)):
+        start = np.zeros((1, 2)) if model.concave else starts(position[0])
+        for rows in _pieces(np.flatnonzero(which), levels.size * len(start)):
+            data = model(position, failures[rows], trials[rows] - failures[rows])
+            best = maximise_from(data, np.repeat(start[:, None], rows.size, axis=1))
+            theta[rows], curvature[rows], value[rows] = best.theta, best.curvature, best.value
+            found[rows] = best.proven & (best.theta[:, 1] > 0.0)
+    theta[~found] = np.nan
+    return FittedCurves(theta, curvature, value, found, firth, kinds)
+
+
+def _pieces(rows: IntArray, width: int, held: int = 400_000) -> list[IntArray]:
+    """Return the rows in pieces of so many numbers that arrays stay small."""
+    size = max(1, held // width)
+    return [rows[start : start + size] for start in range(0, rows.size, size)]
+
+
+def log_fractile(theta: FloatArray, scale: LogScale, variate: float | FloatArray) -> FloatArray:
+    """Return the logarithm of the level where curves reach a probability.
+
+    theta: rows of a and b [-]; variate: standard normal variate of the probability [-]. Returns ln level [-].
+    """
+    return scale.log_level((variate - theta[:, 0]) / theta[:, 1])  # Eq. 192
+
+
+def log_dispersion(theta: FloatArray, scale: LogScale) -> FloatArray:
+    """Return the logarithm of the dispersion of curves.
+
+    theta: rows of a and b, b > 0 [-]. Returns ln beta [-].
+    """
+    return np.log(scale.spread / theta[:, 1])  # Eq. 193
+
+
+def standard_errors(theta: FloatArray, curvature: FloatArray, scale: LogScale, variate: float | None) -> FloatArray:
+    """Return the standard errors of a logarithmic fractile or of the logarithmic dispersion.
+
+    theta: rows of a and b [-]; curvature: their observed information [-]; variate: standard normal variate of the
+    fractile; the dispersion without [-]. Returns standard errors [-].
+    """
+    a, b = theta[:, 0], theta[:, 1]
+    if variate is None:
+        slope = np.stack([np.zeros_like(b), -1.0 / b], axis=1)
+    else:
+        slope = scale.spread * np.stack([-1.0 / b, (a - variate) / b**2], axis=1)
+    return quadratic_error(slope, curvature)
+
+
+def quadratic_error(slope: FloatArray, curvature: FloatArray) -> FloatArray:
+    """Return the standard errors of functions of the coefficients (delta method).
+
+    slope: rows of derivatives with respect to a and b [-]; curvature: observed information, one matrix a row [-].
+    Returns standard errors [-].
+    """
+    h = curvature
+    determinant = h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2
+    first, second = slope[:, 0], slope[:, 1]
+    form = h[:, 1, 1] * first**2 - 2.0 * h[:, 0, 1] * first * second + h[:, 0, 0] * second**2
+    return np.asarray(np.sqrt(form / determinant))  # Eq. 207
+
+
+def with_cluster_errors(counts: Counts, scale: LogScale, curves: FittedCurves, drawn: FloatArray) -> FittedCurves:
+    """Return curves whose curvature is the inverse of the covariance between clusters.
+
+    The covariance is H^-1 M H^-1, with the information H and the sum M of the squared scores of whole clusters (Liang &
+    Zeger 1986, Biometrika 73:13): that of the likelihood, H^-1, holds for independent outcomes only.
+
+    drawn: how often each distinct cluster is in each data set, one row a data set [-].
+    """
+    curvature = np.full_like(curves.curvature, np.nan)
+    good = np.flatnonzero(curves.found)
+    for rows in _pieces(good, max(1, drawn.shape[1]), FULLEST):
+        spread = _scores_squared(counts, scale, curves.theta[rows], drawn[rows])
+        inverse = np.linalg.inv(curves.curvature[rows])
+        covariance = inverse @ spread @ inverse  # Eq. 212
+        least = LEAST * np.trace(covariance, axis1=1, axis2=2) + np.finfo(float).tiny ** 0.25
+        curvature[rows] = np.linalg.inv(covariance + least[:, None, None] * np.eye(2))
+    return replace(curves, curvature=curvature)
+
+
+def _scores_squared(counts: Counts, scale: LogScale, theta: FloatArray, drawn: FloatArray) -> FloatArray:
+    position = scale.position(counts.levels)
+    failures, trials = np.split(counts.distinct_clusters[0], 2, axis=1)
+    tail = tails(theta[:, :1] + theta[:, 1:] * position)
+    up, down = (
+        (tail.failure_rate * weight) @ failures.T - (tail.survival_rate * weight) @ (trials - failures).T
+        for weight in (np.ones_like(position), position)
+    )
+    first, mixed, last = (np.sum(drawn * a * b, axis=1) for a, b in ((up, up), (up, down), (down, down)))
+    return np.stack([np.stack([first, mixed], axis=1), np.stack([mixed, last], axis=1)], axis=1)

@@ -1,0 +1,270 @@
+"""Nested states of one body: no rocking, rocking to a level, overturned; their lognormal curves.
+
+Fitted one by one, two curves of different dispersion cross at some level, beyond which overturning would be likelier
+than rocking: where, and by how much, is reported. By one likelihood of all states, with one dispersion, they never
+cross.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Literal, Self, get_args
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.statistics.confidence_intervals import levels_of
+from rocking.statistics.counts import StateCounts, count_states
+from rocking.statistics.lognormal import LognormalFit, fit_lognormal, lognormal_probability
+from rocking.statistics.maximum_likelihood import LogScale, maximise
+from rocking.statistics.probit import Derivatives, tails
+
+Curve = tuple[float, float]
+"""Median [unit of the levels] and dispersion [-]."""
+
+OrderedMethod = Literal["separate", "common-dispersion"]
+ORDERED_METHODS: tuple[OrderedMethod, ...] = get_args(OrderedMethod)
+
+
+@dataclass(frozen=True, eq=False)
+class OrderedProbit:
+    """Log likelihood of states with falling thresholds a1 > a2 > ... and one slope b, concave in all (Pratt 1981)."""
+
+    position: FloatArray  # positions of the levels [-]
+    ended: FloatArray  # how many trials ended in each state at each level, the harmless one first; one row a state [-]
+
+    def rows(self, index: Any) -> Self:
+        """Return itself: it is one function."""
+        return self
+
+    def derivatives(self, theta: FloatArray) -> Derivatives:
+        """Return the value and derivatives.
+
+        theta: one row: the thresholds, and the slope [-].
+        """
+        thresholds, slope = theta[0, :-1], theta[0, -1]
+        if np.any(np.diff(thresholds) >= 0.0):
+            order = theta.shape[1]
+            return Derivatives(np.array([-np.inf]), np.zeros((1, order)), np.zeros((1, order, order)))
+        eta = thresholds[:, None] + slope * self.position
+        top, bottom = tails(eta[0]), tails(eta[-1])
+        high, low, between = eta[:-1], eta[1:], self.ended[1:-1]
+        width = _log_difference(high, low)
+        p, q = (np.exp(-0.5 * x**2 - 0.5 * np.log(2.0 * np.pi) - width) for x in (high, low))
+        value = np.sum(self.ended[0] * top.log_survival + self.ended[-1] * bottom.log_failure)
+        first, bend = np.zeros_like(eta), np.zeros_like(eta)
+        first[0] -= self.ended[0] * top.survival_rate
+        first[-1] += self.ended[-1] * bottom.failure_rate
+        first[:-1] += between * p
+        first[1:] -= between * q
+        bend[0] += self.ended[0] * top.survival_bend
+        bend[-1] += self.ended[-1] * bottom.failure_bend
+        bend[:-1] += between * p * (high + p)
+        bend[1:] += between * q * (q - low)
+        return self._collected(float(value + np.sum(between * width)), first, bend, -between * p * q)  # Eq. 216
+
+    def _collected(self, value: float, first: FloatArray, bend: FloatArray, across: FloatArray) -> Derivatives:
+        """Return the derivatives by thresholds and slope from those by the variate of each curve at each level."""
+        count = first.shape[0]
+        moves = np.zeros((count, count + 1, self.position.size))
+        moves[np.arange(count), np.arange(count)] = 1.0
+        moves[:, -1] = self.position
+        gradient = np.einsum("kpm,km->p", moves, first)
+        curvature = np.einsum("kpm,km,kqm->pq", moves, bend, moves)
+        mixed = np.einsum("kpm,km,kqm->pq", moves[:-1], across, moves[1:])
+        return Derivatives(np.array([value]), gradient[None], (curvature + mixed + mixed.T)[None])
+
+
+def nested_curves(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> list[Curve]:
+    """Return the curves of nested states with one dispersion for all.
+
+    levels: distinct levels, ascending [any unit]; reached: how many trials reached each state or a worse one at each
+    level, from the least state to the worst [-]; trials: all trials at each level [-]. Returns median [unit of the
+    levels] and dispersion [-] of each state.
+    """
+    fits = [fit_lognormal(levels, counts, trials) for counts in reached]
+    same = any(np.array_equal(one, other) for one, other in pairwise(reached))
+    if same or any(fit.method != "maximum-likelihood" for fit in fits):
+        raise InvalidValueError(
+            "method must not be 'common-dispersion' unless all states overlap with what is below them, and some trials"
+            f" end in each; {' '.join(f'state {k}: {fit.verdict}' for k, fit in enumerate(fits, 1))}"
+        )
+    scale = LogScale.of(fits[0].counts)
+    ended = -np.diff(np.vstack([trials, reached, np.zeros_like(trials)]), axis=0)
+    best = maximise(OrderedProbit(scale.position(levels), ended), _start(fits, scale))
+    *thresholds, slope = best.theta[0]
+    if not best.proven[0] or slope <= 0.0:
+        raise InvalidValueError("outcomes must fix one dispersion, got a likelihood whose maximum cannot be proven")
+    return [(float(np.exp(scale.log_level(np.array(-a / slope)))), float(scale.spread / slope)) for a in thresholds]
+
+
+def _start(fits: list[LognormalFit], scale: LogScale) -> FloatArray:
+    medians, dispersions = zip(*((fit.intervals.fractile(0.5), fit.intervals.dispersion) for fit in fits), strict=True)
+    slope = scale.spread / float(np.mean(dispersions))
+    start = [-float(scale.position(np.array(median))) * slope for median in medians]
+    for k in range(1, len(start)):
+        start[k] = min(start[k], start[k - 1] - 0.1)
+    return np.array([[*start, slope]])
+
+
+def _log_difference(high: FloatArray, low: FloatArray) -> FloatArray:
+    """Return ln(Phi(high) - Phi(low)) without cancellation in the upper tail."""
+    flip = low > 0.0
+    above, below = np.where(flip, -low, high), np.where(flip, -high, low)
+    larger, smaller = tails(above).log_failure, tails(below).log_failure
+    return np.asarray(larger + np.log(-np.expm1(smaller - larger)))  # Eq. 216
+
+
+@dataclass(frozen=True, eq=False)
+class OrderedFit:
+    """Curves of rocking at least and of overturning; `fit_ordered` makes one.
+
+    Parameters
+    ----------
+    counts : StateCounts
+        The outcomes.
+    separate : tuple of LognormalFit
+        Rocking at least, and overturning, each fitted by itself.
+    method : {"separate", "common-dispersion"}
+        How `rocked` and `overturned` were found.
+    rocked, overturned : tuple of float, optional
+        Median [unit of the levels] and dispersion [-] of rocking at least and of overturning; None where there is none.
+    """
+
+    counts: StateCounts
+    separate: tuple[LognormalFit, LognormalFit]
+    method: str
+    rocked: Curve | None
+    overturned: Curve | None
+
+    @property
+    def crossing(self) -> float | None:
+        """Level where the curves cross; None if they do not, or one is missing [unit of the levels]."""
+        if self.rocked is None or self.overturned is None:
+            return None
+        (m, s), (n, t) = self.rocked, self.overturned
+        if s == t:
+            return None
+        with np.errstate(over="ignore", under="ignore"):
+            level = float(np.exp((t * np.log(m) - s * np.log(n)) / (t - s)))
+        return level if 0.0 < level < np.inf else None
+
+    @property
+    def excess(self) -> float | None:
+        """By how much overturning is likelier than rocking, at worst among the levels tried [-]."""
+        if self.rocked is None or self.overturned is None:
+            return None
+        ends = np.log(self.counts.levels[[0, -1]])
+        places = np.concatenate([ends, np.clip(difference_extremes(self.rocked, self.overturned), *ends)])
+        over, rocked = (lognormal_probability(np.exp(places), *curve) for curve in (self.overturned, self.rocked))
+        apart = over - rocked
+        return max(0.0, float(apart.max()))
+
+    @property
+    def verdict(self) -> str:
+        """What can be claimed, in plain words."""
+        parts = [f"{name}: {fit.verdict}" for name, fit in zip(("Rocking", "Overturning"), self.separate, strict=True)]
+        excess, crossing = self.excess, self.crossing
+        if excess is None:
+            parts.append("There are not two curves to compare.")
+        elif crossing is None:
+            parts.append("The curves do not cross.")
+        elif excess > 0.0:
+            parts.append(
+                f"The curves cross at {crossing:.4g}, among the levels tried, and overturning would be likelier than"
+                f" rocking by up to {excess:.2g}: take one dispersion for both."
+            )
+        else:
+            parts.append(f"The curves cross at {crossing:.4g}, outside the levels tried.")
+        return " ".join(parts)
+
+    def probabilities(self, im: Any) -> FloatArray:
+        """Return the probabilities of the three states.
+
+        Parameters
+        ----------
+        im : array_like
+            Levels of the intensity measure, >= 0 [unit of the levels].
+
+        Returns
+        -------
+        ndarray
+            No rocking, rocking, overturned along the last axis, adding up to one; beyond a crossing, overturning is
+            held to the probability of rocking at least [-].
+
+        Raises
+        ------
+        InvalidValueError
+            If a curve is missing.
+        """
+        if self.rocked is None or self.overturned is None:
+            raise InvalidValueError(f"two fragility curves are needed, got fewer: {self.verdict}")
+        level, _ = levels_of(im)
+        rocked = lognormal_probability(level, *self.rocked)
+        worst = np.minimum(lognormal_probability(level, *self.overturned), rocked)
+        return np.stack([1.0 - rocked, rocked - worst, worst], axis=-1)  # Eq. 217
+
+
+def fit_ordered(
+    levels: Any, rocked: Any, overturned: Any, trials: Any = None, *, method: OrderedMethod = "separate"
+) -> OrderedFit:
+    """Fit the curves of rocking at least and of overturning.
+
+    Parameters
+    ----------
+    levels : array_like
+        Level of the intensity measure of each entry, in any order, > 0 [any unit].
+    rocked : array_like
+        How many trials of each entry rocked to the chosen level or further, the overturned ones among them [-].
+    overturned : array_like
+        How many trials of each entry overturned [-].
+    trials : array_like, optional
+        How many trials each entry holds, at least 1; 1 each by default [-].
+    method : {"separate", "common-dispersion"}
+        Each curve by itself, or both with one dispersion by the likelihood of all three states (ordered probit).
+
+    Returns
+    -------
+    OrderedFit
+        The curves, and where they cross.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is refused, or one dispersion is asked for where the likelihood has no maximum.
+
+    Examples
+    --------
+    >>> counts = {"rocked": [2, 9, 18, 20], "overturned": [0, 3, 9, 16], "trials": [20] * 4}
+    >>> fit = fit_ordered([0.2, 0.4, 0.6, 0.8], **counts, method="common-dispersion")
+    >>> fit.crossing is None, fit.rocked[1] == fit.overturned[1]
+    (True, True)
+    """
+    chosen = checks.one_of("method", method, ORDERED_METHODS)
+    counts = count_states(levels, rocked, overturned, trials)
+    least, worst = (fit_lognormal(counts.levels, z, counts.trials) for z in (counts.rocked, counts.overturned))
+    if chosen == "separate":
+        return OrderedFit(counts, (least, worst), chosen, _curve(least), _curve(worst))
+    curves = nested_curves(counts.levels, np.stack([counts.rocked, counts.overturned]), counts.trials)
+    return OrderedFit(counts, (least, worst), chosen, curves[0], curves[1])
+
+
+def _curve(fit: LognormalFit) -> Curve | None:
+    return (fit.intervals.fractile(0.5), fit.intervals.dispersion) if fit.exists else None
+
+
+def difference_extremes(first: Curve, second: Curve) -> FloatArray:
+    """Return where the difference of two lognormal curves is extreme: there their densities are equal.
+
+    first, second: median [any unit] and dispersion [-] of each. Returns ln level, of none, one or two places [-].
+
+    >>> difference_extremes((1.0, 0.5), (1.0, 0.25)).round(4).tolist()
+    [-0.3399, 0.3399]
+    """
+    (m, s), (n, t) = (first, second)
+    x, y = 1.0 / s**2, 1.0 / t**2
+    u, v = np.log(m), np.log(n)
+    # (z - u)^2 / s^2 - (z - v)^2 / t^2 + 2 ln(s / t) = 0
+    roots = np.roots([x - y, -2.0 * (u * x - v * y), u * u * x - v * v * y + 2.0 * np.log(s / t)])  # Eq. 189
+    return np.asarray(roots.real[np.abs(roots.imag) <= 1e-9 * np.maximum(1.0, np.abs(roots.real))], dtype=np.float64)

@@ -1,0 +1,221 @@
+"""Probit likelihood of many data sets at once, safe however far in the tails a curve is tried; plain and penalised.
+
+Firth's penalised likelihood is the likelihood times Jeffreys' prior, whose maximum exists for separated data too:
+D. Firth, Bias reduction of maximum likelihood estimates, Biometrika 80 (1993) 27-38; for probit, I. Kosmidis and
+D. Firth, Jeffreys-prior penalty, finiteness and shrinkage in binomial-response generalized linear models, Biometrika
+108 (2021) 71-82, who prove that the estimates are always finite. For probit the prior takes most of the bias of
+maximum likelihood away, not exactly its leading term as it does for the logit.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+from scipy.special import erfcx
+
+from rocking.conventions import FloatArray
+
+FAR = 300.0
+"""Beyond this many standard deviations the curvature comes from its series: the closed form cancels [-]."""
+
+WIDEST = 1 << 16
+"""Levels that are looked at together: what is in between takes a hundred bytes of each."""
+
+SLOPES = np.array([0.3, 1.0, 3.0, 10.0, 30.0])
+"""Slopes b that the search for the maximum starts from [-]."""
+
+PLACES = 9
+"""Number of positions that the search starts from [-]."""
+
+
+class Tails(NamedTuple):
+    """The normal distribution at one place, seen from both sides: failing below it, surviving above it."""
+
+    log_failure: FloatArray  # log_failure, log_survival: ln Phi(eta) and ln Phi(-eta) [-]
+    log_survival: FloatArray
+    # failure_rate, survival_rate: phi(eta) / Phi(eta) and phi(eta) / Phi(-eta): slopes of the two logarithms, up to
+    # sign [-]
+    failure_rate: FloatArray
+    survival_rate: FloatArray
+    # failure_bend, survival_bend: minus the second derivatives of the two logarithms, between 0 and 1 [-]
+    failure_bend: FloatArray
+    survival_bend: FloatArray
+
+
+def tails(eta: FloatArray) -> Tails:
+    """Return logarithms, slopes and curvatures of both tails of the normal distribution.
+
+    eta: standard normal variate [-]. Returns relative errors near 1e-15, and near 1e-11 in the curvature of the far
+    tail.
+
+    >>> float(tails(np.array(-1e4)).log_failure)
+    -50000010.12927891
+    """
+    t = np.abs(eta)
+    scaled = erfcx(np.sqrt(0.5) * t)
+    bell = np.exp(-0.5 * t * t)
+    tail = 0.5 * scaled * bell
+    log_tail, log_body = np.log(0.5 * scaled) - 0.5 * t * t, np.log1p(-tail)  # Eq. 198
+    tail_rate = np.sqrt(2.0 / np.pi) / scaled
+    body_rate = bell / np.sqrt(2.0 * np.pi) / (1.0 - tail)
+    tail_bend = tail_rate * (tail_rate - t)
+    if t.size and t.max() > FAR:
+        u = 1.0 / np.maximum(t, FAR) ** 2
+        tail_bend = np.where(t > FAR, 1.0 - u + 6.0 * u * u, tail_bend)
+    body_bend = body_rate * (body_rate + t)
+    low = eta < 0.0
+    both = ((log_tail, log_body), (tail_rate, body_rate), (tail_bend, body_bend))
+    return Tails(*(np.where(low, *pair) if first else np.where(low, *pair[::-1]) for pair in both for first in (1, 0)))
+
+
+class Derivatives(NamedTuple):
+    """A function of a few coefficients, and its first and second derivatives, one row a data set."""
+
+    value: FloatArray  # the function [-]
+    gradient: FloatArray  # its gradient; the last axis is the coefficient [-]
+    curvature: FloatArray  # minus its Hessian; positive definite where the function is strictly concave [-]
+
+
+@dataclass(frozen=True, eq=False)
+class Probit:
+    """Log likelihood of failing with probability Phi(a + b u), one row a data set.
+
+    It is concave in (a, b), strictly so once two levels hold data: a stationary point is the one maximum. The binomial
+    coefficients are left out, so that pooling equal levels changes nothing.
+    """
+
+    position: FloatArray  # u, the logarithms of the levels in a scale near one; one row, or one row a data set [-]
+    # failures, survivals: trials that failed and survived at each level; one row, or one row a data set [-]
+    failures: FloatArray
+    survivals: FloatArray
+    concave: ClassVar[bool] = True
+
+    def rows(self, index: Any) -> Self:
+        """Return the same likelihood of some of the data sets."""
+        fields = (self.position, self.failures, self.survivals)
+        return type(self)(*(field if field.shape[0] == 1 else field[index] for field in fields))
+
+    def eta(self, theta: FloatArray) -> FloatArray:
+        """Return a + b u.
+
+        theta: rows of a and b [-]. Returns rows of standard normal variates [-].
+        """
+        return theta[:, :1] + theta[:, 1:2] * self.position  # Eq. 190
+
+    def derivatives(self, theta: FloatArray) -> Derivatives:
+        """Return the log likelihood with its gradient and minus its Hessian, the observed information.
+
+        theta: rows of a and b [-].
+        """
+        if self.position.shape[1] > WIDEST:
+            parts = [part.derivatives(theta) for part in self._columns()]
+            return Derivatives(*(np.asarray(np.sum(each, axis=0)) for each in zip(*parts, strict=True)))
+        return self._of(tails(self.eta(theta)))
+
+    def _of(self, at: Tails) -> Derivatives:
+        # Eq. 194
+        value = np.sum(_times(self.failures, at.log_failure) + _times(self.survivals, at.log_survival), axis=1)
+        slope = self.failures * at.failure_rate - self.survivals * at.survival_rate  # Eq. 195
+        bend = self.failures * at.failure_bend + self.survivals * at.survival_bend  # Eq. 196
+        return Derivatives(value, self._moments(slope, 2), _matrix(self._moments(bend, 3)))
+
+    def _columns(self) -> Iterator[Self]:
+        """Return the same likelihood in parts of the levels."""
+        for first in range(0, self.position.shape[1], WIDEST):
+            part = slice(first, first + WIDEST)
+            yield type(self)(self.position[:, part], self.failures[:, part], self.survivals[:, part])
+
+    def information(self, theta: FloatArray) -> FloatArray:
+        """Return the expected (Fisher) information.
+
+        theta: rows of a and b [-]. Returns one matrix a row [-].
+        """
+        at = tails(self.eta(theta))
+        weight = (self.failures + self.survivals) * at.failure_rate * at.survival_rate  # Eq. 197
+        return _matrix(self._moments(weight, 3))
+
+    def _moments(self, weight: FloatArray, count: int) -> FloatArray:
+        """Return the sums over levels of a weight times u to the powers 0 to count - 1."""
+        sums = [weight.sum(axis=1)]
+        for _ in range(count - 1):
+            weight = weight * self.position
+            sums.append(weight.sum(axis=1))
+        return np.stack(sums, axis=1)
+
+
+def _times(count: FloatArray, logarithm: FloatArray) -> FloatArray:
+    """Return the product where 0 times minus infinity is 0: nobody was there to fail."""
+    if np.isfinite(logarithm).all():
+        return count * logarithm
+    return np.where(count > 0.0, count * np.where(count > 0.0, logarithm, 0.0), 0.0)
+
+
+def _matrix(moments: FloatArray) -> FloatArray:
+    return moments[:, [[0, 1], [1, 2]]]
+
+
+def places(position: FloatArray) -> FloatArray:
+    """Return positions, spread evenly over the levels and the gaps between, where a curve may reach one half.
+
+    position: u, ascending [-]. Returns positions [-].
+    """
+    known = np.sort(np.concatenate([position, 0.5 * (position[1:] + position[:-1])]))
+    return known[np.linspace(0, known.size - 1, PLACES).round().astype(np.int64)]
+
+
+def starts(position: FloatArray) -> FloatArray:
+    """Return coefficients to start from, since the penalised likelihood may have more than one maximum.
+
+    position: u, ascending [-]. Returns rows of a and b [-].
+    """
+    place, slope = (part.ravel() for part in np.meshgrid(places(position), SLOPES))
+    return np.stack([-slope * place, slope], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class PenalisedProbit(Probit):
+    """Log likelihood plus half the logarithm of the determinant of the Fisher information, one row a data set.
+
+    It need not be concave: a maximum that is found is proven to be a local one, the largest from all `starts`.
+    """
+
+    concave: ClassVar[bool] = False
+
+    def derivatives(self, theta: FloatArray) -> Derivatives:
+        """Return the penalised log likelihood with its gradient and minus its Hessian.
+
+        theta: rows of a and b [-]. Returns one row a data set; minus infinity where the information vanishes.
+        """
+        eta = self.eta(theta)
+        at = tails(eta)
+        plain, penalty = self._of(at), self._penalty(eta, at)
+        return Derivatives(*(first + second for first, second in zip(plain, penalty, strict=True)))
+
+    def _penalty(self, eta: FloatArray, at: Tails) -> Derivatives:
+        """Return half the logarithm of the determinant M0 M2 - M1^2, and its derivatives."""
+        weight = (self.failures + self.survivals) * at.failure_rate * at.survival_rate
+        # logarithmic derivatives of phi^2 / (Phi (1 - Phi)): first q, then q'
+        q = at.survival_rate - at.failure_rate - 2.0 * eta
+        q_slope = at.failure_bend + at.survival_bend - 2.0
+        m = self._moments(weight, 3)
+        first, second = self._moments(weight * q, 4), self._moments(weight * (q * q + q_slope), 5)
+        determinant = m[:, 0] * m[:, 2] - m[:, 1] ** 2  # Eq. 202
+        vanished = ~(determinant > 1e-250)
+        determinant = np.where(vanished, 1.0, determinant)
+        gradient = np.stack([_slope(m, first, i) for i in range(2)], axis=1) / determinant[:, None]
+        bend = np.stack([np.stack([_bend(m, first, second, i, j) for j in range(2)], axis=1) for i in range(2)], axis=1)
+        hessian = bend / determinant[:, None, None] - gradient[:, :, None] * gradient[:, None, :]
+        # Eq. 202
+        return Derivatives(np.where(vanished, -np.inf, 0.5 * np.log(determinant)), 0.5 * gradient, -0.5 * hessian)
+
+
+def _slope(m: FloatArray, p: FloatArray, i: int) -> FloatArray:
+    """Return the derivative of the determinant with respect to coefficient i (a shifts no power of u, b one)."""
+    return p[:, i] * m[:, 2] + m[:, 0] * p[:, 2 + i] - 2.0 * m[:, 1] * p[:, 1 + i]  # Eq. 203
+
+
+def _bend(m: FloatArray, p: FloatArray, s: FloatArray, i: int, j: int) -> FloatArray:
+    """Return the second derivative of the determinant with respect to coefficients i and j."""
+    own = s[:, i + j] * m[:, 2] + m[:, 0] * s[:, 2 + i + j] - 2.0 * m[:, 1] * s[:, 1 + i + j]
+    return own + p[:, i] * p[:, 2 + j] + p[:, j] * p[:, 2 + i] - 2.0 * p[:, 1 + i] * p[:, 1 + j]

@@ -1,0 +1,239 @@
+"""Which measure of intensity says most about a body: efficiency and sufficiency of several, on the same histories."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import BoolArray, FloatArray
+from rocking.errors import InvalidValueError, extra
+from rocking.motions.intensity import measure
+from rocking.statistics.least_squares import Regression, regression
+from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least, clearly_lifted
+from rocking.studies.fragility.curves import curve_of
+from rocking.studies.fragility.states import fits_of
+from rocking.studies.fragility.subject import Progress, check_progress
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+DEFAULT_MEASURES = (
+    "pga", "pgv", "p pgv/(g tan alpha)", "pgv/pga", "sa(0.5)", "sa(1.0)", "arias", "cav", "housner",
+)  # fmt: skip
+"""Measures that are compared if none are named."""
+
+
+@dataclass(frozen=True)
+class MeasureScore:
+    """How well one measure predicts rocking and overturning.
+
+    Parameters
+    ----------
+    measure, unit : str
+        Name and unit of the measure.
+    efficiency : float
+        Standard deviation of ln(theta/alpha) about its line over the ln of the measure, of histories that rocked and
+        stayed standing: the less, the fewer motions are needed [-].
+    slope : float
+        Slope of that line [-].
+    proficiency : float
+        Efficiency over the size of the slope: the uncertainty of the measure that does the same [-].
+    determination : float
+        R squared of that line [-].
+    overturning_dispersion : float
+        Dispersion of the lognormal curve of overturning; NaN if there is none [-].
+    overturning_verdict : str
+        What can be said of that curve.
+    sufficiency : dict of str to float
+        For each column of the metadata the p-value of a slope of the residuals over it: a small one says that the
+        measure leaves out what the column knows [-].
+    rocked, overturned : int
+        Histories that the line and the curve rest on.
+    barely_lifted : int
+        Histories that rocked too little for the line, and were left out of it.
+    """
+
+    measure: str
+    unit: str
+    efficiency: float
+    slope: float
+    proficiency: float
+    determination: float
+    overturning_dispersion: float
+    overturning_verdict: str
+    sufficiency: Mapping[str, float]
+    rocked: int
+    overturned: int
+    barely_lifted: int = 0
+
+
+@dataclass(frozen=True)
+class MeasureComparison:
+    """Measures of intensity ranked by efficiency, the best first.
+
+    Parameters
+    ----------
+    scores : tuple of MeasureScore
+        One a measure.
+    left_out : dict of str to str
+        Measures that cannot be ranked, and why: one that is the same for all motions says nothing about them.
+    least : float
+        Rotation over alpha below which a history counts as barely lifted [-].
+    """
+
+    scores: tuple[MeasureScore, ...]
+    left_out: Mapping[str, str]
+    least: float = LEAST
+
+    @property
+    def best(self) -> str:
+        """Name of the most efficient measure."""
+        return self.scores[0].measure
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return the table as rows of plain values.
+
+        Returns
+        -------
+        list of dict
+            Rank, the fields of `MeasureScore`, and a column ``p(name)`` for each column of the metadata.
+        """
+        made = []
+        for rank, score in enumerate(self.scores, 1):
+            fields = {name: value for name, value in vars(score).items() if name != "sufficiency"}
+            made.append({"rank": rank, **fields, **{f"p({k})": v for k, v in score.sufficiency.items()}})
+        return made
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Return the table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row a measure, by rank.
+        """
+        frame: pd.DataFrame = extra("pandas", "a table").DataFrame(self.rows()).set_index("rank")
+        return frame
+
+
+def compare_measures(
+    analysis: CloudAnalysis,
+    measures: Sequence[Any] = DEFAULT_MEASURES,
+    metadata: Mapping[str, Any] | None = None,
+    *,
+    least: float | None = None,
+    progress: Progress = None,
+) -> MeasureComparison:
+    """Rank measures of intensity by how well they predict the histories of one cloud analysis.
+
+    Efficiency is that of Luco & Cornell 2007 (Earthquake Spectra 23:357): the scatter of the response given the
+    measure. Sufficiency is tested by the residuals: given the measure, nothing else of the motion should matter. With
+    several columns and measures some p-values are below 0.05 by chance.
+
+    Parameters
+    ----------
+    analysis : CloudAnalysis
+        The histories; all measures see the same ones.
+    measures : sequence of str or IntensityMeasure
+        What to compare.
+    metadata : mapping of str to array_like, optional
+        Numbers that belong to the motions, such as magnitude, ln of the distance, duration; one a motion.
+    least : float, optional
+        Rotation over alpha below which a history counts as barely lifted, and is left out of the lines: rotations next
+        to nothing have logarithms that outweigh all others. That of the analysis, 0.01 there, if not given [-].
+    progress : callable, optional
+        Called with the number of motions measured since the last call; all are measured once for each measure.
+
+    Returns
+    -------
+    MeasureComparison
+        The ranking.
+
+    Raises
+    ------
+    InvalidValueError
+        If no measure is named, one twice, none varies, a column does not fit the motions, or fewer than three
+        histories rocked.
+
+    Examples
+    --------
+    >>> import rocking as rk
+    >>> from rocking.studies.fragility.cloud_analysis import cloud
+    >>> pulses = [rk.pulses.half_sine(a, t) for a in (3.0, 3.5, 4.0) for t in (0.2, 0.3, 0.4)]
+    >>> found = cloud(rk.Block(width=0.4, height=1.6), pulses, restitution=0.9)
+    >>> compare_measures(found, ["pga", "pgv", "pgv/pga"]).best
+    'pgv'
+    """
+    chosen = [measure(one) for one in measures]
+    names = [one.name for one in chosen]
+    if not names or len(set(names)) < len(names):
+        raise InvalidValueError(f"measures must be at least one, none of them twice, got {names}")
+    check_progress(progress)
+    if least is not None:
+        analysis = replace(analysis, least=checked_least(least))
+    columns = {name: _column(name, values, analysis) for name, values in (metadata or {}).items()}
+    scores, left_out = [], {}
+    for one in chosen:
+        other = replace_measure(analysis, one)
+        if progress is not None:
+            progress(len(analysis.subject.motions))
+        if len(np.unique(other.motion_levels[_rocked(other)])) == 1:
+            left_out[one.name] = f"{one.name} is {other.motion_levels[0]:g} {one.unit} for all that rocked"
+        else:
+            scores.append(_score(other, columns))
+    if not scores:
+        raise InvalidValueError(f"no measure can be ranked: {'; '.join(left_out.values())}")
+    return MeasureComparison(tuple(sorted(scores, key=lambda score: score.efficiency)), left_out, analysis.least)
+
+
+def replace_measure(analysis: CloudAnalysis, name: Any) -> CloudAnalysis:
+    """Return the same histories against another measure.
+
+    Returns nothing is computed again but the measure and what is fitted to it.
+    """
+    subject = replace(analysis.subject, measure=measure(name))
+    factor = float(np.asarray(analysis.histories.scales).ravel()[0])
+    return replace(analysis, subject=subject, motion_levels=subject.measure.scaled(subject.intensities, factor))
+
+
+def _rocked(analysis: CloudAnalysis) -> BoolArray:
+    return clearly_lifted(analysis.responses, analysis.least)
+
+
+def _score(analysis: CloudAnalysis, columns: Mapping[str, FloatArray]) -> MeasureScore:
+    line, rocked = analysis.regression, _rocked(analysis)
+    dispersion, verdict = _overturning(analysis)
+    proficiency = line.scatter / abs(line.slope) if line.slope else math.inf  # Eq. 222
+    return MeasureScore(
+        analysis.subject.measure.name, analysis.subject.measure.unit, line.scatter, line.slope, proficiency,
+        line.determination, dispersion, verdict,
+        {name: _sufficiency(line, values[rocked]) for name, values in columns.items()},
+        line.count, int(np.nansum(analysis.responses.overturned)), analysis.barely_lifted,
+    )  # fmt: skip
+
+
+def _overturning(analysis: CloudAnalysis) -> tuple[float, str]:
+    worst = analysis.states[-1]
+    try:
+        fit = fits_of(analysis.subject, [worst], analysis.motion_levels, analysis.responses)[worst.name]
+    except InvalidValueError as error:
+        return math.nan, str(error)
+    curve = curve_of(worst.name, fit)
+    return (math.nan if curve is None else curve.dispersion), fit.verdict
+
+
+def _sufficiency(line: Regression, values: FloatArray) -> float:
+    return regression(values, line.residuals).p_value
+
+
+def _column(name: str, given: Any, analysis: CloudAnalysis) -> FloatArray:
+    values = checks.real_array(f"metadata[{name!r:.40}]", given)
+    count = len(analysis.subject.motions)
+    if values.shape != (count,) or not np.isfinite(values).all():
+        raise InvalidValueError(
+            f"metadata[{name!r:.40}] must be {count} finite numbers, one a motion, got shape {values.shape}"
+        )
+    return values

@@ -1,0 +1,77 @@
+"""Outcomes are checked and pooled before anything is fitted."""
+
+import numpy as np
+import pytest
+
+from rocking.errors import InvalidValueError
+from rocking.statistics.counts import count_outcomes, count_states
+
+
+def test_equal_levels_are_pooled():
+    """Entries of one level become one, in ascending order."""
+    counts = count_outcomes([0.4, 0.2, 0.4], [True, False, False])
+    assert counts.levels.tolist() == [0.2, 0.4]
+    assert counts.failures.tolist() == [0.0, 1.0]
+    assert counts.trials.tolist() == [1.0, 2.0]
+    assert counts.observations == 3
+
+
+def test_clusters_keep_their_outcomes_together():
+    """The table by cluster adds up to the pooled counts."""
+    counts = count_outcomes([0.1, 0.2, 0.1, 0.2], [0, 1, 0, 0], clusters=["a", "a", "b", "b"])
+    assert counts.cluster_failures.tolist() == [[0.0, 1.0], [0.0, 0.0]]
+    assert counts.cluster_trials.sum(axis=0).tolist() == counts.trials.tolist()
+
+
+@pytest.mark.parametrize(
+    ("levels", "failures", "trials", "words"),
+    [
+        ([0.0, 1.0], [0, 1], None, "levels must be finite and > 0, got 0 at index 0"),
+        ([1.0, -1.0], [0, 1], None, "got -1 at index 1"),
+        ([1.0, np.nan], [0, 1], None, "got nan at index 1"),
+        ([1.0, np.inf], [0, 1], None, "got inf at index 1"),
+        ([], [], None, "at least one number"),
+        ([[1.0]], [[1]], None, "one row"),
+        ("abc", [1], None, "levels must be numbers"),
+        ([1.0, 2.0], [0.5, 1], None, "whole numbers >= 0, got 0.5 at index 0; a fraction"),
+        ([1.0, 2.0], [-1, 1], None, "got -1 at index 0"),
+        ([1.0, 2.0], [np.nan, 1], None, "got nan at index 0"),
+        ([1.0, 2.0], [3, 1], None, "failures must not exceed trials, got 3 of 1 at index 0; is trials= missing"),
+        ([1.0, 2.0], [0, 5], [4, 4], "got 5 of 4 at index 1"),
+        ([1.0, 2.0], [0, 0], [4, 0], "trials must be whole numbers >= 1, got 0 at index 1; leave out"),
+        ([1.0, 2.0], [0, 0, 0], None, "failures must have one number a level: 2, got 3"),
+        ([1.0, 1.0 + 1e-15], [0, 1], None, "rounding of one and the same level"),
+    ],
+)
+def test_bad_outcomes_are_refused(levels, failures, trials, words):
+    """Each kind of bad input is refused with a sentence that names it."""
+    with pytest.raises(InvalidValueError, match=words.replace("(", r"\(")):
+        count_outcomes(levels, failures, trials)
+
+
+def test_clusters_must_match():
+    """One cluster name too few is refused."""
+    with pytest.raises(InvalidValueError, match="clusters must name one cluster a level: 2, got 1"):
+        count_outcomes([1.0, 2.0], [0, 1], clusters=["a"])
+
+
+def test_overturned_trials_have_rocked():
+    """More overturned than rocked trials are refused."""
+    with pytest.raises(InvalidValueError, match="overturned must not exceed rocked, got 2 of 1 at index 1"):
+        count_states([1.0, 2.0], [0, 1], [0, 2], [4, 4])
+
+
+@pytest.mark.parametrize(
+    ("levels", "clusters", "expected"),
+    [
+        ([1.0, 2.0, 1.0, 2.0], "aabb", True),
+        ([1.0, 2.0, 3.0], "aaa", False),
+        ([1.0, 1.0, 1.0], "abc", False),
+        ([1.0, 2.0, 1.0], "aab", False),
+        ([1.0, 2.0, 1.0, 2.0], "aaaa", False),
+    ],
+)
+def test_records_that_are_raised_level_by_level(levels, clusters, expected):
+    """Two records or more, two levels or more, each of each once."""
+    counts = count_outcomes(levels, [False] * len(levels), clusters=list(clusters))
+    assert counts.tries_all_levels is expected
