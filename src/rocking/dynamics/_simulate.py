@@ -88,7 +88,8 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
     scale : float
         Factor on all components of the motion [-].
     rotation, angular_velocity : float
-        theta [rad] and theta' [rad/s] of a plane body at the start.
+        theta [rad] and theta' [rad/s] at the start; how far a body in space leans towards x, and its angular velocity,
+        three numbers in axes of the ground.
     start : Start or SpatialStart, optional
         Instead of these: a plane body with friction that is also lifted or pushed along, or how a body in space leans.
     gravity : float
@@ -283,7 +284,7 @@ _USUAL = {"friction": (None,), "bounce": (0.0,), "engine": ("auto", "reference")
 def _refuse(what: str, options: dict[str, Any]) -> None:
     """Refuse what these mechanics do not know."""
     for name, value in options.items():
-        if not any(value is usual or value == usual for usual in _USUAL[name]):
+        if np.ndim(value) or not any(value is usual or value == usual for usual in _USUAL[name]):
             raise InvalidValueError(f"{name} is nothing for {what}, got {value!r:.60}")
 
 

@@ -184,6 +184,17 @@ def test_keys(door: Callable[..., Any], key: Any) -> None:
     assert door(key=2**63 - 1).key == 2**63 - 1
 
 
+@pytest.mark.parametrize("value", [1, -1, 0.5, "1", None, [0], np.array([0, 0]), {}])
+def test_what_other_mechanics_do_not_know(value: Any) -> None:
+    """Numbers of histories with friction and in space, bounces and starts without, are refused whatever they are."""
+    solid = rk.Solid(rk.bodies.solid.box(0.5, 0.5, 2.0))
+    for more in ({"friction": 0.4, "key": value}, {"body": solid, "key": value}, {"bounce": value}):
+        with pytest.raises(InvalidValueError, match=r"(key|bounce) is nothing for a body"):
+            shaken(**more)
+    for more in ({"friction": 0.4, "key": 0}, {"bounce": 0.0, "start": None}):
+        assert shaken(**more).outcome is not rk.Outcome.FAILED  # what changes nothing is taken
+
+
 @pytest.mark.parametrize("threads", [0, -1, 1.0, True, "2", math.nan])
 def test_threads(threads: Any) -> None:
     """Threads are a whole number from 1."""
