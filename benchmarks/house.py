@@ -29,7 +29,7 @@ FLOORS = (
     ("spec",),
     ("campaigns",),
     ("plots",),
-    ("report", "reports"),
+    ("reports",),
     ("app",),
     ("cli",),
     ("__main__",),

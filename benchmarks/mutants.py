@@ -34,10 +34,10 @@ from benchmarks.mutant_tests import ROOT, Covering, record
 
 CORE = {
     "bodies": ("bodies/*.py", "bodies/solid/*.py"),
-    "restitution": ("restitution/*.py", "restitution/spatial/*.py"),
+    "restitution": ("restitution/*.py", "restitution/space/*.py"),
     "plane": ("dynamics/*.py",),
-    "contact": ("dynamics/planar/*.py",),
-    "space": ("dynamics/spatial/*.py", "dynamics/spatial_batch/*.py"),
+    "contact": ("dynamics/contact/*.py",),
+    "space": ("dynamics/space/*.py", "dynamics/space/batch/*.py"),
     "contact bed": ("restitution/bed/*.py",),
     "motions": ("motions/*.py", "motions/synthetic/*.py"),
     "readers": ("motions/formats/*.py",),

@@ -17,7 +17,7 @@ from benchmarks.spatial_studies import GENERIC
 from benchmarks.timing import cpu_seconds
 from rocking.conventions import FloatArray
 from rocking.dynamics import simulate
-from rocking.dynamics.spatial import SpatialBody, SpatialResponse, attitude
+from rocking.dynamics.space import SpatialBody, SpatialResponse, attitude
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.modulation import GammaModulation
 from rocking.motions.synthetic.stochastic import NonstationaryFilter, nonstationary_motion
@@ -65,7 +65,7 @@ def batch_engine() -> Callable[..., Any] | None:
     """Our compiled engine, where it was built."""
     try:
         import_module("rocking.dynamics._spatial")
-        found: Callable[..., Any] = import_module("rocking.dynamics.spatial_batch").batch_in_space
+        found: Callable[..., Any] = import_module("rocking.dynamics.space.batch").batch_in_space
     except (ImportError, AttributeError):
         return None
     return found

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rocking.plots import write
 from rocking.plots.inventory import inventory_picture
-from rocking.report.inventory_folder import write_inventory
+from rocking.reports.inventory_folder import write_inventory
 from rocking.studies.inventory import Hazard, Level, assess, read_inventory
 from rocking.studies.inventory.words import advice, model_note, sentence
 

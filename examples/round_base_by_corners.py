@@ -9,7 +9,7 @@ from rocking.bodies.solid import Part, RoundBase, Solid, box, revolution
 from rocking.dynamics import SpatialStart
 from rocking.plots import write
 from rocking.plots.style import DOUBLE, new_figure
-from rocking.restitution.spatial import edge_coefficient
+from rocking.restitution.space import edge_coefficient
 
 profile = [(0.30, 0.0), (0.30, 0.15), (0.18, 0.25), (0.15, 1.2), (0.22, 1.5), (0.10, 1.75)]
 parts = [Part(revolution(profile), 2600.0), Part(box(0.25, 0.2, 0.3), 2600.0).moved(0.35, 0.05, 1.1)]

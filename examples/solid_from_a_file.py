@@ -8,7 +8,7 @@ import numpy as np
 import rocking as rk
 from rocking.bodies.formats import read_solid
 from rocking.bodies.solid import box, revolution
-from rocking.restitution.spatial import edge_coefficient, spatial_models
+from rocking.restitution.space import edge_coefficient, spatial_models
 
 # what a scanner would hand over: triangles in millimetres, some of them with their inside out
 profile = np.array([(0.07, 0.0), (0.06, 0.05), (0.16, 0.30), (0.12, 0.50), (0.14, 0.60)])

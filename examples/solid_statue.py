@@ -3,7 +3,7 @@
 import numpy as np
 
 from rocking.bodies.solid import Part, Solid, box, ellipsoid, frustum, revolution
-from rocking.restitution.spatial import edge_coefficient, impact_in_space, spatial_models, unit_energies
+from rocking.restitution.space import edge_coefficient, impact_in_space, spatial_models, unit_energies
 
 pedestal = Part(box(0.60, 0.50, 1.00), 2400.0)
 socle = Part(revolution([(0.15, 0.0), (0.10, 0.06), (0.08, 0.12), (0.10, 0.16)]), 2700.0).moved(0.0, 0.0, 1.00)

@@ -6,7 +6,7 @@ from rocking.lazy import exports
 from rocking.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from rocking import bodies, dynamics, errors, evidence, motions, plots, report, restitution, studies
+    from rocking import bodies, dynamics, errors, evidence, motions, plots, reports, restitution, studies
     from rocking.bodies import Block, MassPoints, Region, Section, Solid
     from rocking.bodies.formats import read_body, read_solid
     from rocking.campaigns import Campaign
@@ -43,7 +43,7 @@ __all__ = [
     "read_body",
     "read_motion",
     "read_solid",
-    "report",
+    "reports",
     "restitution",
     "rocking_spectrum",
     "simulate",
@@ -78,7 +78,7 @@ __getattr__, __dir__ = exports(
         "read_body": "rocking.bodies.formats",
         "read_motion": "rocking.motions.formats",
         "read_solid": "rocking.bodies.formats",
-        "report": "rocking.report",
+        "reports": "rocking.reports",
         "restitution": "rocking.restitution",
         "rocking_spectrum": "rocking.studies",
         "simulate": "rocking.dynamics",

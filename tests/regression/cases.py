@@ -159,7 +159,7 @@ def _coefficients(body: Any) -> Any:
 def _solid() -> Any:
     edges, corners = SOLID.base.edges, SOLID.base.corners
     impacts = [
-        rk.restitution.spatial.impact_in_space(
+        rk.restitution.space.impact_in_space(
             SOLID, -edges[0].direction, pivot=edges[0], onto=onto, model=model
         ).velocity
         for onto in (edges[2], corners[3])
@@ -172,7 +172,7 @@ def _solid() -> Any:
             rk.bodies.Part(rk.bodies.solid.box(0.2, 0.2, 0.3), 900.0).moved(0.1, 0, 1.5),
         ]
     )
-    edge = {name: [rk.restitution.spatial.edge_coefficient(frustum, name, start=k) for k in range(4)] for name in names}
+    edge = {name: [rk.restitution.space.edge_coefficient(frustum, name, start=k) for k in range(4)] for name in names}
     return {"mass": SOLID.mass, "centre": SOLID.centre, "inertia": SOLID.inertia, "impacts": impacts, "edges": edge}
 
 

@@ -14,9 +14,9 @@ import numpy as np
 
 import rocking as rk
 from rocking.dynamics import engine as plane_engine
-from rocking.dynamics.spatial import SpatialBody, SpatialStart
-from rocking.dynamics.spatial_batch import engine as space_engine
-from rocking.dynamics.spatial_batch.many import batch_in_space
+from rocking.dynamics.space import SpatialBody, SpatialStart
+from rocking.dynamics.space.batch import engine as space_engine
+from rocking.dynamics.space.batch.many import batch_in_space
 from rocking.restitution.bed import ContactBed, KelvinVoigt
 
 STEP = 0.015625
@@ -147,7 +147,7 @@ def spatial_impacts() -> list[Any]:
     """Moments of a solid and impacts in space, onto corners and edges."""
     moments, edges = STATUE.local_moments, STATUE.base.edges
     made = [
-        rk.restitution.spatial.impact_in_space(
+        rk.restitution.space.impact_in_space(
             STATUE, -edges[0].direction, pivot=edges[0], onto=onto, model=model
         ).velocity
         for onto in (edges[2], STATUE.base.corners[3])

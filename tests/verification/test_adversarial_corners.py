@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk, ellipkinc
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, Rocker, RockingSide, Settings, engine
+from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings, engine
 from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.run import run
 from rocking.dynamics.trajectory import EventKind, Trajectory
@@ -85,7 +85,7 @@ def test_a_peak_within_a_step(rotation: float, velocity: float, name: str) -> No
 
 def released(alpha: float, p: float, start: float, step: float, count: int, name: str) -> Trajectory:
     side = RockingSide(alpha, p, 1.0, 0.8)
-    rocker = Rocker(side, side, ConstantRestitution(), "")
+    rocker = RockingParameters(side, side, ConstantRestitution(), "")
     return run(rocker, Segments.still(step, count), Settings(), engine=name, rotation=start)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics import Rocker, RockingSide, batch, engine
+from rocking.dynamics import RockingParameters, RockingSide, batch, engine
 from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.fast import run_fast
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
@@ -131,7 +131,7 @@ def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
         row = {name: float(values[k]) for name, values in table.values.items()}
         right, left = (RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"]) for s in ("right", "left"))
         one = run_fast(
-            Rocker(right, left, ConstantRestitution(), ""), table.motions[table.motion[k]], Settings(),
+            RockingParameters(right, left, ConstantRestitution(), ""), table.motions[table.motion[k]], Settings(),
             scale=row["scale"], rotation=row["rotation"], velocity=row["velocity"],
         )  # fmt: skip
         names = ["peak_rotation", "peak_time", "overturning_time", "impacts", "uplifts", "side"]

@@ -18,7 +18,7 @@ from scipy.special import elliprf
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.run import run
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind
@@ -97,7 +97,7 @@ def random_blocks(count, seed=20240607):
 
 
 def impacts_of(body, r, rotation, engine):
-    rocker = Rocker.of_body(body, r, conventions.g)
+    rocker = RockingParameters.of_body(body, r, conventions.g)
     p = rocker.right.frequency_parameter
     times, _ = truth(rocker.right.slenderness_angle, p, r, abs(rotation))
     step = 0.15 / p if engine == "fast" else 0.8 / p  # the longest default step of the fast engine
@@ -241,7 +241,7 @@ def threshold(overturns, low, high):
 
 
 def pushed(speed, engine, *, linear, stretches, r=0.9):
-    rocker = Rocker.of_body(BLOCK, r, G)
+    rocker = RockingParameters.of_body(BLOCK, r, G)
     still = Segments.still(0.15 / P, stretches)
     return run(rocker, still, Settings(gravity=G, linear=linear), engine=engine, velocity=P * speed)
 

@@ -19,7 +19,7 @@ from scipy.optimize import minimize_scalar
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics.impact_law import ConstantRestitution
-from rocking.dynamics.rocker import Rocker, RockingSide
+from rocking.dynamics.rocker import RockingParameters, RockingSide
 from rocking.dynamics.run import run
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind
@@ -57,7 +57,7 @@ def shaken(amplitude, w, psi, cycles):
 
 def rocker_of(r, left=None):
     right = RockingSide(ALPHA, P, 1.0, r)
-    return Rocker(right, left or right, ConstantRestitution(), "")
+    return RockingParameters(right, left or right, ConstantRestitution(), "")
 
 
 def history(case, psi, x, v, cycles, engine, *, linear=True, left=None):

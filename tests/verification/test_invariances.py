@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, Rocker, RockingSide, Settings, engine, equations
+from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings, engine, equations
 from rocking.dynamics.run import run
 from rocking.dynamics.trajectory import Trajectory
 from rocking.motions.segments import Segments
@@ -176,7 +176,7 @@ def test_dimensionless_groups(
 def histories(
     name: str, sides: tuple[RockingSide, RockingSide], motion: Segments, *, linear: bool = False, **state: Any
 ) -> Trajectory:
-    rocker = Rocker(*sides, ConstantRestitution(), "")
+    rocker = RockingParameters(*sides, ConstantRestitution(), "")
     return run(rocker, motion, Settings(linear=linear, rest_speed=1e-6), engine=name, **state)
 
 

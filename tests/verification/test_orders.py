@@ -17,7 +17,7 @@ from rocking import conventions
 from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.impact_law import ConstantRestitution
 from rocking.dynamics.reference import Reference
-from rocking.dynamics.rocker import Rocker, RockingSide
+from rocking.dynamics.rocker import RockingParameters, RockingSide
 from rocking.dynamics.run import run
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind
@@ -73,7 +73,7 @@ class Histories:
             motion, velocity = kind(rng, strength), 0.3 * rng.uniform(0.3, 1.0)
             if strongest(motion) > 2.0:
                 continue
-            rocker = Rocker(RIGHT, LEFT, ConstantRestitution(), "")
+            rocker = RockingParameters(RIGHT, LEFT, ConstantRestitution(), "")
             settings = Settings(linear=linear, tolerance=1e-16)
             # shorter stretches, so that the oracle takes steps of at most p h = 1/4
             found = Reference(rocker, motion.refined(4), settings, to_the_ground=False).run(0.0, velocity)
@@ -167,7 +167,7 @@ SPEEDS = np.linspace(0.7, 0.99, 200)
 def test_order_against_the_closed_form():
     """Times of the first five impacts of free rocking converge to the closed form with order 8."""
     side = RockingSide(0.3, 1.0, 1.0, 0.9)
-    rocker = Rocker(side, side, ConstantRestitution(), "")
+    rocker = RockingParameters(side, side, ConstantRestitution(), "")
     errors = []
     for step in LINEAR_STEPS:
         settings = Settings(linear=True, longest_step=step)
@@ -243,7 +243,7 @@ def test_a_peak_between_two_turns_in_a_step_is_seen(length, low, high, engine):
     side = RockingSide(0.2, 1.0, 1.0, 0.3)
     ground = Segments.between_samples(length, 0.2 * conventions.g * np.array([low, high]))
     found = run(
-        Rocker(side, side, ConstantRestitution(), ""), ground, Settings(linear=True), engine=engine,
+        RockingParameters(side, side, ConstantRestitution(), ""), ground, Settings(linear=True), engine=engine,
         rotation=0.2 * start, velocity=0.2 * down,
     )  # fmt: skip
     assert peak > start

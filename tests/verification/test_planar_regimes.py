@@ -9,7 +9,7 @@ import rocking as rk
 from rocking.bodies import Block, Section
 from rocking.bodies.region import Region
 from rocking.dynamics import simulate
-from rocking.dynamics.planar import (
+from rocking.dynamics.contact import (
     Regime,
     Start,
     analytic_regime,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rocking.dynamics import RandomRestitution, Rocker, RockingSide, Settings, engine
+from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings, engine
 from rocking.dynamics.impact_law import uniform
 from rocking.dynamics.run import run
 from rocking.dynamics.trajectory import EventKind
@@ -139,7 +139,9 @@ def coefficients(law: RandomRestitution, key: int, name: str, sides: tuple[float
     """Coefficients that an engine used, impact by impact, on a body let go on ground at rest."""
     right, left = (RockingSide(0.2, 3.0, 1.0, r) for r in sides)
     settings = Settings(rest_speed=1e-7, most_events=10_000)
-    found = run(Rocker(right, left, law, ""), Segments.still(0.05, 400), settings, engine=name, key=key, rotation=0.1)
+    found = run(
+        RockingParameters(right, left, law, ""), Segments.still(0.05, 400), settings, engine=name, key=key, rotation=0.1
+    )
     return [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
 
 

@@ -8,7 +8,7 @@ from rocking.dynamics import engine, reference
 from rocking.dynamics.fast import run_fast
 from rocking.dynamics.impact_law import ConstantRestitution
 from rocking.dynamics.reference import Reference
-from rocking.dynamics.rocker import Rocker, RockingSide
+from rocking.dynamics.rocker import RockingParameters, RockingSide
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind
 from rocking.motions.segments import Segments
@@ -29,7 +29,7 @@ def case(number):
     x *= np.tan(alpha) * g * random.uniform(1.05, 2.0) / np.abs(x).max()
     z = 0.3 * g * random.normal(size=x.size) if number % 4 == 0 else None
     side = RockingSide(alpha, p, 1.0, r)
-    return Rocker(side, side, ConstantRestitution(), ""), Segments.between_samples(0.02, x, z)
+    return RockingParameters(side, side, ConstantRestitution(), ""), Segments.between_samples(0.02, x, z)
 
 
 def run(name, number, rest_speed):

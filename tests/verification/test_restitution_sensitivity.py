@@ -12,7 +12,7 @@ from scipy import optimize, stats
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import Rocker
+from rocking.dynamics import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.outcome import Outcome
 from rocking.studies.histories import HistoryTable
@@ -65,7 +65,7 @@ def test_other_boundaries_are_rejected():
 
 def drawn(count, law, pieces=1):
     """Outcomes of a full sine at Omega = 3 and the amplitude where r = 0.9 is just enough to overturn."""
-    rocker = Rocker.of_body(BLOCK, 1.0, conventions.g)
+    rocker = RockingParameters.of_body(BLOCK, 1.0, conventions.g)
     side = rocker.right
     names = {"alpha": side.slenderness_angle, "p": side.frequency_parameter, "r": 1.0}
     values = {f"{name}_{foot}": value for name, value in names.items() for foot in ("right", "left")}

@@ -31,7 +31,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, Rocker, RockingSide, Settings, engine
+from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings, engine
 from rocking.dynamics.run import run
 from rocking.dynamics.trajectory import EventKind
 from rocking.motions.segments import Segments
@@ -134,7 +134,9 @@ def block_impacts(name: str, alpha: float, p: float, r: float, rotation: float) 
     still = Segments.still(0.5 / p, 80)
     # the default steps of the fast engine are good to 1e-7 only
     options = Settings(longest_step=0.03, rest_speed=1e-9)
-    found = run(Rocker(side, side, ConstantRestitution(), ""), still, options, engine=name, rotation=rotation)
+    found = run(
+        RockingParameters(side, side, ConstantRestitution(), ""), still, options, engine=name, rotation=rotation
+    )
     events = [e for e in found.events if e.kind is EventKind.IMPACT][:IMPACTS]
     return np.array([(e.time, e.before, e.after) for e in events])
 

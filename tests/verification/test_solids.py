@@ -9,7 +9,7 @@ from rocking.bodies.solid.sampling import gauss_order
 from rocking.bodies.solid.surfaces import gauss
 from rocking.bodies.solid.triangle_surface import TriangleSurface
 from rocking.bodies.solid.units import divided
-from rocking.restitution.spatial import energy_left, impact_in_space, unit_energies
+from rocking.restitution.space import energy_left, impact_in_space, unit_energies
 
 BODIES = {
     "box": Solid(box(1.0, 1.0, 4.0)),

@@ -11,11 +11,11 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import Settings
-from rocking.dynamics.spatial import SpatialBody, SpatialStart, attitude
-from rocking.dynamics.spatial.ground import ground_of
-from rocking.dynamics.spatial_batch import engine
-from rocking.dynamics.spatial_batch.course import course_of
-from rocking.dynamics.spatial_batch.many import batch_in_space
+from rocking.dynamics.space import SpatialBody, SpatialStart, attitude
+from rocking.dynamics.space.batch import engine
+from rocking.dynamics.space.batch.course import course_of
+from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space.ground import ground_of
 from rocking.errors import InvalidValueError
 
 pytestmark = pytest.mark.skipif(not engine.available(), reason="the batch engine was not built")

@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.spatial import (
+from rocking.dynamics.space import (
     ContactMode,
     SpatialBody,
     events,
 )
-from rocking.dynamics.spatial.impact import law_of
-from rocking.dynamics.spatial.selection import SpatialState, of_impact
+from rocking.dynamics.space.impact import law_of
+from rocking.dynamics.space.selection import SpatialState, of_impact
 from rocking.outcome import Outcome, Status
 
 TIMES = 10 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1

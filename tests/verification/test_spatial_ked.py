@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 import rocking as rk
 from rocking.bodies.solid import Part, Solid, box, cylinder, frustum
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.spatial import SpatialBody, attitude
-from rocking.dynamics.spatial.impact import law_of
+from rocking.dynamics.space import SpatialBody, attitude
+from rocking.dynamics.space.impact import law_of
 from rocking.errors import InvalidValueError
-from rocking.restitution.spatial import SpatialKed, SpatialKedPoint, edge_coefficient, impact_in_space, spatial_models
+from rocking.restitution.space import SpatialKed, SpatialKedPoint, edge_coefficient, impact_in_space, spatial_models
 
 UP = np.array([0.0, 0.0, 1.0])
 TOWER = SpatialBody.box(1.0, 1.3, 4.0)

@@ -10,10 +10,10 @@ import pytest
 
 import rocking as rk
 from rocking.bodies.solid import Part, RoundBase, Solid, box, revolution
-from rocking.dynamics.spatial import SpatialBody, SpatialStart, reference
-from rocking.dynamics.spatial_batch import engine
-from rocking.dynamics.spatial_batch.many import batch_in_space
-from rocking.restitution.spatial import edge_coefficient
+from rocking.dynamics.space import SpatialBody, SpatialStart, reference
+from rocking.dynamics.space.batch import engine
+from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.restitution.space import edge_coefficient
 
 RADIUS, LENGTH = 0.3, 1.2
 PROFILE = [(0.30, 0.0), (0.30, 0.15), (0.18, 0.25), (0.15, 1.2), (0.22, 1.5), (0.10, 1.75)]

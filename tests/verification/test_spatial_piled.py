@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.spatial import SpatialBody, reference
-from rocking.dynamics.spatial_batch import engine
-from rocking.dynamics.spatial_batch.many import batch_in_space
+from rocking.dynamics.space import SpatialBody, reference
+from rocking.dynamics.space.batch import engine
+from rocking.dynamics.space.batch.many import batch_in_space
 from rocking.outcome import Outcome, Status
 
 STEP, LENGTH = 0.02, 8.0

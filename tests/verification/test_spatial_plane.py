@@ -10,12 +10,12 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.spatial import (
+from rocking.dynamics.space import (
     ContactMode,
     SpatialBody,
 )
-from rocking.dynamics.spatial.impact import law_of
-from rocking.dynamics.spatial.selection import SpatialState, of_impact
+from rocking.dynamics.space.impact import law_of
+from rocking.dynamics.space.selection import SpatialState, of_impact
 from rocking.outcome import Outcome
 
 G = 9.81

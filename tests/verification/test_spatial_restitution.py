@@ -21,9 +21,9 @@ from rocking.bodies.solid import (
     frustum,
     rotation_about,
 )
-from rocking.restitution.spatial import edge_coefficient, energy_left, impact_in_space, spatial_models
-from rocking.restitution.spatial.integrals import line_moment
-from rocking.restitution.spatial.moments import kept_moments
+from rocking.restitution.space import edge_coefficient, energy_left, impact_in_space, spatial_models
+from rocking.restitution.space.integrals import line_moment
+from rocking.restitution.space.moments import kept_moments
 
 PRISM = Solid(Part(box(1.0, 1.0, 4.0)).moved(0.5, 0.5, 0.0))
 MODELS = sorted(spatial_models())

@@ -11,12 +11,12 @@ from scipy.integrate import solve_ivp
 
 import rocking as rk
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.spatial import (
+from rocking.dynamics.space import (
     SpatialBody,
     attitude,
 )
-from rocking.dynamics.spatial.flow import value
-from rocking.dynamics.spatial.rolling import RollingFlow
+from rocking.dynamics.space.flow import value
+from rocking.dynamics.space.rolling import RollingFlow
 
 G = 9.81
 CYLINDER = SpatialBody.cylinder(0.5, 2.0)

@@ -12,14 +12,14 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.spatial import SpatialBody, SpatialStart, attitude, events, release
-from rocking.dynamics.spatial import stance as stances
-from rocking.dynamics.spatial.events import Step
-from rocking.dynamics.spatial.ground import ground_of
-from rocking.dynamics.spatial.rolling import RollingFlow
-from rocking.dynamics.spatial_batch import engine
-from rocking.dynamics.spatial_batch.course import course_of
-from rocking.dynamics.spatial_batch.many import batch_in_space
+from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, events, release
+from rocking.dynamics.space import stance as stances
+from rocking.dynamics.space.batch import engine
+from rocking.dynamics.space.batch.course import course_of
+from rocking.dynamics.space.batch.many import batch_in_space
+from rocking.dynamics.space.events import Step
+from rocking.dynamics.space.ground import ground_of
+from rocking.dynamics.space.rolling import RollingFlow
 from rocking.outcome import Outcome, Status
 
 STEP, LENGTH, G = 0.02, 8.0, 9.81

@@ -9,7 +9,7 @@ import pytest
 import rocking as rk
 from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder
 from rocking.dynamics import SpatialStart
-from rocking.restitution.spatial import (
+from rocking.restitution.space import (
     LeaningImpact,
     SpatialFlag,
     SpatialKed,

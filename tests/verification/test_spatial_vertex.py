@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.spatial import (
+from rocking.dynamics.space import (
     SpatialBody,
     attitude,
 )
-from rocking.dynamics.spatial.flow import PivotFlow, value
-from rocking.dynamics.spatial.impact import law_of, projected
+from rocking.dynamics.space.flow import PivotFlow, value
+from rocking.dynamics.space.impact import law_of, projected
 
 TIMES = 10 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1
 G = 9.81

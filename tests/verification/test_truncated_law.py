@@ -13,7 +13,7 @@ from scipy import stats
 
 import rocking as rk
 from rocking.conventions import FEET, Foot, percent
-from rocking.dynamics import RandomRestitution, Rocker, RockingSide, Settings, engine
+from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings, engine
 from rocking.dynamics.batch import Batch, Rows
 from rocking.dynamics.impact_law import uniform
 from rocking.dynamics.run import run
@@ -55,7 +55,7 @@ def bound(body: Any, onto: Foot) -> float:
     return math.sqrt(about["left" if onto == "right" else "right"] / about[onto])
 
 
-def coefficients(rocker: Rocker, onto: Foot, count: int = 2000) -> Any:
+def coefficients(rocker: RockingParameters, onto: Foot, count: int = 2000) -> Any:
     return np.array([rocker.coefficient(SIGNS[onto], 1.0, key, 3) for key in range(count)])
 
 
@@ -75,7 +75,7 @@ CASES = list(zip(BODIES, (0.9, 0.97, 0.9), (0.05, 0.03, 0.05), strict=True))  # 
 @pytest.mark.parametrize(("body", "mean", "sd"), CASES)
 def test_draws_follow_the_truncated_distribution(body: Any, mean: float, sd: float, law: Any) -> None:
     """On either side draws are those of the normal distribution on condition that 0 <= r <= bound; to a bound of 1."""
-    rocker = Rocker.of_body(body, law.normal(mean, sd, seed=11), 9.81)
+    rocker = RockingParameters.of_body(body, law.normal(mean, sd, seed=11), 9.81)
     narrow = min(FEET, key=lambda foot: bound(body, foot))
     for foot in FEET:
         drawn, exact = coefficients(rocker, foot), cut_normal(mean, sd, min(1.0, bound(body, foot)))
@@ -93,7 +93,7 @@ def test_draws_follow_the_truncated_distribution(body: Any, mean: float, sd: flo
     assert stats.kstest(coefficients(rocker, other), exact.cdf).pvalue < ALARM
 
 
-def quantile(rocker: Rocker, onto: Foot, p: float) -> float:
+def quantile(rocker: RockingParameters, onto: Foot, p: float) -> float:
     law: Any = rocker.law
     return float(law.quantile(rocker.side(SIGNS[onto]).share * p, onto))
 
@@ -102,7 +102,7 @@ def quantile(rocker: Rocker, onto: Foot, p: float) -> float:
 @pytest.mark.parametrize(("body", "mean", "sd"), CASES)
 def test_what_is_cut_off_is_stated(body: Any, mean: float, sd: float) -> None:
     """The share that is left, and the words, are the probability within the bound, of the distribution on [0, 1]."""
-    rocker = Rocker.of_body(body, RandomRestitution.normal(mean, sd, seed=1), 9.81)
+    rocker = RockingParameters.of_body(body, RandomRestitution.normal(mean, sd, seed=1), 9.81)
     whole = cut_normal(mean, sd, 1.0)
     for foot in FEET:
         share = rocker.side(SIGNS[foot]).share
@@ -134,7 +134,7 @@ def test_posterior_is_truncated_on_both_sides(body: Any, point: tuple[float, flo
         assert found.bounds[foot] == pytest.approx(most, rel=1e-12)
         assert f"{foot}={percent(found.cut[foot])}" in repr(found)
         for law in (found.per_history(3), found.per_impact(3)):
-            rocker = Rocker.of_body(body, law, 9.81)
+            rocker = RockingParameters.of_body(body, law, 9.81)
             assert rocker.side(SIGNS[foot]).share == 1.0
             assert (f"{percent(found.cut[foot])} onto {foot}" in rocker.label) == (found.cut[foot] > 1e-4)
             assert stats.kstest(coefficients(rocker, foot), exact.cdf).pvalue > ALARM
@@ -148,15 +148,15 @@ def test_doubted_and_refused() -> None:
     body = BODIES[0]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        Rocker.of_body(body, RandomRestitution.normal(0.85, 0.05, seed=1), 9.81)
+        RockingParameters.of_body(body, RandomRestitution.normal(0.85, 0.05, seed=1), 9.81)
         restitution_distribution(body)
     # (Phi(2) - Phi(1.183)) / Phi(2), of the normal distribution up to 1
     with pytest.warns(PlausibilityWarning, match=r"9\.78 % of the dist.* right foot lies outside \[0, 0\.9592\]"):
-        Rocker.of_body(body, RandomRestitution.normal(0.9, 0.05, seed=1), 9.81)
+        RockingParameters.of_body(body, RandomRestitution.normal(0.9, 0.05, seed=1), 9.81)
     with pytest.warns(PlausibilityWarning, match="right foot lies outside"):
         restitution_distribution(body, calibration=one_point(1.0, 0.0, 0.02))
     with pytest.raises(InvalidValueError, match=r"right foot must be in \[0, 0\.959\d+\], and 100 % of the"):
-        Rocker.of_body(body, SampledRestitution([0.97, 0.98], seed=1), 9.81)
+        RockingParameters.of_body(body, SampledRestitution([0.97, 0.98], seed=1), 9.81)
 
     class Own(RandomRestitution):
         """Draws otherwise, so that nobody can cut it."""
@@ -165,7 +165,7 @@ def test_doubted_and_refused() -> None:
             return 0.9
 
     with pytest.raises(InvalidValueError, match=r"right foot.*would create energy"):
-        Rocker.of_body(body, Own([0.5, 0.99], 1), 9.81)
+        RockingParameters.of_body(body, Own([0.5, 0.99], 1), 9.81)
 
     class Stronger(Own):
         """Its table says less than it gives."""
@@ -173,7 +173,7 @@ def test_doubted_and_refused() -> None:
         largest = 1.2
 
     with pytest.raises(InvalidValueError, match=r"would create energy"):
-        Rocker.of_body(rk.Block(width=1.0, height=4.0), Stronger([0.5, 0.9], 1), 9.81)
+        RockingParameters.of_body(rk.Block(width=1.0, height=4.0), Stronger([0.5, 0.9], 1), 9.81)
 
 
 @pytest.mark.parametrize("cut", [(2.0, -1.0), (0.1,), None, (0.0, 1.0)])
@@ -214,7 +214,7 @@ def test_no_draw_is_beyond_the_bound(body: Any, left: Any, right: Any, seed: int
     size = min(len(left), len(right))
     law = RandomRestitution({"left": left[:size], "right": right[:size]}, seed)
     try:
-        rocker = Rocker.of_body(body, law, 9.81)
+        rocker = RockingParameters.of_body(body, law, 9.81)
     except InvalidValueError:
         assert any(bound(body, foot) < 1.001 * law.table(foot)[0] + 1e-3 for foot in FEET)
         return
@@ -287,7 +287,7 @@ def test_each_impact_draws_from_its_side(name: str) -> None:
     """The n-th impact lands on a side with the quantile of that side at its share of the n-th number, to the bit."""
     law = RandomRestitution(TWO, 9)
     right, left = RockingSide(0.2, 3.0, 1.0, 0.95, share=0.4), RockingSide(0.25, 3.3, 1.0, 0.9, share=0.7)
-    rocker, options = Rocker(right, left, law, ""), Settings(rest_speed=1e-7, most_events=10_000)
+    rocker, options = RockingParameters(right, left, law, ""), Settings(rest_speed=1e-7, most_events=10_000)
     found = run(rocker, Segments.still(0.05, 400), options, engine=name, key=4, rotation=0.1)
     impacts = [(e.coefficient, e.side) for e in found.events if e.kind is EventKind.IMPACT]
     assert len(impacts) > 10

@@ -38,10 +38,10 @@ from rocking.app.takeaway.table_files import column, table, written
 from rocking.app.takeaway.tables import table_of
 from rocking.motions.formats import read_motion
 from rocking.motions.motion import GroundMotion
-from rocking.report.document import Paragraph, ReportTable, cell
-from rocking.report.response_blocks import Image as Picture
-from rocking.report.response_blocks import Listing, PagePart, Pages, Pair
-from rocking.report.response_pdf import response_pdf
+from rocking.reports.document import Paragraph, ReportTable, cell
+from rocking.reports.response_blocks import Image as Picture
+from rocking.reports.response_blocks import Listing, PagePart, Pages, Pair
+from rocking.reports.response_pdf import response_pdf
 
 SVG = "{http://www.w3.org/2000/svg}"
 DRAWN = {"svg", "g", "path", "defs", "style", "text", "tspan", "use", "clipPath", "rect", "metadata", "image", "title"}

@@ -79,7 +79,7 @@ def _file(
 
 def _report(folder: JobFolder, to: Path) -> tuple[list[Path], list[str]]:
     """Write the report of an inventory: in one form, or into a folder in all."""
-    from rocking.report.inventory_folder import STEM, check_form, write_inventory, write_inventory_file
+    from rocking.reports.inventory_folder import STEM, check_form, write_inventory, write_inventory_file
 
     found = assessment(folder)
     with _stored(to):

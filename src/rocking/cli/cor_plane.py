@@ -12,7 +12,7 @@ from rocking.cli.options import in_unit
 from rocking.conventions import FEET, Foot, g
 from rocking.errors import InvalidValueError
 from rocking.evidence._coefficient_table import CoefficientRow, outside_evidence
-from rocking.report.facts.impact import ImpactAnswer, impact_facts
+from rocking.reports.facts.impact import ImpactAnswer, impact_facts
 from rocking.restitution import energy_ledger
 from rocking.spec.document import SettingsTable
 from rocking.spec.fields import JobTable

@@ -16,7 +16,7 @@ from rocking.cli.options import in_unit
 from rocking.cli.output import check_files
 from rocking.conventions import LENGTH_UNITS, g
 from rocking.errors import GeometryError
-from rocking.restitution.spatial import SpatialModel, SpatialRestitution, impact_in_space, spatial_model, spatial_models
+from rocking.restitution.space import SpatialModel, SpatialRestitution, impact_in_space, spatial_model, spatial_models
 
 PARALLEL = 1e-3
 """Edges of a mesh whose directions differ by less count as parallel: files round coordinates [rad]."""

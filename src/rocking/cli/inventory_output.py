@@ -34,7 +34,7 @@ def write(assessment: Assessment, folder: Path | None) -> tuple[list[Path], list
     """
     if folder is None:
         return [], []
-    from rocking.report.inventory_folder import write_inventory
+    from rocking.reports.inventory_folder import write_inventory
 
     return write_inventory(assessment, folder)
 
@@ -44,7 +44,7 @@ def as_json(assessment: Assessment) -> str:
 
     Returns one object; SI units, named in the keys.
     """
-    from rocking.report.inventory_folder import inventory_json
+    from rocking.reports.inventory_folder import inventory_json
 
     return inventory_json(assessment)
 

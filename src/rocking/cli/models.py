@@ -17,7 +17,7 @@ def models(
     from rocking.restitution import RestitutionModel
     from rocking.restitution import models as registered
     from rocking.restitution.from_file import file_of, model_in_file
-    from rocking.restitution.spatial import SpatialModel, spatial_models
+    from rocking.restitution.space import SpatialModel, spatial_models
 
     found: dict[str, type[RestitutionModel] | type[SpatialModel]] = {**registered(), **spatial_models()}
     if name is not None and file_of(name):

@@ -6,9 +6,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from rocking.evidence._claims import FAILS, HOLDS, IN_PART, UNRESOLVED
-from rocking.report.folder import as_plain, steps
-from rocking.report.paper_document import look_at
-from rocking.report.reproduction import Reproduction
+from rocking.reports.folder import as_plain, steps
+from rocking.reports.paper_document import look_at
+from rocking.reports.reproduction import Reproduction
 
 _STYLE = {HOLDS: "green", IN_PART: "yellow", FAILS: "red", UNRESOLVED: "cyan"}
 

@@ -15,14 +15,14 @@ from rocking.cli.output import check_files
 from rocking.cli.simulate_question import ResponseComparison, SimulateOptions
 from rocking.conventions import g
 from rocking.dynamics import simulate
+from rocking.dynamics.contact import PlanarResponse
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.planar import PlanarResponse
 from rocking.dynamics.response import Motion, Response
-from rocking.dynamics.spatial import SpatialResponse
+from rocking.dynamics.space import SpatialResponse
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
-from rocking.report.facts.response import other_facts, response_facts
+from rocking.reports.facts.response import other_facts, response_facts
 
 _PLANE = ("width", "height", "depth", "angle", "semi_diagonal", "free", "friction", "contact", "bounce", "linear")
 _RECORD = ("format", "units", "time_step", "component", "vertical", "vertical_file")

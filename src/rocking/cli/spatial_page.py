@@ -6,9 +6,9 @@ from typing import Any
 
 from rocking.bodies.formats import SolidFile
 from rocking.cli.cor_solid import base_facts, body_facts, show_body
-from rocking.dynamics.spatial import SpatialResponse
+from rocking.dynamics.space import SpatialResponse
 from rocking.outcome import Outcome
-from rocking.report.facts.response import finite
+from rocking.reports.facts.response import finite
 
 _FIRST = 12
 """Contacts and impacts that are printed."""

@@ -6,14 +6,14 @@ from rocking.dynamics._simulate import free_rocking, simulate
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
 from rocking.dynamics.many import simulate_many
 from rocking.dynamics.response import Response
-from rocking.dynamics.rocker import Rocker, RockingSide
+from rocking.dynamics.rocker import RockingParameters, RockingSide
 from rocking.dynamics.settings import Settings
 from rocking.lazy import exports
 from rocking.outcome import Outcome, Status
 
 if TYPE_CHECKING:
-    from rocking.dynamics.planar import PlanarResponse, Start
-    from rocking.dynamics.spatial import SpatialBody, SpatialResponse, SpatialStart
+    from rocking.dynamics.contact import PlanarResponse, Start
+    from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart
 
 __all__ = [
     "ConstantRestitution",
@@ -22,7 +22,7 @@ __all__ = [
     "PlanarResponse",
     "RandomRestitution",
     "Response",
-    "Rocker",
+    "RockingParameters",
     "RockingSide",
     "Settings",
     "SpatialBody",
@@ -39,10 +39,10 @@ __all__ = [
 __getattr__, __dir__ = exports(
     "rocking.dynamics",
     {
-        "PlanarResponse": "rocking.dynamics.planar",
-        "SpatialBody": "rocking.dynamics.spatial",
-        "SpatialResponse": "rocking.dynamics.spatial",
-        "SpatialStart": "rocking.dynamics.spatial",
-        "Start": "rocking.dynamics.planar",
+        "PlanarResponse": "rocking.dynamics.contact",
+        "SpatialBody": "rocking.dynamics.space",
+        "SpatialResponse": "rocking.dynamics.space",
+        "SpatialStart": "rocking.dynamics.space",
+        "Start": "rocking.dynamics.contact",
     },
 )

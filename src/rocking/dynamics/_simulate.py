@@ -15,8 +15,8 @@ from rocking.errors import InvalidValueError, PureRockingWarning
 
 if TYPE_CHECKING:
     from rocking.bodies.solid import Solid
-    from rocking.dynamics.planar import PlanarResponse, Start
-    from rocking.dynamics.spatial import SpatialBody, SpatialResponse, SpatialStart
+    from rocking.dynamics.contact import PlanarResponse, Start
+    from rocking.dynamics.space import SpatialBody, SpatialResponse, SpatialStart
 
 AnyMotion = Motion | Mapping[str, Motion] | tuple[Component, ...]
 """A motion along x, or components by direction, or in the order x, y, z."""
@@ -75,7 +75,7 @@ def simulate(  # type: ignore[misc]  # noqa: PLR0913 - the overloads name what t
         `RandomRestitution`). With friction it holds for rocking impacts, theta_dot_after / theta_dot_before without
         slip: it fixes where the resultant of the impulses acts; if that takes more friction than there is, the foot
         slides off under the friction there is. Landings from flight, and with None all impacts, follow from
-        complementarity. In space a model of `rocking.restitution.spatial`, with or without its "-3d" ("ked" needs the
+        complementarity. In space a model of `rocking.restitution.space`, with or without its "-3d" ("ked" needs the
         distribution of mass, which a Solid, a box and a cylinder have), a coefficient from 0 to 1 (that share of the
         angular velocity goes on, in the direction of the plastic impact), or any object with `velocity_after` and
         `label`.
@@ -248,9 +248,9 @@ def _response(  # noqa: PLR0917 - what the two questions have in common
     if start is not None and any(np.any(value) for value in state.values()):
         raise InvalidValueError("give either start or rotation and angular_velocity, got both")
     if in_space(body):
-        from rocking.dynamics.spatial.histories import response_in_space
-        from rocking.dynamics.spatial.rocker import SpatialBody
-        from rocking.dynamics.spatial.start import SpatialStart
+        from rocking.dynamics.space.histories import response_in_space
+        from rocking.dynamics.space.rocker import SpatialBody
+        from rocking.dynamics.space.start import SpatialStart
 
         body = SpatialBody.of(body)
         _refuse("a body in space", {**contact, "engine": alone["engine"], "key": alone["key"]})
@@ -268,8 +268,8 @@ def _response(  # noqa: PLR0917 - what the two questions have in common
         for sentence in response.doubts():
             errors.warn(sentence, PureRockingWarning)
         return response
-    from rocking.dynamics.planar.histories import response_with_contact
-    from rocking.dynamics.planar.start import Start
+    from rocking.dynamics.contact.histories import response_with_contact
+    from rocking.dynamics.contact.start import Start
 
     _refuse("a body with friction", {"engine": alone["engine"], "key": alone["key"]})
     return response_with_contact(

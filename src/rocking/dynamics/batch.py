@@ -11,7 +11,7 @@ import numpy as np
 from rocking.conventions import FEET, FloatArray
 from rocking.dynamics import engine as fast_engine
 from rocking.dynamics.impact_law import ConstantRestitution, DrawnRestitution, ImpactLaw
-from rocking.dynamics.rocker import Rocker, RockingSide
+from rocking.dynamics.rocker import RockingParameters, RockingSide
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -156,7 +156,7 @@ class Batch:
             for s in ("right", "left")
         ]
         reference = Reference(
-            Rocker(sides[0], sides[1], self.law, ""), self.motions[motion], self.settings,
+            RockingParameters(sides[0], sides[1], self.law, ""), self.motions[motion], self.settings,
             scale=row["scale"], key=key, to_the_ground=False,
         )  # fmt: skip
         run = reference.run(row["rotation"], row["velocity"])

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rocking.dynamics import engine
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import Event, EventKind, Trajectory
 from rocking.motions.segments import Segments
@@ -13,7 +13,7 @@ _OUTCOMES, _STATUSES, _KINDS = list(Outcome), list(Status), {kind.value: kind fo
 
 
 def run_fast(
-    rocker: Rocker,
+    rocker: RockingParameters,
     segments: Segments,
     settings: Settings,
     *,

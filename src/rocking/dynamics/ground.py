@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.taylor import first_fall, shifted, value
 
 
@@ -31,7 +31,7 @@ class Window:
 class RestoringMoments:
     """What holds a body down, stretch by stretch."""
 
-    def __init__(self, rocker: Rocker, push: Push, *, linear: bool) -> None:
+    def __init__(self, rocker: RockingParameters, push: Push, *, linear: bool) -> None:
         self.push = push
         self.linear = linear
         alphas = {sign: rocker.side(sign).slenderness_angle for sign in (1, -1)}

@@ -7,7 +7,7 @@ from typing import Any
 from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.dynamics.response import Motion, Response
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.run import run
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
@@ -40,7 +40,7 @@ def response_of_rocking(  # noqa: PLR0913 - what the front door hands on
     """
     scale = checks.within("scale", scale, -1e6, 1e6)
     plausibility.warn(plausibility.of_scaled([motion], scale))
-    rocker = Rocker.of_body(body, restitution, settings.gravity)
+    rocker = RockingParameters.of_body(body, restitution, settings.gravity)
     rotation, velocity = initial_state(rocker, rotation, angular_velocity)
     slow, quick = _frequencies(rocker)
     usual = _FREE / slow if motion is None else motion.duration + _AFTER / slow
@@ -67,7 +67,7 @@ def _shaken(motion: Motion, length: float, quick: float) -> Segments:
     return _cut(segments, length).extended(length)
 
 
-def initial_state(rocker: Rocker, rotation: float, angular_velocity: float) -> tuple[float, float]:
+def initial_state(rocker: RockingParameters, rotation: float, angular_velocity: float) -> tuple[float, float]:
     """Return checked initial conditions.
 
     rotation, angular_velocity: theta [rad] and theta' [rad/s]. Returns the same, finite and within a quarter turn.
@@ -80,7 +80,7 @@ def initial_state(rocker: Rocker, rotation: float, angular_velocity: float) -> t
     return rotation, checks.within("angular_velocity", angular_velocity, -most, most, unit="rad/s", hint="degrees?")
 
 
-def _frequencies(rocker: Rocker) -> tuple[float, float]:
+def _frequencies(rocker: RockingParameters) -> tuple[float, float]:
     both = rocker.right.frequency_parameter, rocker.left.frequency_parameter
     return min(both), max(both)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import series, shifted, slope, value
 from rocking.dynamics.trajectory import Trajectory
@@ -39,7 +39,7 @@ class Inside:
     """What moves, and on what."""
 
     segments: Segments  # the motion [m/s2]
-    rocker: Rocker  # the body
+    rocker: RockingParameters  # the body
     settings: Settings  # gravity and equations
     scale: float  # factor on the motion [-]
 

@@ -10,7 +10,7 @@ import numpy as np
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics import equations
 from rocking.dynamics.inside import Inside
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
 from rocking.errors import InvalidValueError
@@ -45,7 +45,7 @@ class DenseOutput:
 
     @classmethod
     def of(
-        cls, trajectory: Trajectory, segments: Segments, rocker: Rocker, settings: Settings, scale: float
+        cls, trajectory: Trajectory, segments: Segments, rocker: RockingParameters, settings: Settings, scale: float
     ) -> "DenseOutput":
         """Return the intervals of a trajectory.
 

@@ -13,7 +13,7 @@ from rocking.dynamics.components import components_of, in_plane, in_space
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
 from rocking.dynamics.lost_contact import contact_words, flags
 from rocking.dynamics.response import Motion
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
@@ -128,7 +128,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     if not choices:
         raise InvalidValueError("restitution must be at least one model, got none")
     law = _common_law(choices)
-    rockers = [[Rocker.of_body(body, choice, settings.gravity) for choice in choices] for body in body_list]
+    rockers = [[RockingParameters.of_body(body, choice, settings.gravity) for choice in choices] for body in body_list]
     shape = (len(body_list), len(motion_list), scales.size, len(choices))
     batch = Batch([m.segments() for m in motion_list], law, settings, threads, engine)
     count = int(np.prod(shape))
@@ -167,7 +167,7 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
 
 
 def _in_space(bodies: list[Any], motions: Any, restitution: Any, scale: Any, start: Any, *how: Any) -> "xr.Dataset":
-    from rocking.dynamics.spatial_batch.many import batch_in_space
+    from rocking.dynamics.space.batch.many import batch_in_space
 
     several = list(motions) if isinstance(motions, Sequence) else [motions]
     components = [None if motion is None else components_of(motion) for motion in several]
@@ -185,7 +185,9 @@ def _twin(results: dict[str, Any], again: dict[str, Any]) -> dict[str, FloatArra
     return {"twin_change": change, "twin_flips": np.abs(first - second)}
 
 
-def _pieces(rockers: list[list[Rocker]], scales: np.ndarray, shape: tuple[int, ...]) -> "Callable[[int, int], Rows]":
+def _pieces(
+    rockers: list[list[RockingParameters]], scales: np.ndarray, shape: tuple[int, ...]
+) -> "Callable[[int, int], Rows]":
     from rocking.dynamics.batch import SIDES, Rows
 
     table = {
@@ -236,7 +238,7 @@ def _common_law(choices: Sequence[Any]) -> ImpactLaw:
     return laws[0]
 
 
-def _most_cut(rockers: Sequence[Rocker]) -> Rocker:
+def _most_cut(rockers: Sequence[RockingParameters]) -> RockingParameters:
     """Return the first of those bodies that keep the least of a distribution: its label stands for all."""
     return min(rockers, key=lambda rocker: min(rocker.left.share, rocker.right.share))
 

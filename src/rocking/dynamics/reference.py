@@ -13,7 +13,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics import equations
 from rocking.dynamics.ground import Push, RestoringMoments
 from rocking.dynamics.resting import NOTHING, comes_to_rest
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, last_fall, series, shifted, slope, turning_points, value
 from rocking.dynamics.trajectory import Event, EventKind, Trajectory
@@ -38,7 +38,7 @@ class Reference:
 
     def __init__(
         self,
-        rocker: Rocker,
+        rocker: RockingParameters,
         segments: Segments,
         settings: Settings,
         *,

@@ -11,7 +11,7 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import Assumed, FloatArray, given_or_assumed
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.trajectory import EventKind, Trajectory
 from rocking.errors import InvalidValueError, PlausibilityWarning
@@ -21,10 +21,10 @@ from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 
 if TYPE_CHECKING:
-    from rocking.dynamics.contact import GroundForces
+    from rocking.dynamics.contact import PlanarResponse
+    from rocking.dynamics.ground_forces import GroundForces
     from rocking.dynamics.intervals import DenseOutput
     from rocking.dynamics.ledger import ResponseEnergy
-    from rocking.dynamics.planar import PlanarResponse
     from rocking.tables import Table
 
 Motion = GroundMotion | Pulse
@@ -47,7 +47,7 @@ class Response(Exportable):
         The body.
     motion : GroundMotion or Pulse, optional
         The motion; None for free rocking.
-    rocker : Rocker
+    rocker : RockingParameters
         The body as the equations see it, with its coefficients of restitution.
     settings : Settings
         How it was integrated.
@@ -63,7 +63,7 @@ class Response(Exportable):
 
     body: Body
     motion: Motion | None
-    rocker: Rocker
+    rocker: RockingParameters
     settings: Settings
     segments: Segments = field(repr=False)
     scale: float
@@ -174,8 +174,8 @@ class Response(Exportable):
         InvalidValueError
             If the coefficient of restitution changes from impact to impact.
         """
-        from rocking.dynamics.planar.histories import response_with_contact
-        from rocking.dynamics.planar.start import Start
+        from rocking.dynamics.contact.histories import response_with_contact
+        from rocking.dynamics.contact.start import Start
 
         rocker, run = self.rocker, self.trajectory
         if rocker.law.kind:
@@ -212,7 +212,7 @@ class Response(Exportable):
         return told if friction is None else [*told, *self.contact.slips(friction)]
 
     def _flown(self, friction: float | None) -> str:
-        from rocking.dynamics.contact import LEAVES
+        from rocking.dynamics.ground_forces import LEAVES
 
         lost = (
             f"the ground would have to pull, with up to {-self.least_force:.2g} of the weight: {LEAVES}; "
@@ -293,7 +293,7 @@ class Response(Exportable):
     @cached_property
     def contact(self) -> "GroundForces":
         """Forces of the ground, friction demand and loss of contact."""
-        from rocking.dynamics.contact import contact_of
+        from rocking.dynamics.ground_forces import contact_of
 
         return contact_of(self.trajectory, self.intervals, self._covered, self.body, self.settings)
 

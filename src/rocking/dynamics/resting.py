@@ -1,7 +1,7 @@
 """Impacts that die out: when they have brought a body to rest."""
 
 from rocking.dynamics.ground import RestoringMoments
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 
 _LONGEST_WINDOW = 40.0
 _HEIGHTS = 0.1  # what the heights of flights to rest may add to the logarithm of their gain
@@ -10,7 +10,13 @@ NOTHING = 1e-9
 
 
 def comes_to_rest(  # noqa: PLR0917 - the state, in the order of the engine
-    rocker: Rocker, ground: RestoringMoments, sign: int, after: float, stretch: int, tau: float, rest_speed: float
+    rocker: RockingParameters,
+    ground: RestoringMoments,
+    sign: int,
+    after: float,
+    stretch: int,
+    tau: float,
+    rest_speed: float,
 ) -> bool:
     """Return whether the impacts to come provably add up to rest before the body could rise again.
 

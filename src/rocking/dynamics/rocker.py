@@ -46,7 +46,7 @@ class RockingSide:
 
 
 @dataclass(frozen=True)
-class Rocker:
+class RockingParameters:
     """Both sides, and how the coefficient changes from impact to impact.
 
     Parameters
@@ -132,7 +132,7 @@ class Rocker:
         return side.coefficient * factor
 
     @classmethod
-    def of_body(cls, body: Body, restitution: Any, gravity: float) -> "Rocker":
+    def of_body(cls, body: Body, restitution: Any, gravity: float) -> "RockingParameters":
         """Return a body with its coefficients of restitution.
 
         Parameters
@@ -147,7 +147,7 @@ class Rocker:
 
         Returns
         -------
-        Rocker
+        RockingParameters
             The body as the equations see it.
 
         Raises

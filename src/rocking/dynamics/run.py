@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.dynamics import engine as fast_engine
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.dynamics.trajectory import Trajectory
 from rocking.errors import InvalidValueError
@@ -20,7 +20,7 @@ _ORDER = 8
 
 
 def run(
-    rocker: Rocker,
+    rocker: RockingParameters,
     segments: Segments,
     settings: Settings,
     *,

@@ -7,8 +7,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.bodies import Body
-from rocking.dynamics.planar.response import PlanarResponse
-from rocking.dynamics.planar.shenton import friction_demand, regime_map
+from rocking.dynamics.contact.response import PlanarResponse
+from rocking.dynamics.contact.shenton import friction_demand, regime_map
 from rocking.errors import InvalidValueError
 from rocking.outcome import Regime
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, SINGLE, in_journal_style, new_figure

@@ -9,8 +9,8 @@ from rocking.bodies.solid.triangle_surface import TriangleSurface
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.plots.style import DOUBLE, GREY, INK, SINGLE, in_journal_style, new_figure
-from rocking.restitution.spatial import SpatialRestitution, UnitEnergies, lost_density, unit_energies
-from rocking.restitution.spatial.geometry import SpatialImpact
+from rocking.restitution.space import SpatialRestitution, UnitEnergies, lost_density, unit_energies
+from rocking.restitution.space.geometry import SpatialImpact
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

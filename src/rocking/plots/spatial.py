@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.spatial.response import SpatialResponse
+from rocking.dynamics.space.response import SpatialResponse
 from rocking.outcome import ContactMode, Outcome
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.errors import InvalidValueError
 from rocking.studies.geometry import changed_body
 from rocking.studies.question import Question, sides_of
@@ -44,8 +44,8 @@ class Case:
         table = sides_of(self._rockers([dict(zip(names, row.tolist(), strict=True)) for row in rows]))
         return replace(self, sides={name: values[places.ravel()] for name, values in table.items()})
 
-    def _rockers(self, parameters: list[dict[str, float]]) -> list[Rocker | None]:
-        made: list[Rocker | None] = []
+    def _rockers(self, parameters: list[dict[str, float]]) -> list[RockingParameters | None]:
+        made: list[RockingParameters | None] = []
         refused: InvalidValueError | None = None
         for given in parameters:
             try:

@@ -14,7 +14,7 @@ from rocking.dynamics.engine import Arrays, instruction_set
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.lost_contact import flags
 from rocking.dynamics.response import Motion
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
@@ -45,7 +45,7 @@ class Question:
         _ = self.rocker
 
     @cached_property
-    def rocker(self) -> Rocker:
+    def rocker(self) -> RockingParameters:
         """The body as it is, before any axis changes it."""
         return self.rocker_of(self.body)
 
@@ -59,9 +59,9 @@ class Question:
         """The motion as the engine lays it out."""
         return Batch([self.motion.segments()], self.law, self.settings, self.threads, self.engine)
 
-    def rocker_of(self, body: Body) -> Rocker:
+    def rocker_of(self, body: Body) -> RockingParameters:
         """Return another body with the same restitution, evaluated for it."""
-        return Rocker.of_body(body, self.restitution, self.settings.gravity)
+        return RockingParameters.of_body(body, self.restitution, self.settings.gravity)
 
     def run(
         self,
@@ -116,7 +116,7 @@ class Question:
         }
 
 
-def sides_of(rockers: Sequence[Rocker | None]) -> dict[str, FloatArray]:
+def sides_of(rockers: Sequence[RockingParameters | None]) -> dict[str, FloatArray]:
     """Return the sides of many bodies as arrays.
 
     Returns alpha_right, alpha_left [rad], p_right, p_left [rad/s], r_right, r_left, q_right, q_left, share_right,

@@ -12,8 +12,8 @@ import rocking as rk
 from rocking.bodies.formats import read_solid
 from rocking.bodies.solid import box, extrusion
 from rocking.cli import main
-from rocking.dynamics.spatial import SpatialBody
-from rocking.restitution.spatial import edge_coefficient, impact_in_space
+from rocking.dynamics.space import SpatialBody
+from rocking.restitution.space import edge_coefficient, impact_in_space
 
 G = 9.80665
 MODELS = ("housner-3d", "horizontal-momentum-3d", "ked-3d")

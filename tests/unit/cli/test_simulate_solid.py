@@ -10,7 +10,7 @@ from PIL import Image
 import rocking as rk
 from rocking.bodies.formats import read_solid
 from rocking.cli import main
-from rocking.dynamics.spatial.response import SpatialResponse
+from rocking.dynamics.space.response import SpatialResponse
 from rocking.outcome import Status
 
 PRISM = 'units = "m"\nname = "prism"\n[[solid.part]]\nbox = { width = 0.5, depth = 0.5, height = 2.0 }\n'

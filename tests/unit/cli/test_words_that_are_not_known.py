@@ -10,7 +10,7 @@ from rocking.motions.formats.registry import format_named
 from rocking.motions.intensity import measure
 from rocking.motions.pulses import pulse
 from rocking.restitution import model
-from rocking.restitution.spatial import spatial_model, spatial_models
+from rocking.restitution.space import spatial_model, spatial_models
 from rocking.studies._axes import axis_of
 
 SIZE = ("--width", "0.5", "--height", "2")

@@ -9,7 +9,7 @@ from scipy.io import loadmat
 
 import rocking as rk
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.planar import Start
+from rocking.dynamics.contact import Start
 from rocking.errors import InvalidValueError
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)

@@ -9,7 +9,7 @@ from rocking.dynamics import engine
 
 NOT_NEEDED = {
     "csv", "json", "scipy", "shapely", "pydantic", "pandas", "xarray", "matplotlib", "rocking.evidence",
-    "rocking.dynamics.reference", "rocking.dynamics.batch", "rocking.tables", "rocking.dynamics.contact",
+    "rocking.dynamics.reference", "rocking.dynamics.batch", "rocking.tables", "rocking.dynamics.ground_forces",
     "rocking.restitution.plastic_winkler", "rocking.restitution.ledger",
 }  # fmt: skip
 SCRIPT = """
@@ -35,4 +35,4 @@ def test_the_first_response_loads_what_it_needs() -> None:
     found = loaded()
     assert {"rocking.dynamics._engine", "rocking.restitution.housner"} <= found
     assert not found & NOT_NEEDED
-    assert "rocking.dynamics.contact" in loaded("response.contact")
+    assert "rocking.dynamics.ground_forces" in loaded("response.contact")

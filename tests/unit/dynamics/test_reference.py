@@ -13,7 +13,7 @@ from numpy.polynomial import Polynomial
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import Outcome, Rocker, RockingSide
+from rocking.dynamics import Outcome, RockingParameters, RockingSide
 from rocking.dynamics.impact_law import ConstantRestitution
 from rocking.dynamics.reference import Reference
 from rocking.dynamics.settings import Settings
@@ -29,7 +29,7 @@ BLOCK = rk.Block(width=0.5, height=2.0)
 
 def run(segments: Segments, rotation: float = 0.0, velocity: float = 0.0, **settings: Any) -> Trajectory:
     side = RockingSide(ALPHA, 1.0, 1.0, 0.3)
-    body = Rocker(side, side, ConstantRestitution(), "")
+    body = RockingParameters(side, side, ConstantRestitution(), "")
     return Reference(body, segments, Settings(linear=True, **settings)).run(rotation, velocity)
 
 

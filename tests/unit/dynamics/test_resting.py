@@ -8,7 +8,7 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import Outcome, Rocker, RockingSide, engine
+from rocking.dynamics import Outcome, RockingParameters, RockingSide, engine
 from rocking.dynamics.fast import run_fast
 from rocking.dynamics.ground import Push, RestoringMoments
 from rocking.dynamics.impact_law import ConstantRestitution, SpeedRestitution
@@ -25,8 +25,8 @@ every_engine = pytest.mark.parametrize("name", ENGINES)
 ALPHA, P = 0.25, 2.0
 
 
-def rocker(r: float = 0.8, left: float = ALPHA) -> Rocker:
-    return Rocker(RockingSide(ALPHA, P, 1.8, r), RockingSide(left, P, 1.8, r), ConstantRestitution(), "")
+def rocker(r: float = 0.8, left: float = ALPHA) -> RockingParameters:
+    return RockingParameters(RockingSide(ALPHA, P, 1.8, r), RockingSide(left, P, 1.8, r), ConstantRestitution(), "")
 
 
 def ground(horizontal: Any, vertical: Any = None, left: float = ALPHA) -> RestoringMoments:
@@ -191,7 +191,9 @@ def test_angular_acceleration_is_the_slope_of_the_energy() -> None:
         )
 
 
-UNEVEN = Rocker(RockingSide(0.25, 2.0, 1.8, 0.97), RockingSide(0.40, 2.5, 1.8, 0.96), ConstantRestitution(), "")
+UNEVEN = RockingParameters(
+    RockingSide(0.25, 2.0, 1.8, 0.97), RockingSide(0.40, 2.5, 1.8, 0.96), ConstantRestitution(), ""
+)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -280,7 +282,9 @@ def test_the_proof_of_rest_under_changing_moments() -> None:
 def test_heights_of_flights_bound_what_is_put_to_rest(sign: int) -> None:
     """On ground that stays still the fastest body put to rest is one whose flights, with d = v^2 e^0.1 / (p alpha)^2,
     add 2.2 d (1 + r_2^2) / (1 - r_1^2 r_2^2) = 0.1 to the logarithm of its gain: theory, Rest."""
-    body = Rocker(RockingSide(0.25, 2.0, 1.8, 0.9), RockingSide(0.40, 2.5, 1.8, 0.7), ConstantRestitution(), "")
+    body = RockingParameters(
+        RockingSide(0.25, 2.0, 1.8, 0.9), RockingSide(0.40, 2.5, 1.8, 0.7), ConstantRestitution(), ""
+    )
     still = Push(0.1, np.zeros((500, 2)), np.zeros((500, 2)))
     where = RestoringMoments(body, still, linear=True)
     low, high = 0.0, 1.0
@@ -296,7 +300,7 @@ def test_heights_of_flights_bound_what_is_put_to_rest(sign: int) -> None:
 def test_largest_coefficient_is_the_largest_that_impacts_meet() -> None:
     """Of a law of the speed, by side: the coefficient of the side times the largest factor, met at some speed."""
     law = SpeedRestitution((0.0, 1.0, 2.0), (0.6, 0.9, 0.8))
-    body = Rocker(RockingSide(0.25, 2.0, 1.8, 0.8), RockingSide(0.40, 2.5, 1.8, 0.7), law, "")
+    body = RockingParameters(RockingSide(0.25, 2.0, 1.8, 0.8), RockingSide(0.40, 2.5, 1.8, 0.7), law, "")
     for sign, largest in ((1, 0.72), (-1, 0.63)):
         met = max(body.coefficient(sign, speed, 0, 0) for speed in np.linspace(0.0, 3.0, 31).tolist())
         assert body.largest(sign) == pytest.approx(largest, rel=1e-14) == pytest.approx(met, rel=1e-14)

@@ -5,7 +5,7 @@ import pytest
 
 import rocking as rk
 from rocking.bodies import Block
-from rocking.dynamics.planar import Regime, friction_demand
+from rocking.dynamics.contact import Regime, friction_demand
 from rocking.errors import InvalidValueError
 from rocking.motions.pulses import sine
 from rocking.plots.regimes import regime_map_picture, regimes_picture

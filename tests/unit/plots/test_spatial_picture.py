@@ -7,7 +7,7 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics import SpatialStart
-from rocking.dynamics.spatial import SpatialBody
+from rocking.dynamics.space import SpatialBody
 from rocking.plots.spatial import spatial_picture
 from rocking.plots.style import write
 

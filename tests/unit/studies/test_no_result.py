@@ -5,7 +5,7 @@ import pytest
 
 import rocking as rk
 from rocking.app.studies.results import contours_of
-from rocking.dynamics.spatial_batch import SpatialBatch
+from rocking.dynamics.space.batch import SpatialBatch
 from rocking.motions.pulses import sine
 from rocking.outcome import Outcome, Status, overturned
 from rocking.plots.falling import falling_picture

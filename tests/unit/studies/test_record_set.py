@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rocking.bodies import Block
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
@@ -64,7 +64,7 @@ def test_motions_are_made_when_asked_for():
 def test_histories_are_those_of_the_same_motions_in_memory():
     """A study of the lazy set and one of its motions in a list have the same results, in any pieces."""
     motions = SyntheticSet("point-source", 6, 4, pga=3.0)
-    rocker = Rocker.of_body(Block(width=0.2, height=1.0), "ked", 9.80665)
+    rocker = RockingParameters.of_body(Block(width=0.2, height=1.0), "ked", 9.80665)
     names = {"alpha": "slenderness_angle", "p": "frequency_parameter", "r": "coefficient"}
     sides = {
         f"{short}_{foot}": np.full((1, 1), getattr(getattr(rocker, foot), name))

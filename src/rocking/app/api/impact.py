@@ -11,10 +11,10 @@ from rocking.app.schemas.inputs import ImpactAsked
 from rocking.app.work import Remembered, sized
 from rocking.bodies import Block
 from rocking.conventions import g
-from rocking.report.facts.body import outline_facts
-from rocking.report.facts.evidence import curves_facts, measured_facts
-from rocking.report.facts.impact import ImpactAnswer, impact_facts
-from rocking.report.facts.stages import stages_facts
+from rocking.reports.facts.body import outline_facts
+from rocking.reports.facts.evidence import curves_facts, measured_facts
+from rocking.reports.facts.impact import ImpactAnswer, impact_facts
+from rocking.reports.facts.stages import stages_facts
 
 router = APIRouter(prefix="/api", tags=["impact"])
 

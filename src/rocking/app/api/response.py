@@ -17,7 +17,7 @@ from rocking.app.schemas.response_answers import ResponseAnswered
 from rocking.app.settings import state_of
 from rocking.app.work import heavy
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.contact import forces
+from rocking.dynamics.ground_forces import forces
 from rocking.dynamics.intervals import DenseOutput
 from rocking.dynamics.ledger import energies
 from rocking.dynamics.response import Response
@@ -27,9 +27,9 @@ from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
 from rocking.plots.animation_scene import DrawnShape
 from rocking.plots.lying import fall_of
-from rocking.report.facts.body import body_facts, outline_facts
-from rocking.report.facts.response import finite, moved_facts, response_facts
-from rocking.report.facts.verdict import ModelAgreement
+from rocking.reports.facts.body import body_facts, outline_facts
+from rocking.reports.facts.response import finite, moved_facts, response_facts
+from rocking.reports.facts.verdict import ModelAgreement
 
 router = APIRouter(prefix="/api", tags=["response"])
 _ABOUT = """\
@@ -115,7 +115,7 @@ def answer_facts(
 ) -> dict[str, Any]:
     """Return one response as the API tells it.
 
-    window: the part of the time that is drawn [s]. Returns what `rocking.report.facts.response.response_facts` says,
+    window: the part of the time that is drawn [s]. Returns what `rocking.reports.facts.response.response_facts` says,
     with ``label``, ``series`` and ``fall``.
     """
     facts = response_facts(response, question.friction)

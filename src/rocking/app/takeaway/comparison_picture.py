@@ -11,8 +11,8 @@ from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
 from rocking.plots.response_curves import ground_curve, motion_curves, over_slenderness, shown_until
 from rocking.plots.style import DOUBLE, GREY, INK, MODEL_STYLE, PALE, in_journal_style, new_figure
-from rocking.report.facts.verdict import ModelAgreement
-from rocking.report.facts.words import restitution_words
+from rocking.reports.facts.verdict import ModelAgreement
+from rocking.reports.facts.words import restitution_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

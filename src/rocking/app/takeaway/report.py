@@ -9,10 +9,10 @@ from rocking.app.takeaway.pictures import figure_of
 from rocking.app.takeaway.plain_text import plain_line
 from rocking.motions.intensity import Measure
 from rocking.plots.traces import fine_samples
-from rocking.report.facts.motion import measures_of
-from rocking.report.response_document import PICTURES, ReportResults, response_pages
-from rocking.report.response_document import ReportSubject as About
-from rocking.report.response_pdf import response_pdf
+from rocking.reports.facts.motion import measures_of
+from rocking.reports.response_document import PICTURES, ReportResults, response_pages
+from rocking.reports.response_document import ReportSubject as About
+from rocking.reports.response_pdf import response_pdf
 
 
 def report_of(asked: Evaluation, date: str) -> bytes:

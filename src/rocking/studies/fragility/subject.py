@@ -14,7 +14,7 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.batch import PIECE, SIDES
 from rocking.dynamics.engine import Arrays, empty_results
 from rocking.dynamics.response import Motion
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import IntensityMeasure, RockingScale, measure
@@ -30,7 +30,7 @@ Progress = Callable[[int], None] | None
 class Subject:
     """A body with its restitution, a set of motions, and the measure of their intensity."""
 
-    rocker: Rocker  # the body as the equations see it
+    rocker: RockingParameters  # the body as the equations see it
     motions: MotionSet
     measure: IntensityMeasure
     settings: Settings  # how to integrate
@@ -45,7 +45,7 @@ class Subject:
         rest = dict(options)
         engine = rest.pop("engine", "auto")
         settings = settings_of(rest.pop("gravity", conventions.g), rest)
-        rocker = Rocker.of_body(body, restitution, settings.gravity)
+        rocker = RockingParameters.of_body(body, restitution, settings.gravity)
         given = motions if isinstance(motions, MotionSet) else MotionList(motions)
         return cls(rocker, given, measure(measure_name), settings, engine)
 

@@ -12,7 +12,7 @@ from rocking.dynamics.batch import SIDES
 from rocking.dynamics.engine import RESULTS, Arrays
 from rocking.dynamics.impact_law import ImpactLaw
 from rocking.dynamics.lost_contact import lost_contact
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome
@@ -34,7 +34,7 @@ _MODELS = 2
 @dataclass
 class _Bodies:
     items: list[InventoryObject] = field(default_factory=list)
-    pairs: list[list[Rocker]] = field(default_factory=list)
+    pairs: list[list[RockingParameters]] = field(default_factory=list)
     refused: list[NotAssessed] = field(default_factory=list)
 
 
@@ -156,7 +156,9 @@ class _Asked:
         from rocking.bodies import Block
 
         block = Block(width=1.0, height=4.0)
-        first, second = (Rocker.of_body(block, r, self.gravity).label for r in (self.restitution, self.comparison))
+        first, second = (
+            RockingParameters.of_body(block, r, self.gravity).label for r in (self.restitution, self.comparison)
+        )
         return first, second
 
     def bodies(self, objects: Sequence[InventoryObject]) -> _Bodies:
@@ -193,7 +195,10 @@ def _bodies(objects: Sequence[InventoryObject], restitution: Any, other: str, gr
     bodies = _Bodies()
     for item in objects:
         try:
-            pairs = [[Rocker.of_body(item.body(way), r, gravity) for r in (restitution, other)] for way in DIRECTIONS]
+            pairs = [
+                [RockingParameters.of_body(item.body(way), r, gravity) for r in (restitution, other)]
+                for way in DIRECTIONS
+            ]
         except RockingError as error:
             bodies.refused.append(NotAssessed(item.row, item.name, str(error)))
             continue
@@ -229,7 +234,7 @@ def _shaped(product: Product, results: Arrays) -> Mapping[str, np.ndarray]:
     return {"outcome": outcome, "ratio": np.abs(peak) / product.sides["alpha_right"], "lost": lost}
 
 
-def _sides(pairs: Sequence[Sequence[Rocker]]) -> dict[str, FloatArray]:
+def _sides(pairs: Sequence[Sequence[RockingParameters]]) -> dict[str, FloatArray]:
     return {
         f"{short}_{foot}": np.array([[getattr(getattr(rocker, foot), name) for rocker in pair] for pair in pairs])
         for short, name in SIDES

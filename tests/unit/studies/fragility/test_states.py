@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.rocker import Rocker, RockingSide
+from rocking.dynamics.rocker import RockingParameters, RockingSide
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.states import Responses, limit_states
 
 SIDES = RockingSide(0.2, 2.0, 1.0, 0.9), RockingSide(0.4, 2.0, 1.0, 0.9)
-ROCKER = Rocker(*SIDES, None, "")  # type: ignore[arg-type]
+ROCKER = RockingParameters(*SIDES, None, "")  # type: ignore[arg-type]
 ARRAYS = {
     "outcome": np.array([0, 1, 1, 2, 3], dtype=np.int8),  # as the codes of `Outcome` are documented
     "peak_rotation": np.array([0.0, 0.12, -0.12, -0.5 * math.pi, math.nan]),
@@ -67,5 +67,5 @@ def test_states_of_simulated_bodies():
     block, pulse = rk.Block(width=0.5, height=2.0), rk.pulses.sine(3.0, 0.6)
     one = rk.simulate(block, pulse, restitution=0.9)
     arrays = {"outcome": np.array([one.outcome.code]), "peak_rotation": np.array([-one.peak_rotation])}
-    found = Responses.of(arrays, Rocker.of_body(block, 0.9, 9.80665), (1,))
+    found = Responses.of(arrays, RockingParameters.of_body(block, 0.9, 9.80665), (1,))
     assert found.rotation[0] == pytest.approx(one.peak_rotation / math.atan(0.25), rel=1e-14)

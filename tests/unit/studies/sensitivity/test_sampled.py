@@ -8,7 +8,7 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import RandomRestitution, Rocker
+from rocking.dynamics import RandomRestitution, RockingParameters
 from rocking.dynamics.impact_law import uniform
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
@@ -24,7 +24,7 @@ SEEDS = (0, 1, 7, 2**32, 2**63, 2**64 - 1)
 
 def histories(r=1.0, count=100, **options):
     """Three pulses at many scales, with a coefficient of one that a draw can multiply."""
-    rocker = Rocker.of_body(BLOCK, r, conventions.g)
+    rocker = RockingParameters.of_body(BLOCK, r, conventions.g)
     sides = {
         f"{short}_{foot}": np.array([[getattr(getattr(rocker, foot), name)]])
         for short, name in (("alpha", "slenderness_angle"), ("p", "frequency_parameter"), ("r", "coefficient"))

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from rocking.app.takeaway.table_files import column, table
 from rocking.bodies import Body
 from rocking.evidence._coefficient_table import CoefficientRow
-from rocking.report.facts.body import body_facts
-from rocking.report.facts.impact import ImpactAnswer
+from rocking.reports.facts.body import body_facts
+from rocking.reports.facts.impact import ImpactAnswer
 from rocking.tables import Table
 
 Fact = tuple[str, str, float, str]

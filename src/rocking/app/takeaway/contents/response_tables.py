@@ -6,7 +6,7 @@ from rocking.app.takeaway.table_files import column, table
 from rocking.dynamics.response import Response
 from rocking.dynamics.samples import columns
 from rocking.quantities import QUANTITIES
-from rocking.report.facts.response import outcome_facts
+from rocking.reports.facts.response import outcome_facts
 from rocking.tables import Table
 
 

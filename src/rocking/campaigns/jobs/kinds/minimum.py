@@ -13,7 +13,7 @@ from rocking.campaigns.jobs.study import Study
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.engine import Arrays, empty_results
 from rocking.dynamics.impact_law import ImpactLaw
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.errors import InvalidValueError
 from rocking.spec.document import MinimumTable
 from rocking.spec.parts import MOST_IN_MEMORY, Parts
@@ -67,7 +67,8 @@ def minimum_study(parts: Parts) -> Study:
     motions, settings = _held(parts), parts.settings
     with located("body"):
         rockers = [
-            [Rocker.of_body(b, choice, settings.gravity) for b in parts.bodies] for choice in parts.choices.values()
+            [RockingParameters.of_body(b, choice, settings.gravity) for b in parts.bodies]
+            for choice in parts.choices.values()
         ]
     sides = [sides_of(row) for row in rockers]
     with located("minimum"):

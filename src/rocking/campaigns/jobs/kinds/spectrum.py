@@ -10,7 +10,7 @@ from rocking.campaigns.jobs.kinds.words import along, of_motions, of_words
 from rocking.campaigns.jobs.study import Study
 from rocking.conventions import FloatArray
 from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
-from rocking.dynamics.rocker import Rocker
+from rocking.dynamics.rocker import RockingParameters
 from rocking.errors import InvalidValueError
 from rocking.spec.fields import Values
 from rocking.spec.parts import Parts
@@ -69,7 +69,9 @@ def sides_of_choices(bodies: Sequence[Body], parts: Parts) -> tuple[dict[str, Fl
     impact.
     """
     gravity = parts.settings.gravity
-    rockers = [[Rocker.of_body(body, choice, gravity) for body in bodies] for choice in parts.choices.values()]
+    rockers = [
+        [RockingParameters.of_body(body, choice, gravity) for body in bodies] for choice in parts.choices.values()
+    ]
     columns = [sides_of(row) for row in rockers]
     return {name: np.stack([column[name] for column in columns], axis=-1) for name in columns[0]}, rockers[0][0].law
 

@@ -1,0 +1,78 @@
+"""Which mode follows: complementarity of contact forces and motions, all modes tried.
+
+With one pair of feet there are at most nine modes, so that the complementarity problem is solved by trying each; what
+Lemke's algorithm would find is among them, and unlike it the trial also sees where there are two solutions or none.
+"""
+
+from itertools import chain, combinations
+from typing import NamedTuple
+
+from rocking.dynamics.contact.course import ModeSeries, course
+from rocking.dynamics.contact.footing import Footing
+from rocking.dynamics.contact.ground import GroundSeries
+from rocking.dynamics.contact.margins import consistent, margins
+from rocking.dynamics.contact.mode import Mode
+from rocking.dynamics.contact.state import PlanarState, along, away
+from rocking.outcome import Status
+
+TOLERANCE = 1e-12
+_LADDER = (TOLERANCE, 1e-10, 1e-8)
+_ORDER = 8
+_SAME = 1e-6
+
+
+def candidates(footing: Footing, state: PlanarState) -> list[Mode]:
+    """Return the modes that the velocities allow.
+
+    Returns modes with most feet first, and those that stick before those that slide.
+    """
+    resting = [foot for foot in state.touching if away(footing, state, foot) == 0.0]
+    subsets = chain.from_iterable(combinations(resting, n) for n in range(len(resting), 0, -1))
+    found = []
+    for feet in subsets:
+        speed = along(footing, state, feet[0])
+        if speed == 0.0:
+            found.append(Mode(feet))
+        found += [Mode(feet, slip) for slip in (1, -1) if slip * speed >= 0.0]
+    return [*found, Mode(())]
+
+
+class NextMode(NamedTuple):
+    """The mode that follows."""
+
+    mode: Mode
+    tolerance: float  # below it, over their scale, coefficients counted as zero [-]
+
+
+def choose(footing: Footing, state: PlanarState, ground: GroundSeries, friction: float) -> NextMode | Status:
+    """Return the mode that follows a state.
+
+    friction: Coulomb's coefficient [-]. Returns the mode; where there is none, or where two of them move the body
+    differently, a status that says so.
+    """
+    weight = weight_of(ground)
+    tried = [(mode, course(footing, state, mode, ground, friction, _ORDER)) for mode in candidates(footing, state)]
+    possible = [(m, c, margins(footing, m, c, friction, weight)) for m, c in tried if c.stiff > 0.0]
+    for tolerance in _LADDER:
+        good = [(m, c) for m, c, found in possible if consistent(found, 1.0, tolerance)]  # Eq. 20
+        if good:
+            same = all(_agree(good[0][1], other, footing.size) for _, other in good[1:])
+            return NextMode(good[0][0], tolerance) if same else Status.AMBIGUOUS
+    return Status.NO_CONTACT_FORCE
+
+
+def weight_of(ground: GroundSeries) -> float:
+    """Return the acceleration that contact forces are measured by.
+
+    Returns |g + a_z| + |a_x|, and at least a little [m/s2].
+    """
+    return max(abs(ground.lift[0]) + abs(ground.push[0]), 1e-3)
+
+
+def _agree(one: ModeSeries, other: ModeSeries, size: float) -> bool:
+    """Whether two courses start alike, as they do where a margin is just zero."""
+    gap = max(
+        abs(one.rotation[2] - other.rotation[2]) * size, abs(one.x[2] - other.x[2]), abs(one.rise[2] - other.rise[2])
+    )
+    reach = max(abs(one.rotation[2]) * size, abs(one.x[2]), abs(one.rise[2]), 1e-9 * size)
+    return bool(gap <= _SAME * reach or gap <= 1e-9 * size)

@@ -1,0 +1,138 @@
+"""One mode over a short time as power series: motion, contact forces, and everything that may end it."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.contact.footing import BOTH, LEFT, RIGHT, Footing
+from rocking.dynamics.contact.ground import GroundSeries
+from rocking.dynamics.contact.mode import Mode
+from rocking.dynamics.contact.power_series import derivative, padded, twice, value
+from rocking.dynamics.contact.state import PlanarState, along, away
+from rocking.dynamics.contact.turning import turning
+
+
+@dataclass(frozen=True)
+class ModeSeries:
+    """Series of a mode; the time within it runs from 0 to 1."""
+
+    unit: float  # duration of all [s]
+    rotation: FloatArray  # rotation, x, rise: theta [rad], x and rise of the centre [m]
+    x: FloatArray
+    rise: FloatArray
+    tangential: FloatArray  # total force of the ground to the right, per unit of mass [m/s2]
+    # vertical force at each foot that carries, per unit of mass [m/s2]
+    normals: dict[int, FloatArray] = field(default_factory=dict)
+    sliding: FloatArray | None = None  # velocity of the feet that carry along the ground; None without feet [m/s]
+    # height of each foot that does not carry; over the base where one foot carries and so turned by theta [m, rad]
+    gaps: dict[int, FloatArray] = field(default_factory=dict)
+    stiff: float = 1.0  # below or at zero no force is possible (Painleve) [-]
+
+    def state(self, at: float, touching: tuple[int, ...]) -> PlanarState:
+        """Return the state at an instant."""
+        x, rise, rotation = (value(c, at) for c in (self.x, self.rise, self.rotation))
+        u, w, spin = (value(derivative(c), at) / self.unit for c in (self.x, self.rise, self.rotation))
+        return PlanarState(x, rise, rotation, u, w, spin, touching)
+
+    def shortened(self, part: float) -> "ModeSeries":
+        """Return the beginning of the course.
+
+        Returns the same series of a shorter unit.
+        """
+        if part == 1.0:
+            return self
+        powers = part ** np.arange(self.rotation.size)
+        return ModeSeries(
+            self.unit * part,
+            self.rotation * powers,
+            self.x * powers,
+            self.rise * powers,
+            self.tangential * powers,
+            {foot: c * powers for foot, c in self.normals.items()},
+            None if self.sliding is None else self.sliding * powers,
+            {foot: c * powers for foot, c in self.gaps.items()},
+            self.stiff,
+        )
+
+
+def course(
+    footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries, friction: float, order: int
+) -> ModeSeries:
+    """Return the course of a body in a mode.
+
+    friction: Coulomb's coefficient [-].
+    """
+    if not mode.feet:
+        return _flight(footing, state, ground, order)
+    if len(mode.feet) == 2:
+        return _flat(footing, state, mode, ground, friction)
+    return _turning(footing, state, mode, ground, friction, order)
+
+
+def _flat(footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries, friction: float) -> ModeSeries:
+    """Both feet: the resultant force decides how they share it."""
+    size = max(len(ground.push), len(ground.lift)) + 2
+    push, weight = padded(ground.push, size), padded(ground.lift, size)
+    tangential = -mode.slip * friction * weight if mode.slip else push
+    x = twice(tangential - push, state.x, state.u, ground.unit) if mode.slip else padded([state.x], size)
+    turn = tangential * footing.height
+    normals = {
+        LEFT: (weight * footing.right + turn) / footing.base,  # Eq. 63
+        RIGHT: (weight * footing.left - turn) / footing.base,  # Eq. 63
+    }
+    still = np.zeros(size)
+    sliding = derivative(x) / ground.unit if mode.slip else still
+    return ModeSeries(ground.unit, still, x, still, tangential, normals, sliding)
+
+
+def _flight(footing: Footing, state: PlanarState, ground: GroundSeries, order: int) -> ModeSeries:
+    """No foot: parabolas above a ground that moves."""
+    size = order + 1
+    x = twice(-padded(ground.push, size), state.x, state.u, ground.unit)  # Eq. 64
+    rise = twice(-padded(ground.lift, size), state.rise, state.w, ground.unit)  # Eq. 64
+    # products, not powers: those of negative numbers need not mirror those of positive ones in the last bit
+    powers = np.cumprod([1.0, *(state.spin * ground.unit / k for k in range(1, size))])
+    quarter = np.arange(size) % 4
+    sine, cosine = math.sin(state.rotation), math.cos(state.rotation)
+    sines = powers * np.choose(quarter, [sine, cosine, -sine, -cosine])
+    lowered = -powers * np.choose(quarter, [cosine, -sine, -cosine, sine])
+    lowered[0] = 2.0 * math.sin(0.5 * state.rotation) ** 2  # 1 - cos(theta) without cancellation
+    gaps = {}
+    for foot in BOTH:
+        gap = rise - footing.lever(foot) * sines + footing.height * lowered  # Eq. 65
+        if foot in state.touching:
+            gap[0], gap[1] = 0.0, away(footing, state, foot) * ground.unit
+        gaps[foot] = gap
+    rotation = padded([state.rotation, state.spin * ground.unit], size)
+    return ModeSeries(ground.unit, rotation, x, rise, np.zeros(size), gaps=gaps)
+
+
+def _turning(
+    footing: Footing, state: PlanarState, mode: Mode, ground: GroundSeries, friction: float, order: int
+) -> ModeSeries:
+    """One foot carries: the other one rises as theta does."""
+    (foot,) = mode.feet
+    pull = mode.slip * friction if mode.slip else None
+    arm = footing.arm(foot, state.rotation)
+    found = turning(footing.inertia, arm, (state.rotation, state.spin), ground, pull, order)
+    size = order + 1
+    rotation, arm_x, arm_z = (padded(c, size) for c in (found.rotation, found.arm_x, found.arm_z))
+    rise = -arm_z
+    rise[0] = state.rise
+    unit2 = ground.unit**2
+    push, normal = padded(ground.push, size), padded(ground.lift, size) + derivative(derivative(rise)) / unit2
+    if pull is None:
+        x = -arm_x
+        x[0] = state.x
+        tangential = push + derivative(derivative(x)) / unit2
+        sliding = np.zeros(size)
+    else:
+        tangential = -pull * normal
+        x = twice(tangential - push, state.x, state.u, ground.unit)
+        sliding = derivative(x + arm_x) / ground.unit
+        sliding[0] = along(footing, state, foot)
+    return ModeSeries(
+        ground.unit, rotation, x, rise, tangential, {foot: normal}, sliding, {-foot: foot * rotation}, found.stiff
+    )

@@ -1,0 +1,272 @@
+"""The planar engine: Taylor series between events, events to rounding, complementarity at each of them.
+
+It follows one body at a time in the frame of the ground: rest, sliding, rocking, rocking while sliding, flight. Series
+of order 30 shorten themselves until their last terms are below rounding; every step ends on a sample of the motion, so
+that nothing is integrated across a kink; an event is a zero of a polynomial. When nothing moves, the next stretch that
+could lift or move the body is looked up instead of stepped to.
+"""
+
+import math
+
+import numpy as np
+
+from rocking.dynamics.contact.choosing import TOLERANCE, NextMode, choose, weight_of
+from rocking.dynamics.contact.course import ModeSeries, course
+from rocking.dynamics.contact.footing import BOTH, Footing
+from rocking.dynamics.contact.ground import GroundSeries
+from rocking.dynamics.contact.ground_contact import GroundContact
+from rocking.dynamics.contact.history import History
+from rocking.dynamics.contact.impact import Struck, cleaned, largest_speed, strike
+from rocking.dynamics.contact.imposed import strike_with
+from rocking.dynamics.contact.log import Blow, Log
+from rocking.dynamics.contact.margins import Kind, consistent, first_end, margins
+from rocking.dynamics.contact.mode import FLIGHT, REST, Mode
+from rocking.dynamics.contact.power_series import value
+from rocking.dynamics.contact.state import PlanarState, away, kept, kinetic
+from rocking.dynamics.contact.stirring import stirring
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.taylor import first_fall, shifted
+from rocking.motions.segments import Segments
+from rocking.outcome import Status
+
+_ORDER = 30
+_WHOLE = 1.0 - 1e-13
+_CLOSED = 1e-13
+_MOST_CHANGES = 40
+_AFTER = 60.0
+
+
+class Planar:
+    """One history.
+
+    segments: the motion [m/s2]; scale: factor on the motion [-].
+    """
+
+    def __init__(
+        self,
+        footing: Footing,
+        segments: Segments,
+        law: GroundContact,
+        settings: Settings,
+        scale: float = 1.0,
+    ) -> None:
+        vertical = np.zeros_like(segments.horizontal) if segments.vertical is None else segments.vertical
+        self.push, self.lift = segments.horizontal * scale, vertical * scale
+        self.lift[:, 0] += settings.gravity
+        self.step, self.count = segments.step, segments.count
+        self.footing, self.law, self.settings = footing, law, settings
+        self.pace = math.sqrt(settings.gravity / footing.size)
+        self.slowest = settings.rest_speed * math.sqrt(settings.gravity * footing.size)
+        self.log = Log(self.count, settings.gravity)
+        self.state, self.mode = PlanarState(), REST
+        self.stretch, self.tau = 0, 0.0
+        self.tolerance, self.changed, self.events = TOLERANCE, 0, 0
+        self.passed = math.nan
+        self.ended: Status | None = None
+        self.lies = False
+        self.latest: ModeSeries | None = None
+
+    def run(self, state: PlanarState | None = None) -> History:
+        """Return the history from a state."""
+        self.state = state or PlanarState()
+        if any(away(self.footing, self.state, foot) < 0.0 for foot in self.state.touching):
+            self._strike(FLIGHT)
+        else:
+            self._change()
+        self._first_sample()
+        while self.ended is None and not self._over():
+            self._step()
+        return History(self.log, self.ended or Status.GOOD, self.lies, self.passed, self._now)
+
+    # ---- from event to event ----------------------------------------------------------------------------------------
+
+    @property
+    def _now(self) -> float:
+        return (self.stretch + self.tau) * self.step
+
+    def _over(self) -> bool:
+        """Whether the motion is over, and the body does not stand where it might yet fall."""
+        if self.stretch < self.count:
+            return False
+        side = 1 if self.state.rotation > 0.0 else -1
+        tilted = abs(self.state.rotation) > self.footing.slenderness_angle(side)
+        return not tilted or (self.stretch - self.count) * self.step * self.pace > _AFTER
+
+    def _ground(self, unit: float) -> GroundSeries:
+        """Return the motion from now on, over a unit of time."""
+        if self.stretch >= self.count:
+            return GroundSeries([0.0], [self.settings.gravity], unit)
+        width = unit / self.step
+        push = shifted(self.push[self.stretch].tolist(), self.tau, width)
+        lift = shifted(self.lift[self.stretch].tolist(), self.tau, width)
+        return GroundSeries(push, lift, unit)
+
+    def _step(self) -> None:
+        if self.mode == REST and self._skip():
+            return
+        ground = self._ground((1.0 - self.tau) * self.step)
+        full = course(self.footing, self.state, self.mode, ground, self.law.friction, _ORDER)
+        part = self._trusted(full)
+        if not part > 0.0:
+            self.ended = Status.NOT_FINITE if full.stiff > 0.0 else Status.NO_CONTACT_FORCE
+            return
+        whole, here = full.shortened(part), ground.shortened(part)
+        stretch = whole.unit * self.pace
+        found = margins(self.footing, self.mode, whole, self.law.friction, weight_of(here))
+        if full.stiff <= 0.0 or not consistent(found, stretch, self.tolerance):
+            self._change()
+            return
+        end = first_end(found, stretch, self.tolerance)
+        at, kind = end or (1.0, None)
+        self.log.pass_through(self._now, whole, here, at, self.law.friction)
+        self._watch_top(whole, at)
+        self.latest = whole
+        self.tolerance, self.changed = TOLERANCE, 0
+        reached = whole.state(at, self.mode.feet)
+        self._move(self.tau + at * part * (1.0 - self.tau) if at * part < 1.0 else 1.0, reached, at)
+        if kind is not None:
+            self._end(kind, whole, at)
+
+    def _trusted(self, full: ModeSeries) -> float:
+        """Part of a course over which its last terms stay below the tolerance."""
+        if not all(np.isfinite(c).all() for c in (full.rotation, full.x, full.rise)):
+            return 0.0
+        if full.rotation.size <= _ORDER:
+            return 1.0
+        part, size = 1.0, self.footing.size
+        series = [(full.rotation, 1.0), (full.x, size), *((gap, size) for gap in full.gaps.values())]
+        for c, unit in series:
+            for k in (_ORDER - 1, _ORDER):
+                over = abs(c[k]) / (self.settings.tolerance * unit)
+                if over > 1.0:
+                    part = min(part, float(over) ** (-1.0 / k))  # Eq. 52
+        return part
+
+    def _move(self, tau: float, reached: PlanarState, at: float) -> None:
+        self.state = kept(self.footing, reached, self.mode.feet, stick=self.mode.slip == 0)
+        if tau > _WHOLE:
+            self.stretch, self.tau = self.stretch + 1, 0.0
+            self.log.sample(self.stretch, self.state, self.mode, self.latest, at)
+        else:
+            self.tau = tau
+
+    def _watch_top(self, whole: ModeSeries, at: float) -> None:
+        """Note when the centre passes over the foot."""
+        side = 1 if value(whole.rotation, at) > 0.0 else -1
+        gap = -side * whole.rotation
+        gap[0] += self.footing.slenderness_angle(side)
+        if value(gap, at) >= 0.0:
+            self.passed = math.nan
+        elif gap[0] > 0.0 or math.isnan(self.passed):
+            self.passed = self._now + ((first_fall(gap.tolist()) or 0.0) if gap[0] > 0.0 else 0.0) * whole.unit
+
+    # ---- events -----------------------------------------------------------------------------------------------------
+
+    def _end(self, kind: Kind, whole: ModeSeries, at: float) -> None:
+        """Let a mode end."""
+        self._count()
+        if kind is Kind.LYING:
+            self.lies, self.ended = True, Status.GOOD
+        elif kind is Kind.LANDING:
+            self._land(whole, at)
+        else:
+            if kind is Kind.STICKING:
+                self.state = kept(self.footing, self.state, self.mode.feet, stick=True)
+            self._change()
+
+    def _land(self, whole: ModeSeries, at: float) -> None:
+        before, mode = self.state, self.mode
+        if mode.feet:
+            upright = before._replace(rotation=0.0, rise=0.0)
+            self.state = kept(self.footing, upright, mode.feet, stick=mode.slip == 0)._replace(touching=BOTH)
+        else:
+            slack = _CLOSED * self.footing.size
+            feet = tuple(foot for foot in BOTH if value(whole.gaps[foot], at) <= slack)
+            if len(feet) == 2:
+                self.state = before._replace(rotation=0.0, rise=0.0, touching=feet)
+            else:
+                rise = self.footing.rise_on(feet[0], before.rotation)
+                self.state = before._replace(rise=rise, touching=feet)
+        self._strike(mode, self.settings.gravity * (before.rise - self.state.rise))
+
+    def _strike(self, mode: Mode, dropped: float = 0.0) -> None:
+        """Resolve an impact of the feet that touch; rounding in its place is booked with it."""
+        before = self.state
+        struck = self._struck(before, mode)
+        if isinstance(struck, Status):
+            self.ended = struck
+            return
+        rounding = 1e-13 * largest_speed(self.footing, before)
+        after = self._calmed(cleaned(self.footing, struck, rounding))
+        loss = dropped + kinetic(self.footing, before) - kinetic(self.footing, after)
+        self.log.strike(Blow(self._now, before, struck, after, loss))
+        self.state = after
+        self._change()
+
+    def _struck(self, before: PlanarState, mode: Mode) -> Struck | Status:
+        law = self.law
+        if law.restitution is not None and len(mode.feet) == 1:
+            foot = -mode.feet[0]
+            r = law.restitution[0 if foot < 0 else 1]
+            imposed = strike_with(self.footing, before, foot, law.friction, r)
+            if imposed is not None:
+                return imposed
+        bounces = {foot: law.bounce * -away(self.footing, before, foot) for foot in before.touching}
+        bounce = {foot: law.bounce if v > self.slowest else 0.0 for foot, v in bounces.items()}
+        return strike(self.footing, before, law.friction, bounce)
+
+    def _calmed(self, after: PlanarState) -> PlanarState:
+        """Let a body that hardly moves after an impact stand, if the ground lets it."""
+        slow = max(abs(after.w), abs(after.spin) * self.footing.size) <= self.slowest
+        if after.touching != BOTH or not slow:
+            return after
+        calm = kept(self.footing, after, BOTH, stick=False)
+        if abs(calm.u) <= self.slowest * 1e-3:
+            calm = calm._replace(u=0.0)
+        found = choose(self.footing, calm, self._ground(1.0 / self.pace), self.law.friction)
+        return calm if isinstance(found, NextMode) and found.mode.feet == BOTH else after
+
+    def _count(self) -> None:
+        self.events += 1
+        if self.events >= self.settings.most_events:
+            self.ended = Status.TOO_MANY_EVENTS
+
+    def _change(self) -> None:
+        """Choose the mode that follows."""
+        if self.ended is not None:
+            return
+        self.changed += 1
+        found = choose(self.footing, self.state, self._ground(1.0 / self.pace), self.law.friction)
+        if isinstance(found, Status):
+            self.ended = found
+            return
+        if self.changed > _MOST_CHANGES:
+            self.ended = Status.STUCK
+        self.tolerance = max(found.tolerance, TOLERANCE * 10.0 ** min(self.changed - 3, 5) if self.changed > 3 else 0.0)
+        self.mode = found.mode
+        self.log.change(self._now, self.mode)
+        if self.mode.feet != BOTH and len(self.mode.feet) == 1 and self.state.rotation != 0.0:
+            self.state = kept(self.footing, self.state, self.mode.feet, stick=self.mode.slip == 0)
+
+    # ---- rest -------------------------------------------------------------------------------------------------------
+
+    def _first_sample(self) -> None:
+        if self.ended is None:
+            ground = self._ground(self.step)
+            self.latest = course(self.footing, self.state, self.mode, ground, self.law.friction, _ORDER)
+        self.log.sample(0, self.state, self.mode, self.latest, 0.0)
+
+    def _skip(self) -> bool:
+        """Rest through stretches that cannot move the body; whether there were any."""
+        if not hasattr(self, "_stirring"):
+            self._stirring = stirring(self.footing, self.push, self.lift, self.law.friction)
+        at = int(np.searchsorted(self._stirring, self.stretch))
+        until = int(self._stirring[at]) if at < self._stirring.size else self.count
+        if until <= self.stretch:
+            return False
+        while self.stretch < until:
+            ground = self._ground((1.0 - self.tau) * self.step)
+            self.latest = course(self.footing, self.state, REST, ground, self.law.friction, _ORDER)
+            self.log.pass_through(self._now, self.latest, ground, 1.0, self.law.friction)
+            self._move(1.0, self.state, 1.0)
+        return True

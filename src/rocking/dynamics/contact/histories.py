@@ -1,0 +1,91 @@
+"""One plane body whose feet may slide, hop and bounce."""
+
+import math
+from typing import Any
+
+from rocking import checks, conventions, plausibility
+from rocking.bodies import Body
+from rocking.dynamics.contact.engine import Planar
+from rocking.dynamics.contact.footing import Footing
+from rocking.dynamics.contact.ground_contact import GroundContact
+from rocking.dynamics.contact.response import PlanarResponse
+from rocking.dynamics.contact.start import Start
+from rocking.dynamics.impact_law import ImpactLaw
+from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.settings import Settings
+from rocking.errors import InvalidValueError
+from rocking.motions.motion import GroundMotion
+from rocking.motions.pulse import Pulse
+from rocking.motions.segments import Segments
+
+# sqrt(g / R) times the step between samples of a pulse's response, and times what is followed after the motion
+_FINE, _AFTER, _FREE = 0.1, 15.0, 60.0
+_MOST_SAMPLES = 2_000_000
+
+
+def response_with_contact(  # noqa: PLR0913 - what the front door hands on
+    body: Body,
+    motion: GroundMotion | Pulse | None,
+    friction: float,
+    restitution: Any,
+    settings: Settings,
+    *,
+    bounce: float = 0.0,
+    start: Start,
+    scale: float = 1.0,
+    duration: float | None = None,
+) -> PlanarResponse:
+    """Return how a body rests, slides, rocks, slides while it rocks, and flies; on ground at rest without a motion.
+
+    restitution: None for impacts by complementarity alone; scale: factor on the motion [-]; duration: how long to
+    follow the body [s]; if not given, the motion and 15 sqrt(R / g) after it, 60 sqrt(R / g) on ground at rest.
+    """
+    footing = Footing.of_body(body)
+    law = GroundContact(
+        friction if isinstance(friction, conventions.Assumed) else checks.number("friction", friction),
+        checks.number("bounce", bounce),
+        _imposed(body, restitution, settings),
+    )
+    scale = checks.within("scale", scale, -1e6, 1e6)
+    segments = _segments(motion, footing, settings.gravity, duration)
+    plausibility.warn(plausibility.of_scaled([motion], scale))
+    history = Planar(footing, segments, law, settings, scale).run(start.state(footing))
+    return PlanarResponse(body, motion, footing, law, settings, segments, scale, history)
+
+
+def _imposed(body: Body, restitution: Any, settings: Settings) -> tuple[float, float] | None:
+    if restitution is None:
+        return None
+    if isinstance(restitution, ImpactLaw):
+        raise InvalidValueError(
+            f"restitution must be a model, a name or a number here, got {type(restitution).__name__}: "
+            "laws that change from impact to impact are for simulate()"
+        )
+    rocker = RockingParameters.of_body(body, restitution, settings.gravity)
+    return rocker.left.coefficient, rocker.right.coefficient
+
+
+def _segments(motion: object, footing: Footing, gravity: float, duration: float | None) -> Segments:
+    slow = math.sqrt(footing.size / gravity)
+    if motion is None:
+        length = _FREE * slow if duration is None else checks.positive("duration", duration, "s")
+        count = max(1, math.ceil(length / (_FINE * slow) - 1e-9))
+        _check_samples(count)
+        return Segments.still(length / count, count)
+    if not isinstance(motion, (GroundMotion, Pulse)):
+        raise InvalidValueError(f"motion must be a GroundMotion, a pulse or None, got {motion!r:.60}")
+    length = motion.duration + _AFTER * slow if duration is None else checks.positive("duration", duration, "s")
+    segments = motion.segments()
+    if isinstance(motion, Pulse):
+        segments = segments.refined(math.ceil(segments.step / (_FINE * slow)))
+    _check_samples(length / segments.step)
+    keep = max(1, math.ceil(length / segments.step - 1e-9))
+    vertical = None if segments.vertical is None else segments.vertical[:keep]
+    return Segments(segments.step, segments.horizontal[:keep], vertical).extended(length)
+
+
+def _check_samples(count: float) -> None:
+    if not count <= _MOST_SAMPLES:
+        raise InvalidValueError(
+            f"the response would have {count:.3g} samples, more than {_MOST_SAMPLES:.0e}; a shorter duration, please"
+        )

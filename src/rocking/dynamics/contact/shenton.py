@@ -1,0 +1,149 @@
+r"""What a body at rest starts to do when the ground suddenly moves: Shenton's map.
+
+Under a constant acceleration ``A g`` that starts at once, a body whose nearer foot lies at b from the plumb line of its
+centre rests if ``A < min(mu, b / h)``, slides on its base if ``mu < b / h`` and ``A > mu``, rocks if ``A > b / h`` and
+mu is above what rocking takes, and slides and rocks otherwise (Shenton 1996). Rocking takes, at the instant it starts,
+
+    mu(A) = | A - h theta'' / g | / (1 + b theta'' / g),    theta'' / g = (A h - b) / (j + b^2 + h^2),
+
+from the moments about the foot; for a rectangle
+``(A - 3/4 cos a (A cos a - sin a)) / (1 + 3/4 sin a (A cos a - sin a))``.
+"""
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import Body
+from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.contact.choosing import NextMode, choose
+from rocking.dynamics.contact.footing import LEFT, RIGHT, Footing
+from rocking.dynamics.contact.ground import GroundSeries
+from rocking.dynamics.contact.state import PlanarState
+from rocking.errors import InvalidValueError
+from rocking.outcome import Regime
+
+
+def friction_demand(body: Body, acceleration: float) -> float:
+    """Return the friction that a body takes which starts to rock.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    acceleration : float
+        Horizontal acceleration of the ground, over gravity; above b / h of the foot that it turns about [-].
+
+    Returns
+    -------
+    float
+        mu below which the foot slides [-].
+
+    Raises
+    ------
+    InvalidValueError
+        If the acceleration does not lift the body.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> round(friction_demand(Block(width=1.0, height=4.0), 0.5), 11)
+    0.30985915493
+    """
+    push = checks.number("acceleration", acceleration)
+    footing = Footing.of_body(body)
+    lever, height = abs(footing.lever(LEFT if push > 0.0 else RIGHT)), footing.height
+    if not abs(push) * height >= lever:
+        raise InvalidValueError(f"acceleration must be at least b / h = {lever / height:g} to lift it, got {push:g}")
+    spin = (abs(push) * height - lever) / (footing.inertia + lever**2 + height**2)
+    return abs(abs(push) - height * spin) / (1.0 + lever * spin)  # Eq. 76
+
+
+def regime_at_start(
+    body: Body, acceleration: float, friction: float, *, vertical: float = 0.0, gravity: float = conventions.g
+) -> Regime:
+    """Return what a body at rest starts to do, by complementarity.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    acceleration : float
+        Horizontal acceleration of the ground, over gravity [-].
+    friction : float
+        Coulomb's coefficient [-].
+    vertical : float
+        Vertical acceleration of the ground, over gravity, upwards [-].
+    gravity : float
+        Acceleration of gravity [m/s2].
+
+    Returns
+    -------
+    Regime
+        The regime.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is outside its range, or no contact force is possible.
+
+    Examples
+    --------
+    >>> from rocking import Block
+    >>> regime_at_start(Block(width=1.0, height=4.0), 0.5, 0.3).name
+    'SLIDE_ROCK'
+    """
+    footing = Footing.of_body(body)
+    gravity = checks.positive("gravity", gravity, "m/s2")
+    push, lift = checks.number("acceleration", acceleration), checks.number("vertical", vertical)
+    mu = checks.within("friction", friction, 0.0, 1e6)
+    ground = GroundSeries([push * gravity], [gravity + lift * gravity], float(np.sqrt(footing.size / gravity)))
+    found = choose(footing, PlanarState(), ground, mu)
+    if not isinstance(found, NextMode):
+        raise InvalidValueError(f"friction and acceleration must leave one contact force, got {mu:g} and {push:g}")
+    return found.mode.regime
+
+
+def analytic_regime(body: Body, acceleration: float, friction: float) -> Regime:
+    """Return what a body at rest starts to do, by Shenton's boundaries.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    acceleration : float
+        Horizontal acceleration of the ground, over gravity [-].
+    friction : float
+        Coulomb's coefficient [-].
+
+    Returns
+    -------
+    Regime
+        The regime; on a boundary the calmer one.
+    """
+    footing = Footing.of_body(body)
+    push = checks.number("acceleration", acceleration)
+    slender = abs(footing.lever(LEFT if push > 0.0 else RIGHT)) / footing.height
+    if abs(push) <= min(friction, slender):
+        return Regime.REST
+    if friction < slender:
+        return Regime.SLIDE
+    return Regime.ROCK if friction >= friction_demand(body, push) else Regime.SLIDE_ROCK  # Eq. 77
+
+
+def regime_map(body: Body, accelerations: FloatArray, frictions: FloatArray) -> IntArray:
+    """Return the map of regimes at the start, by complementarity.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    accelerations, frictions : ndarray
+        Horizontal accelerations over gravity, and coefficients of friction [-].
+
+    Returns
+    -------
+    ndarray, shape (frictions, accelerations)
+        `Regime.code`.
+    """
+    rows = [[regime_at_start(body, a, mu).code for a in accelerations.tolist()] for mu in frictions.tolist()]
+    return np.array(rows, dtype=np.int64)

@@ -1,0 +1,145 @@
+"""What an impact, or a moment at which forces decide, leaves a body standing on."""
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.space import stance as stances
+from rocking.dynamics.space.attitude import cross
+from rocking.dynamics.space.events import START_ROLLING, STOP_ROLLING
+from rocking.dynamics.space.impact import SpatialImpactLaw, projected
+from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.selection import (
+    Continuation,
+    SpatialState,
+    candidates,
+    forces,
+    impulses,
+    of_forces,
+    of_impact,
+)
+from rocking.dynamics.space.stance import Stance
+from rocking.outcome import ContactMode
+from rocking.portable import applied, dot, norm
+
+CLOSED = 1e-12
+"""Gaps below this share of the size of a body are closed."""
+
+
+def landed(body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw) -> Continuation:
+    """Return what an impact on some vertices leaves.
+
+    Where no contact set is without pull (a vertex that grazes the ground while it moves fast along it would stick only
+    if it were pulled down), the one with the least pull is taken; its impulses show it.
+
+    Returns what stays, and the angular velocity after.
+    """
+    found = of_impact(body, state, touching, law)
+    return found[0] if found else _least_pull(body, state, touching)
+
+
+def _least_pull(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
+    best: Continuation | None = None
+    for stance in candidates(body, touching):
+        velocity = np.zeros(3)
+        if stance.contact is not ContactMode.REST:
+            velocity = projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
+        opening = applied(cross(velocity, body.vertices[list(touching)] - stance.pivot), state.up)
+        if opening.min() < -1e-9 * float(np.abs(velocity).max()) * body.size:
+            continue
+        push = impulses(body, state, stance, velocity)
+        if best is None or push.min() > best.supports.min():
+            best = Continuation(stance, velocity, push)
+    assert best is not None  # an edge or a face opens no gap
+    return best
+
+
+def stuck(body: SpatialBody, state: SpatialState, touching: tuple[int, ...]) -> Continuation:
+    """Return what impacts leave that pile up at one moment: the largest set of touching points, pulled or not.
+
+    A body that turns about the vertical on one corner while its neighbour chatters beside it comes to stick on both: in
+    the limit both are at rest, and without slip nothing else is. Its impulses show the pull: in truth a corner slips.
+
+    Returns edge or face, after a plastic impact.
+    """
+    stance = next(candidates(body, touching))
+    velocity = np.zeros(3)
+    if stance.contact is not ContactMode.REST:
+        velocity = projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
+    return Continuation(stance, velocity, impulses(body, state, stance, velocity))
+
+
+def laid_down(body: SpatialBody, state: SpatialState) -> Continuation | None:
+    """Return a round base laid flat, where the ground would hold it there: rolling alone never comes to rest.
+
+    Returns at rest; None where it would be lifted at once.
+    """
+    flat, still = stances.face(body), np.zeros(3)
+    holds = forces(body, flat, still, state.up, state.field)[1].min() > 0.0
+    return Continuation(flat, still, impulses(body, state, flat, still)) if holds else None
+
+
+def rim_landed(body: SpatialBody, state: SpatialState, law: SpatialImpactLaw) -> Continuation:
+    """Return what the impact of a round base that falls flat leaves: its far side, or all of it.
+
+    Returns what stays, and the angular velocity after.
+    """
+    far = stances.rim(body, -state.pivot[:2])
+    plastic = projected(body, state.pivot, far.pivot, None, state.velocity)
+    push = impulses(body, state, far, plastic)
+    velocity = law.velocity_after(body, state.pivot, far.pivot, None, state.up, state.velocity)
+    opens = dot(cross(velocity, state.pivot - far.pivot), state.up) > 0.0
+    if opens and push.min() >= 0.0:
+        return Continuation(far, velocity, push)
+    flat = stances.face(body)
+    return Continuation(flat, np.zeros(3), impulses(body, state, flat, np.zeros(3)))
+
+
+def settled(
+    body: SpatialBody, state: SpatialState, choice: Continuation, touching: tuple[int, ...], slow: float, *, weak: bool
+) -> Continuation:
+    """Return what a body stands on once points that would fall back at once are taken to stay.
+
+    slow: speed below which a point that leaves the ground counts as staying [m/s]. Returns the same stance where forces
+    hold it.
+    """
+    if body.round:
+        push = forces(body, stances.face(body), np.zeros(3), state.up, state.field)[1]
+        rests = (weak or choice.stance.contact is ContactMode.REST) and push.min() >= 0.0
+        return Continuation(stances.face(body), np.zeros(3), choice.supports) if rests else choice
+    opening = applied(cross(choice.velocity, body.vertices - choice.stance.pivot), state.up)
+    every = range(len(body.vertices)) if weak else touching
+    near = tuple(i for i in every if weak or i in choice.stance.points or opening[i] <= slow)
+    found = of_forces(body, state, near, choice.stance)
+    return Continuation(found[0].stance, found[0].velocity, choice.supports) if found else choice
+
+
+def started(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> tuple[Stance, tuple[int, ...]]:
+    """Return the stance that initial conditions imply: the lowest of the touching points stay where they are.
+
+    velocity: angular velocity in body axes [rad/s]; up: vertical in body axes [-]. Returns stance: Edge, vertex or rim;
+    the face for a body that stands still on it.
+    """
+    if body.round:
+        return _started_round(body, velocity, up), ()
+    height = applied(body.vertices, up)
+    touching = tuple(np.flatnonzero(height - height.min() <= CLOSED * body.size).tolist())
+    size = float(np.abs(velocity).max())
+    if size == 0.0 and len(touching) == len(body.vertices):
+        return stances.face(body), touching
+    rates = applied(cross(velocity, body.vertices), up)
+    low = [i for i in touching if rates[i] <= min(rates[list(touching)]) + CLOSED * size * body.size]
+    for number in low:
+        along = body.edges[number]
+        alone = float(np.abs(velocity - along * dot(along, velocity)).max()) <= CLOSED * size
+        if (number + 1) % len(body.vertices) in low and alone:
+            return stances.edge(body, number), touching
+    return stances.vertex(body, low[0]), touching
+
+
+def _started_round(body: SpatialBody, velocity: FloatArray, up: FloatArray) -> Stance:
+    sine = norm(up[:2])
+    lean = up[:2] if sine > STOP_ROLLING else np.array([-velocity[1], velocity[0]])
+    if not np.any(lean):
+        return stances.face(body)
+    stance = stances.rim(body, -lean)
+    return stances.rolling(stance) if sine > START_ROLLING else stance

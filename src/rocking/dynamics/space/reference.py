@@ -1,0 +1,326 @@
+"""The reference engine in space: Taylor steps, events located to rounding, contact by complementarity."""
+
+import math
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.settings import Settings
+from rocking.dynamics.space import attitude, events, flow, release, resting
+from rocking.dynamics.space import stance as stances
+from rocking.dynamics.space.attitude import cross
+from rocking.dynamics.space.course import IntegrationState
+from rocking.dynamics.space.events import Step
+from rocking.dynamics.space.ground import SpatialGround
+from rocking.dynamics.space.impact import SpatialImpactLaw
+from rocking.dynamics.space.landing import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
+from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.rolling import RollingFlow
+from rocking.dynamics.space.selection import Continuation, SpatialState, of_forces
+from rocking.dynamics.space.stance import Stance
+from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, StepPiece
+from rocking.outcome import ContactMode, Outcome, Status
+from rocking.portable import applied, norm
+
+_PULL = 1e-9
+_STUCK, _PILED = 100, 60
+_PATIENCE, _MOST_LATE = 300.0, 10_000  # time over 1 / p, and steps, after the end
+
+
+class SpatialReference:
+    """One history."""
+
+    def __init__(self, body: SpatialBody, ground: SpatialGround, law: SpatialImpactLaw, settings: Settings) -> None:
+        self.body, self.ground, self.law, self.settings = body, ground, law, settings
+        self.p = body.frequency(settings.gravity)
+        self.slow = settings.rest_speed * math.sqrt(settings.gravity * body.size)
+        self.weak = settings.rest_speed**2 * body.mass * settings.gravity * body.lift
+        self.pull = _PULL * settings.gravity
+        self.flows: dict[tuple[ContactMode, tuple[int, ...]], flow.PivotFlow] = {}
+        self.rolling = RollingFlow(body)
+        self.time, self.stretch = 0.0, 0
+        self.place = np.zeros(2)
+        self.touching: tuple[int, ...] = ()
+        self.at_once, self.moment = 0, -1.0  # events at one moment
+        self.late = 0  # steps after the end
+        self.sticks = False  # whether impacts piled up on this edge, so that no end of it is released
+
+    # ---- the course of a history ------------------------------------------------------------------------------------
+
+    def run(self, quaternion: FloatArray, velocity: FloatArray, horizon: float) -> SpatialTrajectory:
+        """Return the history from given initial conditions.
+
+        quaternion: attitude at time zero; the lowest points of the base are on the ground [-]; velocity: angular
+        velocity in body axes [rad/s]; horizon: how long to follow the body; longer where its fate is still open then
+        [s].
+        """
+        self.horizon = horizon
+        self.course = IntegrationState(self.body, self.settings)
+        self.quaternion, self.velocity = attitude.normalised(quaternion), velocity
+        ended = self._start()
+        while ended is None:
+            ended = self._rest() if self.stance.contact is ContactMode.REST else self._move()
+        return self.course.trajectory(*ended)
+
+    def _start(self) -> tuple[Outcome, Status] | None:
+        stance, touching = started(self.body, self.velocity, self._up)
+        self.stance = stance
+        # the base lies with its origin at the origin of the ground, and the body leans from there
+        self.place = applied(attitude.matrix(attitude.flat(self.quaternion)), stance.pivot)[:2]
+        if stance.contact is ContactMode.REST or len(touching) == len(self.body.vertices) > 0:
+            self.quaternion = attitude.flat(self.quaternion)
+        self.touching = tuple(i for i in touching if i not in stance.points)
+        if self.touching and not np.any(self.velocity):
+            self._decide(touching)
+        if self.stance.contact is not ContactMode.REST:
+            self.course.note(self.time, SpatialEventKind.UPLIFT, self.stance, 0.0, self._kinetic())
+        return None
+
+    def _rest(self) -> tuple[Outcome, Status] | None:
+        """Rest until the ground lifts the body, or to the end."""
+        self.velocity = np.zeros(3)
+        rotation = attitude.matrix(self.quaternion)
+        tau = 0.0
+        if self.stretch < self.ground.count:
+            begin, end = self.ground.times[self.stretch : self.stretch + 2]
+            tau = (self.time - begin) / (end - begin)
+        found = resting.next_uplift(self.body, self.ground, rotation, self.settings.gravity, (self.stretch, tau))
+        if found is None:
+            self._add_rest(max(self.horizon, self.ground.end, self.time))
+            return self.course.calm(), Status.GOOD
+        self.stretch, tau, edges = found
+        begin, end = self.ground.times[self.stretch : self.stretch + 2]
+        self._add_rest(max(float(begin + tau * (end - begin)), self.time))
+        lifted = resting.lifted(self.body, self._state(), edges)
+        if lifted is None:
+            return Outcome.FAILED, Status.LOST_CONTACT
+        self._stand(lifted)
+        self.touching = tuple(i for i in range(len(self.body.vertices)) if i not in lifted.points)
+        self.course.note(self.time, SpatialEventKind.UPLIFT, lifted, 0.0, 0.0)
+        return self._guard()
+
+    def _move(self) -> tuple[Outcome, Status] | None:
+        """Advance to the end of the step, or to the first event before it."""
+        step, piece, whole = self._step()
+        self.late += self._final is not False
+        if step is None or piece is None:
+            return Outcome.FAILED, Status.NOT_FINITE
+        contact = events.first_contact(self.body, self.stance, step, self.touching)
+        letting = release.first_release(self.body, self.stance, step)
+        rim = events.rim_events(self.body, self.stance, step) if self.body.round else None
+        held = letting is not None and self._held_down(letting, step)
+        letting = None if held else letting
+        self.sticks &= held
+        at = min([1.0, *(e[0] for e in (contact, letting) if e is not None), *([] if rim is None else [rim])])
+        self._arrive(piece, at, step.up[:, 2], whole=whole and at == 1.0)
+        if self._up[2] <= 0.0:  # it lies before anything else happens
+            return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
+        if contact is not None and contact[0] == at:
+            return self._impact(contact[1])
+        if rim is not None and rim == at:
+            return self._rim()
+        if letting is not None and letting[0] == at:
+            return self._released(letting[1])
+        return self._stepped(step, at, held=held)
+
+    def _stepped(self, step: Step, at: float, *, held: bool) -> tuple[Outcome, Status] | None:
+        """Look at where a step without event has led."""
+        pulls = self.stance.contact is ContactMode.EDGE
+        pulls = pulls and min(release.end_forces(self.body, self.stance, step, at)) < -self.pull
+        self.course.held += step.length if pulls or held else 0.0
+        self.touching = ()
+        if self.body.round and events.nearly_flat(self.body, self._up) and self._weak:
+            flat = laid_down(self.body, self._state())
+            if flat is not None:
+                return self._land(flat, ())
+        return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
+
+    # ---- a step -----------------------------------------------------------------------------------------------------
+
+    def _step(self) -> tuple[Step | None, StepPiece | None, bool]:
+        rate = self.p + norm(self.velocity)
+        if self.stance.contact is ContactMode.ROLLING:
+            up = self._up
+            # at most half of the way to lying flat: there the contact runs round
+            rate += 2.0 * norm(cross(up, self.velocity)[:2]) / norm(up[:2])
+        length, last = self.settings.longest_step / rate, False
+        if self.stretch < self.ground.count:
+            left = float(self.ground.times[self.stretch + 1]) - self.time
+            length, last = min(length, left), length >= left
+        elif self.time < self.horizon:
+            length = min(length, self.horizon - self.time)
+        field = -self.ground.part(self.stretch, self.time, length)
+        field[2, 0] -= self.settings.gravity
+        order = min(max(flow.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
+        places = self.place[None, :]
+        if self.stance.contact is ContactMode.ROLLING:
+            state = self.quaternion, self.velocity, self.place
+            q, w, up, places = self.rolling.series(state, length, field, order)
+        else:
+            q, w, up = self._flow().series(self.quaternion, self.velocity, length, field, order)
+        part = flow.trusted_part(q, w, length, self.settings.tolerance)
+        if not part > 0.0:
+            return None, None, False
+        q, w, up, places = (flow.stretched(c, part) for c in (q, w, up, places))
+        field = flow.stretched(field.T, part).T
+        heading = (
+            np.zeros(3) if self.stance.axis is None else applied(attitude.matrix(self.quaternion), self.stance.axis)
+        )
+        step = Step(length * part, w, up, field, heading)
+        return step, StepPiece(self.time, length * part, 1.0, q, w, places, self.stance), last and part == 1.0
+
+    def _flow(self) -> flow.PivotFlow:
+        key = self.stance.contact, self.stance.points
+        if not self.stance.points:
+            return flow.PivotFlow(self.body, self.stance.pivot)
+        if key not in self.flows:
+            self.flows[key] = flow.PivotFlow(self.body, self.stance.pivot, self.stance.axis)
+        return self.flows[key]
+
+    def _arrive(self, piece: StepPiece, at: float, vertical: FloatArray, *, whole: bool) -> None:
+        self.quaternion = attitude.normalised(flow.value(piece.quaternions, at))
+        self.velocity = flow.value(piece.velocities, at)
+        self.place = flow.value(piece.places, at)
+        self.course.add(piece, at, self._up, self._pivot, vertical)
+        self.time = piece.start + at * piece.length
+        if whole:
+            self.stretch += 1
+            self.time = float(self.ground.times[self.stretch])
+
+    def _add_rest(self, until: float) -> None:
+        rows = self.quaternion[None], np.zeros((1, 3)), self.place[None]
+        self.course.add(StepPiece(self.time, until - self.time, 1.0, *rows, self.stance), 1.0, self._up, self._pivot)
+        self.time = until
+
+    # ---- events -----------------------------------------------------------------------------------------------------
+
+    def _impact(self, vertex: int) -> tuple[Outcome, Status] | None:
+        body = self.body
+        gaps = applied(body.vertices - self.stance.pivot, self._up)
+        closed = {vertex, *self.stance.points, *np.flatnonzero(gaps <= CLOSED * body.size).tolist()}
+        if self.stance.contact is ContactMode.EDGE or len(closed) > 2:
+            closed = set(range(len(body.vertices)))
+        touching = tuple(sorted(closed))
+        if len(touching) == len(body.vertices):
+            self.quaternion = attitude.flat(self.quaternion)
+        if self.at_once > _PILED:
+            return self._stick(touching)
+        return self._land(landed(body, self._state(), touching, self.law), touching)
+
+    def _stick(self, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
+        before, choice = self._kinetic(), stuck(self.body, self._state(), touching)
+        self._stand(choice.stance)
+        self.velocity, self.touching = choice.velocity, ()
+        self.sticks = choice.stance.contact is ContactMode.EDGE
+        kind = SpatialEventKind.IMPACT
+        self.course.note(self.time, kind, choice.stance, before, self._kinetic(), choice.supports)
+        return self._guard()
+
+    def _held_down(self, letting: tuple[float, int], step: Step) -> bool:
+        """Whether contact stays although the ground would let go there."""
+        if letting[1] >= 0:
+            return self.sticks
+        return events.nearly_flat(self.body, flow.value(step.up, letting[0]))
+
+    def _rim(self) -> tuple[Outcome, Status] | None:
+        up = self._up
+        if self.stance.contact is not ContactMode.ROLLING and math.hypot(up[0], up[1]) > 0.5 * events.START_ROLLING:
+            self.stance = stances.rolling(self.stance)
+            return self._guard()
+        state = self._state()
+        if self.stance.contact is ContactMode.ROLLING:
+            self.stance = stances.rim(self.body, state.pivot[:2])  # so flat that the point of contact is fixed
+            return self._guard()
+        self.quaternion = attitude.flat(self.quaternion)
+        return self._land(rim_landed(self.body, state, self.law), ())
+
+    def _land(self, choice: Continuation, touching: tuple[int, ...]) -> tuple[Outcome, Status] | None:
+        before = self._kinetic() + (self._potential() if self.stance.contact is ContactMode.ROLLING else 0.0)
+        self._stand(choice.stance)
+        self.velocity = choice.velocity
+        weak = self._weak
+        choice = settled(self.body, self._state(), choice, touching, self.slow, weak=weak)
+        self._stand(choice.stance)
+        self.velocity = choice.velocity
+        self.touching = tuple(i for i in touching if i not in choice.stance.points)
+        kind = SpatialEventKind.IMPACT
+        self.course.note(self.time, kind, choice.stance, before, self._kinetic(), choice.supports)
+        if choice.stance.contact is ContactMode.REST:
+            self.course.note(self.time, SpatialEventKind.REST, choice.stance, 0.0, 0.0)
+        return self._guard()
+
+    def _released(self, which: int) -> tuple[Outcome, Status] | None:
+        if which < 0:
+            return self.course.falls(self._pivot, self._up), Status.LOST_CONTACT
+        stays, leaves = self.stance.points[1 - which], self.stance.points[which]
+        self._stand(stances.vertex(self.body, stays))
+        self.touching = (leaves,)
+        energy = self._kinetic()
+        self.course.note(self.time, SpatialEventKind.CHANGE, self.stance, energy, energy)
+        return self._guard()
+
+    def _decide(self, touching: tuple[int, ...]) -> None:
+        """Let forces decide on what a body stands that is let go."""
+        found = of_forces(self.body, self._state(), touching, self.stance)
+        if found:
+            self._stand(found[0].stance)
+            self.touching = tuple(i for i in touching if i not in self.stance.points)
+
+    def _guard(self) -> tuple[Outcome, Status] | None:
+        self.at_once = self.at_once + 1 if self.time <= self.moment else 0
+        self.moment = self.time
+        if self.at_once > _STUCK or len(self.course.events) > self.settings.most_events:
+            return Outcome.FAILED, Status.TOO_MANY_EVENTS
+        # a base of many corners may have no step without an impact; whether it still can fall is asked here too
+        if self._final is False or self.stance.contact is ContactMode.REST:
+            return None
+        return self.course.ended(self.time, self.quaternion, self.velocity, self._pivot, self._final)
+
+    # ---- small parts ------------------------------------------------------------------------------------------------
+
+    def _stand(self, stance: Stance) -> None:
+        """Move the pivot, and take rounding out of the attitude."""
+        rotation = attitude.matrix(self.quaternion)
+        self.place = self.place + applied(rotation, stance.pivot - self._pivot)[:2]
+        if stance.contact is ContactMode.REST:
+            self.quaternion = attitude.flat(self.quaternion)
+        elif stance.axis is not None:
+            self.quaternion = attitude.levelled(self.quaternion, stance.axis)
+        self.stance = stance
+
+    @property
+    def _up(self) -> FloatArray:
+        return np.asarray(attitude.matrix(self.quaternion)[2])
+
+    @property
+    def _pivot(self) -> FloatArray:
+        return stances.touching_point(self.body, self.stance, self._up)
+
+    @property
+    def _final(self) -> bool | None:
+        """Whether the motion is over: None after a patience beyond which nothing is decided any more."""
+        end = max(self.horizon, self.ground.end)
+        if self.time > end + _PATIENCE / self.p or self.late > _MOST_LATE:
+            return None
+        return self.time >= end
+
+    def _field_now(self) -> FloatArray:
+        field = -self.ground.part(self.stretch, self.time, 1.0)[:, 0]
+        field[2] -= self.settings.gravity
+        return applied(attitude.matrix(self.quaternion).T, field)
+
+    def _state(self) -> SpatialState:
+        axis = self.stance.axis
+        along = np.zeros(3) if axis is None else self.stance.length * axis
+        return SpatialState(self._pivot, self.velocity, self._up, self._field_now(), along)
+
+    def _kinetic(self) -> float:
+        return self.body.kinetic(self._pivot, self.velocity)
+
+    def _potential(self) -> float:
+        return self.body.mass * self.settings.gravity * stances.rise(self.body, self._pivot, self._up)
+
+    @property
+    def _weak(self) -> bool:
+        """Whether hardly any energy is left; a body on its way down has less than none, and is not at rest."""
+        return self._kinetic() + abs(self._potential()) < self.weak

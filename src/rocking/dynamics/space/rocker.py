@@ -1,0 +1,313 @@
+"""A body in space as the equations see it: mass, centre, inertia, and the base on which it stands."""
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from rocking import checks
+from rocking.bodies.solid import Solid, SolidMoments
+from rocking.conventions import FloatArray
+from rocking.dynamics.space.matter import Matter
+from rocking.errors import GeometryError, InvalidValueError
+from rocking.portable import applied, dot, norm
+
+_ROUNDING = 1e-9
+_NAMES = {
+    "inertia": ("inertia", "inertia_tensor"),
+    "base": ("base", "support_polygon", "base_radius"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialBody:
+    """A rigid body that stands on the plane z = 0 of its own axes.
+
+    Parameters
+    ----------
+    mass : float
+        Mass [kg].
+    centre : array_like, shape (3,)
+        Centre of mass, z its height over the base [m].
+    inertia : array_like, shape (3, 3)
+        Inertia tensor about the centre of mass, in body axes [kg m2].
+    base : array_like, shape (k, 2), or float
+        Vertices of the convex support polygon, counter-clockwise as seen from above [m]; or the radius of a round base
+        about the origin [m].
+
+    Attributes
+    ----------
+    matter : Matter or None
+        Of what it consists; known for a `Solid`, a `box` and a `cylinder`.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is not finite, or no body has such an inertia.
+    GeometryError
+        If the polygon is not convex and counter-clockwise, or the centre of mass is not above the base.
+
+    Examples
+    --------
+    >>> body = SpatialBody.box(width=1.0, depth=1.0, height=4.0, density=2400.0)
+    >>> body.mass, body.vertices.shape
+    (9600.0, (4, 3))
+    """
+
+    mass: float
+    centre: FloatArray
+    inertia: FloatArray
+    base: FloatArray | float
+    matter: Matter | None = field(default=None, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Check and freeze."""
+        object.__setattr__(self, "mass", checks.positive("mass", self.mass, "kg"))
+        object.__setattr__(self, "centre", _finite("centre", self.centre, (3,), "m"))
+        object.__setattr__(self, "inertia", _inertia(self.inertia))
+        if np.ndim(self.base) == 0:
+            object.__setattr__(self, "base", checks.length("radius of the base", self.base))
+        else:
+            object.__setattr__(self, "base", _polygon(self.base))
+        checks.length("height of the centre of mass", float(self.centre[2]))
+        if not self.reach > 0.0:
+            raise GeometryError(
+                f"the centre of mass must be above the inside of the base, got it {-self.reach:g} m outside, at "
+                f"({self.centre[0]:g}, {self.centre[1]:g}); it would fall over by itself"
+            )
+
+    @classmethod
+    def box(cls, width: float, depth: float, height: float, density: float = 1000.0) -> "SpatialBody":
+        """Return a homogeneous box whose base is centred over the origin.
+
+        Parameters
+        ----------
+        width, depth, height : float
+            Full sizes along x, y and z [m].
+        density : float
+            Density [kg/m3].
+
+        Returns
+        -------
+        SpatialBody
+            The box.
+        """
+        x, y, z = (checks.length(n, v) for n, v in (("width", width), ("depth", depth), ("height", height)))
+        mass = checks.density("density", density) * x * y * z
+        inertia = mass / 12.0 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
+        corners = 0.5 * np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
+        made = cls(mass, np.array([0.0, 0.0, 0.5 * z]), inertia, corners)
+        return made._made_of(Matter.of_box(x, y, z, density))
+
+    @classmethod
+    def cylinder(cls, diameter: float, height: float, density: float = 1000.0) -> "SpatialBody":
+        """Return a homogeneous upright cylinder whose base is centred over the origin.
+
+        Parameters
+        ----------
+        diameter, height : float
+            Full sizes [m].
+        density : float
+            Density [kg/m3].
+
+        Returns
+        -------
+        SpatialBody
+            The cylinder.
+        """
+        b, z = 0.5 * checks.length("diameter", diameter), checks.length("height", height)
+        mass = checks.density("density", density) * math.pi * b * b * z
+        across = mass * (b * b / 4.0 + z * z / 12.0)
+        made = cls(mass, np.array([0.0, 0.0, 0.5 * z]), np.diag([across, across, 0.5 * mass * b * b]), b)
+        return made._made_of(Matter.of_cylinder(2.0 * b, z, density))
+
+    @classmethod
+    def of(cls, body: Any) -> "SpatialBody":
+        """Return any body that has mass, centre, inertia and base, as the equations see it.
+
+        Parameters
+        ----------
+        body : Any
+            With attributes `mass` [kg], `centre` [m], `inertia` (or `inertia_tensor`) [kg m2] and `base`: vertices
+            (k, 2) [m], a radius [m], or an object with `vertices` or `radius` and perhaps `centre` and `height`: the
+            origin is moved to the height of the base, and to the centre of a round one.
+
+        Returns
+        -------
+        SpatialBody
+            Itself if it is one.
+
+        Raises
+        ------
+        InvalidValueError
+            If an attribute is missing.
+        """
+        if isinstance(body, cls):
+            return body
+        found = {name: _attribute(body, _NAMES.get(name, (name,))) for name in ("mass", "centre", "inertia", "base")}
+        base = found["base"]
+        origin = np.array([0.0, 0.0, getattr(base, "height", 0.0)])
+        if getattr(base, "radius", None) is not None:
+            origin[:2] = getattr(base, "centre", (0.0, 0.0))
+        shape = next((getattr(base, n) for n in ("radius", "vertices") if getattr(base, n, None) is not None), base)
+        made = cls(found["mass"], np.asarray(found["centre"]) - origin, found["inertia"], shape)
+        return made._made_of(Matter.of_solid(body, origin)) if isinstance(body, Solid) else made
+
+    def _made_of(self, matter: Matter) -> "SpatialBody":
+        # not an argument: a solid that does not belong to the mass and inertia would give wrong energies
+        object.__setattr__(self, "matter", matter)
+        return self
+
+    @property
+    def round(self) -> bool:
+        """Whether the base is a circle."""
+        return np.ndim(self.base) == 0
+
+    @cached_property
+    def moments(self) -> SolidMoments:
+        """Mass, centre and central second moments [kg, m, kg m2]."""
+        return SolidMoments(self.mass, self.centre, 0.5 * np.trace(self.inertia) * np.eye(3) - self.inertia)
+
+    @cached_property
+    def radius(self) -> float:
+        """Radius of a round base; of others the largest distance of a vertex from the origin [m]."""
+        return float(np.hypot(*np.atleast_2d(self.base).T).max()) if not self.round else float(self.base)
+
+    @cached_property
+    def vertices(self) -> FloatArray:
+        """Vertices of the base with z = 0, shape (k, 3); none for a round base [m]."""
+        if self.round:
+            return np.zeros((0, 3))
+        return np.column_stack([np.asarray(self.base), np.zeros(len(np.asarray(self.base)))])
+
+    @cached_property
+    def edges(self) -> FloatArray:
+        """Unit vectors along the edges, from each vertex to the next one, shape (k, 3) [-]."""
+        along = np.roll(self.vertices, -1, axis=0) - self.vertices
+        return np.asarray(along / np.linalg.norm(along, axis=1)[:, None])
+
+    @cached_property
+    def inward(self) -> FloatArray:
+        """Unit normals of the edges, towards the inside of the base, shape (k, 2) [-]."""
+        return np.column_stack([-self.edges[:, 1], self.edges[:, 0]])
+
+    @cached_property
+    def reach(self) -> float:
+        """Least horizontal distance of the centre of mass from the border of the base [m]."""
+        if self.round:
+            return self.radius - math.hypot(*self.centre[:2])
+        return float(((self.centre[:2] - self.vertices[:, :2]) * self.inward).sum(axis=1).min())
+
+    @cached_property
+    def size(self) -> float:
+        """Largest distance of the centre of mass from a point of contact [m]."""
+        if self.round:
+            return math.hypot(self.radius + math.hypot(*self.centre[:2]), self.centre[2])
+        return float(np.linalg.norm(self.centre - self.vertices, axis=1).max())
+
+    @cached_property
+    def lift(self) -> float:
+        """Least rise of the centre of mass on the way to overturning [m]."""
+        height = float(self.centre[2])
+        return self.reach**2 / (math.hypot(self.reach, height) + height)  # Eq. 85
+
+    def inertia_about(self, point: FloatArray) -> FloatArray:
+        """Return the inertia tensor about a point of the body (Steiner).
+
+        Parameters
+        ----------
+        point : ndarray, shape (3,)
+            In body axes [m].
+
+        Returns
+        -------
+        ndarray, shape (3, 3)
+            In body axes [kg m2].
+        """
+        arm = self.centre - point
+        return np.asarray(self.inertia + self.mass * (dot(arm, arm) * np.eye(3) - np.outer(arm, arm)))  # Eq. 83
+
+    def kinetic(self, point: FloatArray, velocity: FloatArray) -> float:
+        """Return the kinetic energy of the body that turns about a point at rest.
+
+        Parameters
+        ----------
+        point : ndarray, shape (3,)
+            In body axes [m].
+        velocity : ndarray, shape (3,)
+            Angular velocity in body axes [rad/s].
+
+        Returns
+        -------
+        float
+            Energy [J].
+        """
+        return 0.5 * dot(velocity, applied(self.inertia_about(point), velocity))  # Eq. 84
+
+    def frequency(self, gravity: float) -> float:
+        """Return the frequency parameter of the body about its nearest edge, p = sqrt(m g R / I) there.
+
+        Parameters
+        ----------
+        gravity : float
+            Acceleration of gravity [m/s2].
+
+        Returns
+        -------
+        float
+            p, the least over all edges [rad/s].
+        """
+        if self.round:
+            points, axes = np.array([[-self.radius, 0.0, 0.0]]), np.array([[0.0, 1.0, 0.0]])
+        else:
+            points, axes = self.vertices, self.edges
+        found = []
+        for point, axis in zip(points, axes, strict=True):
+            arm = norm(np.cross(self.centre - point, axis))
+            found.append(math.sqrt(self.mass * gravity * arm / (2.0 * self.kinetic(point, axis))))  # Eq. 26
+        return min(found)
+
+
+def _attribute(body: Any, names: tuple[str, ...]) -> Any:
+    for name in names:
+        if getattr(body, name, None) is not None:
+            return getattr(body, name)
+    raise InvalidValueError(
+        f"body must be a Block, a Section, MassPoints or one in space; a body in space needs {' or '.join(names)}, got "
+        f"{type(body).__name__} without"
+    )
+
+
+def _finite(name: str, values: Any, shape: tuple[int, ...], unit: str) -> FloatArray:
+    given = checks.real_array(name, values, unit).copy()
+    if given.shape != shape or not np.isfinite(given).all():
+        raise InvalidValueError(f"{name} must be {shape} finite numbers [{unit}], got {values!r:.60}")
+    given.flags.writeable = False
+    return given
+
+
+def _inertia(values: Any) -> FloatArray:
+    tensor = _finite("inertia", values, (3, 3), "kg m2")
+    scale = float(np.abs(tensor).max())
+    moments = np.linalg.eigvalsh(tensor)
+    symmetric = np.abs(tensor - tensor.T).max() <= _ROUNDING * scale
+    if not (symmetric and moments[0] > 0.0 and moments[0] + moments[1] >= moments[2] * (1.0 - _ROUNDING)):
+        raise InvalidValueError(
+            f"inertia must be symmetric with principal moments > 0, none above the sum of the others, got {moments}"
+        )
+    return tensor
+
+
+def _polygon(values: Any) -> FloatArray:
+    points = checks.real_array("base", values, "m")
+    if points.ndim != 2 or points.shape[0] < 3 or points.shape[1] != 2:
+        raise GeometryError(f"base must be vertices (k, 2) with k >= 3, or a radius [m], got shape {points.shape}")
+    points = _finite("base", points, points.shape, "m")
+    along = np.roll(points, -1, axis=0) - points
+    turns = along[:, 0] * np.roll(along[:, 1], -1) - along[:, 1] * np.roll(along[:, 0], -1)
+    around = float(np.arctan2(turns, (along * np.roll(along, -1, axis=0)).sum(axis=1)).sum())
+    if not (turns > 0.0).all() or abs(around - 2.0 * math.pi) > 1e-6:
+        raise GeometryError("base must be convex, counter-clockwise as seen from above, without repeated vertices")
+    return points

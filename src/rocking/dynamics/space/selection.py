@@ -1,0 +1,178 @@
+"""Which points stay on the ground: complementarity over the few contact sets that a convex base allows.
+
+A set of touching points either stays (the ground pushes there) or leaves (its gap opens). On a flat base only three
+kinds of sets can stay: a vertex, an edge, or everything, since a body that turns about any other pair of vertices
+would dip another one into the ground. Each candidate is tried: the motion that it leaves must not close a gap of
+another touching point, and the ground must not pull. This is the linear complementarity problem with sticking points
+(physics: plastic impact as a projection in the kinetic metric, forces by Euler's equations), solved by listing.
+"""
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from rocking.conventions import FloatArray
+from rocking.dynamics.space import stance as stances
+from rocking.dynamics.space.attitude import cross
+from rocking.dynamics.space.impact import SpatialImpactLaw, projected
+from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.stance import Stance
+from rocking.outcome import ContactMode
+from rocking.portable import applied, dot, norm, solution
+
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialState:
+    """A body at an instant, in its own axes."""
+
+    pivot: FloatArray  # A point at rest on the ground [m]; shape (3,)
+    velocity: FloatArray  # angular velocity [rad/s]; shape (3,)
+    up: FloatArray  # vertical [-]; shape (3,)
+    field: FloatArray  # gravity less the acceleration of the ground [m/s2]; shape (3,)
+    # of a body on an edge, from the pivot to the other end of the edge; zero on a vertex [m]; shape (3,)
+    along: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(3))
+
+    def nearest(self, stance: Stance) -> FloatArray:
+        """Return the point at rest that is nearest to a new stance: from there laws measure the step.
+
+        Returns the pivot, or a point of the edge, in body axes [m].
+        """
+        length = float((self.along * self.along).sum())
+        if length == 0.0:
+            return self.pivot
+        middle = stance.pivot if stance.axis is None else stance.pivot + 0.5 * stance.length * stance.axis
+        share = float(((middle - self.pivot) * self.along).sum()) / length
+        nearest: FloatArray = self.pivot + min(max(share, 0.0), 1.0) * self.along
+        return nearest
+
+
+@dataclass(frozen=True, eq=False)
+class Continuation:
+    """What stays, and how the body goes on."""
+
+    stance: Stance  # on what the body stands
+    velocity: FloatArray  # angular velocity, in body axes [rad/s]; shape (3,)
+    supports: FloatArray  # impulses or forces of the ground, as `supports` of the stance has them [N s] or [N]
+
+
+def candidates(body: SpatialBody, touching: tuple[int, ...]) -> Iterator[Stance]:
+    """Yield the contact sets that can stay, larger ones first."""
+    count = len(body.vertices)
+    if len(touching) == count:
+        yield stances.face(body)
+    for number in touching:
+        if (number + 1) % count in touching:
+            yield stances.edge(body, number)
+    for number in touching:
+        yield stances.vertex(body, number)
+
+
+def of_impact(
+    body: SpatialBody, state: SpatialState, touching: tuple[int, ...], law: SpatialImpactLaw
+) -> list[Continuation]:
+    """Return every contact set that an impact may leave, the largest first."""
+    found = []
+    scale = float(np.abs(state.velocity).max()) * body.size
+    for stance in candidates(body, touching):
+        plastic = _after(body, state, stance)
+        push = impulses(body, state, stance, plastic)
+        if push.min() < -_ROUNDING * body.mass * scale:
+            continue
+        velocity = plastic
+        if stance.contact is not ContactMode.REST:
+            velocity = law.velocity_after(
+                body, state.nearest(stance), stance.pivot, stance.axis, state.up, state.velocity
+            )
+        if _opening(body, stance, velocity, state.up, touching) >= -_ROUNDING * scale:
+            found.append(Continuation(stance, velocity, push))
+    return found
+
+
+def of_forces(
+    body: SpatialBody, state: SpatialState, touching: tuple[int, ...], first: Stance | None = None
+) -> list[Continuation]:
+    """Return every contact set that stays when no gap opens with a speed, a preferred one first.
+
+    Returns empty if the ground would have to pull.
+    """
+    found: list[Continuation] = []
+    scale = norm(state.field)
+    for stance in [] if first is None else [first]:
+        _try_forces(body, state, stance, touching, scale, found)
+    for stance in candidates(body, touching):
+        if first is None or stance.points != first.points:
+            _try_forces(body, state, stance, touching, scale, found)
+    return found
+
+
+def _try_forces(
+    body: SpatialBody,
+    state: SpatialState,
+    stance: Stance,
+    touching: tuple[int, ...],
+    scale: float,
+    found: list[Continuation],
+) -> None:
+    velocity = _after(body, state, stance)
+    rate, push = forces(body, stance, velocity, state.up, state.field)
+    if push.min() < -_ROUNDING * body.mass * scale:
+        return
+    spin = cross(velocity, cross(velocity, body.vertices - stance.pivot))
+    opening = applied(cross(rate, body.vertices - stance.pivot) + spin, state.up)
+    others = [i for i in touching if i not in stance.points]
+    if not others or opening[others].min() >= -_ROUNDING * scale:
+        found.append(Continuation(stance, velocity, push))
+
+
+def impulses(body: SpatialBody, state: SpatialState, stance: Stance, velocity: FloatArray) -> FloatArray:
+    """Return the impulses of the ground in an impact.
+
+    velocity: angular velocity after, in body axes [rad/s]. Returns as of `supports` of the stance [N s].
+    """
+    new = body.centre - stance.pivot
+    push = body.mass * (cross(velocity, new) - cross(state.velocity, body.centre - state.pivot))  # Eq. 90
+    moment = applied(body.inertia, velocity - state.velocity) + cross(new, push)  # Eq. 90
+    return stances.supports(body, stance, push, moment, state.up)
+
+
+def forces(
+    body: SpatialBody, stance: Stance, velocity: FloatArray, up: FloatArray, field: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the angular acceleration on a stance and the forces of the ground.
+
+    velocity: angular velocity, in body axes [rad/s]; up: vertical in body axes [-]; field: gravity less the
+    acceleration of the ground, in body axes [m/s2]. Returns acceleration: Angular, in body axes [rad/s2] (shape (3,));
+    supports: as of `supports` of the stance [N].
+    """
+    arm, inertia = body.centre - stance.pivot, body.inertia_about(stance.pivot)
+    rate: FloatArray
+    gyroscopic, weight = cross(velocity, applied(inertia, velocity)), body.mass * cross(arm, field)
+    if stance.contact is ContactMode.REST:
+        rate = np.zeros(3)
+    elif stance.axis is not None:
+        rate = stance.axis * (dot(stance.axis, weight - gyroscopic) / dot(stance.axis, applied(inertia, stance.axis)))
+    else:
+        rate = solution(inertia, weight - gyroscopic)
+    moment = applied(inertia, rate) + gyroscopic - weight  # Eq. 91
+    force = body.mass * (cross(rate, arm) + cross(velocity, cross(velocity, arm)) - field)  # Eq. 91
+    return rate, stances.supports(body, stance, force, moment, up)
+
+
+def _after(body: SpatialBody, state: SpatialState, stance: Stance) -> FloatArray:
+    if stance.contact is ContactMode.REST:
+        return np.zeros(3)
+    return projected(body, state.pivot, stance.pivot, stance.axis, state.velocity)
+
+
+def _opening(
+    body: SpatialBody, stance: Stance, velocity: FloatArray, up: FloatArray, touching: tuple[int, ...]
+) -> float:
+    """Least speed with which a touching point that does not stay leaves the ground."""
+    others = [i for i in touching if i not in stance.points]
+    if not others:
+        return 0.0
+    return float(applied(cross(velocity, body.vertices[others] - stance.pivot), up).min())

@@ -1,0 +1,173 @@
+"""A response in plain values: SI units, None where something does not exist.
+
+What the keys mean:
+
+- ``body``: ``kind``, ``mass_kg``, ``sides`` by foot: ``slenderness_angle_rad``, ``frequency_parameter_rad_s``,
+  ``semi_diagonal_m``, ``coefficient`` (of restitution, when the body lands on this foot).
+- ``motion``: None for free rocking, else ``kind`` (record or pulse), ``name``, ``scale``, ``duration_s``,
+  ``peak_acceleration_m_s2`` (scaled).
+- ``initial_rotation_rad``, ``restitution`` (label), ``engine`` (which one ran), ``gravity_m_s2``, ``linear``.
+- ``outcome``: no_uplift, rocked or overturned; ``summary``: the same in a sentence; ``overturned_to``: foot or None;
+  ``overturning_time_s`` or None; ``peak_rotation_rad`` (a quarter turn if it overturned) and
+  ``peak_rotation_over_alpha``; ``still_rocking``: None where the body rests or has overturned at the end,
+  else ``time_s``, ``rotation_rad`` and ``angular_velocity_rad_s`` of that instant, and ``sentence``, the same in words.
+- ``uplifts_s``: times; ``impacts``: ``time_s``, ``velocity_before_rad_s``, ``velocity_after_rad_s``, ``coefficient``,
+  ``onto``.
+- ``energy_closure``: what does not add up over the largest energy; ``error_estimate_rad``: None if another step changes
+  the outcome.
+- ``friction``: ``given``, ``assumed`` (whether nobody gave it), ``of_motion`` (None if infinite), ``of_impacts``;
+  ``least_vertical_force_N``; ``warnings``.
+"""
+
+import math
+from typing import Any
+
+from rocking import plausibility
+from rocking.conventions import FEET, Assumed
+from rocking.dynamics.contact import PlanarResponse
+from rocking.dynamics.response import Motion, Response
+from rocking.dynamics.rocker import RockingParameters
+from rocking.motions.motion import GroundMotion
+
+
+def response_facts(response: Response, friction: float, *, error_estimate: bool = True) -> dict[str, Any]:
+    """Return everything that is said of a response.
+
+    friction: coefficient of friction between body and ground [-].
+    """
+    facts = {
+        "body": rocker_facts(response),
+        "motion": moved_facts(response.motion, response.scale),
+        "initial_rotation_rad": float(response.rotation[0]),
+        "restitution": response.rocker.label,
+        "engine": response.engine,
+        "gravity_m_s2": response.settings.gravity,
+        "linear": response.settings.linear,
+        **outcome_facts(response),
+        "uplifts_s": response.uplifts.tolist(),
+        "impacts": impacts_facts(response),
+        "energy_closure": response.energy.closure,
+    }
+    if error_estimate:
+        facts["error_estimate_rad"] = finite(response.error_estimate)
+    return {**facts, **credibility_facts(response, friction)}
+
+
+def credibility_facts(response: Response, friction: float) -> dict[str, Any]:
+    """Return what rocking without slip and flight takes.
+
+    friction: coefficient of friction between body and ground [-].
+    """
+    contact = response.contact
+    return {
+        "friction": {
+            "given": friction,
+            "assumed": isinstance(friction, Assumed),
+            "of_motion": finite(contact.friction_of_motion),
+            "of_impacts": finite(contact.friction_of_impacts),
+        },
+        "least_vertical_force_N": contact.least_vertical,
+        "warnings": response.doubts(friction),
+    }
+
+
+def rocker_facts(response: Response) -> dict[str, Any]:
+    """Return the body as its equations of motion see it."""
+    body, rocker = response.body, response.rocker
+    sides = {foot: rocker.right if foot == "right" else rocker.left for foot in FEET}
+    return {
+        "kind": type(body).__name__,
+        "mass_kg": body.mass,
+        "assumed": list(body.assumed),
+        "warnings": list(body.doubts),
+        "sides": {
+            foot: {
+                "slenderness_angle_rad": side.slenderness_angle,
+                "frequency_parameter_rad_s": side.frequency_parameter,
+                "semi_diagonal_m": side.semi_diagonal,
+                "coefficient": side.coefficient,
+            }
+            for foot, side in sides.items()
+        },
+    }
+
+
+def moved_facts(motion: Motion | None, scale: float) -> dict[str, Any] | None:
+    """Return what moved the ground.
+
+    scale: factor on it [-].
+    """
+    if motion is None:
+        return None
+    return {
+        "kind": "record" if isinstance(motion, GroundMotion) else "pulse",
+        "name": motion.name,
+        "scale": scale,
+        "duration_s": motion.duration,
+        "peak_acceleration_m_s2": abs(scale) * motion.peak,
+        "warnings": list(plausibility.of_acceleration(abs(scale) * motion.peak)),
+    }
+
+
+def outcome_facts(response: Response) -> dict[str, Any]:
+    """Return how a response ended.
+
+    Returns Outcome, its sentence, overturning, peak, and whether it still rocks.
+    """
+    run = response.trajectory
+    return {
+        "outcome": response.outcome.name.lower(),
+        "summary": response.summary,
+        "overturned_to": {1: "right", -1: "left"}.get(int(run.side)),
+        "overturning_time_s": finite(response.overturning_time),
+        "peak_rotation_rad": response.peak_rotation,
+        "peak_rotation_over_alpha": response.peak_rotation / response.rocker.side(run.peak_rotation).slenderness_angle,
+        "still_rocking": still_rocking_facts(response),
+        "lost_contact": response.lost_contact,
+    }
+
+
+def still_rocking_facts(response: Response | PlanarResponse) -> dict[str, float | str] | None:
+    """Return the last state of a body that does not yet rest.
+
+    Returns Time, rotation, angular velocity and a sentence; None if it rests or has overturned.
+    """
+    if not response.still_rocking:
+        return None
+    return {
+        "time_s": float(response.time[-1]),
+        "rotation_rad": float(response.rotation[-1]),
+        "angular_velocity_rad_s": float(response.angular_velocity[-1]),
+        "sentence": response.unfinished,
+    }
+
+
+def impacts_facts(response: Response) -> list[dict[str, Any]]:
+    """Return the impacts of a response."""
+    keys = ("time_s", "velocity_before_rad_s", "velocity_after_rad_s", "coefficient", "onto")
+    return [dict(zip(keys, row, strict=True)) for row in response.impacts.tolist()]
+
+
+def other_facts(found: Response | str) -> dict[str, Any]:
+    """Return what another model says, in short."""
+    if isinstance(found, str):
+        return {"error": found}
+    coefficients = coefficients_facts(found.rocker)
+    return {**outcome_facts(found), "impact_count": int(found.impacts.size), "coefficients": coefficients}
+
+
+def coefficients_facts(rocker: RockingParameters) -> dict[str, float]:
+    """Return the coefficients of restitution of a body.
+
+    Returns by the foot on which it lands [-].
+    """
+    return {"left": rocker.left.coefficient, "right": rocker.right.coefficient}
+
+
+def finite(value: float) -> float | None:
+    """Return a number, or None where it is infinite or does not exist.
+
+    >>> finite(1.5), finite(float("nan"))
+    (1.5, None)
+    """
+    return float(value) if math.isfinite(value) else None

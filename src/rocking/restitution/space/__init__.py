@@ -1,0 +1,39 @@
+"""What an impact costs a body in space: corner to corner, edge to edge, corner to edge."""
+
+from rocking.restitution.space.energies import UnitEnergies, lost_density, unit_energies
+from rocking.restitution.space.geometry import SpatialImpact
+from rocking.restitution.space.horizontal_momentum import SpatialHorizontalMomentum
+from rocking.restitution.space.housner import SpatialHousner
+from rocking.restitution.space.impulse_position import ImpulsePosition, impulse_position
+from rocking.restitution.space.interface import edge_coefficient, impact_in_space, spatial_model, spatial_models
+from rocking.restitution.space.ked import SpatialKedPoint, energy_left
+from rocking.restitution.space.ked_impulse import SpatialKed
+from rocking.restitution.space.leaning import LeaningImpact
+from rocking.restitution.space.model import SpatialFlag, SpatialModel, SpatialRestitution
+from rocking.restitution.space.moments import KeptMoments, kept_moments
+from rocking.restitution.space.rigid import RigidImpact
+
+__all__ = [
+    "ImpulsePosition",
+    "KeptMoments",
+    "LeaningImpact",
+    "RigidImpact",
+    "SpatialFlag",
+    "SpatialHorizontalMomentum",
+    "SpatialHousner",
+    "SpatialImpact",
+    "SpatialKed",
+    "SpatialKedPoint",
+    "SpatialModel",
+    "SpatialRestitution",
+    "UnitEnergies",
+    "edge_coefficient",
+    "energy_left",
+    "impact_in_space",
+    "impulse_position",
+    "kept_moments",
+    "lost_density",
+    "spatial_model",
+    "spatial_models",
+    "unit_energies",
+]

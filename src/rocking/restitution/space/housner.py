@@ -1,0 +1,63 @@
+"""Housner's impact in space: plastic and sticking, angular momentum about the new support is kept."""
+
+from dataclasses import dataclass
+
+from rocking.conventions import FloatArray
+from rocking.portable import applied, dot
+from rocking.restitution.space.model import SpatialModel
+from rocking.restitution.space.rigid import RigidImpact, solved
+
+
+@dataclass(frozen=True)
+class SpatialHousner(SpatialModel):
+    """Angular momentum about the new corner, or its component along the new edge, is kept.
+
+    ``I_B omega_+ = I_C omega_- + m rho_B x (omega_- x rho_A)`` about a corner B, and
+    ``omega_+ = e . L_O'/(e . I_O' e)`` about an edge: the orthogonal projection of the motion, in the kinetic
+    metric, onto the motions that the new support allows.
+    """
+
+    name = "housner-3d"
+    title = "angular momentum about the new corner or edge is kept"
+    reference = "Housner 1963, BSSA 53(2) 403-417, extended to space by projection in this project"
+    assumptions = (
+        "rigid body and ground, instantaneous impact, no sliding",
+        "the impulse acts at the new corner, or on the new edge, alone",
+    )
+    domain = "every impact on one corner or edge; an edge that the body would push through stops it"
+    known_defects = (
+        "squat bodies would go through the ground beside the new corner",
+        "loses more than most measurements for bodies of slenderness below about 4",
+    )
+
+    def on_corner(self, impact: RigidImpact) -> FloatArray:
+        """Solve for the angular velocity that keeps the angular momentum about the corner.
+
+        Parameters
+        ----------
+        impact : RigidImpact
+            The impact.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            Angular velocity [rad/s].
+        """
+        return solved(impact.inertia, impact.angular_momentum)  # Eq. 88
+
+    def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
+        """Divide the angular momentum along the edge by the moment of inertia about it.
+
+        Parameters
+        ----------
+        impact : RigidImpact
+            The impact.
+        direction : ndarray, shape (3,)
+            Unit vector along the edge [-].
+
+        Returns
+        -------
+        float
+            Angular velocity [rad/s].
+        """
+        return dot(direction, impact.angular_momentum) / dot(direction, applied(impact.inertia, direction))  # Eq. 89

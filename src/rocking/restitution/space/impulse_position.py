@@ -1,0 +1,235 @@
+"""Where the impulse of a landing of the whole base acts: what the paper's energy balance fixes, direction by direction.
+
+Seen along the horizontal normal to a direction u, a landing towards u is one of the plane: the old foot is the base's
+extreme against u, the new one its extreme along u, r is the paper's (Eq. 17, Mao et al. 2024), and one impulse gives
+that r only if it acts ``a = (I_C + m h^2)(1 - r)/(m (r b_new + b_old))`` ahead of the centre's foot, at
+``k = (2 a - (b_new - b_old))/(b_new + b_old)`` of the half distance between the feet. As a function of the azimuth of u
+k is analytic as long as neither foot changes, so that few exact values give it between those azimuths.
+"""
+
+import math
+from bisect import bisect_right
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+
+from rocking.bodies.solid import RoundBase, Solid, SupportPolygon
+from rocking.bodies.solid.sampling import samples
+from rocking.conventions import FloatArray
+from rocking.restitution.space.integrals import extruded_moment
+
+HIGHEST = 32
+"""Degree of the polynomials, at most."""
+
+_SAME, _CONVERGED, _NEGLIGIBLE = 1e-9, 1e-9, 1e-7
+_ARCS = 8
+
+
+class ImpulsePosition:
+    """Position k of a landing of the whole base, for every direction in which a solid may land.
+
+    Parameters
+    ----------
+    solid : Solid
+        The body.
+
+    Attributes
+    ----------
+    breaks : list of float
+        Azimuths at which a foot changes, in order, the last one a turn after the first [rad].
+    """
+
+    def __init__(self, solid: Solid) -> None:
+        self.solid = solid
+        self.breaks = _breaks(solid)
+        self._pieces: dict[int, list[float]] = {}
+
+    def at(self, step: FloatArray) -> float:
+        """Return k of the landing in a direction.
+
+        Parameters
+        ----------
+        step : ndarray, shape (2,) or longer
+            From the old pivot to the new one, in the solid's own frame; its length does not matter.
+
+        Returns
+        -------
+        float
+            Of the half distance between the feet, towards the new one; above 1 beyond it [-].
+        """
+        angle, breaks = math.atan2(float(step[1]), float(step[0])), self.breaks
+        if angle < breaks[0]:
+            angle += 2.0 * math.pi
+        number = min(bisect_right(breaks, angle) - 1, len(breaks) - 2)
+        low, high = breaks[number : number + 2]
+        return _value(self.piece(number), (2.0 * angle - low - high) / (high - low))
+
+    def piece(self, number: int) -> list[float]:
+        """Return k between two neighbouring azimuths of `breaks`.
+
+        Parameters
+        ----------
+        number : int
+            Of the first of them.
+
+        Returns
+        -------
+        list of float
+            Chebyshev coefficients over the interval [-].
+        """
+        if number not in self._pieces:
+            low, high = self.breaks[number : number + 2]
+            self._pieces[number] = self._fitted(0.5 * (low + high), 0.5 * (high - low))
+        return self._pieces[number]
+
+    def exact(self, angle: float) -> float:
+        """Return k of the landing in a direction, straight from the integrals over the mass.
+
+        Parameters
+        ----------
+        angle : float
+            Azimuth of the direction, from x towards y [rad].
+
+        Returns
+        -------
+        float
+            As of `at`.
+        """
+        found, x, y = self.solid.local_moments, math.cos(angle), math.sin(angle)
+        edge = np.array([-y, x, 0.0])
+        new, old = (_reach(self.solid, sign * x, sign * y) for sign in (1.0, -1.0))
+        middle = float(found.centre[0]) * x + float(found.centre[1]) * y
+        b_new, b_old, mass = new - middle, old + middle, found.mass
+        over_foot = float((edge * (found.inertia * edge).sum(axis=1)).sum()) + mass * float(found.centre[2]) ** 2
+        kept = self._projected(edge, new)
+        r = math.sqrt(max(kept, 0.0) / (over_foot + mass * b_new**2))  # Eq. 17, Mao et al. 2024
+        ahead = over_foot * (1.0 - r) / (mass * (r * b_new + b_old))  # Eq. 4
+        return (2.0 * ahead - (b_new - b_old)) / (b_new + b_old)  # Eq. 104
+
+    def _projected(self, edge: FloatArray, offset: float) -> float:
+        """Numerator of Eq. 17 about a level line at an offset from the origin of the solid's frame."""
+        total, point = 0.0, np.array([offset * edge[1], -offset * edge[0], 0.0])
+        for part, cloud in zip(self.solid.local_parts, _clouds(self.solid), strict=True):
+            exact = extruded_moment(part, point, edge)
+            total += _of_cloud(cloud, edge, offset) if exact is None else exact
+        return total
+
+    def _fitted(self, middle: float, half: float) -> list[float]:
+        values = {share: self.exact(middle + half * share) for share in (1.0, 0.0, -1.0)}
+        degree, found = 2, _coefficients(list(values.values()))
+        while degree < HIGHEST:
+            degree *= 2
+            shares = [math.cos(math.pi * j / degree) for j in range(degree + 1)]
+            new = {share: self.exact(middle + half * share) for share in shares[1::2]}
+            error = max(abs(_value(found, share) - value) for share, value in new.items())
+            every = [new[share] if j % 2 else old for j, (share, old) in enumerate(_paired(shares, values))]
+            values = dict(zip(shares, every, strict=True))
+            found = _coefficients(every)
+            if error <= _CONVERGED * max(1.0, *map(abs, every)):
+                break
+        return found
+
+
+@lru_cache(maxsize=256)
+def impulse_position(solid: Solid) -> ImpulsePosition:
+    """Return where the impulse of a landing of the whole base acts, kept for the solid.
+
+    Parameters
+    ----------
+    solid : Solid
+        The body.
+
+    Returns
+    -------
+    ImpulsePosition
+        k by direction.
+
+    Examples
+    --------
+    >>> from rocking.bodies.solid import box
+    >>> position = impulse_position(Solid(box(1.0, 1.0, 4.0)))
+    >>> round(position.at(np.array([1.0, 0.0])), 9)
+    0.585603709
+    """
+    return ImpulsePosition(solid)
+
+
+def _breaks(solid: Solid) -> list[float]:
+    base = solid.local_base
+    if isinstance(base, SupportPolygon):
+        normals = [math.atan2(-float(along.direction[0]), float(along.direction[1])) for along in base.edges]
+        both = sorted(math.remainder(angle + turn, 2.0 * math.pi) for angle in normals for turn in (0.0, math.pi))
+    else:
+        both = [2.0 * math.pi * (j / _ARCS - 0.5) for j in range(_ARCS)]
+    found = [both[0]]
+    found += [angle for last, angle in pairwise(both) if angle - last > _SAME]
+    if found[0] + 2.0 * math.pi - found[-1] <= _SAME:
+        found.pop()
+    return [*found, found[0] + 2.0 * math.pi]
+
+
+def _reach(solid: Solid, x: float, y: float) -> float:
+    """How far the base reaches in a direction from the origin of the solid's frame [m]."""
+    base = solid.local_base
+    if isinstance(base, SupportPolygon):
+        return float((base.vertices[:, 0] * x + base.vertices[:, 1] * y).max())
+    assert isinstance(base, RoundBase)
+    return float(base.centre[0]) * x + float(base.centre[1]) * y + base.radius
+
+
+@lru_cache(maxsize=2)
+def _clouds(solid: Solid) -> list[FloatArray]:
+    # z^4/(t^2 + z^2) is homogeneous about any line on the ground, and rough only where z is small, at any direction
+    made = []
+    for part in solid.local_parts:
+        shape, top = part.shape, float(part.box()[1][2])
+        negligible = _NEGLIGIBLE * shape.moments().mass * top * top
+        batches = samples(shape.surfaces(part.rotation, part.translation), _height, negligible, _height_squared)
+        rows = [np.column_stack([points, part.density * areas]) for points, areas in batches]
+        made.append(np.ascontiguousarray(np.concatenate(rows).T))
+    return made
+
+
+def _of_cloud(cloud: FloatArray, edge: FloatArray, offset: float) -> float:
+    """``Int z^4/(t^2 + z^2) dm = sum z^4/(t^2 + z^2) (s . dA)/5`` by Gauss points of the surface."""
+    x, y, z, ax, ay, az = cloud
+    across, along = x * edge[1] - y * edge[0] - offset, x * edge[0] + y * edge[1]
+    cone = across * (ax * edge[1] - ay * edge[0]) + along * (ax * edge[0] + ay * edge[1]) + z * az
+    square = z * z
+    distance = np.maximum(across * across + square, 1e-300)
+    return 0.2 * float((cone * square * square / distance).sum())  # Eq. 107
+
+
+def _height(points: FloatArray) -> FloatArray:
+    return np.abs(points[:, 2])
+
+
+def _height_squared(points: FloatArray) -> FloatArray:
+    squared: FloatArray = points[:, 2] ** 2
+    return squared
+
+
+def _paired(shares: list[float], values: dict[float, float]) -> list[tuple[float, float]]:
+    """Every new node with the value at the old one of the same place, for nodes of doubled number."""
+    known = list(values.values())
+    return [(share, known[j // 2]) for j, share in enumerate(shares)]
+
+
+def _coefficients(values: list[float]) -> list[float]:
+    """Chebyshev coefficients from values at cos(pi j/n)."""
+    n = len(values) - 1
+    ends = [0.5 if j in {0, n} else 1.0 for j in range(n + 1)]
+    found = []
+    for k in range(n + 1):
+        total = sum(w * v * math.cos(math.pi * j * k / n) for j, (w, v) in enumerate(zip(ends, values, strict=True)))
+        found.append(2.0 * ends[k] * total / n)
+    return found
+
+
+def _value(coefficients: list[float], x: float) -> float:
+    """Clenshaw's sum."""
+    one = two = 0.0
+    for coefficient in reversed(coefficients[1:]):
+        one, two = 2.0 * x * one - two + coefficient, one
+    return x * one - two + coefficients[0]

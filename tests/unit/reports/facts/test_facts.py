@@ -1,0 +1,123 @@
+"""Facts are plain values: they can be written as JSON, hold no NaN, and say what mechanics says."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import rocking as rk
+from rocking.errors import PureRockingWarning
+from rocking.reports.facts.body import body_facts, outline_facts
+from rocking.reports.facts.evidence import curves_facts, measured_facts
+from rocking.reports.facts.impact import ImpactAnswer, impact_facts
+from rocking.reports.facts.motion import MotionAnswer, motion_facts, spectrum_facts
+from rocking.reports.facts.response import finite, other_facts, response_facts
+from rocking.reports.facts.stages import stages_facts
+from rocking.reports.facts.verdict import ModelAgreement
+
+BLOCK = rk.Block(width=0.5, height=2.0)
+LEANING = rk.Section.from_trapezoid(1.0, 0.5, 2.5)
+POINTS = rk.MassPoints([(0.2, 1.0), (0.8, 2.0)], [10.0, 20.0], (0.0, 1.0))
+MOTION = rk.pulses.sine(amplitude=3.2, period=0.8)
+
+
+@pytest.mark.parametrize("body", [BLOCK, LEANING, POINTS])
+def test_everything_is_plain_json(body):
+    """Body, outline, impact, stages and response of every kind of body are JSON without NaN."""
+    answer = ImpactAnswer.of(body, None, onto="both", eta=1.0, gravity=9.81, identities=False)
+    response = rk.simulate(body, MOTION)
+    facts = [
+        body_facts(body, 9.81), outline_facts(body), impact_facts(answer), stages_facts(body, "left"),
+        response_facts(response, 0.5), other_facts(response), measured_facts(), curves_facts(),
+    ]  # fmt: skip
+    json.dumps(facts, allow_nan=False)
+
+
+def test_an_overturning_response_has_no_infinite_number():
+    """Where the friction demand is infinite or another step changes the outcome, None stands."""
+    with pytest.warns(rk.errors.PureRockingWarning, match="the ground would have to pull"):
+        response = rk.simulate(BLOCK, MOTION, scale=20.0)
+    assert math.isinf(response.contact.friction_of_motion)
+    assert response.outcome is rk.Outcome.OVERTURNED
+    json.dumps(response_facts(response, 0.5), allow_nan=False)
+    assert finite(math.inf) is finite(math.nan) is None
+
+
+def test_the_error_estimate_can_be_left_out():
+    """Without it all other facts are the same."""
+    response = rk.simulate(BLOCK, MOTION)
+    whole = response_facts(response, 0.5)
+    assert whole.pop("error_estimate_rad") >= 0.0
+    assert response_facts(response, 0.5, error_estimate=False) == whole
+
+
+def test_a_large_outline_is_thinned():
+    """An ellipse of 10000 sides is drawn with at most 2000 vertices, all of them on the ellipse."""
+    drawn = outline_facts(rk.Section.from_ellipse(1.0, 2.0, 10_000))["outline"][0]["outline"]
+    assert 1000 < len(drawn) <= 2000
+    x, y = np.array(drawn).T
+    assert np.allclose(((x - x.mean()) / 0.5) ** 2 + (y - 1.0) ** 2, 1.0, atol=1e-3)
+
+
+def test_the_stages_conserve_what_they_say():
+    """Stage 1 leaves no vertical velocity, stage 2 none along the line to the new foot, the last one is a rotation."""
+    told = stages_facts(BLOCK, "right", angular_velocity=2.0)
+    points, (before, first, second, after) = np.array(told["points_m"]), (s["velocity_m_s"] for s in told["stages"])
+    assert not np.array(first)[:, 1].any()
+    assert np.allclose((np.array(second) * (points - [0.5, 0.0])).sum(axis=1), 0.0, atol=1e-12)
+    speed, reach = np.hypot(*np.array(after).T), np.hypot(*(points - [0.5, 0.0]).T)
+    assert np.allclose(speed / reach, told["velocity_after_rad_s"])
+    assert np.allclose(np.hypot(*np.array(before).T) / np.hypot(*points.T), told["velocity_before_rad_s"])
+    inertia = BLOCK.side("right").moment_of_inertia
+    assert math.isclose(told["stages"][0]["energy_J"], 0.5 * inertia * 4.0)
+
+
+def test_motion_facts_of_a_record_and_a_pulse():
+    """A record tells samples and step, a pulse has its peaks from its formula."""
+    record = rk.GroundMotion([0.0, 1.0, -2.0, 0.5], 0.1, name="four")
+    told = MotionAnswer.of(record, [0.5, 1.0], 0.05)
+    facts = motion_facts(told.motion, told.samples, told.measures)
+    assert (facts["kind"], facts["samples"], facts["time_step_s"]) == ("record", 4, 0.1)
+    assert facts["intensity"]["pga_m_s2"] == 2.0
+    assert spectrum_facts(told.spectrum)["period_s"] == [0.5, 1.0]
+    pulse = MotionAnswer.of(MOTION, [1.0], 0.05)
+    exact = motion_facts(MOTION, pulse.samples, pulse.measures)["intensity"]
+    assert math.isclose(exact["pgv_m_s"], 3.2 * 0.8 / math.pi, rel_tol=1e-12)
+
+
+def test_the_verdict_names_who_says_what():
+    """Two outcomes are a decision, with the names of the models on both sides; one is none."""
+    stands, falls = rk.simulate(BLOCK, MOTION, duration=60.0), rk.simulate(BLOCK, MOTION, scale=3.0)
+    both = ModelAgreement.of({"a": stands, "b": falls, "c": stands})
+    assert both == ModelAgreement(True, "The model decides: the body stays standing with a, c, overturns with b.")
+    assert ModelAgreement.of({"b": falls}) == ModelAgreement(
+        False, "With every one of these models the body overturns."
+    )
+
+
+def test_the_verdict_names_who_still_rocks():
+    """Of three responses one is cut while it rocks: the sentence says which, and the outcome is the same."""
+    rests, cut = rk.simulate(BLOCK, MOTION, duration=60.0), rk.simulate(BLOCK, MOTION, duration=1.0)
+    together = ModelAgreement.of({"a": rests, "b": cut, "c": rests})
+    assert together.sentence.endswith("the body stays standing. Still rocking when the computation ends: with b.")
+    assert not together.decides
+    assert ModelAgreement.of({"a": rests}).sentence.endswith("the body stays standing.")
+
+
+def test_curves_follow_the_formula_of_housner():
+    """The curve of Housner is 1 - 3/2 sin(alpha)^2 at every slenderness, and zero where that is negative."""
+    curve = next(one for one in curves_facts() if one["model"] == "housner")
+    alpha = np.arctan(1.0 / np.array(curve["slenderness_ratio"]))
+    assert np.allclose(curve["coefficient"], np.maximum(1.0 - 1.5 * np.sin(alpha) ** 2, 0.0), rtol=1e-12)
+
+
+def test_the_verdict_names_with_whom_the_ground_would_have_to_pull():
+    """The sentence is that of all models, of which the chosen one may be above doubt."""
+    held = rk.simulate(BLOCK, MOTION)
+    with pytest.warns(PureRockingWarning, match="would have to pull"):
+        torn = rk.simulate(rk.Block(width=3.0, height=1.0), rk.pulses.sine(40.0, 1.0), 0.5)
+    assert torn.lost_contact
+    assert "pull" not in ModelAgreement.of({"a": held}).sentence
+    both = ModelAgreement.of({"a": held, "b": torn}).sentence
+    assert both.endswith("The ground would have to pull, and the verdict assumes contact: with b.")

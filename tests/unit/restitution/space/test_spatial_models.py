@@ -1,0 +1,166 @@
+"""Impacts in space: interface, flags, units and everything that is refused."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder, extrusion, voxels
+from rocking.errors import GeometryError, InvalidValueError, UnknownModelError
+from rocking.restitution.space import (
+    SpatialFlag,
+    SpatialKed,
+    edge_coefficient,
+    impact_in_space,
+    spatial_model,
+    spatial_models,
+    unit_energies,
+)
+
+UP = np.array([0.0, 0.0, 1.0])
+PRISM = Solid(box(1.0, 1.0, 4.0))
+DIAGONAL = {"velocity": [-1.0, 1.0, 0.0], "pivot": (-0.5, -0.5), "onto": (0.5, 0.5)}
+
+
+def test_every_model_says_where_it_comes_from():
+    """Name, title, reference, assumptions, domain and known defects are there."""
+    for name, kind in spatial_models().items():
+        assert spatial_model(name).name == spatial_model(name.removesuffix("-3d")).name == name
+        assert kind.title
+        assert kind.reference != "not stated"
+        assert kind.assumptions
+        assert kind.known_defects
+        assert kind.domain != "not stated"
+
+
+def test_corners_and_points_mean_the_same():
+    """A point (x, y), a point (x, y, z) and a Corner give one result, also far from the origin."""
+    there = impact_in_space(PRISM, **DIAGONAL).velocity
+    corner = impact_in_space(PRISM, [-1, 1, 0], pivot=Corner(np.array([-0.5, -0.5, 0.0])), onto=(0.5, 0.5, 0.0))
+    assert (corner.velocity == there).all()
+    far = Solid(Part(box(1.0, 1.0, 4.0)).moved(1000.0, 2000.0, 30.0), ground=30.0)
+    result = impact_in_space(far, [-1, 1, 0], pivot=(999.5, 1999.5), onto=(1000.5, 2000.5))
+    assert result.velocity == pytest.approx(there, rel=1e-12)
+
+
+def test_a_step_from_an_edge_begins_at_its_nearest_point():
+    """From every edge of an uneven base onto every corner: as if it had stood on the nearest point of the edge."""
+    corners = np.array([[-0.4, -0.3], [0.3, -0.35], [0.45, 0.15], [0.1, 0.4], [-0.35, 0.25]])
+    solid, inner = Solid(extrusion(corners, 2.0)), 0
+    for first, last in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        along = (last - first) / np.linalg.norm(last - first)
+        start = min(solid.base.edges, key=lambda e: abs(e.direction[:2] @ along - 1.0))
+        for onto in corners:
+            share = np.clip((onto - first) @ along, 0.0, np.linalg.norm(last - first))
+            inner += 0.0 < share < np.linalg.norm(last - first)
+            turned = {"velocity": -start.direction, "onto": tuple(onto), "model": "ked-3d"}
+            of_edge = impact_in_space(solid, pivot=start, **turned)
+            of_point = impact_in_space(solid, pivot=tuple(first + share * along), **turned)
+            np.testing.assert_allclose(of_edge.velocity, of_point.velocity, atol=1e-12)
+    assert inner > 3
+
+
+def test_energies():
+    """Energies are the kinetic ones, and the ratio is theirs."""
+    result = impact_in_space(PRISM, **DIAGONAL, model="housner")
+    moments = PRISM.local_moments
+    before = 0.5 * result.impact.velocity @ moments.inertia_about(np.array([-0.5, -0.5, 0.0])) @ result.impact.velocity
+    assert result.energy_before == pytest.approx(before, rel=1e-13)
+    assert result.energy_ratio == pytest.approx((59.0 / 71.0) ** 2, rel=1e-13)
+
+
+def test_flags():
+    """A flat slab stops on the far edge and would go through the ground beside a corner: both are said."""
+    slab = Solid(box(1.0, 1.0, 0.3))
+    edges = slab.base.edges
+    stopped = impact_in_space(slab, -edges[0].direction, pivot=edges[0], onto=slab.base.opposite(0), model="housner")
+    assert stopped.flags == (SpatialFlag.STOPS,)
+    assert stopped.coefficient == stopped.energy_after == 0.0
+    assert np.abs(stopped.raw_velocity).max() > 0.0
+    through = impact_in_space(slab, **DIAGONAL, model="housner")
+    assert through.flags == (SpatialFlag.PENETRATES,)
+    slow = DIAGONAL | {"velocity": 1e-8 * np.array(DIAGONAL["velocity"])}
+    assert impact_in_space(slab, **slow, model="housner").flags == (SpatialFlag.PENETRATES,)
+    assert impact_in_space(PRISM, **DIAGONAL).flags == ()
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 0.03, 0.05, 2.0])
+def test_a_round_base_turned_about_its_axis_is_the_same_base(azimuth):
+    """Its base sinks as fast as the fastest of a hundred thousand points of the rim, at any azimuth."""
+    arm = 0.5 * np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
+    ahead = azimuth + 0.02
+    turning = np.array([-math.sin(ahead), math.cos(ahead), 0.0])
+    result = impact_in_space(Solid(cylinder(1.0, 3.0)), turning, pivot=-arm, onto=arm, model="housner-3d")
+    around = np.linspace(0.0, 2.0 * math.pi, 100_001)
+    rim = 0.5 * np.stack([np.cos(around), np.sin(around), 0.0 * around], axis=1)
+    least = np.cross(result.raw_velocity, rim - arm)[:, 2].min()
+    assert result.impact.rise(result.raw_velocity) == pytest.approx(least, rel=1e-4)
+    assert result.impact.rise(result.raw_velocity + 3.0 * UP) == result.impact.rise(result.raw_velocity)
+    assert result.flags == (SpatialFlag.PENETRATES,)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"velocity": [1, -1, 0]}, "sign of the angular velocity wrong"),
+        ({"velocity": [0, 0, 0]}, "must not be zero"),
+        ({"velocity": [math.nan, 0, 0]}, "three finite numbers"),
+        ({"velocity": [1, 0]}, "three finite numbers"),
+        ({"onto": (0.5, 0.5, 0.1)}, "must lie on the ground"),
+        ({"onto": (math.inf, 0.0)}, "three finite numbers"),
+        ({"onto": Edge(np.zeros(3), np.array([1.0, 1.0, 0.0]))}, "unit vector"),
+        ({"onto": Edge(np.zeros(3), np.array([0.0, 0.0, 1.0]))}, "unit vector"),
+        ({"pivot": PRISM.base.edges[0]}, "along that edge"),
+        ({"solid": box(1, 1, 1)}, "solid must be a Solid"),
+    ],
+)
+def test_refusals(options, words):
+    """What is no impact is refused in a sentence."""
+    arguments = {"solid": PRISM, **DIAGONAL, **options}
+    with pytest.raises((GeometryError, InvalidValueError), match=words):
+        impact_in_space(**arguments)
+
+
+def test_unknown_model():
+    """A model that does not exist is not guessed."""
+    with pytest.raises(UnknownModelError, match="housner-3d"):
+        edge_coefficient(PRISM, "newton")
+
+
+def test_edges_by_number_and_direction():
+    """Polygons count their edges, circles take directions; a triangle has no opposite edge."""
+    assert edge_coefficient(PRISM, start=1) == pytest.approx(edge_coefficient(PRISM, start=0), rel=1e-12)
+    disc = Solid(cylinder(1.0, 2.0))
+    assert edge_coefficient(disc, "housner", start=0.3) == pytest.approx(edge_coefficient(disc, "housner"), rel=1e-13)
+    triangle = Solid(extrusion([(0, 0), (1, 0), (0.5, 0.8)], 3.0))
+    with pytest.raises(GeometryError, match="parallel"):
+        edge_coefficient(triangle)
+
+
+def test_units_lose_what_the_body_loses():
+    """Energies of units are additive, by units and by layers, and none gains."""
+    result = impact_in_space(PRISM, **DIAGONAL)
+    energies = unit_energies(result, 10)
+    assert (energies.lost >= -1e-12 * energies.before).all()
+    assert (energies.before >= energies.level - 1e-12).all()
+    ends, lost = energies.layers(5, 4.0)
+    assert ends == pytest.approx([0.0, 0.8, 1.6, 2.4, 3.2, 4.0])
+    assert lost.sum() == pytest.approx(energies.lost.sum(), rel=1e-13)
+    assert energies.density.shape == energies.lost.shape
+    rough = unit_energies(result.impact, voxels(PRISM, 16))
+    # voxels of an eighth of the width err by (1/4)^2/24 of the width's share and the like
+    assert rough.lost.sum() == pytest.approx(result.energy_before - result.energy_after, rel=0.03)
+    with pytest.raises(InvalidValueError, match="count"):
+        energies.layers(0)
+
+
+def test_own_model():
+    """A subclass with two methods is a model."""
+
+    class Half(SpatialKed):
+        name = "half"
+
+        def on_edge(self, impact, direction):
+            return 0.5 * float(impact.velocity @ direction)
+
+    assert edge_coefficient(PRISM, Half()) == 0.5
