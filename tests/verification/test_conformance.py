@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings
+from random_cases import sections
 
 import rocking as rk
 from rocking.conventions import opposite
@@ -61,27 +61,6 @@ class Broken(RestitutionModel):
         return 0.5 / slenderness
 
 
-@st.composite
-def bodies(draw):
-    """Random polygons on random feet inside the base, both sides of the centre."""
-    count = draw(st.integers(1, 5))
-    share = st.floats(0.15, 0.85)
-    angles = np.array([(i + draw(share)) * np.pi / count for i in range(count)])
-    radii = np.array([draw(st.floats(0.4, 3.0)) for _ in range(count)])
-    left, right = -draw(st.floats(0.5, 2.0)), draw(st.floats(0.5, 2.0))
-    above = np.column_stack([radii * np.cos(angles), radii * np.sin(angles)])
-    ring = np.concatenate([[(left, 0.0), (right, 0.0)], above])
-    x, y = ring.T
-    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
-    centre = (cross * (x + np.roll(x, -1))).sum() / (3.0 * cross.sum())
-    assume(left + 0.1 < centre < right - 0.1)
-    feet = (
-        centre + draw(st.floats(0.3, 1.0)) * (left - centre),
-        centre + draw(st.floats(0.3, 1.0)) * (right - centre),
-    )
-    return rk.Section.from_points(ring, draw(st.sampled_from([1.0, 2400.0])), feet=feet)
-
-
 def same(model, body, other, onto="right", other_onto=None):
     here, there = model.coefficient(body, onto), model.coefficient(other, other_onto or onto)
     return math.isclose(here, there, rel_tol=1e-8, abs_tol=1e-11)
@@ -102,7 +81,7 @@ def bounded(model, body, onto):
 
 @every_model
 @few
-@given(body=bodies())
+@given(body=sections())
 def test_scale_density_mirror_place(model, body):
     """The coefficient does not see size, density, mirror or position."""
     for onto in ("left", "right"):
@@ -113,7 +92,7 @@ def test_scale_density_mirror_place(model, body):
 
 
 @few
-@given(body=bodies())
+@given(body=sections())
 def test_invariance_criterion_rejects_broken_models(body):
     """Negative control: models that see metres, kilograms, left and right, or the origin fail the same
     criterion."""
@@ -125,7 +104,7 @@ def test_invariance_criterion_rejects_broken_models(body):
 
 @every_model
 @few
-@given(body=bodies())
+@given(body=sections())
 def test_number_and_flags(model, body):
     """The coefficient is finite and never negative; it is the raw value unless a flag says why not."""
     for onto in ("left", "right"):
@@ -144,7 +123,7 @@ ENERGY_BREAKERS = {"fixed:r=0.7", "shifted-impulse:k=0"}
 
 @every_model
 @few
-@given(body=bodies())
+@given(body=sections())
 def test_energy_bound(model, body):
     """No impact creates energy: r^2 I_O' <= I_O for asymmetric bodies, both ways (physics 1.1)."""
     if model.label in ENERGY_BREAKERS:
@@ -164,7 +143,7 @@ def test_energy_criterion_rejects():
 
 @every_model
 @few
-@given(body=bodies())
+@given(body=sections())
 def test_there_and_back(model, body):
     """An impact onto each foot gains nothing: r_LR r_RL <= 1 (physics 1.1)."""
     assert model.coefficient(body, "left") * model.coefficient(body, "right") <= 1.0 + 1e-12
@@ -177,7 +156,7 @@ PIVOT_BREAKERS = {"ked", "horizontal-momentum", "fixed:r=0.7", "0.9*ked"}
 
 @every_model
 @few
-@given(body=bodies())
+@given(body=sections())
 def test_coincident_pivots(model, body):
     """As the feet meet below the centre nothing is lost: 1 - r falls with the gap; KED and its like break
     it."""
@@ -206,7 +185,7 @@ def twins(body):
 
 @every_model
 @few
-@given(body=bodies())
+@given(body=sections())
 def test_inertia_alone(model, body):
     """A model marked inertia_only gives dynamically equal bodies one coefficient; the others are told
     apart."""
@@ -256,7 +235,7 @@ def test_symmetric_range_and_monotony(model):
 
 @every_model
 @few
-@given(body=bodies())
+@given(body=sections())
 def test_symmetric_bodies_stay_in_range(model, body):
     """Any body with equal levers has 0 <= r <= 1, the same onto either foot for models of inertia alone."""
     x, (left, right) = body.centre[0], body.feet

@@ -5,17 +5,16 @@ of damaged copies a format is 2000, or the environment variable ROCKING_FUZZ; th
 their other tests, follow it with a part of it.
 """
 
-import importlib.util
 import os
 import re
-import sys
 import time
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
+from random_cases import record
+from verification.record_mutations import mutated
+from verification.stated_by_headers import HEADERS
 
 from rocking.errors import InvalidValueError, RecordError
 from rocking.motions.formats.record import Component, Record
@@ -30,36 +29,12 @@ UNCLEAR = "read, though the second reading does not understand the header"
 SLOWEST = 10.0  # seconds for one file of some kilobytes: a hang, not a slow machine
 
 
-def _neighbour(name: str) -> ModuleType:
-    # tests are imported one by one (import-mode importlib), so a neighbour is found by its path
-    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
-    assert spec
-    assert spec.loader
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-mutated = _neighbour("record_mutations").mutated
-HEADERS = _neighbour("stated_by_headers").HEADERS
-
-
-def _record(names: str, count: int, seed: int) -> Record:
-    random = np.random.default_rng(seed)
-    parts = []
-    for name in names.split():
-        values = random.normal(scale=120.0, size=count) * np.hanning(count)
-        parts.append(Component(name, values - values.mean(), "cm/s2", 0.01))
-    return Record("synthetic", tuple(parts), "", {"station": "nowhere", "event": "synthetic"})
-
-
 def samples(kind: RecordFormat) -> list[bytes]:
     """Valid files by the format's own writer: up to three of the shapes that it can hold."""
     found = []
     for names, count in (("90", 100), ("360", 200), ("U N E", 100), ("L V T", 100)):
         try:
-            found.append(kind.write(_record(names, count, count)))
+            found.append(kind.write(record(names, count, count)))
         except RecordError:
             continue
     return found[:3]

@@ -9,8 +9,9 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_cases import polygons
 from scipy.integrate import dblquad
 
 import rocking as rk
@@ -275,22 +276,6 @@ def test_far_away_criterion_rejects_uncentred_sums():
     naive -= ((cross * (x + x1)).sum() ** 2 + (cross * (y + y1)).sum() ** 2) / (36.0 * area)
     m, mx, my, mxx, myy = moments_of(exact_regions([(regions[0][0], 1.0, [])]))
     assert naive != pytest.approx(float(mxx + myy - (mx * mx + my * my) / m), rel=1e-3)
-
-
-@st.composite
-def polygons(draw):
-    """Star-shaped polygons with a base from -a to c and one to six other vertices above it."""
-    count = draw(st.integers(1, 6))
-    share = st.floats(0.1, 0.9)
-    angles = [(i + draw(share)) * np.pi / count for i in range(count)]
-    radii = [draw(st.floats(0.3, 3.0)) for _ in range(count)]
-    around = [(r * np.cos(t), r * np.sin(t)) for r, t in zip(radii, angles, strict=True)]
-    ring = [(-draw(st.floats(0.5, 2.0)), 0.0), (draw(st.floats(0.5, 2.0)), 0.0), *around]
-    x, y = np.array(ring).T
-    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
-    centre = (cross * (x + np.roll(x, -1))).sum() / (3.0 * cross.sum())
-    assume(ring[0][0] + 0.05 < centre < ring[1][0] - 0.05)
-    return ring
 
 
 @settings(max_examples=12)
