@@ -44,8 +44,15 @@ def exported() -> dict[str, object]:
                 where = f"{one.__module__}.{one.__qualname__}"
                 names[where] = one
                 if inspect.isclass(one):
-                    names |= {f"{where}.{key}": member for key, member in vars(one).items() if _is_public(key, member)}
+                    names |= dict(_first(one, key) for key, member in vars(one).items() if _is_public(key, member))
     return names
+
+
+def _first(kind: type, name: str) -> tuple[str, object]:
+    """A member where its documentation stands: an override needs a line on what differs, or none."""
+    kinds = [each for each in kind.__mro__ if name in vars(each) and each.__module__.startswith("rocking")]
+    home = next((each for each in kinds[::-1] if vars(each)[name].__doc__), kind)
+    return f"{home.__module__}.{home.__qualname__}.{name}", vars(home)[name]
 
 
 def _is_public(name: str, member: object) -> bool:

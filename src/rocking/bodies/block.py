@@ -98,7 +98,6 @@ class Block(Body):
 
     @property
     def densities(self) -> tuple[float, ...]:
-        """The density [kg/m3]."""
         return (self.density,)
 
     @property
@@ -145,28 +144,10 @@ class Block(Body):
         return 0.0, 0.0, self.width, self.height
 
     def mirrored(self) -> "Block":
-        """Return the block itself: it is its own mirror image.
-
-        Returns
-        -------
-        Block
-            The same block.
-        """
+        """Return the block itself: it is its own mirror image."""
         return self
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Block":
-        """Return the block with all lengths times `size` and the density times `density`.
-
-        Parameters
-        ----------
-        size, density : float
-            Factors [-].
-
-        Returns
-        -------
-        Block
-            The scaled block.
-        """
         size, density = checks.positive("size", size), checks.positive("density", density)
         return Block(
             width=self.width * size,
@@ -176,18 +157,7 @@ class Block(Body):
         )
 
     def with_feet(self, left: float, right: float) -> "Section":
-        """Return the block standing on feet inside its base, which makes it a `Section`.
-
-        Parameters
-        ----------
-        left, right : float
-            Positions of the feet, 0 <= left < right <= width [m].
-
-        Returns
-        -------
-        Section
-            The same rectangle on those feet.
-        """
+        """Return the block standing on feet inside its base, which makes it a `Section`."""
         return self.to_section().with_feet(left, right)
 
     def to_section(self) -> "Section":

@@ -81,7 +81,6 @@ class MassPoints(Body):
 
     @property
     def local_feet(self) -> Interval:
-        """Positions of the feet [m]."""
         return self._feet
 
     @cached_property
@@ -109,48 +108,18 @@ class MassPoints(Body):
         return min(left, float(x.min())), 0.0, max(right, float(x.max())), float(y.max())
 
     def mirrored(self) -> "MassPoints":
-        """Return the points seen in a vertical mirror at x = 0.
-
-        Returns
-        -------
-        MassPoints
-            The mirror image.
-        """
+        """Return the points seen in a vertical mirror at x = 0."""
         left, right = self._feet
         contact = None if self._contact is None else [(-b, -a) for a, b in self._contact]
         return MassPoints(self.points * (-1.0, 1.0), self.masses, (-right, -left), contact)
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "MassPoints":
-        """Return the points with all lengths times `size` and all masses times `density`.
-
-        Parameters
-        ----------
-        size, density : float
-            Factors [-].
-
-        Returns
-        -------
-        MassPoints
-            The scaled points.
-        """
         size, density = checks.positive("size", size), checks.positive("density", density)
         left, right = self._feet
         contact = None if self._contact is None else [(a * size, b * size) for a, b in self._contact]
         return MassPoints(self.points * size, self.masses * density, (left * size, right * size), contact)
 
     def with_feet(self, left: float, right: float) -> "MassPoints":
-        """Return the same points standing on other feet.
-
-        Parameters
-        ----------
-        left, right : float
-            Positions of the feet [m].
-
-        Returns
-        -------
-        MassPoints
-            The same points.
-        """
         return MassPoints(self.points, self.masses, (left, right), self._contact)
 
 

@@ -210,17 +210,14 @@ class Section(Body):
 
     @property
     def ground(self) -> float:
-        """Height of the ground in the user's coordinates [m]."""
         return self._ground
 
     @property
     def local_feet(self) -> Interval:
-        """Positions of the feet in the local frame [m]."""
         return self._local_feet
 
     @property
     def densities(self) -> tuple[float, ...]:
-        """Densities of the regions [kg/m3]."""
         return tuple(region.density for region in self.regions)
 
     @cached_property
@@ -243,29 +240,11 @@ class Section(Body):
         return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
     def mirrored(self) -> "Section":
-        """Return the section seen in a vertical mirror.
-
-        Returns
-        -------
-        Section
-            Mirrored about the middle of its box.
-        """
+        """Return the section seen in a vertical mirror."""
         left, right = self._local_feet
         return self._copy(lambda ring: ring * np.array([-1.0, 1.0]), feet=(-right, -left))
 
     def scaled(self, *, size: float = 1.0, density: float = 1.0) -> "Section":
-        """Return the section with all lengths times `size` and all densities times `density`.
-
-        Parameters
-        ----------
-        size, density : float
-            Factors [-].
-
-        Returns
-        -------
-        Section
-            The scaled section, about its own origin.
-        """
         size, density = checks.positive("size", size), checks.positive("density", density)
         checks.length("size of the scaled body", self._size * size)
         left, right = self._local_feet
@@ -277,23 +256,6 @@ class Section(Body):
         )
 
     def with_feet(self, left: float, right: float) -> "Section":
-        """Return the same section standing on other feet.
-
-        Parameters
-        ----------
-        left, right : float
-            Positions of the feet in the user's coordinates [m].
-
-        Returns
-        -------
-        Section
-            The same polygons, other feet.
-
-        Raises
-        ------
-        GeometryError
-            If a foot lies outside the base or the centre is not between them.
-        """
         section = self._copy(lambda ring: ring, feet=self._local_feet)
         section._local_feet = section._placed((left, right))
         section.__dict__.pop("local_contact", None)

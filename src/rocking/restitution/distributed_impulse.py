@@ -59,18 +59,7 @@ class DistributedImpulse(InertiaModel):
         checks.within("q", self.q, 0.0, 1e6, hint="beyond, the model is Housner's")
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Evaluate the closed form for a base that touches from foot to foot.
-
-        Parameters
-        ----------
-        geometry : ImpactGeometry
-            Levers and inertia.
-
-        Returns
-        -------
-        ndarray
-            Coefficients; zero where the old foot would be pressed into the ground [-].
-        """
+        """Evaluate the closed form for a base that touches from foot to foot."""
         start, end = -geometry.old_lever, geometry.new_lever
         c = 1.0 / (geometry.base_gyration * (self.q + 2.0))
         e = c * (self.q + 1.0) * end
@@ -83,20 +72,7 @@ class DistributedImpulse(InertiaModel):
         return np.where(leaves, np.exp(-np.where(leaves, exponent, np.inf)), 0.0)
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Evaluate the closed form where the whole base touches, quadrature over its parts otherwise.
-
-        Parameters
-        ----------
-        body : Body
-            The body.
-        onto : {"left", "right"}
-            The foot on which it lands.
-
-        Returns
-        -------
-        float
-            theta_dot_after / theta_dot_before [-].
-        """
+        """Evaluate the closed form where the whole base touches, quadrature over its parts otherwise."""
         geometry = ImpactGeometry.of_body(body, onto)
         patches = contact_of(body, onto)
         if is_whole_base(patches, geometry):

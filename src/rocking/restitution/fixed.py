@@ -47,33 +47,7 @@ class Fixed(RestitutionModel):
         plausibility.warn(plausibility.of_coefficient(self.r))
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Return the value.
-
-        Parameters
-        ----------
-        body : Body
-            Not used.
-        onto : {"left", "right"}
-            Not used.
-
-        Returns
-        -------
-        float
-            r [-].
-        """
         return self.r
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
-        """Return the value for every slenderness.
-
-        Parameters
-        ----------
-        slenderness : ndarray
-            Slenderness ratios h/b [-].
-
-        Returns
-        -------
-        ndarray
-            r, of the same shape [-].
-        """
         return np.full(slenderness.shape, self.r)

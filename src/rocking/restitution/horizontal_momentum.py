@@ -36,16 +36,5 @@ class HorizontalMomentum(InertiaModel):
     )
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Ratio of the second moment of height to the polar moment about the new foot.
-
-        Parameters
-        ----------
-        geometry : ImpactGeometry
-            Levers and inertia.
-
-        Returns
-        -------
-        ndarray
-            Coefficients [-].
-        """
+        """Ratio of the second moment of height to the polar moment about the new foot."""
         return (geometry.spread_y + geometry.height**2) / geometry.new_gyration  # Eq. 10

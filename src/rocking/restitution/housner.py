@@ -37,17 +37,6 @@ class Housner(InertiaModel):
     inertia_only = True
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Eq. 4, Mao et al. 2024, generalised.
-
-        Parameters
-        ----------
-        geometry : ImpactGeometry
-            Levers and inertia.
-
-        Returns
-        -------
-        ndarray
-            Coefficients, negative below the domain [-].
-        """
+        """Eq. 4, Mao et al. 2024, generalised."""
         # Eq. 2; Eq. 4, Mao et al. 2024
         return (geometry.base_gyration - geometry.old_lever * geometry.new_lever) / geometry.new_gyration

@@ -54,7 +54,6 @@ class Interface(RestitutionModel):
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Parameters of the wrapped model, and eta."""
         return {**self.model.parameters, "eta": self.eta}
 
     @property
@@ -63,33 +62,7 @@ class Interface(RestitutionModel):
         return f"{self.eta:.4g}*{self.model.label}"
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Return eta times the wrapped model's value.
-
-        Parameters
-        ----------
-        body : Body
-            The body.
-        onto : {"left", "right"}
-            The foot on which it lands.
-
-        Returns
-        -------
-        float
-            theta_dot_after / theta_dot_before [-].
-        """
         return self.eta * self.model.raw_coefficient(body, onto)  # Eq. 112
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
-        """Return eta times the wrapped model's values.
-
-        Parameters
-        ----------
-        slenderness : ndarray
-            Slenderness ratios h/b [-].
-
-        Returns
-        -------
-        ndarray
-            Of the same shape [-].
-        """
         return self.eta * self.model.raw_of_slenderness(slenderness)  # Eq. 112

@@ -50,38 +50,14 @@ class Ked(RestitutionModel):
     )
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Eq. 17, Mao et al. 2024, over the body's mass distribution.
-
-        Parameters
-        ----------
-        body : Body
-            Block, Section or MassPoints.
-        onto : {"left", "right"}
-            The foot on which it lands.
-
-        Returns
-        -------
-        float
-            theta_dot_after / theta_dot_before [-].
-        """
+        """Eq. 17, Mao et al. 2024, over the body's mass distribution."""
         if isinstance(body, Block):
             return float(self.raw_of_slenderness(np.array([body.slenderness_ratio]))[0])
         # Eq. 6; Eq. 17, Mao et al. 2024
         return float(np.sqrt(projected_moment(body, onto) / body.side(onto).moment_of_inertia))
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
-        """Eq. 17 for homogeneous rectangles, in closed form.
-
-        Parameters
-        ----------
-        slenderness : ndarray
-            Slenderness ratios h/b [-].
-
-        Returns
-        -------
-        ndarray
-            Of the same shape [-].
-        """
+        """Eq. 17 for homogeneous rectangles, in closed form."""
         out = np.empty(np.shape(slenderness))
         ked_integrals.fill_rectangles(slenderness, float(np.min(slenderness, initial=1.0)), out)
         return out

@@ -259,33 +259,7 @@ class InertiaModel(RestitutionModel):
         """
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Return what the equation gives for a body.
-
-        Parameters
-        ----------
-        body : Body
-            The body.
-        onto : {"left", "right"}
-            The foot on which it lands.
-
-        Returns
-        -------
-        float
-            theta_dot_after / theta_dot_before [-].
-        """
         return float(self.of_geometry(ImpactGeometry.of_body(body, onto)))
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
-        """Return the same for homogeneous rectangles, as arrays.
-
-        Parameters
-        ----------
-        slenderness : ndarray
-            Slenderness ratios h/b [-].
-
-        Returns
-        -------
-        ndarray
-            Of the same shape [-].
-        """
         return np.asarray(self.of_geometry(ImpactGeometry.of_slenderness(slenderness)))

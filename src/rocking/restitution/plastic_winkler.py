@@ -43,18 +43,7 @@ class PlasticWinkler(InertiaModel):
     inertia_only = True
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Coefficients for bases that touch from foot to foot.
-
-        Parameters
-        ----------
-        geometry : ImpactGeometry
-            Levers and inertia.
-
-        Returns
-        -------
-        ndarray
-            Coefficients; zero where the body stops [-].
-        """
+        """Coefficients for bases that touch from foot to foot."""
         lever = geometry.new_lever
         kappa, back = np.broadcast_arrays(lever**2 / geometry.base_gyration, geometry.old_lever / lever)
         flat = np.column_stack([kappa.ravel(), back.ravel()])
@@ -63,18 +52,7 @@ class PlasticWinkler(InertiaModel):
         return np.array(values)[place].reshape(kappa.shape)
 
     def raw_of_slenderness(self, slenderness: FloatArray) -> FloatArray:
-        """Return the coefficients of homogeneous rectangles; many of them from an interpolant.
-
-        Parameters
-        ----------
-        slenderness : ndarray
-            Slenderness ratios h/b [-].
-
-        Returns
-        -------
-        ndarray
-            Of the same shape [-].
-        """
+        """Return the coefficients of homogeneous rectangles; many of them from an interpolant."""
         place = np.log(slenderness)
         inside = np.abs(place) <= _REACH
         if np.unique(slenderness).size <= _LARGEST_BATCH or not inside.all():
@@ -82,20 +60,7 @@ class PlasticWinkler(InertiaModel):
         return np.asarray(1.0 / (1.0 + np.exp(-_log_odds()(place))))
 
     def raw_coefficient(self, body: Body, onto: Foot) -> float:
-        """Coefficient of a body, over the stretches of its base that touch.
-
-        Parameters
-        ----------
-        body : Body
-            The body.
-        onto : {"left", "right"}
-            The foot on which it lands.
-
-        Returns
-        -------
-        float
-            theta_dot_after / theta_dot_before [-].
-        """
+        """Coefficient of a body, over the stretches of its base that touch."""
         geometry = ImpactGeometry.of_body(body, onto)
         lever, back = float(geometry.new_lever), float(geometry.old_lever)
         edges = (contact_of(body, onto) / lever).ravel().tolist()

@@ -59,18 +59,7 @@ class ShiftedImpulse(InertiaModel):
         checks.within("k", self.k, 0.0, 1.0, hint="the impulse acts between the plumb line (0) and the foot (1)")
 
     def of_geometry(self, geometry: ImpactGeometry) -> FloatArray:
-        """Conservation of angular momentum about the point of the impulse.
-
-        Parameters
-        ----------
-        geometry : ImpactGeometry
-            Levers and inertia.
-
-        Returns
-        -------
-        ndarray
-            Coefficients [-].
-        """
+        """Conservation of angular momentum about the point of the impulse."""
         return shifted(geometry, np.asarray(self.k))
 
 

@@ -32,7 +32,6 @@ class SupportPolygon(Base):
 
     @property
     def size(self) -> float:
-        """Largest extent [m]."""
         return float(np.ptp(self.vertices, axis=0).max())
 
     @property
@@ -46,23 +45,7 @@ class SupportPolygon(Base):
         return [self.edge(i) for i in range(len(self.vertices))]
 
     def edge(self, which: float) -> Edge:
-        """Return edge number `which`.
-
-        Parameters
-        ----------
-        which : float
-            Number, from corner `which` to the next [-].
-
-        Returns
-        -------
-        Edge
-            The edge.
-
-        Raises
-        ------
-        GeometryError
-            If there is no such edge.
-        """
+        """Return edge number `which`."""
         number = checks.number("edge", which)
         if number != int(number) or not 0 <= number < len(self.vertices):
             raise GeometryError(f"edge must be a whole number from 0 to {len(self.vertices) - 1}, got {which!r}")
@@ -96,37 +79,12 @@ class SupportPolygon(Base):
         raise GeometryError(f"no edge of the base is parallel to edge {which}: the body lands on a corner there")
 
     def margin(self, point: FloatArray) -> float:
-        """Return the distance of a point to the nearest edge, negative outside.
-
-        Parameters
-        ----------
-        point : ndarray, shape (2,)
-            Place (x, y) [m].
-
-        Returns
-        -------
-        float
-            Distance [m].
-        """
         along = np.roll(self.vertices, -1, axis=0) - self.vertices
         arm = point - self.vertices
         return float(((along[:, 0] * arm[:, 1] - along[:, 1] * arm[:, 0]) / np.linalg.norm(along, axis=1)).min())
 
     def changed(self, matrix: FloatArray, shift: FloatArray) -> "SupportPolygon":
-        """Return the polygon under a similarity of the plane.
-
-        Parameters
-        ----------
-        matrix : ndarray, shape (2, 2)
-            Rotation, mirror or scale [-].
-        shift : ndarray, shape (3,)
-            Displacement [m].
-
-        Returns
-        -------
-        SupportPolygon
-            In its new place, still counter-clockwise.
-        """
+        """Return the polygon under a similarity of the plane."""
         moved = times(self.vertices, matrix.T) + shift[:2]
         area = float(matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0])
         scale = math.sqrt(abs(area))

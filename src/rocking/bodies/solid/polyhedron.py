@@ -68,111 +68,32 @@ class Polyhedron(Shape):
         return polyhedron_moments(self.corners)
 
     def moments(self) -> SolidMoments:
-        """Return volume, centre and second moments by the divergence theorem.
-
-        Returns
-        -------
-        SolidMoments
-            Exact up to rounding.
-        """
+        """Return volume, centre and second moments by the divergence theorem."""
         return self._moments
 
     def surfaces(self, rotation: FloatArray | None = None, translation: FloatArray | None = None) -> list[Surface]:
-        """Return the placed triangles.
-
-        Parameters
-        ----------
-        rotation : ndarray, shape (3, 3), optional
-            Rotation matrix [-].
-        translation : ndarray, shape (3,), optional
-            Displacement [m].
-
-        Returns
-        -------
-        list of Surface
-            One piece.
-        """
         return [TriangleSurface(placed_points(self.corners, rotation, translation))]
 
     def extent(self, rotation: FloatArray) -> FloatArray:
-        """Return the box of the rotated vertices.
-
-        Parameters
-        ----------
-        rotation : ndarray, shape (3, 3)
-            Rotation matrix [-].
-
-        Returns
-        -------
-        ndarray, shape (2, 3)
-            Lowest and highest coordinates [m].
-        """
         turned = times(self.vertices, rotation.T)
         return np.array([turned.min(axis=0), turned.max(axis=0)])
 
     def footprint(self) -> Footprint:
-        """Return the vertices.
-
-        Returns
-        -------
-        Footprint
-            Points only.
-        """
         return Footprint(self.vertices)
 
     def contains(self, points: FloatArray) -> BoolArray:
-        """Return which points lie inside, by counting the faces above each.
-
-        Parameters
-        ----------
-        points : ndarray, shape (n, 3)
-            Points [m].
-
-        Returns
-        -------
-        ndarray of bool, shape (n,)
-            True inside.
-        """
+        """Return which points lie inside, by counting the faces above each."""
         return inside(points, self.corners)
 
     def scaled(self, size: float) -> "Polyhedron":
-        """Return the shape with all lengths times `size`.
-
-        Parameters
-        ----------
-        size : float
-            Factor [-].
-
-        Returns
-        -------
-        Polyhedron
-            The larger or smaller shape.
-        """
         return Polyhedron(self.vertices * checks.positive("size", size), self.faces, simple=True)
 
     def mirrored(self) -> "Polyhedron":
-        """Return the mirror image x -> -x.
-
-        Returns
-        -------
-        Polyhedron
-            With faces turned, so that they look outward again.
-        """
+        """Return the mirror image x -> -x."""
         return Polyhedron(self.vertices * np.array([-1.0, 1.0, 1.0]), self.faces[:, ::-1], simple=True)
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray] | None:
-        """Return tetrahedra between the faces and the centre, if the whole surface is seen from there.
-
-        Parameters
-        ----------
-        divisions : int
-            Layers between centre and surface; faces are split as finely.
-
-        Returns
-        -------
-        (ndarray, ndarray) or None
-            Volumes (n,) [m3] and centres (n, 3) [m]; None if some face looks away from the centre.
-        """
+        """Return tetrahedra between the faces and the centre, if the whole surface is seen from there."""
         apex = self._moments.centre
         corners = self.corners - apex
         cones = (corners[:, 0] * np.cross(corners[:, 1], corners[:, 2])).sum(axis=1) / 6.0

@@ -50,13 +50,7 @@ class Prism(Polyhedron):
         )
 
     def moments(self) -> SolidMoments:
-        """Return volume, centre and second moments; the height's own share in closed form, ``L^2/12``.
-
-        Returns
-        -------
-        SolidMoments
-            Exact up to rounding.
-        """
+        """Return volume, centre and second moments; the height's own share in closed form, ``L^2/12``."""
         plane = combined_plane(ring_moments(ring) for ring in self.region.rings)
         found = super().moments()
         second = found.second * np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 0.0]])
@@ -66,46 +60,14 @@ class Prism(Polyhedron):
         return SolidMoments(plane.mass * self.length, np.array([plane.x, plane.y, 0.5 * self.length]), second)
 
     def scaled(self, size: float) -> "Prism":
-        """Return the prism with all lengths times `size`.
-
-        Parameters
-        ----------
-        size : float
-            Factor [-].
-
-        Returns
-        -------
-        Prism
-            The larger or smaller prism.
-        """
         factor = checks.positive("size", size)
         return Prism(self.region.mapped(lambda ring: ring * factor), self.length * factor)
 
     def mirrored(self) -> "Prism":
-        """Return the mirror image x -> -x.
-
-        Returns
-        -------
-        Prism
-            The mirrored polygon, extruded.
-        """
         return Prism(self.region.mapped(lambda ring: ring * np.array([-1.0, 1.0])), self.length)
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray]:
-        """Return wedges: triangles of the polygon times layers of the length.
-
-        Parameters
-        ----------
-        divisions : int
-            Layers, and triangles along the longest edge.
-
-        Returns
-        -------
-        volumes : ndarray, shape (n,)
-            Volumes [m3].
-        centres : ndarray, shape (n, 3)
-            Centres [m].
-        """
+        """Return wedges: triangles of the polygon times layers of the length."""
         pieces = TriangleSurface(self.vertices[self._caps]).triangles(divisions)
         a, b, c = np.moveaxis(pieces, 1, 0)
         areas = 0.5 * np.cross(b - a, c - a)[:, 2]
@@ -137,56 +99,19 @@ class Box(Polyhedron):
         super().__init__((unit - np.array([0.5, 0.5, 0.0])) * self.size, _BOX_FACES, simple=True)
 
     def moments(self) -> SolidMoments:
-        """Return volume, centre and second moments in closed form, ``V a^2/12`` along each axis.
-
-        Returns
-        -------
-        SolidMoments
-            Exact up to rounding.
-        """
+        """Return volume, centre and second moments in closed form, ``V a^2/12`` along each axis."""
         volume = float(self.size.prod())
         return SolidMoments(volume, np.array([0.0, 0.0, 0.5 * self.size[2]]), np.diag(volume * self.size**2 / 12.0))
 
     def scaled(self, size: float) -> "Box":
-        """Return the box with all lengths times `size`.
-
-        Parameters
-        ----------
-        size : float
-            Factor [-].
-
-        Returns
-        -------
-        Box
-            The larger or smaller box.
-        """
         return Box(*(self.size * checks.positive("size", size)).tolist())
 
     def mirrored(self) -> "Box":
-        """Return the mirror image, which is the box itself.
-
-        Returns
-        -------
-        Box
-            An equal box.
-        """
+        """Return the mirror image, which is the box itself."""
         return Box(*self.size.tolist())
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray]:
-        """Return a regular grid of small boxes.
-
-        Parameters
-        ----------
-        divisions : int
-            Boxes along each side.
-
-        Returns
-        -------
-        volumes : ndarray, shape (divisions^3,)
-            Volumes [m3].
-        centres : ndarray, shape (divisions^3, 3)
-            Centres [m].
-        """
+        """Return a regular grid of small boxes."""
         middles = (np.arange(divisions) + 0.5) / divisions
         grid = np.stack(np.meshgrid(middles - 0.5, middles - 0.5, middles, indexing="ij"), axis=-1).reshape(-1, 3)
         return np.full(divisions**3, float(self.size.prod()) / divisions**3), grid * self.size

@@ -123,52 +123,15 @@ class RoundBase(Base):
         return 2.0 * self.radius
 
     def edge(self, which: float) -> Edge:
-        """Return the tangent of the circle.
-
-        Parameters
-        ----------
-        which : float
-            Direction from the centre to the point it touches [rad].
-
-        Returns
-        -------
-        Edge
-            The tangent.
-        """
+        """Return the tangent of the circle."""
         angle = checks.number("edge", which, "rad")
         outward = np.array([math.cos(angle), math.sin(angle)])
         point = np.array([*(self.centre + self.radius * outward), self.height])
         return Edge(point, np.array([-outward[1], outward[0], 0.0]))
 
     def margin(self, point: FloatArray) -> float:
-        """Return the distance of a point to the circle, negative outside.
-
-        Parameters
-        ----------
-        point : ndarray, shape (2,)
-            Place (x, y) [m].
-
-        Returns
-        -------
-        float
-            Distance [m].
-        """
         return self.radius - norm(point - self.centre)
 
     def changed(self, matrix: FloatArray, shift: FloatArray) -> "RoundBase":
-        """Return the circle under a similarity of the plane.
-
-        Parameters
-        ----------
-        matrix : ndarray, shape (2, 2)
-            Rotation, mirror or scale [-].
-        shift : ndarray, shape (3,)
-            Displacement [m].
-
-        Returns
-        -------
-        RoundBase
-            In its new place.
-        """
         scale = math.sqrt(abs(float(matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0])))
         return RoundBase(applied(matrix, self.centre) + shift[:2], self.radius * scale, self.height * scale + shift[2])

@@ -16,10 +16,6 @@ class TriangleSurface(Surface):
     corners: FloatArray  # corners, counter-clockwise seen from outside [m]; shape (n, 3, 3)
 
     def cells(self) -> FloatArray:
-        """Return the triangles themselves.
-
-        Returns corners [m].
-        """
         return self.corners
 
     def outline(self, cells: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -65,11 +65,6 @@ class Turned(Shape):
 
         ``V = pi a b Int rho^2 dz``, ``Int x^2 dV = pi a^3 b/4 Int rho^4 dz``: rho or its square is a polynomial of
         the height, and three Gauss points integrate degree five exactly.
-
-        Returns
-        -------
-        SolidMoments
-            Exact up to rounding.
         """
         (a, b), (nodes, weights) = self.half_axes, gauss(3)
         sums = np.zeros(4)
@@ -97,37 +92,13 @@ class Turned(Shape):
         return straight
 
     def surfaces(self, rotation: FloatArray | None = None, translation: FloatArray | None = None) -> list[Surface]:
-        """Return the placed surface, one piece for each piece of the profile.
-
-        Parameters
-        ----------
-        rotation : ndarray, shape (3, 3), optional
-            Rotation matrix [-].
-        translation : ndarray, shape (3,), optional
-            Displacement [m].
-
-        Returns
-        -------
-        list of Surface
-            Its pieces.
-        """
+        """Return the placed surface, one piece for each piece of the profile."""
         turn = np.eye(3) if rotation is None else rotation
         move = np.zeros(3) if translation is None else translation
         return [TurnedSurface(piece.data, self.half_axes, piece.arc, turn, move) for piece in self.meridians]
 
     def extent(self, rotation: FloatArray) -> FloatArray:
-        """Return the box of the rotated shape: of its circles, exact for straight profiles.
-
-        Parameters
-        ----------
-        rotation : ndarray, shape (3, 3)
-            Rotation matrix [-].
-
-        Returns
-        -------
-        ndarray, shape (2, 3)
-            Lowest and highest coordinates [m].
-        """
+        """Return the box of the rotated shape: of its circles, exact for straight profiles."""
         radius, height = self.profile()
         a, b = self.half_axes
         middle = np.outer(height, rotation[:, 2])
@@ -153,13 +124,7 @@ class Turned(Shape):
         return radius, height
 
     def footprint(self) -> Footprint:
-        """Return the discs at the bottom and at the top, if the plan is round.
-
-        Returns
-        -------
-        Footprint
-            Discs, and for an elliptical plan 360 points of each rim.
-        """
+        """Return the discs at the bottom and at the top, if the plan is round."""
         (a, b), discs, rims = self.half_axes, [], []
         flat = [p for p in self.meridians if not p.arc and p.data[0, 1] == p.data[1, 1]]
         phi = np.linspace(0.0, 2.0 * math.pi, 361)[:-1]
@@ -172,18 +137,7 @@ class Turned(Shape):
         return Footprint(np.concatenate([np.zeros((0, 3)), *rims]), tuple(discs))
 
     def contains(self, points: FloatArray) -> BoolArray:
-        """Return which points lie inside the turned profile.
-
-        Parameters
-        ----------
-        points : ndarray, shape (n, 3)
-            Points in the shape's own frame [m].
-
-        Returns
-        -------
-        ndarray of bool, shape (n,)
-            True inside; arcs count as 48 chords.
-        """
+        """Return which points lie inside the turned profile."""
         import shapely
 
         polygon = shapely.Polygon(np.stack(self.profile(), axis=1))
@@ -193,46 +147,15 @@ class Turned(Shape):
         return found
 
     def scaled(self, size: float) -> "Turned":
-        """Return the shape with all lengths times `size`.
-
-        Parameters
-        ----------
-        size : float
-            Factor [-].
-
-        Returns
-        -------
-        Turned
-            The larger or smaller shape.
-        """
         factor, (a, b) = checks.positive("size", size), self.half_axes
         return Turned(tuple(piece.scaled(factor) for piece in self.meridians), (a * factor, b * factor))
 
     def mirrored(self) -> "Turned":
-        """Return the mirror image, which is the shape itself.
-
-        Returns
-        -------
-        Turned
-            The shape.
-        """
+        """Return the mirror image, which is the shape itself."""
         return self
 
     def cells(self, divisions: int) -> tuple[FloatArray, FloatArray]:
-        """Return rings of the profile cut into sectors, with their own centres.
-
-        Parameters
-        ----------
-        divisions : int
-            Triangles along the longest edge of the profile; there are four times as many sectors.
-
-        Returns
-        -------
-        volumes : ndarray, shape (n,)
-            Volumes [m3].
-        centres : ndarray, shape (n, 3)
-            Centres [m].
-        """
+        """Return rings of the profile cut into sectors, with their own centres."""
         flat = _refined(triangulated(np.stack(self.profile(4 * divisions), axis=1)), divisions)
         side, other = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
         area = 0.5 * np.abs(side[:, 0] * other[:, 1] - side[:, 1] * other[:, 0])

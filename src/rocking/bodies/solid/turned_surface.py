@@ -41,7 +41,6 @@ class TurnedSurface(Surface):
         return self._at(cells, s, t)
 
     def split(self, cells: FloatArray) -> FloatArray:
-        """Return the quarters of each cell."""
         u0, u1, p0, p1 = cells.T
         um, pm = 0.5 * (u0 + u1), 0.5 * (p0 + p1)
         quarters = ((u0, um, p0, pm), (um, u1, p0, pm), (u0, um, pm, p1), (um, u1, pm, p1))

@@ -35,7 +35,6 @@ class Sticking(BaseFriction):
 
     @property
     def numbers(self) -> tuple[FrictionKind, float, float]:
-        """Kind, coefficient of friction [-] and creep speed [m/s]."""
         return FrictionKind.STICKING, 0.0, 0.0
 
 
@@ -61,7 +60,6 @@ class Coulomb(BaseFriction):
 
     @property
     def numbers(self) -> tuple[FrictionKind, float, float]:
-        """Kind, coefficient of friction [-] and creep speed [m/s]."""
         return FrictionKind.COULOMB, float(self.coefficient), 0.0
 
 
@@ -94,5 +92,4 @@ class RegularisedCoulomb(BaseFriction):
 
     @property
     def numbers(self) -> tuple[FrictionKind, float, float]:
-        """Kind, coefficient of friction [-] and creep speed [m/s]."""
         return FrictionKind.REGULARISED, float(self.coefficient), float(self.creep)

@@ -36,21 +36,8 @@ class Hertz(ContactLaw):
         checks.length("radius", self.radius)
 
     def numbers(self, mass: float) -> LawNumbers:
-        """Return the law's numbers.
-
-        Parameters
-        ----------
-        mass : float
-            Mass of the body, which the law does not depend on [kg].
-
-        Returns
-        -------
-        LawNumbers
-            Stiffness and exponent.
-        """
         return LawNumbers(LawKind.HUNT_CROSSLEY, 4.0 / 3.0 * self.modulus * self.radius**0.5, exponent=1.5)  # Eq. 119
 
     @property
     def label(self) -> str:
-        """The law with its parameters, in one line."""
         return f"Hertz, E*={self.modulus:.4g} Pa, R={self.radius:.4g} m"

@@ -42,23 +42,10 @@ class HuntCrossley(ContactLaw):
         checks.within("viscosity", self.viscosity, 0.0, 1e6, unit="s/m")
 
     def numbers(self, mass: float) -> LawNumbers:
-        """Return the law's numbers.
-
-        Parameters
-        ----------
-        mass : float
-            Mass of the body, which the law does not depend on [kg].
-
-        Returns
-        -------
-        LawNumbers
-            Stiffness, exponent and viscosity.
-        """
         return LawNumbers(
             LawKind.HUNT_CROSSLEY, float(self.stiffness), exponent=float(self.exponent), viscosity=float(self.viscosity)
         )
 
     @property
     def label(self) -> str:
-        """The law with its parameters, in one line."""
         return f"Hunt-Crossley, k={self.stiffness:.4g} N/m^{self.exponent:.4g}, chi={self.viscosity:.4g} s/m"

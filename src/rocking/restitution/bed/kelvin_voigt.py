@@ -84,24 +84,11 @@ class KelvinVoigt(ContactLaw):
         )
 
     def numbers(self, mass: float) -> LawNumbers:
-        """Return the law's numbers under a body.
-
-        Parameters
-        ----------
-        mass : float
-            Mass of the body [kg].
-
-        Returns
-        -------
-        LawNumbers
-            Stiffness and damping.
-        """
         ratio = self.damping_ratio or 0.0
         damping = 2.0 * ratio * (self.stiffness * mass) ** 0.5 if self.damping is None else self.damping  # Eq. 116
         return LawNumbers(LawKind.KELVIN_VOIGT, float(self.stiffness), float(damping))
 
     @property
     def label(self) -> str:
-        """The law with its parameters, in one line."""
         loss = f"c={self.damping:.4g} N s/m" if self.damping is not None else f"zeta={self.damping_ratio or 0.0:.4g}"
         return f"Kelvin-Voigt, k={self.stiffness:.4g} N/m, {loss}"

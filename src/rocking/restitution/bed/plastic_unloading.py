@@ -40,21 +40,8 @@ class PlasticUnloading(ContactLaw):
         checks.within("rebound", self.rebound, 0.0, 1.0)
 
     def numbers(self, mass: float) -> LawNumbers:
-        """Return the law's numbers.
-
-        Parameters
-        ----------
-        mass : float
-            Mass of the body, which the law does not depend on [kg].
-
-        Returns
-        -------
-        LawNumbers
-            Stiffness and rebound.
-        """
         return LawNumbers(LawKind.PLASTIC, float(self.stiffness), rebound=float(self.rebound))
 
     @property
     def label(self) -> str:
-        """The law with its parameters, in one line."""
         return f"plastic unloading, k={self.stiffness:.4g} N/m, e={self.rebound:.4g}"

@@ -56,13 +56,11 @@ class SpatialImpact(RigidImpact):
 
     @cached_property
     def moments(self) -> SolidMoments:
-        """Mass, centre and second moments of the body, relative to the landing point [kg, m, kg m2]."""
         found = self.solid.local_moments
         return SolidMoments(found.mass, found.centre - self.onto.point, found.second)
 
     @property
     def placed_solid(self) -> tuple[Solid, Corner | Edge]:
-        """The body and the landing place."""
         return self.solid, self.onto
 
     def rise(self, velocity: FloatArray) -> float:

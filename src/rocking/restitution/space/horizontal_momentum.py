@@ -30,33 +30,9 @@ class SpatialHorizontalMomentum(SpatialModel):
     )
 
     def on_corner(self, impact: RigidImpact) -> FloatArray:
-        """Solve for the angular velocity with the angular momentum of the horizontal velocities.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            Angular velocity [rad/s].
-        """
+        """Solve for the angular velocity with the angular momentum of the horizontal velocities."""
         return solved(impact.inertia, impact.level_momentum)  # Eq. 102
 
     def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
-        """Divide the angular momentum of the horizontal velocities by the moment of inertia about the edge.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact.
-        direction : ndarray, shape (3,)
-            Unit vector along the edge [-].
-
-        Returns
-        -------
-        float
-            Angular velocity [rad/s].
-        """
+        """Divide the angular momentum of the horizontal velocities by the moment of inertia about the edge."""
         return dot(direction, impact.level_momentum) / dot(direction, applied(impact.inertia, direction))  # Eq. 89

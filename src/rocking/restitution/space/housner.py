@@ -31,33 +31,9 @@ class SpatialHousner(SpatialModel):
     )
 
     def on_corner(self, impact: RigidImpact) -> FloatArray:
-        """Solve for the angular velocity that keeps the angular momentum about the corner.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            Angular velocity [rad/s].
-        """
+        """Solve for the angular velocity that keeps the angular momentum about the corner."""
         return solved(impact.inertia, impact.angular_momentum)  # Eq. 88
 
     def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
-        """Divide the angular momentum along the edge by the moment of inertia about it.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact.
-        direction : ndarray, shape (3,)
-            Unit vector along the edge [-].
-
-        Returns
-        -------
-        float
-            Angular velocity [rad/s].
-        """
+        """Divide the angular momentum along the edge by the moment of inertia about it."""
         return dot(direction, impact.angular_momentum) / dot(direction, applied(impact.inertia, direction))  # Eq. 89

@@ -50,18 +50,7 @@ class SpatialKedPoint(SpatialModel):
     )
 
     def on_corner(self, impact: RigidImpact) -> FloatArray:
-        """Return the direction of the momentum left, times what gives it the energy left.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            Angular velocity [rad/s].
-        """
+        """Return the direction of the momentum left, times what gives it the energy left."""
         direction = SpatialHorizontalMomentum().on_corner(impact)
         twice = dot(direction, applied(impact.inertia, direction))
         if twice == 0.0:
@@ -69,20 +58,7 @@ class SpatialKedPoint(SpatialModel):
         return direction * math.sqrt(2.0 * energy_left(impact) / twice)  # Eq. 21
 
     def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
-        """Return the angular velocity that the energy left gives, with the sign of the momentum left.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact.
-        direction : ndarray, shape (3,)
-            Unit vector along the edge [-].
-
-        Returns
-        -------
-        float
-            Angular velocity [rad/s].
-        """
+        """Return the angular velocity that the energy left gives, with the sign of the momentum left."""
         sign = float(np.sign(SpatialHorizontalMomentum().on_edge(impact, direction)))
         return sign * math.sqrt(2.0 * energy_left(impact) / dot(direction, applied(impact.inertia, direction)))
 

@@ -54,52 +54,15 @@ class SpatialKed(SpatialModel):
     )
 
     def on_corner(self, impact: RigidImpact) -> FloatArray:
-        """Solve for the angular velocity that keeps the angular momentum about the impulse's point.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            Angular velocity [rad/s].
-        """
+        """Solve for the angular velocity that keeps the angular momentum about the impulse's point."""
         return _stepped(impact, impact.onto.point - impact.pivot, None)
 
     def on_edge(self, impact: RigidImpact, direction: FloatArray) -> float:
-        """Keep the component along the edge of the angular momentum about a parallel line.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact.
-        direction : ndarray, shape (3,)
-            Unit vector along the edge [-].
-
-        Returns
-        -------
-        float
-            Angular velocity [rad/s].
-        """
+        """Keep the component along the edge of the angular momentum about a parallel line."""
         return dot(_stepped(impact, _across(impact, direction), direction), direction)
 
     def flags(self, impact: RigidImpact, velocity: FloatArray) -> tuple[SpatialFlag, ...]:
-        """Return whether k was cut, and whether the ground would have to pull.
-
-        Parameters
-        ----------
-        impact : RigidImpact
-            The impact.
-        velocity : ndarray, shape (3,)
-            Angular velocity after it [rad/s].
-
-        Returns
-        -------
-        tuple of SpatialFlag
-            What a user must know.
-        """
+        """Return whether k was cut, and whether the ground would have to pull."""
         along = getattr(impact.onto, "direction", None)
         step = impact.onto.point - impact.pivot if along is None else _across(impact, along)
         found = [SpatialFlag.CUT] if self.cut(impact.placed_solid[0], step) else []

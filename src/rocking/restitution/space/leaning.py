@@ -69,7 +69,6 @@ class LeaningImpact(RigidImpact):
 
     @cached_property
     def moments(self) -> SolidMoments:
-        """Mass, centre and second moments of the body, relative to the landing point [kg, m, kg m2]."""
         return SolidMoments(self.body.mass, self.body.centre - self.onto.point, self.body.second)
 
     @property
