@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks import engine_duels, engine_limits, engine_truth, table
 from benchmarks.engine_batch import COUNT, Fast, Histories, histories
 from benchmarks.table import Row
-from rocking.dynamics.engine import instruction_set
+from rocking.dynamics.plane.fast_engine import instruction_set
 
 PACKAGES = ("numpy", "scipy", "numba", "jax", "diffrax", "mujoco", "pymunk")
 COMMAND = "python -m benchmarks engine"

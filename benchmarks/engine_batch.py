@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import g
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.engine import RESULTS, Arrays, Library, common, module
-from rocking.dynamics.impact_law import ConstantRestitution
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays, Library, common, module
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
 

@@ -14,7 +14,7 @@ from benchmarks.engine_batch import Fast, Histories, overturned
 from benchmarks.engine_peers import Verdicts
 from benchmarks.table import Row
 from benchmarks.timing import cpu_seconds
-from rocking.dynamics.engine import Library, instruction_set, instruction_sets
+from rocking.dynamics.plane.fast_engine import Library, instruction_set, instruction_sets
 
 
 @dataclass(frozen=True)

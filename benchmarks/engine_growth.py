@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.engine_batch import histories
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.fast_engine import Arrays
 
 RECORDS = 1000
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.engine_batch import STEP, Histories
-from rocking.dynamics.engine import common
-from rocking.dynamics.impact_law import ConstantRestitution
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.plane.fast_engine import common
 from rocking.dynamics.settings import Settings
 
 SOURCE = Path(__file__).with_name("operations.cpp")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from rocking.dynamics import engine
+from rocking.dynamics.plane import fast_engine
 
 HERE = Path(__file__).parent
 FITTED = ("/league/", "/evidence/", "_95", "interval", "prediction")
@@ -37,7 +37,7 @@ print(json.dumps(moved(now)))
 
 
 @pytest.mark.skipif(
-    not engine.available() or engine.instruction_set() == "plain",
+    not fast_engine.available() or fast_engine.instruction_set() == "plain",
     reason="kernels without fused multiply-add have other last digits",
 )
 @pytest.mark.parametrize("group", ["python", "commands", "application"])

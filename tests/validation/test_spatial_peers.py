@@ -23,7 +23,7 @@ from benchmarks.spatial_mujoco import Contact
 from benchmarks.spatial_tracks import measured, track_of, windows
 
 from rocking.dynamics.space import attitude
-from rocking.dynamics.space.impact import law_of
+from rocking.dynamics.space.impact_laws import law_of
 
 MUJOCO, BULLET = PEERS
 NAMED = {case.name: case for case in CASES}

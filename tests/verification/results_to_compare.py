@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import rocking as rk
-from rocking.dynamics import engine as plane_engine
+from rocking.dynamics.plane import fast_engine as plane_engine
 from rocking.dynamics.space import SpatialBody, SpatialStart
 from rocking.dynamics.space.batch import engine as space_engine
 from rocking.dynamics.space.batch.many import batch_in_space

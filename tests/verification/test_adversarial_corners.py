@@ -10,15 +10,16 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk, ellipkinc
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings, engine
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.run import run
-from rocking.dynamics.trajectory import EventKind, Trajectory
+from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.motions.segments import Segments
 
 ENGINES = pytest.mark.parametrize(
     "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="not built")), "reference"],
+    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
 )
 ALPHA, P, STEP = 0.25, 2.0, 0.05
 

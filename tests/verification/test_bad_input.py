@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rocking.dynamics import Outcome, Status, batch, engine
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.impact_law import ConstantRestitution
+from rocking.dynamics import Outcome, Status
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.plane import batch, fast_engine
+from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings
 from rocking.errors import RockingError
 from rocking.motions.segments import Segments
@@ -30,7 +31,7 @@ INJECTIONS = 1_000
 PATHOLOGICAL = {"fast": 10_000, "reference": 10_000 if CAMPAIGN else 200}
 ENGINES = pytest.mark.parametrize(
     "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="not built")), "reference"],
+    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
 )
 POISON = (math.nan, math.inf, -math.inf, -math.nan)
 REALS = ("peak_rotation", "peak_time", "peak_velocity", "truncation")
@@ -105,7 +106,7 @@ def test_poisoned_rows(name: str) -> None:
     assert (found["status"][ill] == Status.INVALID.code).all()
     assert (found["impacts"][ill] == 0).all()
     assert (clean["status"] == Status.GOOD.code).all()
-    assert all(np.delete(found[key], ill).tobytes() == clean[key].tobytes() for key in engine.RESULTS)
+    assert all(np.delete(found[key], ill).tobytes() == clean[key].tobytes() for key in fast_engine.RESULTS)
 
 
 @ENGINES
@@ -135,7 +136,7 @@ def test_poisoned_motions(name: str, vertical: bool) -> None:
     assert (found["status"][through] != Status.GOOD.code).all()
     healthy = np.flatnonzero(~bad)
     clean = run({key: v[healthy] for key, v in values.items()}, [motions[k] for k in healthy], np.arange(count), name)
-    assert all(found[key][healthy].tobytes() == clean[key].tobytes() for key in engine.RESULTS)
+    assert all(found[key][healthy].tobytes() == clean[key].tobytes() for key in fast_engine.RESULTS)
 
 
 def extreme(random: np.random.Generator, count: int) -> dict[str, Any]:
@@ -220,7 +221,7 @@ def test_no_hang(case: str, name: str) -> None:
     motions, linear, odd = HANGS[case]
     row = {f"{key}_{side}": x for key, x in (("alpha", 0.2), ("p", 2.0), ("r", 0.5)) for side in ("right", "left")}
     code = (
-        "import numpy as np; from rocking.dynamics.batch import Batch, Rows\n"
+        "import numpy as np; from rocking.dynamics.plane.batch import Batch, Rows\n"
         "from rocking.dynamics.settings import Settings; from rocking.motions.segments import Segments\n"
         f"batch = Batch({motions}, settings=Settings(linear={linear}), engine={name!r})\n"
         f"batch.run(1, lambda a, b: Rows.of(1, **{row | odd | {'rotation': -0.05}}))"

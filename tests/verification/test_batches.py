@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics import RockingParameters, RockingSide, batch, engine
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.fast import run_fast
-from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
+from rocking.dynamics import RockingParameters, RockingSide
+from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
+from rocking.dynamics.plane import batch, fast_engine
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.fast import run_fast
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
 
-pytestmark = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 
 KINDS = ("records", "vertical", "pulses")
 COUNT = 700
@@ -71,7 +72,7 @@ def table_of(kind: str, count: int = COUNT, seed: int = 11) -> Table:
 
 
 def same_bits(one: dict[str, Any], other: dict[str, Any]) -> bool:
-    return all(one[name].tobytes() == other[name].tobytes() for name in engine.RESULTS)
+    return all(one[name].tobytes() == other[name].tobytes() for name in fast_engine.RESULTS)
 
 
 @pytest.mark.parametrize("linear", [False, True])
@@ -146,7 +147,7 @@ def test_one_history_is_the_row_of_a_batch(kind: str) -> None:
 def test_instruction_sets(kind: str, linear: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Vectors of 8 and of 4 numbers give the same bits; without vectors peaks agree to 1e-10."""
     table, settings, found = table_of(kind), Settings(linear=linear), {}
-    for name in engine.instruction_sets():
+    for name in fast_engine.instruction_sets():
         monkeypatch.setenv("ROCKING_ISA", name)
         found[name] = table.run(settings=settings)
     if not {"avx512", "avx2"} & set(found):
@@ -227,4 +228,4 @@ def test_memory_is_flat() -> None:
     assert whole < 24e6
     assert whole < fewer + 1e5
     # the process grows by the results of the second run, 13 MB, and not by more than 16 MB of its allocator's slack
-    assert after - before < 200_000 * sum(np.dtype(kind).itemsize for kind in engine.RESULTS.values()) + 16e6
+    assert after - before < 200_000 * sum(np.dtype(kind).itemsize for kind in fast_engine.RESULTS.values()) + 16e6

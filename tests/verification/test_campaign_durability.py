@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from rocking.dynamics import engine
+from rocking.dynamics.plane import fast_engine
 
 DRIVER = Path(__file__).parent / "durability" / "kill_driver.py"
 ROUNDS = DRIVER.with_name("round_driver.py")
@@ -22,7 +22,7 @@ KILLS = int(os.environ.get("ROCKING_KILLS", "30"))
 SHARES = {"serial": KILLS - KILLS // 2 - KILLS // 6, "fork": KILLS // 2, "spawn": KILLS // 6}
 
 pytestmark = [
-    pytest.mark.skipif(not engine.available(), reason="the fast engine was not built"),
+    pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built"),
     pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="process groups and /proc of Linux"),
 ]
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from rocking.campaigns import Campaign, DaskExecutor, Progress
-from rocking.dynamics import engine
+from rocking.dynamics.plane import fast_engine
 from rocking.studies import SyntheticSet
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "unit" / "campaigns"))  # for the workers, too
@@ -21,7 +21,7 @@ from slow import Motions, product
 pytest.importorskip("distributed")
 pytestmark = [
     pytest.mark.timed,
-    pytest.mark.skipif(not engine.available(), reason="the fast engine was not built"),
+    pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built"),
     pytest.mark.filterwarnings("default"),  # those of the cluster are not ours
 ]
 

@@ -17,7 +17,7 @@ from scipy.integrate import cumulative_trapezoid, solve_ivp
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics import equations
+from rocking.dynamics.plane import equations
 from rocking.outcome import Outcome
 
 ENGINES = ("fast", "reference")

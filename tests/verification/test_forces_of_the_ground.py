@@ -13,9 +13,9 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.lost_contact import contact_words
-from rocking.dynamics.reference import Reference
+from rocking.dynamics.loss_of_contact import contact_words
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.reference import Reference
 from rocking.errors import PureRockingWarning
 
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])

@@ -18,10 +18,10 @@ from scipy.special import elliprf
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.rocker import RockingParameters
-from rocking.dynamics.run import run
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.trajectory import EventKind
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome
 

@@ -18,11 +18,11 @@ from scipy.optimize import minimize_scalar
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.impact_law import ConstantRestitution
-from rocking.dynamics.rocker import RockingParameters, RockingSide
-from rocking.dynamics.run import run
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.parameters import RockingParameters, RockingSide
+from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.trajectory import EventKind
 
 ENGINES = ("fast", "reference")
 ALPHA, P = 0.22, 2.3

@@ -14,14 +14,15 @@ from hypothesis import strategies as st
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings, engine, equations
-from rocking.dynamics.run import run
-from rocking.dynamics.trajectory import Trajectory
+from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics.plane import equations, fast_engine
+from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.trajectory import Trajectory
 from rocking.motions.segments import Segments
 
 ENGINES = pytest.mark.parametrize(
     "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="not built")), "reference"],
+    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
 )
 FEW = settings(max_examples=25)
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from rocking.conventions import g
-from rocking.dynamics import engine
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.impact_law import ConstantRestitution
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
 
-pytestmark = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 
 STEP, COUNT = 0.01, 300
 

@@ -14,13 +14,13 @@ import pytest
 from scipy.optimize import brentq
 
 from rocking import conventions
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.impact_law import ConstantRestitution
-from rocking.dynamics.reference import Reference
-from rocking.dynamics.rocker import RockingParameters, RockingSide
-from rocking.dynamics.run import run
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.parameters import RockingParameters, RockingSide
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.reference import Reference
+from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.trajectory import EventKind
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome

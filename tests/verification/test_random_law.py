@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings, engine
-from rocking.dynamics.impact_law import uniform
-from rocking.dynamics.run import run
-from rocking.dynamics.trajectory import EventKind
+from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics.impact_laws import uniform
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions.segments import Segments
 
 # one false alarm in a million: the draws never change, so a failure is no accident
@@ -147,7 +148,7 @@ def coefficients(law: RandomRestitution, key: int, name: str, sides: tuple[float
 
 ENGINES = pytest.mark.parametrize(
     "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="not built")), "reference"],
+    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
 )
 
 

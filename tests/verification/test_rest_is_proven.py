@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 
 from rocking.conventions import g
-from rocking.dynamics import engine, reference
-from rocking.dynamics.fast import run_fast
-from rocking.dynamics.impact_law import ConstantRestitution
-from rocking.dynamics.reference import Reference
-from rocking.dynamics.rocker import RockingParameters, RockingSide
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.parameters import RockingParameters, RockingSide
+from rocking.dynamics.plane import fast_engine, reference
+from rocking.dynamics.plane.fast import run_fast
+from rocking.dynamics.plane.reference import Reference
+from rocking.dynamics.plane.trajectory import EventKind
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.trajectory import EventKind
 from rocking.motions.segments import Segments
 
 COUNT = 40
 ENGINES = [
     "reference",
-    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
 ]
 
 

@@ -31,14 +31,15 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from rocking.conventions import g
-from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings, engine
-from rocking.dynamics.run import run
-from rocking.dynamics.trajectory import EventKind
+from rocking.dynamics import ConstantRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.trajectory import EventKind
 from rocking.motions.segments import Segments
 
 ENGINES = pytest.mark.parametrize(
     "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="not built")), "reference"],
+    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
 )
 IMPACTS = 3
 WITHIN = 1e-8

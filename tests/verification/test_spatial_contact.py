@@ -18,10 +18,10 @@ from rocking.dynamics import SpatialStart
 from rocking.dynamics.space import (
     ContactMode,
     SpatialBody,
-    events,
+    event_functions,
 )
-from rocking.dynamics.space.impact import law_of
-from rocking.dynamics.space.selection import SpatialState, of_impact
+from rocking.dynamics.space.complementarity import SpatialState, of_impact
+from rocking.dynamics.space.impact_laws import law_of
 from rocking.outcome import Outcome, Status
 
 TIMES = 10 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1
@@ -52,7 +52,7 @@ def test_without_watching_the_neighbours_a_body_enters_the_ground(monkeypatch):
     """Negative control: with no gaps watched the same measure shows centimetres of penetration."""
     start = {"start": SpatialStart(0.1, 0.6), "duration": 2.0}
     assert rk.free_rocking(SQUARE, **start).states.least_gap.min() >= -1e-12
-    monkeypatch.setattr(events, "watched", lambda body, stance: ())
+    monkeypatch.setattr(event_functions, "watched", lambda body, stance: ())
     assert rk.free_rocking(SQUARE, **start).states.least_gap.min() < -1e-2
 
 

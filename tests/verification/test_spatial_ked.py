@@ -15,7 +15,7 @@ import rocking as rk
 from rocking.bodies.solid import Part, Solid, box, cylinder, frustum
 from rocking.dynamics import SpatialStart
 from rocking.dynamics.space import SpatialBody, attitude
-from rocking.dynamics.space.impact import law_of
+from rocking.dynamics.space.impact_laws import law_of
 from rocking.errors import InvalidValueError
 from rocking.restitution.space import SpatialKed, SpatialKedPoint, edge_coefficient, impact_in_space, spatial_models
 

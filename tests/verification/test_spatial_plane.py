@@ -14,8 +14,8 @@ from rocking.dynamics.space import (
     ContactMode,
     SpatialBody,
 )
-from rocking.dynamics.space.impact import law_of
-from rocking.dynamics.space.selection import SpatialState, of_impact
+from rocking.dynamics.space.complementarity import SpatialState, of_impact
+from rocking.dynamics.space.impact_laws import law_of
 from rocking.outcome import Outcome
 
 G = 9.81

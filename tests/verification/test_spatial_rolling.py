@@ -15,7 +15,7 @@ from rocking.dynamics.space import (
     SpatialBody,
     attitude,
 )
-from rocking.dynamics.space.flow import value
+from rocking.dynamics.space.pivot_motion import value
 from rocking.dynamics.space.rolling import RollingFlow
 
 G = 9.81

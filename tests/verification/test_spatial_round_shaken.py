@@ -12,12 +12,12 @@ import pytest
 
 import rocking as rk
 from rocking import conventions
-from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, events, release
-from rocking.dynamics.space import stance as stances
+from rocking.dynamics.space import SpatialBody, SpatialStart, attitude, event_functions, loss_of_contact
+from rocking.dynamics.space import contact_mode as stances
 from rocking.dynamics.space.batch import engine
 from rocking.dynamics.space.batch.course import course_of
 from rocking.dynamics.space.batch.many import batch_in_space
-from rocking.dynamics.space.events import Step
+from rocking.dynamics.space.event_functions import Step
 from rocking.dynamics.space.ground import ground_of
 from rocking.dynamics.space.rolling import RollingFlow
 from rocking.outcome import Outcome, Status
@@ -88,7 +88,7 @@ def _lifted(first, second):
     lean = np.array([0.0, first, second, cube, 0.0])
     up = np.column_stack([lean[:, None] * direction, [1.0, 0.0, 0.0, 0.0, 0.0]])
     step = Step(0.01, np.zeros((5, 3)), up, np.array([[0.0], [0.0], [-G]]), np.zeros(3))
-    return events.rim_events(CYLINDER, stances.rim(CYLINDER, -direction), step)
+    return event_functions.rim_events(CYLINDER, stances.rim(CYLINDER, -direction), step)
 
 
 @pytest.mark.parametrize("first", [0.0, 4e-13, -4e-13, -1e-20])
@@ -102,7 +102,7 @@ def test_a_lift_from_rest_is_no_fall(first, second):
 def test_a_fall_is_a_fall_and_rounding_must_have_a_floor(monkeypatch):
     """A rim pushed down falls at once; negative control: without the floor it does so by a rounding of 4e-13."""
     assert _lifted(-1e-9, 0.0) == 0.0
-    monkeypatch.setattr(events, "SLOW_OPENING", 0.0)
+    monkeypatch.setattr(event_functions, "SLOW_OPENING", 0.0)
     assert _lifted(-4e-13, 0.0) == 0.0
 
 
@@ -129,7 +129,7 @@ def test_a_rim_nearly_flat_is_held_down(monkeypatch):
     assert "take many motions" in held.summary
     assert "hopped or slipped" in held.summary
     assert held.energy.closure < 1e-9
-    monkeypatch.setattr(events, "nearly_flat", lambda _body, _up: False)
+    monkeypatch.setattr(event_functions, "nearly_flat", lambda _body, _up: False)
     assert _reference(117).status is Status.LOST_CONTACT
 
 
@@ -157,7 +157,7 @@ def test_a_spin_draws_a_rim_that_is_nearly_flat(turning, spin, pulls):
     length, field = 1e-5, np.array([[0.0], [0.0], [-G]])
     _, w, up, _ = RollingFlow(CYLINDER).series((q, velocity, np.zeros(2)), length, field, 12)
     stance = stances.rolling(stances.rim(CYLINDER, -up[0, :2]))
-    normal = release._normal(CYLINDER, stance, Step(length, w, up, field, np.zeros(3)))[0]
+    normal = loss_of_contact._normal(CYLINDER, stance, Step(length, w, up, field, np.zeros(3)))[0]
     expected = _normal_by_angles(tilt, rate, turning, spin)
     # second differences of a height over 1e-5 s leave some 1e-16 m / (1e-5 s)^2 of rounding
     assert normal == pytest.approx(expected, abs=1e-5)

@@ -18,8 +18,8 @@ from rocking.dynamics.space import (
     SpatialBody,
     attitude,
 )
-from rocking.dynamics.space.flow import PivotFlow, value
-from rocking.dynamics.space.impact import law_of, projected
+from rocking.dynamics.space.impact_laws import law_of, projected
+from rocking.dynamics.space.pivot_motion import PivotFlow, value
 
 TIMES = 10 if os.environ.get("ROCKING_CAMPAIGN") == "1" else 1
 G = 9.81

@@ -13,11 +13,12 @@ from scipy import stats
 
 import rocking as rk
 from rocking.conventions import FEET, Foot, percent
-from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings, engine
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.impact_law import uniform
-from rocking.dynamics.run import run
-from rocking.dynamics.trajectory import EventKind
+from rocking.dynamics import RandomRestitution, RockingParameters, RockingSide, Settings
+from rocking.dynamics.impact_laws import uniform
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.run import run
+from rocking.dynamics.plane.trajectory import EventKind
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.evidence._restitution_distribution import restitution_distribution
 from rocking.evidence.calibration import Calibration, calibrate
@@ -33,7 +34,7 @@ SIGNS: dict[Foot, float] = {"left": -1.0, "right": 1.0}
 LAWS = pytest.mark.parametrize("law", [RandomRestitution, SampledRestitution])
 ENGINES = pytest.mark.parametrize(
     "name",
-    [pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="not built")), "reference"],
+    [pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="not built")), "reference"],
 )
 quietly = pytest.mark.filterwarnings("ignore::rocking.errors.PlausibilityWarning")
 
@@ -268,7 +269,7 @@ def results(law: Any, name: str, values: dict[str, Any]) -> Any:
 TWO = {"left": [0.6, 0.7, 1.0], "right": [0.8, 0.9, 0.95]}
 
 
-@pytest.mark.skipif(not engine.available(), reason="not built")
+@pytest.mark.skipif(not fast_engine.available(), reason="not built")
 @LAWS
 def test_engines_agree(law: Any) -> None:
     """Shares and a table for each side act alike in C++ and in Python; with the tables swapped they do not."""
@@ -306,7 +307,7 @@ def test_equal_sides_are_one_table(name: str) -> None:
     assert two.factors.shape == one.factors.shape
     object.__setattr__(two, "factors", np.stack([one.factors, one.factors]))
     first, second = results(one, name, values), results(two, name, values)
-    assert all(first[key].tobytes() == second[key].tobytes() for key in engine.RESULTS)
+    assert all(first[key].tobytes() == second[key].tobytes() for key in fast_engine.RESULTS)
 
 
 @quietly

@@ -19,7 +19,7 @@ from rocking.campaigns.ledger import Ledger
 from rocking.campaigns.processes import chosen
 from rocking.campaigns.running import run
 from rocking.campaigns.status import CampaignStatus, Progress, Summary
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories
 
@@ -246,7 +246,7 @@ class Campaign:
         Parameters
         ----------
         *names : str
-            Keys of `rocking.dynamics.engine.RESULTS`; all of them if none is given.
+            Keys of `fast_engine.RESULTS`; all of them if none is given.
 
         Returns
         -------
@@ -262,7 +262,7 @@ class Campaign:
         Parameters
         ----------
         name : str
-            A key of `rocking.dynamics.engine.RESULTS`.
+            A key of `fast_engine.RESULTS`.
 
         Yields
         ------

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rocking.campaigns.disk import CampaignDamagedError
-from rocking.dynamics.engine import RESULTS, Arrays
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import LARGEST_CHUNK
 

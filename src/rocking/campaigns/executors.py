@@ -20,7 +20,7 @@ from rocking.campaigns import identity as fingerprint
 from rocking.campaigns.chunks import DEFAULT_CHUNK, Chunk
 from rocking.campaigns.disk import CampaignWorkerError
 from rocking.campaigns.identity import kind_of
-from rocking.dynamics.engine import Arrays, empty_results
+from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories
 

@@ -9,7 +9,7 @@ import numpy as np
 from rocking.campaigns.chunks import Plan
 from rocking.campaigns.disk import CampaignStorageError
 from rocking.campaigns.status import NOISE, CampaignStatus, Estimate
-from rocking.dynamics.engine import RESULTS
+from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.studies.histories import Histories
 
 _BESIDE = 8192

@@ -14,10 +14,10 @@ from rocking.campaigns import disk
 from rocking.campaigns.chunks import FORMAT, Plan, default_chunk
 from rocking.campaigns.disk import CampaignDamagedError, CampaignMismatchError
 from rocking.conventions import FloatArray
-from rocking.dynamics import engine
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.engine import RESULTS
-from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
+from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -38,8 +38,8 @@ def engine_of(histories: Histories) -> str:
 
     Returns as in ``fast, 0123456789abcdef``: engines of the same words give the same bits, whatever the machine.
     """
-    chosen = engine.chosen(histories.engine, histories.law)
-    return f"{chosen}, {_fingerprint(chosen, engine.instruction_set() if chosen == 'fast' else '')}"
+    chosen = fast_engine.chosen(histories.engine, histories.law)
+    return f"{chosen}, {_fingerprint(chosen, fast_engine.instruction_set() if chosen == 'fast' else '')}"
 
 
 def kind_of(name: str) -> str:
@@ -175,7 +175,7 @@ def usual_chunk(histories: Histories) -> int:
     Returns Histories; where motions are made for them, those of one motion are in one chunk.
     """
     together = 1 if histories.motions.in_memory else histories.together
-    return default_chunk(engine.chosen(histories.engine, histories.law), together)
+    return default_chunk(fast_engine.chosen(histories.engine, histories.law), together)
 
 
 def software() -> str:

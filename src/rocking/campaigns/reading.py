@@ -17,7 +17,7 @@ from rocking.campaigns.disk import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.executors import PIECES, SUFFIX, path_of
 from rocking.campaigns.identity import SHARDS, Identity
 from rocking.campaigns.ledger import NAME, Ledger, LedgerEntry
-from rocking.dynamics.engine import RESULTS, Arrays
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 
 
@@ -29,7 +29,7 @@ class HistoryRange(NamedTuple):
     first, last : int
         Their numbers: from the first up to but not including the last.
     results : dict of str to ndarray
-        The keys of `rocking.dynamics.engine.RESULTS`.
+        The keys of `fast_engine.RESULTS`.
     """
 
     first: int

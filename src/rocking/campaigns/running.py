@@ -17,7 +17,7 @@ from rocking.campaigns.identity import SHARDS, Identity
 from rocking.campaigns.ledger import Ledger, LedgerEntry
 from rocking.campaigns.reading import EarlierRun, now, recover, set_aside_if_damaged
 from rocking.campaigns.status import Costs, Meter, Progress, Summary
-from rocking.dynamics.engine import empty_results
+from rocking.dynamics.plane.fast_engine import empty_results
 from rocking.studies.histories import Histories
 
 _LEAST, _FIRST, _MOST = 0.2, 0.25, 1.2

@@ -3,10 +3,10 @@
 from typing import TYPE_CHECKING
 
 from rocking.dynamics._simulate import free_rocking, simulate
-from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
+from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw, RandomRestitution, SpeedRestitution
 from rocking.dynamics.many import simulate_many
+from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.dynamics.response import Response
-from rocking.dynamics.rocker import RockingParameters, RockingSide
 from rocking.dynamics.settings import Settings
 from rocking.lazy import exports
 from rocking.outcome import Outcome, Status

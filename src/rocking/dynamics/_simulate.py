@@ -8,7 +8,7 @@ import numpy as np
 from rocking import conventions, errors
 from rocking.bodies import Body
 from rocking.dynamics.components import Component, components_of, in_plane, in_space
-from rocking.dynamics.histories import response_of_rocking
+from rocking.dynamics.plane.histories import response_of_rocking
 from rocking.dynamics.response import Motion, Response
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, PureRockingWarning
@@ -248,8 +248,8 @@ def _response(  # noqa: PLR0917 - what the two questions have in common
     if start is not None and any(np.any(value) for value in state.values()):
         raise InvalidValueError("give either start or rotation and angular_velocity, got both")
     if in_space(body):
+        from rocking.dynamics.space.body import SpatialBody
         from rocking.dynamics.space.histories import response_in_space
-        from rocking.dynamics.space.rocker import SpatialBody
         from rocking.dynamics.space.start import SpatialStart
 
         body = SpatialBody.of(body)

@@ -10,10 +10,10 @@ from rocking import checks, conventions, plausibility, quantities
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
 from rocking.dynamics.components import components_of, in_plane, in_space
-from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
-from rocking.dynamics.lost_contact import contact_words, flags
+from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
+from rocking.dynamics.loss_of_contact import contact_words, flags
+from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.response import Motion
-from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
@@ -24,7 +24,7 @@ from rocking.version import SOFTWARE
 if TYPE_CHECKING:
     import xarray as xr
 
-    from rocking.dynamics.batch import Rows
+    from rocking.dynamics.plane.batch import Rows
 
 
 def simulate_many(  # noqa: PLR0913 - every one of them is a question that users ask
@@ -102,8 +102,8 @@ def simulate_many(  # noqa: PLR0913 - every one of them is a question that users
     >>> dict(result.sizes)
     {'body': 3, 'motion': 1, 'scale': 2, 'restitution': 2}
     """
-    from rocking.dynamics.batch import Batch
-    from rocking.dynamics.engine import instruction_set
+    from rocking.dynamics.plane.batch import Batch
+    from rocking.dynamics.plane.fast_engine import instruction_set
     from rocking.errors import extra
 
     xarray = extra("xarray", "simulate_many")
@@ -188,7 +188,7 @@ def _twin(results: dict[str, Any], again: dict[str, Any]) -> dict[str, FloatArra
 def _pieces(
     rockers: list[list[RockingParameters]], scales: np.ndarray, shape: tuple[int, ...]
 ) -> "Callable[[int, int], Rows]":
-    from rocking.dynamics.batch import SIDES, Rows
+    from rocking.dynamics.plane.batch import SIDES, Rows
 
     table = {
         f"{short}_{side}": np.array([[getattr(getattr(r, side), name) for r in row] for row in rockers])

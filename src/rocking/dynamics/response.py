@@ -11,9 +11,9 @@ from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import Assumed, FloatArray, given_or_assumed
 from rocking.dynamics.exportable import Exportable
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.trajectory import EventKind, Trajectory
 from rocking.errors import InvalidValueError, PlausibilityWarning
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
@@ -22,9 +22,9 @@ from rocking.outcome import Outcome, Status
 
 if TYPE_CHECKING:
     from rocking.dynamics.contact import PlanarResponse
-    from rocking.dynamics.ground_forces import GroundForces
-    from rocking.dynamics.intervals import DenseOutput
-    from rocking.dynamics.ledger import ResponseEnergy
+    from rocking.dynamics.plane.dense_output import DenseOutput
+    from rocking.dynamics.plane.energy_balance import ResponseEnergy
+    from rocking.dynamics.plane.ground_forces import GroundForces
     from rocking.tables import Table
 
 Motion = GroundMotion | Pulse
@@ -212,7 +212,7 @@ class Response(Exportable):
         return told if friction is None else [*told, *self.contact.slips(friction)]
 
     def _flown(self, friction: float | None) -> str:
-        from rocking.dynamics.ground_forces import LEAVES
+        from rocking.dynamics.plane.ground_forces import LEAVES
 
         lost = (
             f"the ground would have to pull, with up to {-self.least_force:.2g} of the weight: {LEAVES}; "
@@ -279,21 +279,21 @@ class Response(Exportable):
     @cached_property
     def intervals(self) -> "DenseOutput":
         """The response between its samples and events."""
-        from rocking.dynamics.intervals import DenseOutput
+        from rocking.dynamics.plane.dense_output import DenseOutput
 
         return DenseOutput.of(self.trajectory, self.segments, self.rocker, self.settings, self.scale)
 
     @cached_property
     def energy(self) -> "ResponseEnergy":
         """Kinetic and potential energy, work of the ground and losses at the samples, and at a later fall [J]."""
-        from rocking.dynamics.ledger import energy_of
+        from rocking.dynamics.plane.energy_balance import energy_of
 
         return energy_of(self.intervals, self._covered, self.body.mass, self.settings)
 
     @cached_property
     def contact(self) -> "GroundForces":
         """Forces of the ground, friction demand and loss of contact."""
-        from rocking.dynamics.ground_forces import contact_of
+        from rocking.dynamics.plane.ground_forces import contact_of
 
         return contact_of(self.trajectory, self.intervals, self._covered, self.body, self.settings)
 
@@ -322,7 +322,7 @@ class Response(Exportable):
         It grows with the length of a history, since rocking multiplies small differences; where another step changes
         the outcome, it is infinite.
         """
-        from rocking.dynamics.run import rerun_finer
+        from rocking.dynamics.plane.run import rerun_finer
 
         return rerun_finer(self)
 
@@ -364,6 +364,6 @@ class Response(Exportable):
         Table
             Samples, impacts and provenance, with units.
         """
-        from rocking.dynamics.samples import exported
+        from rocking.dynamics.plane.export import exported
 
         return exported(self)

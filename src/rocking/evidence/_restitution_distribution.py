@@ -10,7 +10,7 @@ import numpy as np
 from rocking import checks, plausibility
 from rocking.bodies import Block, Body
 from rocking.conventions import FEET, FloatArray, Foot, percent
-from rocking.dynamics.impact_law import RandomRestitution
+from rocking.dynamics.impact_laws import RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.evidence.calibration import CALIBRATED_RANGE, Calibration, calibrate
 from rocking.evidence.likelihood import scatter

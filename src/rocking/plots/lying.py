@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics import equations
+from rocking.dynamics.plane import equations
 from rocking.dynamics.response import Response
 from rocking.outcome import Outcome
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from rocking.bodies import Body
 from rocking.bodies.formats.body_file import body_from_toml
 from rocking.conventions import FEET
-from rocking.dynamics.impact_law import RandomRestitution
+from rocking.dynamics.impact_laws import RandomRestitution
+from rocking.dynamics.parameters import cut_of, cut_words
 from rocking.dynamics.response import Motion
-from rocking.dynamics.rocker import cut_of, cut_words
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, MissingExtraError, RockingError
 from rocking.motions.formats.reader import read_motion

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking import conventions
 from rocking.bodies import Body
-from rocking.dynamics.lost_contact import contact_words
+from rocking.dynamics.loss_of_contact import contact_words
 from rocking.dynamics.response import Motion
 from rocking.errors import extra
 from rocking.quantities import HISTORY, attributes

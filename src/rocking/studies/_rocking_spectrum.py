@@ -8,10 +8,10 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Block
 from rocking.conventions import FloatArray
-from rocking.dynamics.batch import PIECE
-from rocking.dynamics.engine import RESULTS, Arrays
-from rocking.dynamics.impact_law import ConstantRestitution
-from rocking.dynamics.lost_contact import contact_words, flags
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.loss_of_contact import contact_words, flags
+from rocking.dynamics.plane.batch import PIECE
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra

@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.bodies import Block
 from rocking.conventions import FEET, FloatArray
-from rocking.dynamics.impact_law import ConstantRestitution
+from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.errors import InvalidValueError
 from rocking.studies.axis import BODY, RESTITUTION, Axis
 from rocking.studies.case import Case

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError
 from rocking.studies.geometry import changed_body
 from rocking.studies.question import Question, sides_of

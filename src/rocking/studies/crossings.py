@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.lost_contact import contact_words
+from rocking.dynamics.loss_of_contact import contact_words
 
 Interval = tuple[float, float]
 

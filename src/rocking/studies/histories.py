@@ -11,10 +11,10 @@ import numpy as np
 
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray
-from rocking.dynamics.batch import ROWS, SIDES_UNTOLD, Batch, Rows
 from rocking.dynamics.content import full_name, hash_of
-from rocking.dynamics.engine import RESULTS, Arrays
-from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
+from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
+from rocking.dynamics.plane.batch import ROWS, SIDES_UNTOLD, Batch, Rows
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -150,7 +150,7 @@ class Histories(ABC):
         Returns
         -------
         dict of str to ndarray
-            The keys of `rocking.dynamics.engine.RESULTS`, one entry a history.
+            The keys of `fast_engine.RESULTS`, one entry a history.
 
         Raises
         ------
@@ -235,7 +235,7 @@ class HistoryTable(Histories):
     motion : ndarray of int
         Number of each history's motion.
     values : dict of str to ndarray
-        The keys of `rocking.dynamics.batch.ROWS` [rad, rad/s, -, rad, rad/s], one entry a history.
+        The keys of `batch.ROWS` [rad, rad/s, -, rad, rad/s], one entry a history.
     law : ImpactLaw, optional
         How the coefficient changes from impact to impact.
     settings : Settings, optional

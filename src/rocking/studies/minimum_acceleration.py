@@ -8,7 +8,7 @@ import numpy as np
 from rocking import conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.response import Motion
 from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
 from rocking.studies._axes import axis_of

@@ -9,12 +9,12 @@ import numpy as np
 
 from rocking.bodies import Body
 from rocking.conventions import FloatArray
-from rocking.dynamics.batch import SIDES, Batch, Rows
-from rocking.dynamics.engine import Arrays, instruction_set
-from rocking.dynamics.impact_law import ImpactLaw
-from rocking.dynamics.lost_contact import flags
+from rocking.dynamics.impact_laws import ImpactLaw
+from rocking.dynamics.loss_of_contact import flags
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.batch import SIDES, Batch, Rows
+from rocking.dynamics.plane.fast_engine import Arrays, instruction_set
 from rocking.dynamics.response import Motion
-from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion
@@ -75,8 +75,8 @@ class Question:
         A motion stretched in time by s does to a body of frequency parameter p what the motion itself does to one of p
         s, all times multiplied by s: so one motion serves all stretches, and nothing is approximated.
 
-        values: sides and scale, by the names of `rocking.dynamics.batch.ROWS` [rad, rad/s, -], one entry a history;
-        stretch: factors on the time of the motion [-]. Returns results: the keys of `rocking.dynamics.engine.RESULTS`,
+        values: sides and scale, by the names of `batch.ROWS` [rad, rad/s, -], one entry a history;
+        stretch: factors on the time of the motion [-]. Returns results: the keys of `fast_engine.RESULTS`,
         mode [-] and peak_ratio [-].
         """
         count = stretch.size

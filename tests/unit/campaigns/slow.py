@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import rocking as rk
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies import HistoryTable, MotionSet, Product
 
 

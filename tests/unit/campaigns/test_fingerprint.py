@@ -8,17 +8,17 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignMismatchError
 from rocking.campaigns import identity as fingerprint
-from rocking.dynamics import engine
-from rocking.dynamics.batch import Batch
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import Batch
 from rocking.studies import HistoryTable
 
-pytestmark = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+pytestmark = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 
 
 def test_fingerprints_tell_the_bits_apart(make: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Instruction sets with the same results of 3000 histories have the same fingerprint, others another one."""
     work, found = make(3000), {}
-    for name in engine.instruction_sets():
+    for name in fast_engine.instruction_sets():
         monkeypatch.setenv("ROCKING_ISA", name)
         results = work.run(0, work.count, threads=1)
         found[name] = (b"".join(results[column].tobytes() for column in results), fingerprint.engine_of(work))
@@ -26,7 +26,9 @@ def test_fingerprints_tell_the_bits_apart(make: Any, monkeypatch: pytest.MonkeyP
         assert [told == other for _, other in found.values()] == [bits == others for others, _ in found.values()]
 
 
-@pytest.mark.skipif(len(engine.instruction_sets() if engine.available() else []) < 2, reason="one instruction set only")
+@pytest.mark.skipif(
+    len(fast_engine.instruction_sets() if fast_engine.available() else []) < 2, reason="one instruction set only"
+)
 def test_another_instruction_set_is_refused(
     tmp_path: Path, work: HistoryTable, monkeypatch: pytest.MonkeyPatch
 ) -> None:

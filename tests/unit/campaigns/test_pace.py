@@ -12,7 +12,7 @@ import pytest
 from rocking.campaigns import Campaign, CampaignInterrupted
 from rocking.campaigns.chunks import DEFAULT_CHUNK
 from rocking.campaigns.executors import WorkerTask
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies import HistoryTable
 
 pytestmark = pytest.mark.timed

@@ -17,7 +17,7 @@ from rocking.campaigns import Campaign, CampaignWorkerError, Progress, identity
 from rocking.campaigns import identity as fingerprint
 from rocking.campaigns.chunks import Chunk
 from rocking.campaigns.executors import WorkerTask
-from rocking.dynamics import engine
+from rocking.dynamics.plane import fast_engine
 from rocking.studies import HistoryTable
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="workers are forked, so that they can be made to fail")
@@ -88,7 +88,7 @@ def test_worker_without_the_engine_is_refused(
 ) -> None:
     """Results of two engines are never mixed."""
     campaign = Campaign.create(tmp_path / "c", work, 50)
-    breaking(monkeypatch, lambda _: setattr(engine, "chosen", lambda *_: "reference"))
+    breaking(monkeypatch, lambda _: setattr(fast_engine, "chosen", lambda *_: "reference"))
     with pytest.raises(CampaignWorkerError, match="this worker has the reference engine, the campaign takes the fast"):
         campaign.run(**FORK, workers=1)
 

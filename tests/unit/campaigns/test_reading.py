@@ -9,7 +9,7 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignStorageError, Progress, forecast
 from rocking.campaigns.status import Estimate
-from rocking.dynamics.engine import RESULTS
+from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.errors import InvalidValueError
 from rocking.studies import HistoryTable
 

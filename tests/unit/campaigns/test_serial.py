@@ -14,7 +14,7 @@ import pytest
 
 from rocking.campaigns import Campaign, CampaignInterrupted, Executor, Progress, Serial
 from rocking.campaigns.executors import Done, WorkerTask
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.studies import HistoryTable
 
 LONG = 20.0

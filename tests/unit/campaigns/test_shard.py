@@ -11,7 +11,7 @@ import pytest
 from rocking.campaigns import CampaignDamagedError
 from rocking.campaigns import chunks as shard
 from rocking.campaigns.chunks import Chunk, Plan
-from rocking.dynamics.engine import RESULTS, Arrays, empty_results
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays, empty_results
 
 PLAN = Plan("a" * 64, 400, 40, "fast", "1.0")
 CHUNK = PLAN.chunk(3)

@@ -14,7 +14,7 @@ from rocking.cli import main
 from rocking.cli.simulate_output import as_text
 from rocking.cli.simulate_page import show
 from rocking.cli.simulate_question import ResponseComparison
-from rocking.dynamics import engine as fast_engine
+from rocking.dynamics.plane import fast_engine
 from rocking.evidence._coefficient_table import default_models
 
 G = 9.80665

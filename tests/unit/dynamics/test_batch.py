@@ -6,18 +6,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rocking.dynamics import Outcome, Settings, Status, engine
-from rocking.dynamics.batch import ROWS, Batch, Rows, _processors, valid_row
-from rocking.dynamics.engine import RESULTS, Library
+from rocking.dynamics import Outcome, Settings, Status
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import ROWS, Batch, Rows, _processors, valid_row
+from rocking.dynamics.plane.fast_engine import RESULTS, Library
 from rocking.errors import InvalidValueError
 from rocking.motions import pulses
 from rocking.motions.segments import Segments
 
 ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
     "reference",
 ]
-built = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+built = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 every_engine = pytest.mark.parametrize("name", ENGINES)
 GOOD: dict[str, Any] = {
     "alpha_right": 0.25, "alpha_left": 0.2, "p_right": 2.5, "p_left": 2.6, "r_right": 0.9, "r_left": 0.85,
@@ -169,7 +170,7 @@ def test_pieces_and_progress(name: str, monkeypatch: pytest.MonkeyPatch) -> None
     whole = run(name)
     asked: list[tuple[int, int]] = []
     done: list[int] = []
-    monkeypatch.setattr("rocking.dynamics.batch.PIECE", 4)
+    monkeypatch.setattr("rocking.dynamics.plane.batch.PIECE", 4)
 
     def rows(first: int, last: int) -> Rows:
         asked.append((first, last))

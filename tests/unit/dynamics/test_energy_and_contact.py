@@ -9,11 +9,11 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import engine, equations
+from rocking.dynamics.plane import equations, fast_engine
 from rocking.errors import InvalidValueError
 
 ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
     "reference",
 ]
 BLOCK = rk.Block(width=1.0, height=3.0, depth=2.0, density=1000.0)

@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 import rocking as rk
-from rocking.dynamics import engine as fast_engine
-from rocking.dynamics import inside
+from rocking.dynamics.plane import fast_engine, inside
 
 # What limits the closure is the ledger, not the engines: the work integrates the quintic through both ends of every
 # interval, whose error grows with the sixth power of its length and with the slope of the record. Intervals up to

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics import engine
-from rocking.dynamics.batch import Batch
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import Batch
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 RECORD = rk.GroundMotion(4.0 * np.sin(0.3 * np.arange(43)), 0.05)
-built = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+built = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 
 
 @pytest.fixture
@@ -22,13 +22,13 @@ def _not_built(monkeypatch: pytest.MonkeyPatch) -> None:
     """An installation without the compiled module: its import fails, and nothing is remembered."""
     monkeypatch.setitem(sys.modules, "rocking.dynamics._engine", None)
     monkeypatch.delattr(sys.modules["rocking.dynamics"], "_engine", raising=False)
-    monkeypatch.setattr(engine, "_module", engine._module.__wrapped__)
+    monkeypatch.setattr(fast_engine, "_module", fast_engine._module.__wrapped__)
 
 
 @pytest.mark.usefixtures("_not_built")
 def test_without_the_module_the_reference_runs() -> None:
     """ "auto" warns, at the user's own line, and gives the reference engine's numbers bit for bit."""
-    assert not engine.available()
+    assert not fast_engine.available()
     calls: tuple[Any, ...] = (
         lambda name: rk.simulate(BODY, RECORD, 0.9, duration=2.0, engine=name).rotation,
         lambda name: rk.free_rocking(BODY, 0.1, 0.9, duration=1.0, engine=name).rotation,
@@ -51,8 +51,8 @@ def test_without_the_module_the_fast_one_is_refused() -> None:
         lambda: rk.simulate(BODY, RECORD, engine="fast"),
         lambda: rk.free_rocking(BODY, 0.1, engine="fast"),
         lambda: rk.simulate_many(BODY, RECORD, engine="fast"),
-        engine.instruction_sets,
-        engine.module,
+        fast_engine.instruction_sets,
+        fast_engine.module,
     ):
         with pytest.raises(MissingExtraError, match=message):
             call()
@@ -70,7 +70,7 @@ def test_asking_for_the_reference_does_not_warn(monkeypatch: pytest.MonkeyPatch)
 def test_wrong_names(name: Any) -> None:
     """An engine that does not exist is refused with those that do."""
     with pytest.raises(InvalidValueError, match="engine must be one of auto, fast, reference, got"):
-        engine.chosen(name)
+        fast_engine.chosen(name)
     with pytest.raises(InvalidValueError, match="engine must be one of"):
         Batch([RECORD.segments()], engine=name).run(0, lambda *_: None)  # type: ignore[arg-type]
 
@@ -78,9 +78,13 @@ def test_wrong_names(name: Any) -> None:
 @built
 def test_auto_is_the_fast_one() -> None:
     """Where it was built "auto" takes the fast engine, without a warning, and the response says so."""
-    assert engine.available()
-    assert (engine.chosen("auto"), engine.chosen("fast"), engine.chosen("reference")) == ("fast", "fast", "reference")
-    assert isinstance(engine.module(), ModuleType)
+    assert fast_engine.available()
+    assert (fast_engine.chosen("auto"), fast_engine.chosen("fast"), fast_engine.chosen("reference")) == (
+        "fast",
+        "fast",
+        "reference",
+    )
+    assert isinstance(fast_engine.module(), ModuleType)
     auto, fast = (rk.simulate(BODY, RECORD, engine=name, duration=2.0) for name in ("auto", "fast"))
     assert auto.engine == fast.engine
     np.testing.assert_array_equal(auto.rotation, fast.rotation)
@@ -89,20 +93,20 @@ def test_auto_is_the_fast_one() -> None:
 @built
 def test_instruction_sets(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each set that the processor has can be asked for, and the response names it; the first is the default."""
-    known = engine.instruction_sets()
+    known = fast_engine.instruction_sets()
     assert known == [name for name in ("avx512", "avx2", "plain") if name in known]
     assert known[-1] == "plain"
     peaks = []
     for wanted in known:
         monkeypatch.setenv("ROCKING_ISA", wanted)
-        assert engine.instruction_set() == wanted
+        assert fast_engine.instruction_set() == wanted
         response = rk.simulate(BODY, RECORD, 0.9, engine="fast", duration=2.1)
         assert response.engine == f"fast (Taylor, order 8, {wanted})"
         peaks.append(response.peak_rotation)
     np.testing.assert_allclose(peaks, peaks[0], rtol=1e-10)
     for empty in ("", None):
         monkeypatch.delenv("ROCKING_ISA") if empty is None else monkeypatch.setenv("ROCKING_ISA", empty)
-        assert engine.instruction_set() == known[0]
+        assert fast_engine.instruction_set() == known[0]
 
 
 @built
@@ -112,7 +116,7 @@ def test_wrong_instruction_sets(wanted: str, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setenv("ROCKING_ISA", wanted)
     message = f"ROCKING_ISA must be one of .*plain, got '{wanted}'"
     for call in (
-        engine.instruction_set,
+        fast_engine.instruction_set,
         lambda: rk.simulate(BODY, RECORD, engine="fast"),
         lambda: rk.simulate_many(BODY, RECORD, engine="auto"),
     ):

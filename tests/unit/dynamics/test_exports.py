@@ -13,7 +13,7 @@ import pytest
 from scipy.io import loadmat
 
 import rocking as rk
-from rocking.dynamics.samples import columns, provenance
+from rocking.dynamics.plane.export import columns, provenance
 from rocking.errors import InvalidValueError, MissingExtraError
 
 BLOCK = rk.Block(width=0.5, height=2.0)

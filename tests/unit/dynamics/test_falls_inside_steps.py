@@ -8,13 +8,15 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import engine
+from rocking.dynamics.plane import fast_engine
 from rocking.errors import InvalidValueError
 
 every_engine = pytest.mark.parametrize(
     "name",
     [
-        pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+        pytest.param(
+            "fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
+        ),
         "reference",
     ],
 )

@@ -5,11 +5,12 @@ import sys
 
 import pytest
 
-from rocking.dynamics import engine
+from rocking.dynamics.plane import fast_engine
 
 NOT_NEEDED = {
     "csv", "json", "scipy", "shapely", "pydantic", "pandas", "xarray", "matplotlib", "rocking.evidence",
-    "rocking.dynamics.reference", "rocking.dynamics.batch", "rocking.tables", "rocking.dynamics.ground_forces",
+    "rocking.dynamics.plane.reference", "rocking.dynamics.plane.batch", "rocking.dynamics.plane.ground_forces",
+    "rocking.tables",
     "rocking.restitution.plastic_winkler", "rocking.restitution.ledger",
 }  # fmt: skip
 SCRIPT = """
@@ -29,10 +30,10 @@ def loaded(more: str = "") -> set[str]:
     return set(done.stdout.split())
 
 
-@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 def test_the_first_response_loads_what_it_needs() -> None:
     """A response of the fast engine loads no files, tables, other models or engines; asked for, these are loaded."""
     found = loaded()
     assert {"rocking.dynamics._engine", "rocking.restitution.housner"} <= found
     assert not found & NOT_NEEDED
-    assert "rocking.dynamics.ground_forces" in loaded("response.contact")
+    assert "rocking.dynamics.plane.ground_forces" in loaded("response.contact")

@@ -8,8 +8,8 @@ import pytest
 from scipy import stats
 
 import rocking as rk
-from rocking.dynamics import engine
-from rocking.dynamics.impact_law import ConstantRestitution, interpolated, uniform
+from rocking.dynamics.impact_laws import ConstantRestitution, interpolated, uniform
+from rocking.dynamics.plane import fast_engine
 from rocking.errors import InvalidValueError
 
 # these take rows, whatever their type
@@ -17,7 +17,7 @@ SPEED: Any = rk.dynamics.SpeedRestitution
 RANDOM: Any = rk.dynamics.RandomRestitution
 BLOCK = rk.Block(width=0.5, height=2.0)
 ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
     "reference",
 ]
 MASK = 2**64 - 1
@@ -136,7 +136,7 @@ def test_random_law_in_a_response(name: str) -> None:
         assert 0.95 * 0.7 <= found.min() <= found.max() <= 0.95
 
 
-@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 @pytest.mark.parametrize(
     "law", [SPEED([0.0, 0.4], [0.95, 0.8]), rk.dynamics.RandomRestitution.normal(0.9, 0.05, seed=8)]
 )

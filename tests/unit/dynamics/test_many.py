@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics import Outcome, Status, engine
+from rocking.dynamics import Outcome, Status
+from rocking.dynamics.plane import fast_engine
 from rocking.restitution import model
 
 pytest.importorskip("xarray")
 
 ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
     "reference",
 ]
 every_engine = pytest.mark.parametrize("name", ENGINES)
@@ -35,7 +36,7 @@ SCALES = [0.4, 1.0, -1.6]
 @pytest.fixture(scope="module")
 def tables() -> dict[str, Any]:
     made = {"reference": rk.simulate_many(BODIES, MOTIONS, CHOICES, scale=SCALES, engine="reference")}
-    if engine.available():
+    if fast_engine.available():
         made["fast"] = rk.simulate_many(BODIES, MOTIONS, CHOICES, scale=SCALES, engine="fast", threads=2)
     return made
 
@@ -96,7 +97,7 @@ def test_outcomes_are_those_of_long_histories(name: str, tables: dict[str, Any])
         assert abs(float(found["peak_rotation"][body, 0, 2, 1])) == pytest.approx(alone.peak_rotation, rel=1e-9)
 
 
-@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 def test_both_engines(tables: dict[str, Any]) -> None:
     """The engines agree on outcomes and counts, and on peaks to 1e-9."""
     fast, slow = tables["fast"], tables["reference"]
@@ -155,7 +156,7 @@ def test_models_as_objects() -> None:
     assert found["peak_rotation"].to_numpy()[0, 0, 0, 0] == found["peak_rotation"].to_numpy()[0, 0, 0, 1]
 
 
-@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 def test_a_dataset_says_what_it_is() -> None:
     """Engine, seed, bodies and motions can be read off a dataset."""
     law = rk.dynamics.RandomRestitution.normal(0.9, 0.01, seed=7)
@@ -167,7 +168,7 @@ def test_a_dataset_says_what_it_is() -> None:
     assert "sine" in str(result.motion_provenance.values[0]).lower()
 
 
-@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 def test_company_does_not_matter() -> None:
     """A record beside one that has a vertical part, on which the whole batch runs with one, keeps its bits."""
     random = np.random.default_rng(5)
@@ -180,7 +181,7 @@ def test_company_does_not_matter() -> None:
         np.testing.assert_array_equal(alone[name].values, beside[name].values)
 
 
-@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 def test_a_twin_tells_what_the_integration_leaves_open() -> None:
     """Half a long step changes a peak by the error that it has against steps without error, of order 6 or more.
 

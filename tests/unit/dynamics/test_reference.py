@@ -14,11 +14,11 @@ from numpy.polynomial import Polynomial
 import rocking as rk
 from rocking.conventions import g
 from rocking.dynamics import Outcome, RockingParameters, RockingSide
-from rocking.dynamics.impact_law import ConstantRestitution
-from rocking.dynamics.reference import Reference
+from rocking.dynamics.impact_laws import ConstantRestitution
+from rocking.dynamics.plane.reference import Reference
+from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import first_fall, last_fall, turning_points
-from rocking.dynamics.trajectory import EventKind, Trajectory
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.outcome import Status

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics import ImpactLaw, Settings, engine
-from rocking.dynamics.batch import Batch, Rows
+from rocking.dynamics import ImpactLaw, Settings
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 
-built = pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+built = pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSE = rk.pulses.sine(amplitude=3.0, period=0.6)
 RESPONSE = rk.simulate(BLOCK, PULSE, "housner")

@@ -8,10 +8,11 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import Outcome, Status, engine
+from rocking.dynamics import Outcome, Status
+from rocking.dynamics.plane import fast_engine
 
 ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
     "reference",
 ]
 every_engine = pytest.mark.parametrize("name", ENGINES)
@@ -190,7 +191,7 @@ def test_error_estimate(name: str) -> None:
 def test_error_estimate_of_another_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
     """If the finer run overturns where this one stood, the estimate is infinite."""
     response, other = let_go(duration=2.0), sine(4.0)
-    monkeypatch.setattr("rocking.dynamics.run.run", lambda *_, **__: other.trajectory)
+    monkeypatch.setattr("rocking.dynamics.plane.run.run", lambda *_, **__: other.trajectory)
     assert response.error_estimate == math.inf
 
 

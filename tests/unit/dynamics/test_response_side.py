@@ -8,8 +8,8 @@ import pytest
 from scipy.io import loadmat
 
 import rocking as rk
-from rocking.dynamics import engine as fast_engine
-from rocking.dynamics.samples import provenance
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.export import provenance
 
 BODY = rk.Block(width=0.5, height=2.0).with_feet(0.05, 0.5)
 # a ground that goes to the left throws the body to the right: the half sine is far above what the block can bear

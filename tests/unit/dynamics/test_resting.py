@@ -8,17 +8,18 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import g
-from rocking.dynamics import Outcome, RockingParameters, RockingSide, engine
-from rocking.dynamics.fast import run_fast
-from rocking.dynamics.ground import Push, RestoringMoments
-from rocking.dynamics.impact_law import ConstantRestitution, SpeedRestitution
-from rocking.dynamics.reference import Reference
-from rocking.dynamics.resting import comes_to_rest
+from rocking.dynamics import Outcome, RockingParameters, RockingSide
+from rocking.dynamics.impact_laws import ConstantRestitution, SpeedRestitution
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.event_functions import Push, RestoringMoments
+from rocking.dynamics.plane.fast import run_fast
+from rocking.dynamics.plane.reference import Reference
+from rocking.dynamics.plane.resting import comes_to_rest
 from rocking.dynamics.settings import Settings
 from rocking.motions.segments import Segments
 
 ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
     "reference",
 ]
 every_engine = pytest.mark.parametrize("name", ENGINES)
@@ -178,7 +179,7 @@ def test_energy_decides_at_the_end(name: str, linear: bool, share: float, expect
 
 def test_angular_acceleration_is_the_slope_of_the_energy() -> None:
     """For linear and exact equations dE/dt = 0 makes theta'' = -p^2 dV/dtheta: by central differences to 1e-8."""
-    from rocking.dynamics import equations
+    from rocking.dynamics.plane import equations
 
     for linear in (False, True):
         at, h = 0.1, 1e-5

@@ -214,7 +214,7 @@ def test_kinds_cannot_be_mixed() -> None:
     law = RANDOM([0.5, 0.6], 1)
     with pytest.raises(InvalidValueError, match="must be the only restitution of a call"):
         many(restitution=[law, 0.9])
-    if rk.dynamics.engine.available():
+    if rk.dynamics.plane.fast_engine.available():
         with pytest.raises(InvalidValueError, match="all records or all pulses; sample the pulses"):
             many(motions=[RECORD, PULSE])
 

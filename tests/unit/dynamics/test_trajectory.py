@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics import Outcome, engine
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.trajectory import EventKind
+from rocking.dynamics import Outcome
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.trajectory import EventKind
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 
 ENGINES = [
-    pytest.param("fast", marks=pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")),
+    pytest.param("fast", marks=pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")),
     "reference",
 ]
 every_engine = pytest.mark.parametrize("name", ENGINES)
@@ -60,7 +61,7 @@ def test_after_overturning_there_is_nothing(name: str) -> None:
     assert run.overturning_time == run.peak_time < response.time[-1]
 
 
-@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 def test_engines_hand_back_the_same() -> None:
     """Events of both engines agree in kind and side, in time to 1e-9 s, and rotations to 1e-10 rad."""
     fast, slow = (rk.simulate(BLOCK, BURSTS, 0.6, engine=name).trajectory for name in ("fast", "reference"))
@@ -108,7 +109,7 @@ def test_motions_that_are_not_finite_are_refused(name: str, degree: int, poison:
             )
 
 
-@pytest.mark.skipif(not engine.available(), reason="the fast engine was not built")
+@pytest.mark.skipif(not fast_engine.available(), reason="the fast engine was not built")
 def test_records_of_all_kinds_in_one_library() -> None:
     """Records with and without a vertical part, cut off in mid-motion and not, of different lengths: each has the peak
     that it has by the reference engine, and the one it has alone."""

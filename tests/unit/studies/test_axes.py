@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.impact_law import SpeedRestitution
+from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.errors import InvalidValueError
 from rocking.studies._axes import axes, axis_of
 from rocking.studies.geometry import changed_body, reference_side

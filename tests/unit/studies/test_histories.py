@@ -7,7 +7,7 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics import ImpactLaw, RandomRestitution, Settings
-from rocking.dynamics.engine import RESULTS
+from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse
 from rocking.restitution import model

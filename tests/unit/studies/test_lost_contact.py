@@ -5,8 +5,8 @@ import pytest
 
 import rocking as rk
 from rocking.conventions import DEFAULT_FRICTION, percent
-from rocking.dynamics.lost_contact import contact_words
-from rocking.dynamics.rocker import cut_words
+from rocking.dynamics.loss_of_contact import contact_words
+from rocking.dynamics.parameters import cut_words
 from rocking.reports.facts.response import response_facts
 from rocking.studies.fragility.cloud_analysis import cloud
 from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes

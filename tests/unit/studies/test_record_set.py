@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rocking.bodies import Block
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import peak_ground_velocity
 from rocking.motions.motion import GroundMotion

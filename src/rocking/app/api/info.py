@@ -68,11 +68,11 @@ def _constant() -> dict[str, Any]:
 
 
 def _engine() -> dict[str, Any]:
-    from rocking.dynamics import engine
+    from rocking.dynamics.plane import fast_engine
 
-    if not engine.available():
+    if not fast_engine.available():
         return {"name": "reference", "instruction_set": None}
-    return {"name": "fast", "instruction_set": engine.instruction_set()}
+    return {"name": "fast", "instruction_set": fast_engine.instruction_set()}
 
 
 def _models() -> list[dict[str, Any]]:

@@ -44,14 +44,14 @@ def _compute(study: Path, workers: int) -> None:
     from rocking.app.studies.study_folder import CAMPAIGN, JOB, StudyFolder
     from rocking.campaigns import CampaignBusyError
     from rocking.campaigns.jobs import Job, JobFolder
-    from rocking.dynamics import engine
+    from rocking.dynamics.plane import fast_engine
 
     campaign = study / CAMPAIGN
     begun = (campaign / JOB).is_file()
     folder = JobFolder.open(campaign, study) if begun else JobFolder.create(campaign, Job.read(study / JOB))
     histories = folder.job.study.histories
     # the fast engine has threads of its own; the reference engine needs processes to be quicker than one core
-    alone = workers == 1 or engine.chosen(histories.engine, histories.law) == "fast"
+    alone = workers == 1 or fast_engine.chosen(histories.engine, histories.law) == "fast"
     deadline = time.monotonic() + _PATIENCE
     while True:
         try:

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from rocking.app.studies.study_folder import StudyFolder
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import RockingError
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from rocking.app.studies.opened import OpenStudy
 from rocking.app.studies.study_folder import StudyFolder
 from rocking.campaigns import disk
 from rocking.conventions import FloatArray
-from rocking.dynamics.lost_contact import contact_words, lost_contact
+from rocking.dynamics.loss_of_contact import contact_words, lost_contact
 from rocking.errors import InvalidValueError
 from rocking.studies.contours import chains, edge_numbers, segments
 from rocking.version import __version__

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import IntArray
-from rocking.dynamics.batch import Batch, Rows
-from rocking.dynamics.engine import RESULTS, Arrays
+from rocking.dynamics.plane.batch import Batch, Rows
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories, HistoryTable, hash_of
 from rocking.studies.motion_set import MotionList, MotionSet
@@ -52,7 +52,7 @@ class AskedBatch(Batch):
     ) -> tuple[Arrays, dict[str, int]]:
         """Return the results of many histories.
 
-        Returns results: one array for each key of `rocking.dynamics.engine.RESULTS`; NaN of what a round does not keep;
+        Returns results: one array for each key of `fast_engine.RESULTS`; NaN of what a round does not keep;
         work: Empty: nobody counts the steps of all rounds.
         """
         if not count:

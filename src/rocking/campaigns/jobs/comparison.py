@@ -9,7 +9,7 @@ from rocking.campaigns.jobs.findings import analyses, refuse_unfinished
 from rocking.campaigns.jobs.folder import JobFolder
 from rocking.campaigns.jobs.results import Results
 from rocking.campaigns.jobs.study import TYPES
-from rocking.dynamics.impact_law import ImpactLaw, RandomRestitution
+from rocking.dynamics.impact_laws import ImpactLaw, RandomRestitution
 from rocking.errors import InvalidValueError, extra
 from rocking.quantities import attributes
 from rocking.studies.sensitivity.comparison import Sensitivity

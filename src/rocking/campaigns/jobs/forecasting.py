@@ -10,7 +10,7 @@ import numpy as np
 from rocking.campaigns.forecast import trial
 from rocking.campaigns.identity import usual_chunk
 from rocking.campaigns.jobs.job import Job
-from rocking.dynamics.engine import RESULTS
+from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.motions.pulse import Pulse
 from rocking.studies.histories import MOTIONS_AT_ONCE
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rocking.campaigns.identity import software
-from rocking.dynamics import engine
+from rocking.dynamics.plane import fast_engine
 from rocking.restitution import RestitutionModel
 
 if TYPE_CHECKING:
@@ -57,8 +57,8 @@ def _model(label: str, choice: Any) -> dict[str, str]:
 
 def _engine(job: "Job") -> str:
     histories = job.study.histories
-    chosen = engine.chosen(histories.engine, histories.law)
-    return f"{chosen} ({engine.instruction_set()})" if chosen == "fast" else chosen
+    chosen = fast_engine.chosen(histories.engine, histories.law)
+    return f"{chosen} ({fast_engine.instruction_set()})" if chosen == "fast" else chosen
 
 
 def _seeds(job: "Job") -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from rocking.campaigns import Campaign
 from rocking.campaigns.jobs.study import TYPES, Study
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.tables import PIECE, Grid
 
 _MAIN = ("software", "campaign", "kind", "engine", "histories_key")

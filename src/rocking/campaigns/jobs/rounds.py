@@ -27,7 +27,7 @@ from rocking.campaigns.jobs.answer import AdaptiveResult
 from rocking.campaigns.jobs.asked import Compute, first_round
 from rocking.campaigns.jobs.round_status import FINISHED, finished_rounds, resume, round_folder, way_out
 from rocking.campaigns.processes import chosen
-from rocking.dynamics.engine import RESULTS, Arrays
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.studies.histories import Histories
 
 NEEDED = ("outcome", "status", "side", "peak_rotation", "impacts", "overturning_time", "least_force")

@@ -8,8 +8,8 @@ import numpy as np
 
 from rocking.campaigns.jobs.answer import AdaptiveResult
 from rocking.campaigns.jobs.asked import Compute
-from rocking.dynamics.engine import RESULTS, Arrays
-from rocking.dynamics.lost_contact import flags
+from rocking.dynamics.loss_of_contact import flags
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 from rocking.quantities import HISTORY
 from rocking.studies.histories import Histories

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.footing import LEFT, RIGHT, Footing
+from rocking.dynamics.contact.base import LEFT, RIGHT, Footing
 from rocking.dynamics.contact.history import History
 from rocking.dynamics.contact.mode import Mode
 

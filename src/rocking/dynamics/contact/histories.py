@@ -5,13 +5,13 @@ from typing import Any
 
 from rocking import checks, conventions, plausibility
 from rocking.bodies import Body
+from rocking.dynamics.contact.base import Footing
 from rocking.dynamics.contact.engine import Planar
-from rocking.dynamics.contact.footing import Footing
 from rocking.dynamics.contact.ground_contact import GroundContact
 from rocking.dynamics.contact.response import PlanarResponse
 from rocking.dynamics.contact.start import Start
-from rocking.dynamics.impact_law import ImpactLaw
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.impact_laws import ImpactLaw
+from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion

@@ -9,8 +9,8 @@ k b). That place is kept. Where the impact takes more friction than there is, ``
 new foot slides off; with Housner's r this is the complementarity problem's own solution.
 """
 
-from rocking.dynamics.contact.footing import LEFT, RIGHT, Footing
-from rocking.dynamics.contact.impact import Struck
+from rocking.dynamics.contact.base import LEFT, RIGHT, Footing
+from rocking.dynamics.contact.impact_resolution import Struck
 from rocking.dynamics.contact.state import PlanarState, along, away, kinetic
 from rocking.outcome import Status
 

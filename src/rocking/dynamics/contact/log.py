@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.course import ModeSeries
-from rocking.dynamics.contact.footing import LEFT, RIGHT
+from rocking.dynamics.contact.base import LEFT, RIGHT
 from rocking.dynamics.contact.ground import GroundSeries
-from rocking.dynamics.contact.impact import Struck
+from rocking.dynamics.contact.impact_resolution import Struck
 from rocking.dynamics.contact.mode import Mode
+from rocking.dynamics.contact.mode_series import ModeSeries
 from rocking.dynamics.contact.power_series import derivative, integral, value
 from rocking.dynamics.contact.state import PlanarState
 from rocking.dynamics.taylor import turning_points

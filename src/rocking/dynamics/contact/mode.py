@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from rocking.dynamics.contact.footing import BOTH, LEFT, RIGHT
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT
 from rocking.outcome import Regime
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.contact.books import PlanarEnergy, PlanarForces, energy_of, forces_of
+from rocking.dynamics.contact.base import Footing
+from rocking.dynamics.contact.energy_balance import PlanarEnergy, PlanarForces, energy_of, forces_of
 from rocking.dynamics.contact.events import impacts_of, places_of, regimes_of
-from rocking.dynamics.contact.footing import Footing
 from rocking.dynamics.contact.ground_contact import GroundContact
 from rocking.dynamics.contact.history import History
 from rocking.dynamics.contact.log import SAMPLED

@@ -15,8 +15,8 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.contact.choosing import NextMode, choose
-from rocking.dynamics.contact.footing import LEFT, RIGHT, Footing
+from rocking.dynamics.contact.base import LEFT, RIGHT, Footing
+from rocking.dynamics.contact.complementarity import NextMode, choose
 from rocking.dynamics.contact.ground import GroundSeries
 from rocking.dynamics.contact.state import PlanarState
 from rocking.errors import InvalidValueError

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from rocking import checks
-from rocking.dynamics.contact.footing import BOTH, LEFT, RIGHT, Footing
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Footing
 from rocking.dynamics.contact.state import PlanarState
 
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from rocking.dynamics.contact.footing import BOTH, Footing
+from rocking.dynamics.contact.base import BOTH, Footing
 
 
 class PlanarState(NamedTuple):

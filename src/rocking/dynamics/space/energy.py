@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.ledger import ResponseEnergy
+from rocking.dynamics.plane.energy_balance import ResponseEnergy
 from rocking.dynamics.space.states import States, pivots
 from rocking.dynamics.space.trajectory import StepPiece
 from rocking.portable import applied, gauss_legendre

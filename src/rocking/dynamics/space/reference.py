@@ -6,18 +6,18 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space import attitude, events, flow, release, resting
-from rocking.dynamics.space import stance as stances
+from rocking.dynamics.space import attitude, event_functions, loss_of_contact, pivot_motion, resting
+from rocking.dynamics.space import contact_mode as stances
 from rocking.dynamics.space.attitude import cross
-from rocking.dynamics.space.course import IntegrationState
-from rocking.dynamics.space.events import Step
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.complementarity import Continuation, SpatialState, of_forces
+from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.event_functions import Step
 from rocking.dynamics.space.ground import SpatialGround
-from rocking.dynamics.space.impact import SpatialImpactLaw
-from rocking.dynamics.space.landing import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
-from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.impact_laws import SpatialImpactLaw
+from rocking.dynamics.space.impact_resolution import CLOSED, laid_down, landed, rim_landed, settled, started, stuck
+from rocking.dynamics.space.integration_state import IntegrationState
 from rocking.dynamics.space.rolling import RollingFlow
-from rocking.dynamics.space.selection import Continuation, SpatialState, of_forces
-from rocking.dynamics.space.stance import Stance
 from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory, StepPiece
 from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import applied, norm
@@ -36,7 +36,7 @@ class SpatialReference:
         self.slow = settings.rest_speed * math.sqrt(settings.gravity * body.size)
         self.weak = settings.rest_speed**2 * body.mass * settings.gravity * body.lift
         self.pull = _PULL * settings.gravity
-        self.flows: dict[tuple[ContactMode, tuple[int, ...]], flow.PivotFlow] = {}
+        self.flows: dict[tuple[ContactMode, tuple[int, ...]], pivot_motion.PivotFlow] = {}
         self.rolling = RollingFlow(body)
         self.time, self.stretch = 0.0, 0
         self.place = np.zeros(2)
@@ -105,9 +105,9 @@ class SpatialReference:
         self.late += self._final is not False
         if step is None or piece is None:
             return Outcome.FAILED, Status.NOT_FINITE
-        contact = events.first_contact(self.body, self.stance, step, self.touching)
-        letting = release.first_release(self.body, self.stance, step)
-        rim = events.rim_events(self.body, self.stance, step) if self.body.round else None
+        contact = event_functions.first_contact(self.body, self.stance, step, self.touching)
+        letting = loss_of_contact.first_release(self.body, self.stance, step)
+        rim = event_functions.rim_events(self.body, self.stance, step) if self.body.round else None
         held = letting is not None and self._held_down(letting, step)
         letting = None if held else letting
         self.sticks &= held
@@ -126,10 +126,10 @@ class SpatialReference:
     def _stepped(self, step: Step, at: float, *, held: bool) -> tuple[Outcome, Status] | None:
         """Look at where a step without event has led."""
         pulls = self.stance.contact is ContactMode.EDGE
-        pulls = pulls and min(release.end_forces(self.body, self.stance, step, at)) < -self.pull
+        pulls = pulls and min(loss_of_contact.end_forces(self.body, self.stance, step, at)) < -self.pull
         self.course.held += step.length if pulls or held else 0.0
         self.touching = ()
-        if self.body.round and events.nearly_flat(self.body, self._up) and self._weak:
+        if self.body.round and event_functions.nearly_flat(self.body, self._up) and self._weak:
             flat = laid_down(self.body, self._state())
             if flat is not None:
                 return self._land(flat, ())
@@ -151,36 +151,36 @@ class SpatialReference:
             length = min(length, self.horizon - self.time)
         field = -self.ground.part(self.stretch, self.time, length)
         field[2, 0] -= self.settings.gravity
-        order = min(max(flow.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
+        order = min(max(pivot_motion.terms_needed(1.5 * rate * length, 40), field.shape[1] + 2), self.settings.order)
         places = self.place[None, :]
         if self.stance.contact is ContactMode.ROLLING:
             state = self.quaternion, self.velocity, self.place
             q, w, up, places = self.rolling.series(state, length, field, order)
         else:
             q, w, up = self._flow().series(self.quaternion, self.velocity, length, field, order)
-        part = flow.trusted_part(q, w, length, self.settings.tolerance)
+        part = pivot_motion.trusted_part(q, w, length, self.settings.tolerance)
         if not part > 0.0:
             return None, None, False
-        q, w, up, places = (flow.stretched(c, part) for c in (q, w, up, places))
-        field = flow.stretched(field.T, part).T
+        q, w, up, places = (pivot_motion.stretched(c, part) for c in (q, w, up, places))
+        field = pivot_motion.stretched(field.T, part).T
         heading = (
             np.zeros(3) if self.stance.axis is None else applied(attitude.matrix(self.quaternion), self.stance.axis)
         )
         step = Step(length * part, w, up, field, heading)
         return step, StepPiece(self.time, length * part, 1.0, q, w, places, self.stance), last and part == 1.0
 
-    def _flow(self) -> flow.PivotFlow:
+    def _flow(self) -> pivot_motion.PivotFlow:
         key = self.stance.contact, self.stance.points
         if not self.stance.points:
-            return flow.PivotFlow(self.body, self.stance.pivot)
+            return pivot_motion.PivotFlow(self.body, self.stance.pivot)
         if key not in self.flows:
-            self.flows[key] = flow.PivotFlow(self.body, self.stance.pivot, self.stance.axis)
+            self.flows[key] = pivot_motion.PivotFlow(self.body, self.stance.pivot, self.stance.axis)
         return self.flows[key]
 
     def _arrive(self, piece: StepPiece, at: float, vertical: FloatArray, *, whole: bool) -> None:
-        self.quaternion = attitude.normalised(flow.value(piece.quaternions, at))
-        self.velocity = flow.value(piece.velocities, at)
-        self.place = flow.value(piece.places, at)
+        self.quaternion = attitude.normalised(pivot_motion.value(piece.quaternions, at))
+        self.velocity = pivot_motion.value(piece.velocities, at)
+        self.place = pivot_motion.value(piece.places, at)
         self.course.add(piece, at, self._up, self._pivot, vertical)
         self.time = piece.start + at * piece.length
         if whole:
@@ -220,11 +220,14 @@ class SpatialReference:
         """Whether contact stays although the ground would let go there."""
         if letting[1] >= 0:
             return self.sticks
-        return events.nearly_flat(self.body, flow.value(step.up, letting[0]))
+        return event_functions.nearly_flat(self.body, pivot_motion.value(step.up, letting[0]))
 
     def _rim(self) -> tuple[Outcome, Status] | None:
         up = self._up
-        if self.stance.contact is not ContactMode.ROLLING and math.hypot(up[0], up[1]) > 0.5 * events.START_ROLLING:
+        if (
+            self.stance.contact is not ContactMode.ROLLING
+            and math.hypot(up[0], up[1]) > 0.5 * event_functions.START_ROLLING
+        ):
             self.stance = stances.rolling(self.stance)
             return self._guard()
         state = self._state()

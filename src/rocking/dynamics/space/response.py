@@ -13,17 +13,17 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.exportable import Exportable
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
-from rocking.dynamics.space.events import NEARLY_FLAT
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.event_functions import NEARLY_FLAT
 from rocking.dynamics.space.ground import SpatialGround
-from rocking.dynamics.space.impact import SpatialImpactLaw
-from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.impact_laws import SpatialImpactLaw
 from rocking.dynamics.space.trajectory import SpatialEventKind, SpatialTrajectory
 from rocking.errors import InvalidValueError
 from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import applied, dot, norm
 
 if TYPE_CHECKING:
-    from rocking.dynamics.ledger import ResponseEnergy
+    from rocking.dynamics.plane.energy_balance import ResponseEnergy
     from rocking.dynamics.space.states import States
     from rocking.tables import Table
 

@@ -3,11 +3,11 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.space import stance as stances
+from rocking.dynamics.space import contact_mode as stances
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.complementarity import SpatialState, of_forces
+from rocking.dynamics.space.contact_mode import Stance
 from rocking.dynamics.space.ground import SpatialGround
-from rocking.dynamics.space.rocker import SpatialBody
-from rocking.dynamics.space.selection import SpatialState, of_forces
-from rocking.dynamics.space.stance import Stance
 from rocking.dynamics.taylor import first_fall, shifted, value
 from rocking.portable import convolved, times
 

@@ -19,8 +19,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.space.attitude import matrix
-from rocking.dynamics.space.flow import carried, turned
-from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.pivot_motion import carried, turned
 from rocking.portable import inverse, norm
 
 Terms = list[float]

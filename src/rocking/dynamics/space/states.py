@@ -7,7 +7,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.space import attitude
-from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.trajectory import SpatialTrajectory, StepPiece
 from rocking.outcome import ContactMode
 from rocking.portable import applied, times

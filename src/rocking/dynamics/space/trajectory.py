@@ -6,7 +6,7 @@ from enum import Enum
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.space.stance import Stance
+from rocking.dynamics.space.contact_mode import Stance
 from rocking.outcome import ContactMode, Outcome, Status
 from rocking.portable import powers, times
 

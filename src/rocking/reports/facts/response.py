@@ -25,8 +25,8 @@ from typing import Any
 from rocking import plausibility
 from rocking.conventions import FEET, Assumed
 from rocking.dynamics.contact import PlanarResponse
+from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.response import Motion, Response
-from rocking.dynamics.rocker import RockingParameters
 from rocking.motions.motion import GroundMotion
 
 

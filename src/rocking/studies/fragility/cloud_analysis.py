@@ -11,7 +11,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError, extra
 from rocking.statistics.least_squares import Regression, regression
 from rocking.statistics.lognormal import LognormalFit, fit_lognormal

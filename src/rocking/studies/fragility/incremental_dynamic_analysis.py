@@ -11,7 +11,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.statistics.censored import CensoredFit, fit_crossings
 from rocking.statistics.lognormal import LognormalFit

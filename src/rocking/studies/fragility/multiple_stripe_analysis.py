@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import extra
 from rocking.statistics.lognormal import LognormalFit
 from rocking.studies.fragility.states import LimitState, Responses, UpliftCheck, fits_of, limit_states, uplift_check

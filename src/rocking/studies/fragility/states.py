@@ -13,8 +13,8 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import BoolArray, FloatArray
-from rocking.dynamics.engine import Arrays
-from rocking.dynamics.lost_contact import contact_words, lost_contact
+from rocking.dynamics.loss_of_contact import contact_words, lost_contact
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, of_results, overturned
 from rocking.quantities import attributes

@@ -11,10 +11,10 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.batch import PIECE, SIDES
-from rocking.dynamics.engine import Arrays, empty_results
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.batch import PIECE, SIDES
+from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.dynamics.response import Motion
-from rocking.dynamics.rocker import RockingParameters
 from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import IntensityMeasure, RockingScale, measure

@@ -5,7 +5,7 @@ import numpy as np
 from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import Foot
-from rocking.dynamics.impact_law import SpeedRestitution
+from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.restitution.bed_table import HARDNESS
 from rocking.restitution.contact_bed import ContactBedModel
 

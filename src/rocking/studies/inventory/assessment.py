@@ -8,11 +8,11 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FEET, FloatArray, g
-from rocking.dynamics.batch import SIDES
-from rocking.dynamics.engine import RESULTS, Arrays
-from rocking.dynamics.impact_law import ImpactLaw
-from rocking.dynamics.lost_contact import lost_contact
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.impact_laws import ImpactLaw
+from rocking.dynamics.loss_of_contact import lost_contact
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.batch import SIDES
+from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome

@@ -5,8 +5,8 @@ from typing import Any
 
 from rocking import checks
 from rocking.conventions import FEET, Foot
-from rocking.dynamics.impact_law import DrawnRestitution, ImpactLaw
-from rocking.dynamics.rocker import cut_words
+from rocking.dynamics.impact_laws import DrawnRestitution, ImpactLaw
+from rocking.dynamics.parameters import cut_words
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
 

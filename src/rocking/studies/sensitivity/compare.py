@@ -5,7 +5,7 @@ from functools import partial
 from typing import Any
 
 from rocking.bodies import Body
-from rocking.dynamics.impact_law import ImpactLaw, RandomRestitution
+from rocking.dynamics.impact_laws import ImpactLaw, RandomRestitution
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion

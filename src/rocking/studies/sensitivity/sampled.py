@@ -7,9 +7,9 @@ import numpy as np
 
 from rocking import checks
 from rocking.conventions import FloatArray, Foot
-from rocking.dynamics.batch import Rows, drawn_rows
 from rocking.dynamics.content import full_name
-from rocking.dynamics.impact_law import ConstantRestitution, DrawnRestitution, RandomRestitution
+from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, RandomRestitution
+from rocking.dynamics.plane.batch import Rows, drawn_rows
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories, described_law
 
@@ -23,7 +23,7 @@ class SampledRestitution(DrawnRestitution):
     The draw depends on the seed and on the number of the history, on nothing else. Many histories at once draw before
     they run, so that either engine serves; a single response with it runs on the reference engine. For a new draw at
     every impact take `RandomRestitution`. Draws that would create energy are cut off, for each side at its own bound,
-    and both sides draw with the same number: see `rocking.dynamics.impact_law.DrawnRestitution`.
+    and both sides draw with the same number: see `rocking.dynamics.impact_laws.DrawnRestitution`.
 
     Parameters
     ----------
@@ -207,11 +207,11 @@ def sampled(histories: Histories) -> Histories:
 
 
 def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
-    """Return numbers in [0, 1) that depend on seed, history and impact: `rocking.dynamics.impact_law.uniform`, of many.
+    """Return numbers in [0, 1) that depend on seed, history and impact: `impact_laws.uniform`, of many.
 
     Returns the numbers, to the last bit those of `uniform`.
 
-    >>> from rocking.dynamics.impact_law import uniform
+    >>> from rocking.dynamics.impact_laws import uniform
     >>> bool(uniforms(7, [123])[0] == uniform(7, 123, 0))
     True
     """

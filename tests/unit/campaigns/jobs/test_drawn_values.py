@@ -5,7 +5,7 @@ import pytest
 
 import rocking as rk
 from rocking.campaigns.jobs import Job
-from rocking.dynamics.impact_law import RandomRestitution
+from rocking.dynamics.impact_laws import RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.studies import SampledRestitution, overturning_map
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import rocking as rk
 from rocking.campaigns.jobs import Job, forecast
 from rocking.campaigns.jobs.study import TYPES, Study
+from rocking.dynamics.plane.fast_engine import RESULTS
 from rocking.errors import InvalidValueError
 from rocking.quantities import QUANTITIES
 from rocking.studies import MotionList, Product, SyntheticSet
@@ -35,7 +36,7 @@ def test_blocks_fill_an_array_once(shape, data):
 
 def test_variables_have_units():
     """Every result of the engine, and what follows from it, has a unit and words."""
-    assert set(rk.dynamics.engine.RESULTS) | {"overturned", "lost_contact", "mode", "peak_ratio"} == set(TYPES)
+    assert set(RESULTS) | {"overturned", "lost_contact", "mode", "peak_ratio"} == set(TYPES)
     assert all(QUANTITIES[name].unit in {"1", "rad", "rad/s", "s"} and QUANTITIES[name].meaning for name in TYPES)
 
 

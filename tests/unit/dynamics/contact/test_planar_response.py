@@ -18,13 +18,13 @@ from rocking.dynamics.contact import (
     friction_demand,
     regime_at_start,
 )
+from rocking.dynamics.contact.base import Footing
 from rocking.dynamics.contact.engine import Planar
 from rocking.dynamics.contact.export import SAMPLES
-from rocking.dynamics.contact.footing import Footing
 from rocking.dynamics.contact.ground_contact import GroundContact
 from rocking.dynamics.contact.log import Log
 from rocking.dynamics.contact.mode import Mode
-from rocking.dynamics.impact_law import SpeedRestitution
+from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.motion import GroundMotion

@@ -8,11 +8,11 @@ import pytest
 import rocking as rk
 from rocking.dynamics import Settings
 from rocking.dynamics.space import ContactMode, SpatialBody, attitude
+from rocking.dynamics.space.complementarity import SpatialState, forces, impulses, of_impact
+from rocking.dynamics.space.contact_mode import edge, face, rise, vertex
 from rocking.dynamics.space.ground import ground_of
-from rocking.dynamics.space.impact import FixedSpatial, law_of
-from rocking.dynamics.space.landing import landed, started
-from rocking.dynamics.space.selection import SpatialState, forces, impulses, of_impact
-from rocking.dynamics.space.stance import edge, face, rise, vertex
+from rocking.dynamics.space.impact_laws import FixedSpatial, law_of
+from rocking.dynamics.space.impact_resolution import landed, started
 from rocking.errors import InvalidValueError, RockingError, UnknownModelError
 from rocking.restitution.space import SpatialHousner
 

@@ -8,7 +8,7 @@ import pytest
 
 import rocking as rk
 from rocking.dynamics.space import ContactMode, SpatialBody, SpatialStart
-from rocking.dynamics.space.impact import law_of
+from rocking.dynamics.space.impact_laws import law_of
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
 

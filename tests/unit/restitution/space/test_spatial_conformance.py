@@ -7,7 +7,7 @@ import rocking as rk
 from rocking.bodies.solid import Corner, Edge, Part, Solid, box, cylinder, frustum
 from rocking.dynamics import SpatialStart
 from rocking.dynamics.space import SpatialBody
-from rocking.dynamics.space.impact import ModelLaw, law_of
+from rocking.dynamics.space.impact_laws import ModelLaw, law_of
 from rocking.errors import InvalidValueError
 from rocking.restitution.space import LeaningImpact, SpatialModel, spatial_model, spatial_models
 

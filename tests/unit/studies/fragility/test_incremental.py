@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.impact_law import ImpactLaw
+from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.studies.fragility.incremental_dynamic_analysis import incremental, incremental_plan

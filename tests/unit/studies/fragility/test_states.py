@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.dynamics.rocker import RockingParameters, RockingSide
+from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.states import Responses, limit_states
 

@@ -9,7 +9,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from rocking.dynamics.impact_law import RandomRestitution
+from rocking.dynamics.impact_laws import RandomRestitution
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome

@@ -9,7 +9,7 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.dynamics import RandomRestitution, RockingParameters
-from rocking.dynamics.impact_law import uniform
+from rocking.dynamics.impact_laws import uniform
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
 from rocking.studies.histories import HistoryTable, Product

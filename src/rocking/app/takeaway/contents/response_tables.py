@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 from rocking.app.takeaway.table_files import column, table
+from rocking.dynamics.plane.export import columns
 from rocking.dynamics.response import Response
-from rocking.dynamics.samples import columns
 from rocking.quantities import QUANTITIES
 from rocking.reports.facts.response import outcome_facts
 from rocking.tables import Table

@@ -9,7 +9,7 @@ import numpy as np
 from rocking.campaigns.jobs.kinds.words import along, of_motions, of_words
 from rocking.campaigns.jobs.measured import check_told
 from rocking.campaigns.jobs.study import Study
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.spec.document import FragilityTable
 from rocking.spec.parts import Parts

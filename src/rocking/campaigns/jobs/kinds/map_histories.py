@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.batch import Rows
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.batch import Rows
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories, hash_of
 from rocking.studies.motion_set import MotionList

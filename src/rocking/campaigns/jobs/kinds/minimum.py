@@ -11,9 +11,9 @@ from rocking.campaigns.jobs.kinds.minimum_tables import tables_of
 from rocking.campaigns.jobs.kinds.words import along, of_words
 from rocking.campaigns.jobs.study import Study
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.engine import Arrays, empty_results
-from rocking.dynamics.impact_law import ImpactLaw
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.impact_laws import ImpactLaw
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.fast_engine import Arrays, empty_results
 from rocking.errors import InvalidValueError
 from rocking.spec.document import MinimumTable
 from rocking.spec.parts import MOST_IN_MEMORY, Parts

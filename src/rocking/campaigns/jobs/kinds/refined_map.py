@@ -8,7 +8,7 @@ from rocking.campaigns.jobs.answer import AdaptiveResult
 from rocking.campaigns.jobs.asked import AskedQuestion, Compute
 from rocking.campaigns.jobs.study import Study
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics.engine import Arrays
+from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.quantities import QUANTITIES
 from rocking.spec.document import MapTable

@@ -9,8 +9,8 @@ from rocking.bodies import Block, Body
 from rocking.campaigns.jobs.kinds.words import along, of_motions, of_words
 from rocking.campaigns.jobs.study import Study
 from rocking.conventions import FloatArray
-from rocking.dynamics.impact_law import ConstantRestitution, ImpactLaw
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.impact_laws import ConstantRestitution, ImpactLaw
+from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError
 from rocking.spec.fields import Values
 from rocking.spec.parts import Parts

@@ -10,8 +10,8 @@ from rocking.dynamics.space.batch import tables
 from rocking.dynamics.space.batch.laws import batch_law
 from rocking.dynamics.space.batch.rows import RowTable
 from rocking.dynamics.space.batch.run import limits_of, stock_of
+from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import SpatialGround
-from rocking.dynamics.space.rocker import SpatialBody
 from rocking.dynamics.space.start import SpatialStart
 
 COURSE = np.dtype(

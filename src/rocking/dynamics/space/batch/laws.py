@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from rocking.dynamics.space.impact import FixedSpatial, ModelLaw, SpatialImpactLaw, law_of
+from rocking.dynamics.space.impact_laws import FixedSpatial, ModelLaw, SpatialImpactLaw, law_of
 from rocking.errors import InvalidValueError
 
 CODES = {"housner-3d": 0, "horizontal-momentum-3d": 1, "ked-3d": 3, "ked-3d-point": 4}

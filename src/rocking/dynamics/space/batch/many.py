@@ -14,8 +14,8 @@ from rocking.dynamics.space.batch.provenance import provenance
 from rocking.dynamics.space.batch.result import SpatialBatch
 from rocking.dynamics.space.batch.rows import RowTable
 from rocking.dynamics.space.batch.run import run_compiled, run_reference
+from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import SpatialGround
-from rocking.dynamics.space.rocker import SpatialBody
 from rocking.dynamics.space.start import SpatialStart
 from rocking.errors import InvalidValueError, RockingError
 

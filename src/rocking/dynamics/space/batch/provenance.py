@@ -9,7 +9,7 @@ import numpy as np
 
 from rocking.dynamics.exportable import motion_provenance
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.start import SpatialStart
 
 _FEW = 100

@@ -13,10 +13,10 @@ from rocking.dynamics.space.batch import engine, tables
 from rocking.dynamics.space.batch.one import results_of
 from rocking.dynamics.space.batch.result import FLOATS, WHOLES
 from rocking.dynamics.space.batch.rows import RowTable
+from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import SpatialGround
-from rocking.dynamics.space.impact import law_of
+from rocking.dynamics.space.impact_laws import law_of
 from rocking.dynamics.space.reference import SpatialReference
-from rocking.dynamics.space.rocker import SpatialBody
 from rocking.errors import InvalidValueError, RockingError
 from rocking.outcome import Outcome, Status
 

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.space.body import SpatialBody
 from rocking.dynamics.space.ground import SpatialGround
-from rocking.dynamics.space.rocker import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.restitution.space.impulse_position import HIGHEST, impulse_position
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.parameters import RockingParameters
 from rocking.dynamics.taylor import first_fall, shifted, value
 
 

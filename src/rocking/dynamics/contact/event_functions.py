@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.course import ModeSeries
-from rocking.dynamics.contact.footing import BOTH, Footing
+from rocking.dynamics.contact.base import BOTH, Footing
 from rocking.dynamics.contact.mode import Mode
+from rocking.dynamics.contact.mode_series import ModeSeries
 from rocking.dynamics.contact.power_series import padded
 from rocking.dynamics.taylor import first_fall
 

@@ -7,11 +7,11 @@ Lemke's algorithm would find is among them, and unlike it the trial also sees wh
 from itertools import chain, combinations
 from typing import NamedTuple
 
-from rocking.dynamics.contact.course import ModeSeries, course
-from rocking.dynamics.contact.footing import Footing
+from rocking.dynamics.contact.base import Footing
+from rocking.dynamics.contact.event_functions import consistent, margins
 from rocking.dynamics.contact.ground import GroundSeries
-from rocking.dynamics.contact.margins import consistent, margins
 from rocking.dynamics.contact.mode import Mode
+from rocking.dynamics.contact.mode_series import ModeSeries, course
 from rocking.dynamics.contact.state import PlanarState, along, away
 from rocking.outcome import Status
 

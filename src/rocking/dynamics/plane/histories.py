@@ -6,9 +6,9 @@ from typing import Any
 
 from rocking import checks, plausibility
 from rocking.bodies import Body
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.run import run
 from rocking.dynamics.response import Motion, Response
-from rocking.dynamics.rocker import RockingParameters
-from rocking.dynamics.run import run
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse

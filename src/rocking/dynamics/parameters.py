@@ -7,7 +7,7 @@ from typing import Any
 from rocking import checks, plausibility
 from rocking.bodies import Body
 from rocking.conventions import FEET, Foot, percent
-from rocking.dynamics.impact_law import ConstantRestitution, DrawnRestitution, ImpactLaw
+from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
 from rocking.errors import InvalidValueError
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.implied import energy_bound

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics import equations
-from rocking.dynamics.intervals import DenseOutput
+from rocking.dynamics.plane import equations
+from rocking.dynamics.plane.dense_output import DenseOutput
 from rocking.dynamics.settings import Settings
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from rocking import checks
 from rocking.bodies.solid import Corner, Edge
 from rocking.conventions import FloatArray
-from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.body import SpatialBody
 from rocking.errors import InvalidValueError
 from rocking.portable import dot
 from rocking.restitution.space import SpatialHousner, SpatialModel, spatial_model

@@ -18,7 +18,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.space.attitude import matrix
-from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.body import SpatialBody
 from rocking.portable import applied, dot, inverse, powers
 
 

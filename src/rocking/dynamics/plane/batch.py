@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FEET, FloatArray
-from rocking.dynamics import engine as fast_engine
-from rocking.dynamics.impact_law import ConstantRestitution, DrawnRestitution, ImpactLaw
-from rocking.dynamics.rocker import RockingParameters, RockingSide
+from rocking.dynamics.impact_laws import ConstantRestitution, DrawnRestitution, ImpactLaw
+from rocking.dynamics.parameters import RockingParameters, RockingSide
+from rocking.dynamics.plane import fast_engine
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
@@ -89,7 +89,7 @@ class Batch:
     ) -> tuple[fast_engine.Arrays, dict[str, int]]:
         """Return the results of many histories.
 
-        Returns results: one array for each key of `rocking.dynamics.engine.RESULTS`; work: steps that were taken; empty
+        Returns results: one array for each key of `fast_engine.RESULTS`; work: steps that were taken; empty
         for the reference engine.
         """
         given: object = progress
@@ -149,7 +149,7 @@ class Batch:
         if not valid_row(row) or not 0 <= motion < len(self.motions):
             bad = dict.fromkeys(fast_engine.RESULTS, np.nan) | {"outcome": Outcome.FAILED.code, "side": 0}
             return bad | {"status": Status.INVALID.code, "impacts": 0, "uplifts": 0, "still_rocking": 0}
-        from rocking.dynamics.reference import Reference
+        from rocking.dynamics.plane.reference import Reference
 
         sides = [
             RockingSide(row[f"alpha_{s}"], row[f"p_{s}"], 1.0, row[f"r_{s}"], row[f"q_{s}"], row[f"share_{s}"])

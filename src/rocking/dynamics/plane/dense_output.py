@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray, IntArray
-from rocking.dynamics import equations
-from rocking.dynamics.inside import Inside
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane import equations
+from rocking.dynamics.plane.inside import Inside
+from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.trajectory import EventKind, Trajectory
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 from rocking.portable import applied, gauss_legendre, powers, times

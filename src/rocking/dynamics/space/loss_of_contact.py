@@ -4,10 +4,10 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.space.attitude import cross
-from rocking.dynamics.space.events import Step
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.event_functions import Step
 from rocking.dynamics.space.polynomials import cauchy, dot, first_zero, padded, square_root
-from rocking.dynamics.space.rocker import SpatialBody
-from rocking.dynamics.space.stance import Stance
 from rocking.dynamics.taylor import value
 from rocking.outcome import ContactMode
 from rocking.portable import applied, inverse, times

@@ -7,9 +7,9 @@ import numpy as np
 from rocking.conventions import FloatArray
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.space import attitude
-from rocking.dynamics.space import stance as stances
-from rocking.dynamics.space.rocker import SpatialBody
-from rocking.dynamics.space.stance import Stance
+from rocking.dynamics.space import contact_mode as stances
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.contact_mode import Stance
 from rocking.dynamics.space.trajectory import SpatialEvent, SpatialEventKind, SpatialTrajectory, StepPiece
 from rocking.dynamics.taylor import slope, turning_points
 from rocking.outcome import Outcome, Status

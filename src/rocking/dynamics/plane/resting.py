@@ -1,7 +1,7 @@
 """Impacts that die out: when they have brought a body to rest."""
 
-from rocking.dynamics.ground import RestoringMoments
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.event_functions import RestoringMoments
 
 _LONGEST_WINDOW = 40.0
 _HEIGHTS = 0.1  # what the heights of flights to rest may add to the logarithm of their gain

@@ -6,7 +6,7 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.dynamics.space.attitude import cross
-from rocking.dynamics.space.rocker import SpatialBody
+from rocking.dynamics.space.body import SpatialBody
 from rocking.outcome import ContactMode
 from rocking.portable import dot, norm
 

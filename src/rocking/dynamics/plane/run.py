@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rocking.dynamics import engine as fast_engine
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.trajectory import Trajectory
 from rocking.dynamics.settings import SHORTEST_STEP, Settings
-from rocking.dynamics.trajectory import Trajectory
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
 
@@ -42,11 +42,11 @@ def run(
             "(simulate_many), for nonlinear equations and motions without a vertical part"
         )
     if taken == "reference":
-        from rocking.dynamics.reference import Reference
+        from rocking.dynamics.plane.reference import Reference
 
         made = Reference(rocker, segments, settings, scale=scale, key=key)
         return made.run(rotation, velocity)
-    from rocking.dynamics.fast import run_fast
+    from rocking.dynamics.plane.fast import run_fast
 
     return run_fast(rocker, segments, settings, scale=scale, key=key, rotation=rotation, velocity=velocity)
 

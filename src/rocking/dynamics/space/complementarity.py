@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.space import stance as stances
+from rocking.dynamics.space import contact_mode as stances
 from rocking.dynamics.space.attitude import cross
-from rocking.dynamics.space.impact import SpatialImpactLaw, projected
-from rocking.dynamics.space.rocker import SpatialBody
-from rocking.dynamics.space.stance import Stance
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.impact_laws import SpatialImpactLaw, projected
 from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm, solution
 

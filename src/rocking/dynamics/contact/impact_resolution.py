@@ -12,7 +12,7 @@ that only the sum of the ``P_t`` is determined: it is shared as the ``P_n`` are.
 from itertools import combinations
 from typing import NamedTuple
 
-from rocking.dynamics.contact.footing import BOTH, LEFT, RIGHT, Footing
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Footing
 from rocking.dynamics.contact.state import PlanarState, along, away, kept, kinetic
 from rocking.outcome import Status
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from rocking.dynamics import engine
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane import fast_engine
+from rocking.dynamics.plane.trajectory import Event, EventKind, Trajectory
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.trajectory import Event, EventKind, Trajectory
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome, Status
 
@@ -27,7 +27,7 @@ def run_fast(
     segments: the motion, of degree 1 or 7 [m/s2]; scale: factor on the motion [-]; rotation, velocity: theta [rad] and
     theta' [rad/s] at time zero.
     """
-    library = engine.Library([segments])
+    library = fast_engine.Library([segments])
     values = {
         "alpha_right": rocker.right.slenderness_angle, "alpha_left": rocker.left.slenderness_angle,
         "p_right": rocker.right.frequency_parameter, "p_left": rocker.left.frequency_parameter,
@@ -38,10 +38,10 @@ def run_fast(
     }  # fmt: skip
     rows = {name: np.array([value]) for name, value in values.items()}
     rows |= {"motion": np.zeros(1, np.int64), "key": np.array([key], np.int64)}
-    out = engine.empty_results(1)
+    out = fast_engine.empty_results(1)
     rotations, velocities = np.zeros(segments.count + 1), np.zeros(segments.count + 1)
-    arguments = engine.common(settings, rocker.law)
-    noted = engine.module().run_single(
+    arguments = fast_engine.common(settings, rocker.law)
+    noted = fast_engine.module().run_single(
         library.handle, rows, out, to_the_ground=True, rotation=rotations, velocity=velocities, **arguments
     )
     outcome = _OUTCOMES[out["outcome"][0]]

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.footing import BOTH, LEFT, RIGHT, Footing
+from rocking.dynamics.contact.base import BOTH, LEFT, RIGHT, Footing
 from rocking.dynamics.contact.ground import GroundSeries
 from rocking.dynamics.contact.mode import Mode
+from rocking.dynamics.contact.pivot_motion import turning
 from rocking.dynamics.contact.power_series import derivative, padded, twice, value
 from rocking.dynamics.contact.state import PlanarState, along, away
-from rocking.dynamics.contact.turning import turning
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.contact_mode import Stance
 from rocking.dynamics.space.polynomials import NOTHING, first_zero
-from rocking.dynamics.space.rocker import SpatialBody
-from rocking.dynamics.space.stance import Stance
 from rocking.outcome import ContactMode
 from rocking.portable import applied, norm
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.rocker import RockingParameters
+from rocking.dynamics.parameters import RockingParameters
+from rocking.dynamics.plane.trajectory import Trajectory
 from rocking.dynamics.settings import Settings
 from rocking.dynamics.taylor import series, shifted, slope, value
-from rocking.dynamics.trajectory import Trajectory
 from rocking.motions.segments import Segments
 from rocking.outcome import Outcome
 

@@ -7,10 +7,10 @@ import numpy as np
 from rocking import checks
 from rocking.bodies import Body
 from rocking.conventions import FEET, FloatArray, Foot, opposite
-from rocking.dynamics import equations
-from rocking.dynamics.intervals import DenseOutput
+from rocking.dynamics.plane import equations
+from rocking.dynamics.plane.dense_output import DenseOutput
+from rocking.dynamics.plane.trajectory import EventKind, Trajectory
 from rocking.dynamics.settings import Settings
-from rocking.dynamics.trajectory import EventKind, Trajectory
 
 _ROUNDING = 1e-9
 

@@ -3,12 +3,10 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.space import stance as stances
+from rocking.dynamics.space import contact_mode as stances
 from rocking.dynamics.space.attitude import cross
-from rocking.dynamics.space.events import START_ROLLING, STOP_ROLLING
-from rocking.dynamics.space.impact import SpatialImpactLaw, projected
-from rocking.dynamics.space.rocker import SpatialBody
-from rocking.dynamics.space.selection import (
+from rocking.dynamics.space.body import SpatialBody
+from rocking.dynamics.space.complementarity import (
     Continuation,
     SpatialState,
     candidates,
@@ -17,7 +15,9 @@ from rocking.dynamics.space.selection import (
     of_forces,
     of_impact,
 )
-from rocking.dynamics.space.stance import Stance
+from rocking.dynamics.space.contact_mode import Stance
+from rocking.dynamics.space.event_functions import START_ROLLING, STOP_ROLLING
+from rocking.dynamics.space.impact_laws import SpatialImpactLaw, projected
 from rocking.outcome import ContactMode
 from rocking.portable import applied, dot, norm
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rocking import checks, errors
 from rocking.conventions import FloatArray
-from rocking.dynamics.impact_law import ImpactLaw
+from rocking.dynamics.impact_laws import ImpactLaw
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError, MissingExtraError, SlowEngineWarning
 from rocking.motions.segments import Segments

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.dynamics.contact.footing import Footing
+from rocking.dynamics.contact.base import Footing
 
 
 def stirring(footing: Footing, push: FloatArray, lift: FloatArray, friction: float) -> np.ndarray:

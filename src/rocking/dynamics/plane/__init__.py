@@ -1,0 +1,1 @@
+"""A plane body that rocks about its feet without sliding or flying."""
