@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import rocking as rk
-from rocking.bodies.formats import read_solid
+from rocking.bodies.formats import read_body
 from rocking.bodies.solid import box, revolution
 from rocking.restitution.space import edge_coefficient, spatial_models
 
@@ -43,25 +43,25 @@ at = [1, 0, 90]
 with tempfile.TemporaryDirectory() as folder:
     (Path(folder) / "vase.stl").write_text(stl(triangles), encoding="utf-8")
     (Path(folder) / "vase.toml").write_text(TOML, encoding="utf-8")
-    found = read_solid(Path(folder) / "vase.toml")
-    alone = read_solid(Path(folder) / "vase.stl", units="mm", density=1900.0)
+    found = read_body(Path(folder) / "vase.toml")
+    alone = read_body(Path(folder) / "vase.stl", units="mm", density=1900.0)
 
-print(f"{found.name}: {found.solid.mass:.2f} kg, centre {found.solid.centre.round(4)} m")
+print(f"{found.name}: {found.mass:.2f} kg, centre {found.centre.round(4)} m")
 for sentence in found.repairs:
     print("repaired:", sentence)
 exact = 1900.0 * vase.moments().mass
-print(f"vase alone: {alone.solid.mass:.3f} kg from its triangles, {exact:.3f} kg from its profile")
+print(f"vase alone: {alone.mass:.3f} kg from its triangles, {exact:.3f} kg from its profile")
 assert any("turned round" in sentence for sentence in found.repairs)
-assert abs(alone.solid.mass / exact - 1.0) < 0.01
-assert np.isclose(found.solid.mass, alone.solid.mass + 2700.0 * box(0.30, 0.26, 0.90).moments().mass, rtol=1e-12)
+assert abs(alone.mass / exact - 1.0) < 0.01
+assert np.isclose(found.mass, alone.mass + 2700.0 * box(0.30, 0.26, 0.90).moments().mass, rtol=1e-12)
 
 for name in spatial_models():
-    over = [edge_coefficient(found.solid, name, start=i) for i in range(4)]
+    over = [edge_coefficient(found, name, start=i) for i in range(4)]
     print(f"{name:24s} edges {', '.join(f'{r:.4f}' for r in over)}")
     assert all(0.0 < r < 1.0 for r in over)
 
 x, y = rk.pulses.sine(amplitude=3.5, period=0.5), rk.pulses.ricker(amplitude=3.0, period=0.6)
-response = rk.simulate(found.solid, {"x": x, "y": y}, "housner")
+response = rk.simulate(found, {"x": x, "y": y}, "housner")
 print(response.summary)
 assert response.outcome is not rk.Outcome.FAILED
 frame = response.to_dataframe()

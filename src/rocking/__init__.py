@@ -8,7 +8,7 @@ from rocking.version import __version__ as __version__
 if TYPE_CHECKING:
     from rocking import bodies, dynamics, errors, evidence, motions, plots, reports, restitution, studies
     from rocking.bodies import Block, MassPoints, Region, Section, Solid
-    from rocking.bodies.formats import read_body, read_solid
+    from rocking.bodies.formats import read_body
     from rocking.campaigns import Campaign
     from rocking.dynamics import Response, free_rocking, simulate, simulate_many
     from rocking.motions import GroundMotion, pulses, synthetic
@@ -42,7 +42,6 @@ __all__ = [
     "pulses",
     "read_body",
     "read_motion",
-    "read_solid",
     "reports",
     "restitution",
     "rocking_spectrum",
@@ -77,7 +76,6 @@ __getattr__, __dir__ = exports(
         "pulses": "rocking.motions",
         "read_body": "rocking.bodies.formats",
         "read_motion": "rocking.motions.formats",
-        "read_solid": "rocking.bodies.formats",
         "reports": "rocking.reports",
         "restitution": "rocking.restitution",
         "rocking_spectrum": "rocking.studies",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import rocking as rk
-from rocking.bodies.formats import read_solid
+from rocking.bodies.formats import read_body
 from rocking.bodies.solid import Part, Solid, box
 from rocking.cli import main
 from rocking.dynamics import SpatialStart
@@ -153,7 +153,7 @@ def test_assumed_density_is_said(tmp_path):
     assert Solid(Part(box(0.8, 0.8, 1.8), 300.0)).assumed == ()
     solid = tmp_path / "solid.toml"
     solid.write_text('units = "m"\n[solid]\n[[solid.part]]\nbox = { width = 0.8, depth = 0.8, height = 1.8 }\n')
-    assert read_solid(solid).solid.assumed == plain.assumed
+    assert read_body(solid).assumed == plain.assumed
 
 
 def run(capsys, *words):

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from rocking import checks
-from rocking.bodies.formats import SolidFile
 from rocking.bodies.solid import Base, Corner, Edge, RoundBase, Solid, SupportPolygon
 from rocking.cli.inputs import refuse, solid_from, spelt
 from rocking.cli.options import in_unit
@@ -58,25 +57,25 @@ class EdgeImpact:
 class SolidAnswer:
     """A body in space and its edges."""
 
-    file: SolidFile  # the body, and what was done to read it
+    solid: Solid  # the body, and what was done to read it
     edges: tuple[EdgeImpact, ...]  # edges of the base, at most `MOST_EDGES`; of a round one, directions
     gravity: float  # acceleration of gravity [m/s2]
 
     @property
     def left_out(self) -> int:
         """Number of edges that are less slender and not computed."""
-        base = self.file.solid.base
+        base = self.solid.base
         return len(base.vertices) - len(self.edges) if isinstance(base, SupportPolygon) else 0
 
     @classmethod
-    def of(cls, file: SolidFile, models: list[str] | None, gravity: float) -> "SolidAnswer":
+    def of(cls, solid: Solid, models: list[str] | None, gravity: float) -> "SolidAnswer":
         """Compute what is printed.
 
         gravity: acceleration of gravity [m/s2].
         """
         pull = checks.positive("gravity", gravity, "m/s2")
         asked = [spatial_model(name) for name in models or spatial_models()]
-        return cls(file, tuple(_edges(file.solid, asked, pull)), pull)
+        return cls(solid, tuple(_edges(solid, asked, pull)), pull)
 
 
 def _edges(solid: Solid, models: list[SpatialModel], gravity: float) -> list[EdgeImpact]:
@@ -145,22 +144,21 @@ def solid_facts(answer: SolidAnswer) -> dict[str, Any]:
     ``gravity_m_s2``.
     """
     return {
-        "body": body_facts(answer.file),
-        "base": base_facts(answer.file.solid.base),
+        "body": body_facts(answer.solid),
+        "base": base_facts(answer.solid.base),
         "gravity_m_s2": answer.gravity,
         "edges": [edge_facts(edge) for edge in answer.edges],
         "edges_left_out": answer.left_out,
-        "repairs": list(answer.file.repairs),
+        "repairs": list(answer.solid.repairs),
     }
 
 
-def body_facts(file: SolidFile) -> dict[str, Any]:
+def body_facts(solid: Solid) -> dict[str, Any]:
     """Return mass and geometry of a body in space."""
-    solid = file.solid
     low, high = solid.box
     return {
         "kind": "Solid",
-        "name": file.name,
+        "name": solid.name,
         "parts": len(solid.local_parts),
         "mass_kg": solid.mass,
         "assumed": list(solid.assumed),
@@ -215,7 +213,7 @@ def notes(found: SolidAnswer) -> list[str]:
 
     Returns one sentence each; none for a base with corners.
     """
-    return [ROUND_BASE] if isinstance(found.file.solid.base, RoundBase) else []
+    return [ROUND_BASE] if isinstance(found.solid.base, RoundBase) else []
 
 
 def answer_of_solid(
@@ -247,7 +245,7 @@ def answer_of_solid(
     if csv is not None:
         write_csv(found, csv)
     if picture is not None:
-        draw(found.file, picture)
+        draw(found.solid, picture)
     if as_json:
         facts = json.loads(as_text(found))
         print(json.dumps({**facts, "notes": notes(found)}, indent=2, allow_nan=False))
@@ -264,7 +262,7 @@ def show(answer: SolidAnswer, length: str = "m") -> None:
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
-    show_body(answer.file, length)
+    show_body(answer.solid, length)
     console.print()
     console.print("Edges it may rock about" if _numbered(answer) else "Directions it may be tipped in", style="bold")
     console.print(_geometry(answer.edges, length))
@@ -277,26 +275,25 @@ def show(answer: SolidAnswer, length: str = "m") -> None:
         console.print(f"! {sentence}", style="yellow", markup=False)
 
 
-def show_body(file: SolidFile, length: str = "m") -> None:
+def show_body(solid: Solid, length: str = "m") -> None:
     """Print mass, centre, base and repairs of a body in space."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
-    solid = file.solid
     x, y, z = (solid.centre - [0.0, 0.0, solid.ground]).tolist()
     size = " x ".join(f"{side / LENGTH_UNITS[length]:.4g}" for side in (solid.box[1] - solid.box[0]).tolist())
     parts = len(solid.local_parts)
     console.print(
-        f"{file.name}: {size} {length}, {parts} part{'s' * (parts > 1)}, mass {solid.mass:.6g} kg, "
+        f"{solid.name}: {size} {length}, {parts} part{'s' * (parts > 1)}, mass {solid.mass:.6g} kg, "
         f"volume {solid.volume:.6g} m3",
         markup=False,
     )
     middle = f"x = {_rounded(x, length)} {length}, y = {_rounded(y, length)} {length}"
     console.print(f"centre of mass at {middle}, {in_unit(z, length, '.5g')} above the ground")
-    console.print(_base(file, length), markup=False)
+    console.print(_base(solid, length), markup=False)
     for sentence in solid.assumed:
         console.print(sentence, markup=False)
-    for sentence in file.repairs:
+    for sentence in solid.repairs:
         console.print(f"! {sentence}", style="yellow", markup=False)
 
 
@@ -317,12 +314,12 @@ def write_csv(answer: SolidAnswer, path: Path) -> None:
     to_csv(Table("coefficient", columns), path)
 
 
-def draw(file: SolidFile, path: Path) -> None:
+def draw(solid: Solid, path: Path) -> None:
     """Draw the body on its base."""
     from rocking.plots.solid import solid_picture
     from rocking.plots.style import write
 
-    write(solid_picture(file.solid), path)
+    write(solid_picture(solid), path)
 
 
 def _record(edge: EdgeImpact, name: str) -> dict[str, Any]:
@@ -341,11 +338,11 @@ def _record(edge: EdgeImpact, name: str) -> dict[str, Any]:
 
 
 def _numbered(answer: SolidAnswer) -> bool:
-    return not isinstance(answer.file.solid.base, RoundBase)
+    return not isinstance(answer.solid.base, RoundBase)
 
 
-def _base(file: SolidFile, length: str) -> str:
-    base = file.solid.base
+def _base(solid: Solid, length: str) -> str:
+    base = solid.base
     if isinstance(base, RoundBase):
         x, y = base.centre.tolist()
         middle = f"({_rounded(x, length)}, {_rounded(y, length)}) {length}"

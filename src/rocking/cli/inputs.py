@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from rocking import checks
-from rocking.bodies import Block, Body
-from rocking.bodies.formats import SolidFile, describes_solid, read_solid
+from rocking.bodies import Block, Body, Solid
+from rocking.bodies.formats import FORMATS, describes_solid, read_body, read_plane_body
 from rocking.checks import length_unit
 from rocking.cli.options import in_unit
 from rocking.conventions import FEET, Foot
@@ -49,10 +49,8 @@ def body_from(
     if file is not None:
         if given or depth is not None or density is not None:
             raise InvalidValueError("give a body file or dimensions, not both")
-        from rocking.bodies.formats import read_body
-
         try:
-            return read_body(file, units=unit)
+            return read_plane_body(file, units=unit)
         except BodyFileError as error:
             if is_body(file):
                 raise
@@ -106,9 +104,7 @@ def is_body(word: str | Path) -> bool:
 
     Returns whether a body file is named so.
     """
-    from rocking.bodies.formats.reader import FORMATS
-
-    return Path(word).suffix.lower() in FORMATS or is_solid(word)
+    return Path(word).suffix.lower() in FORMATS
 
 
 def solid_from(
@@ -119,7 +115,7 @@ def solid_from(
     up: str | None,
     fill_holes: bool,
     base_tolerance: float | None,
-) -> SolidFile:
+) -> Solid:
     """Return the body in space that a command was given.
 
     density: density of the mesh [kg/m3]. Returns the body, and what was done to get it.
@@ -127,7 +123,10 @@ def solid_from(
     try:
         scale = length_unit(unit or "m")
         reach = None if base_tolerance is None else base_tolerance * scale
-        return read_solid(path, units=unit, density=density, up=up, fill_holes=fill_holes, base_tolerance=reach)
+        body = read_body(path, units=unit, density=density, up=up, fill_holes=fill_holes, base_tolerance=reach)
+        if not isinstance(body, Solid):
+            raise BodyFileError(f"{path.name}: describes a plane body; a body in space is needed here")
+        return body
     except RockingError as error:
         raise type(error)(_in_options_of_solids(str(error))) from error
 

@@ -161,13 +161,13 @@ def answer_of_solid(asked: SimulateOptions, files: ResponseFiles, *, as_json: bo
     values = asked.values
     names = values["component_y"], values["component_z"]
     moved = components((_along_x(values), values["motion_y"], values["motion_z"]), asked.some(_RECORD), names)
-    file = solid_from(Path(values["body"]), **asked.some(_MESH))
-    response = _computed_solid(file.solid, moved, values["restitution"], values["scale"], values["gravity"])
+    solid = solid_from(Path(values["body"]), **asked.some(_MESH))
+    response = _computed_solid(solid, moved, values["restitution"], values["scale"], values["gravity"])
     written = files.written(response, lambda: _drawn_solid(response))
     if as_json:
-        print(spatial_page.as_json(response, file))
+        print(spatial_page.as_json(response, solid))
         return
-    spatial_page.show(response, file, asked.units[0])
+    spatial_page.show(response, solid, asked.units[0])
     for path in written:
         print(f"wrote {path}")
 

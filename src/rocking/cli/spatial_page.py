@@ -4,7 +4,7 @@ import json
 import math
 from typing import Any
 
-from rocking.bodies.formats import SolidFile
+from rocking.bodies import Solid
 from rocking.cli.cor_solid import base_facts, body_facts, show_body
 from rocking.dynamics.space import SpatialResponse
 from rocking.outcome import Outcome
@@ -14,7 +14,7 @@ _FIRST = 12
 """Contacts and impacts that are printed."""
 
 
-def spatial_facts(response: SpatialResponse, file: SolidFile) -> dict[str, Any]:
+def spatial_facts(response: SpatialResponse, solid: Solid) -> dict[str, Any]:
     """Return everything that is said of a response in space, as plain values.
 
     Returns SI units, named in the keys; None where something does not exist.
@@ -22,9 +22,9 @@ def spatial_facts(response: SpatialResponse, file: SolidFile) -> dict[str, Any]:
     impacts = response.impacts
     keys = ("time_s", "energy_before_J", "energy_after_J", "impulse_N_s", "pull_N_s", "contact", "vertices")
     return {
-        "body": body_facts(file),
-        "base": base_facts(file.solid.base),
-        "repairs": list(file.repairs),
+        "body": body_facts(solid),
+        "base": base_facts(solid.base),
+        "repairs": list(solid.repairs),
         "motion": dict(zip(("x", "y", "vertical"), response.names, strict=True)),
         "restitution": response.law.label,
         "engine": response.trajectory.engine,
@@ -57,17 +57,17 @@ def _last_state(response: SpatialResponse) -> dict[str, Any] | None:
     }
 
 
-def as_json(response: SpatialResponse, file: SolidFile) -> str:
+def as_json(response: SpatialResponse, solid: Solid) -> str:
     """Return everything as JSON."""
-    return json.dumps(spatial_facts(response, file), indent=2, allow_nan=False)
+    return json.dumps(spatial_facts(response, solid), indent=2, allow_nan=False)
 
 
-def show(response: SpatialResponse, file: SolidFile, length: str = "m") -> None:
+def show(response: SpatialResponse, solid: Solid, length: str = "m") -> None:
     """Print body, motion, outcome, contacts, impacts and measures."""
     from rich.console import Console
 
     console = Console(highlight=False, soft_wrap=True)
-    show_body(file, length)
+    show_body(solid, length)
     for axis, name in zip(("x", "y", "vertical"), response.names, strict=True):
         console.print(f"{'motion ' + axis + ':':<16} {name}", markup=False)
     console.print(f"{'restitution:':<16} {response.law.label}", markup=False)

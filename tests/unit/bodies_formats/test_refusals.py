@@ -13,7 +13,6 @@ from rocking.bodies.formats import (
     body_schema,
     geojson,
     read_body,
-    read_solid,
     section_from_geojson,
     section_from_wkt,
     source,
@@ -208,7 +207,7 @@ def test_read_body(tmp_path):
     for name, options, words in (
         ("a.wkt", {}, "a.wkt: does not state its unit; give units=, one of m, cm"),
         ("b.toml", {"units": "m"}, 'b.toml: states units = "cm", but units = "m" was asked'),
-        ("b.toml", {"density": 3.0}, "states density, feet, depth and ground itself"),
+        ("b.toml", {"density": 3.0}, "b.toml: a TOML body file states density itself; change it there"),
         ("c.toml", {}, "c.toml: is not UTF-8 text"),
         ("d.toml", {}, "d.toml: is not a file"),
         ("e.json", {"units": "m", "ground": -1.0}, "e.json: the body floats above the ground"),
@@ -267,7 +266,7 @@ def test_dxf_extra_missing(tmp_path, monkeypatch):
 def test_schema_agrees_with_the_package():
     """The schema's units are the package's, and every format has a reader."""
     assert body_schema.UnitName.__args__ == tuple(LENGTH_UNITS)
-    assert set(FORMATS) == {".toml", ".wkt", ".geojson", ".json", ".dxf"}
+    assert set(FORMATS) == {".toml", ".wkt", ".geojson", ".json", ".dxf", ".stl", ".obj", ".ply", ".glb"}
     assert "not interpreted" in geojson.__doc__
 
 
@@ -279,11 +278,11 @@ def test_whatever_a_reader_raises_is_a_refusal(monkeypatch, tmp_path):
         raise cause
 
     monkeypatch.setitem(FORMATS, ".wkt", broken)
-    for name in ("solid_from_mesh", "_toml"):
-        monkeypatch.setattr(f"rocking.bodies.formats.solid_reader.{name}", broken)
-    for reader, name, units in ((read_body, "a.wkt", "m"), (read_solid, "a.stl", "m"), (read_solid, "a.toml", None)):
+    monkeypatch.setitem(FORMATS, ".toml", broken)
+    monkeypatch.setattr("rocking.bodies.formats.reader.solid_from_mesh", broken)
+    for name, units in (("a.wkt", "m"), ("a.stl", "m"), ("a.toml", None)):
         with pytest.raises(BodyFileError, match=rf"{name}: cannot be read \(IndexError: list index") as caught:
-            reader(tmp_path / name, units=units)
+            read_body(tmp_path / name, units=units)
         assert caught.value.__cause__ is cause
 
 

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from rocking.bodies.formats import body_from_toml, describes_solid, read_body, read_solid, solid_from_toml
+from rocking.bodies.formats import body_from_toml, describes_solid, read_body, read_plane_body, solid_from_toml
 from rocking.bodies.solid import Polyhedron, RoundBase, box
 from rocking.errors import BodyFileError, GeometryError, InvalidValueError, RockingError
 
@@ -54,7 +54,7 @@ def test_every_shape_has_its_volume_and_centre(shape, volume, height, unit):
     """On a plinth of 16 m3 each shape adds its volume times density, at its height: closed forms, in every unit."""
     name, scale = unit
     text = f'units = "{name}"\n{PLINTH}[[solid.part]]\n{shape}\ndensity = 2000.0\nat = [0.0, 0.0, 1.0]\n'
-    solid = solid_from_toml(text).solid
+    solid = solid_from_toml(text)
     masses = 16.0 * scale**3, 2000.0 * volume * scale**3
     assert solid.mass == pytest.approx(sum(masses), rel=1e-12)
     centre = (masses[0] * 0.5 + masses[1] * (1.0 + height)) / sum(masses) * scale
@@ -64,13 +64,13 @@ def test_every_shape_has_its_volume_and_centre(shape, volume, height, unit):
 def test_turns_come_before_the_place():
     """A bar along z turned about y lies along x; two turns are taken in their order; then the part is moved."""
     bar = "[[solid.part]]\nbox = { width = 0.2, depth = 0.4, height = 2.0 }\ndensity = 1000.0\n"
-    lying = solid_from_toml(f'units = "m"\n{bar}turned = [{{ axis = [0, 1, 0], degrees = 90 }}]\nat = [5, 6, 7]').solid
+    lying = solid_from_toml(f'units = "m"\n{bar}turned = [{{ axis = [0, 1, 0], degrees = 90 }}]\nat = [5, 6, 7]')
     np.testing.assert_allclose(lying.box, [[5.0, 5.8, 6.9], [7.0, 6.2, 7.1]], atol=1e-12)
     np.testing.assert_allclose(lying.centre, [6.0, 6.0, 7.0], atol=1e-12)
     assert lying.ground == pytest.approx(6.9)
     two = "turned = [{ axis = [0, 1, 0], degrees = 90 }, { axis = [0, 0, 1], degrees = 90 }]"
     other = "turned = [{ axis = [0, 0, 1], degrees = 90 }, { axis = [0, 1, 0], degrees = 90 }]"
-    sizes = [np.ptp(solid_from_toml(f'units = "m"\n{bar}{turns}').solid.box, axis=0) for turns in (two, other)]
+    sizes = [np.ptp(solid_from_toml(f'units = "m"\n{bar}{turns}').box, axis=0) for turns in (two, other)]
     np.testing.assert_allclose(sizes[0], [0.4, 2.0, 0.2], atol=1e-12)
     # negative control: the other order is another body
     np.testing.assert_allclose(sizes[1], [2.0, 0.2, 0.4], atol=1e-12)
@@ -80,12 +80,12 @@ def test_base_ground_and_name():
     """The base is found or given; the body stands on its lowest point, or on the ground that is stated."""
     drum = 'units = "cm"\nname = "drum"\n[[solid.part]]\ncylinder = { diameter = 100, height = 50 }\nat = [0, 0, 20]\n'
     found = solid_from_toml(drum)
-    assert isinstance(found.solid.base, RoundBase)
+    assert isinstance(found.base, RoundBase)
     assert (found.name, found.repairs) == ("drum", ())
-    assert found.solid.base.radius == pytest.approx(0.5)
-    assert found.solid.ground == pytest.approx(0.2)
+    assert found.base.radius == pytest.approx(0.5)
+    assert found.ground == pytest.approx(0.2)
     points = drum + "[solid]\nbase = [[-30, -30], [30, -30], [0, 40]]\nground = 20\n"
-    np.testing.assert_allclose(solid_from_toml(points).solid.base.vertices, [[-0.3, -0.3], [0.3, -0.3], [0.0, 0.4]])
+    np.testing.assert_allclose(solid_from_toml(points).base.vertices, [[-0.3, -0.3], [0.3, -0.3], [0.0, 0.4]])
     with pytest.raises(GeometryError, match=r"solid: the body floats above the ground"):
         solid_from_toml(drum + "[solid]\nground = 0\n")
 
@@ -99,8 +99,8 @@ def test_a_mesh_beside_the_file(tmp_path, mesh):
     )
     path = tmp_path / "both.toml"
     path.write_text(text, encoding="utf-8")
-    found = read_solid(path)
-    assert found.solid.mass == pytest.approx(16.0 + 2000.0, rel=1e-6)  # STL rounds coordinates to single precision
+    found = read_body(path)
+    assert found.mass == pytest.approx(16.0 + 2000.0, rel=1e-6)  # STL rounds coordinates to single precision
     assert any("prism.stl: turned round 1 of 12 faces" in sentence for sentence in found.repairs)
     for name in ("../prism.stl", "/prism.stl", "none.stl"):
         with pytest.raises(BodyFileError, match=r"solid\.part\[1\]"):
@@ -114,8 +114,8 @@ def test_meshes_ask_for_their_unit(mesh, name):
     """Formats without a unit ask for one; with it mass and base of the prism are exact."""
     path = mesh(name, scale=1000.0)
     with pytest.raises(BodyFileError, match=f"{name}: {name[2:].upper()} files do not state their unit"):
-        read_solid(path)
-    solid = read_solid(path, units="mm", density=1000.0).solid
+        read_body(path)
+    solid = read_body(path, units="mm", density=1000.0)
     assert solid.mass == pytest.approx(4000.0, rel=1e-6)
     assert len(solid.base.vertices) == 4
 
@@ -123,18 +123,18 @@ def test_meshes_ask_for_their_unit(mesh, name):
 def test_glb_is_read_as_its_specification_says(mesh):
     """GLB is in metres with y up, and that is told; asked for z, the same file lies down."""
     path = mesh("a.glb", prism=box(1.0, 4.0, 1.0))
-    found = read_solid(path)
-    assert found.solid.centre[2] - found.solid.ground == pytest.approx(2.0)
+    found = read_body(path)
+    assert found.centre[2] - found.ground == pytest.approx(2.0)
     assert found.repairs == ("read in m and with y up, as the specification of GLB says",)
-    lying = read_solid(path, up="z", units="m")
-    assert lying.solid.centre[2] - lying.solid.ground == pytest.approx(0.5)
+    lying = read_body(path, up="z", units="m")
+    assert lying.centre[2] - lying.ground == pytest.approx(0.5)
     assert lying.repairs == ()
 
 
 def test_holes_are_refused_or_filled(mesh):
     """A missing face is told with its place; a hole of less than 1 % is filled if asked for, and told."""
     with pytest.raises(GeometryError, match=r"a\.obj: the surface is not closed, it has 1 hole"):
-        read_solid(mesh("a.obj", keep=slice(1, None)), units="m")
+        read_body(mesh("a.obj", keep=slice(1, None)), units="m")
     # a prism whose top has a corner cut off: one triangle of 0.02 m2 of 18 m2 is missing
     x = 0.5
     square = [(-x, -x), (x, -x), (x, x), (-x, x)]
@@ -145,14 +145,14 @@ def test_holes_are_refused_or_filled(mesh):
     prism = Polyhedron(points, faces)
     path = mesh("small.ply", keep=slice(0, -1), prism=prism)
     with pytest.raises(GeometryError, match="fill_holes=True"):
-        read_solid(path, units="m")
-    found = read_solid(path, units="m", density=1000.0, fill_holes=True)
-    assert found.solid.mass == pytest.approx(4000.0, rel=1e-9)
+        read_body(path, units="m")
+    found = read_body(path, units="m", density=1000.0, fill_holes=True)
+    assert found.mass == pytest.approx(4000.0, rel=1e-9)
     assert any(sentence.startswith("filled 1 hole") for sentence in found.repairs)
 
 
 def test_which_reader_is_to_be_asked(tmp_path):
-    """Meshes and TOML with [solid] are bodies in space; each reader sends the other kind on."""
+    """Meshes and TOML with [solid] are bodies in space, of which a door for plane bodies reads none."""
     solid, plane, broken = (tmp_path / f"{name}.toml" for name in ("solid", "plane", "broken"))
     solid.write_text(f'units = "m"\n{PLINTH}', encoding="utf-8")
     plane.write_text('units = "m"\n[block]\nwidth = 1\nheight = 2\n', encoding="utf-8")
@@ -160,10 +160,12 @@ def test_which_reader_is_to_be_asked(tmp_path):
     assert [describes_solid(path) for path in (solid, plane, broken, tmp_path / "a.STL", "a.dxf", "none.toml")] == [
         True, False, False, True, False, False,
     ]  # fmt: skip
-    with pytest.raises(BodyFileError, match="read_solid reads"):
-        read_body(solid)
-    with pytest.raises(BodyFileError, match="unknown key 'block'"):
-        read_solid(plane)
+    assert [type(read_body(path)).__name__ for path in (solid, plane)] == ["Solid", "Block"]
+    assert read_plane_body(plane).mass == read_body(plane).mass
+    with pytest.raises(BodyFileError, match=r"solid\.toml: describes a body in space"):
+        read_plane_body(solid)
+    with pytest.raises(BodyFileError, match=r"a\.stl: the name must end in \.toml, \.wkt, \.geojson, \.json, \.dxf$"):
+        read_plane_body("a.stl")
     with pytest.raises(BodyFileError, match="solid is missing"):
         solid_from_toml('units = "m"')
 
@@ -210,7 +212,7 @@ def test_bad_files_are_refused_in_one_sentence(text, words, tmp_path):
     path = tmp_path / "body.toml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(RockingError) as refused:
-        read_solid(path)
+        read_body(path)
     assert str(refused.value).startswith("body.toml: ")
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
@@ -221,22 +223,26 @@ def test_a_toml_file_says_everything_itself(tmp_path):
     path = tmp_path / "a.toml"
     path.write_text(f'units = "m"\n{PLINTH}', encoding="utf-8")
     with pytest.raises(BodyFileError, match="states density, up, fill_holes itself"):
-        read_solid(path, density=1.0, up="z", fill_holes=True)
+        read_body(path, density=1.0, up="z", fill_holes=True)
     with pytest.raises(BodyFileError, match='states units = "m", but units = "cm" was asked for'):
-        read_solid(path, units="cm")
-    assert read_solid(path, units="m").solid.mass == pytest.approx(16.0)
+        read_body(path, units="cm")
+    assert read_body(path, units="m").mass == pytest.approx(16.0)
 
 
-def test_what_is_no_file():
-    """No path, another ending, a density that is none, a plane reader for a body in space."""
+def test_what_is_no_file(tmp_path):
+    """No path, another ending, options of another kind of file, a density that is none, a solid that is not wanted."""
     with pytest.raises(BodyFileError, match="given by its path"):
-        read_solid(3)
-    with pytest.raises(BodyFileError, match=r"must end in \.toml, \.stl, \.obj, \.ply, \.glb"):
-        read_solid("a.dxf")
+        read_body(3)
+    with pytest.raises(BodyFileError, match=r"must end in \.toml, \.wkt, .*\.dxf, \.stl, \.obj, \.ply, \.glb"):
+        read_body("a.exe")
+    for name, option, words in (("a.wkt", {"up": "z"}, "takes no up"), ("a.stl", {"depth": 1.0}, "takes no depth")):
+        (tmp_path / name).write_text("POLYGON ((0 0, 1 0, 1 1, 0 0))")
+        with pytest.raises(BodyFileError, match=words):
+            read_body(tmp_path / name, units="m", **option)
     with pytest.raises(BodyFileError, match="no such file"):
-        read_solid("none.stl", units="m")
+        read_body("none.stl", units="m")
     with pytest.raises(InvalidValueError, match="density must be"):
-        read_solid("none.stl", units="m", density=math.nan)
+        read_body("none.stl", units="m", density=math.nan)
     with pytest.raises(BodyFileError, match="describes a body in space"):
         body_from_toml(f'units = "m"\n{PLINTH}')
 
@@ -253,7 +259,7 @@ def test_mutated_files_never_leak():
         places = list(re.finditer(r"\d+\.?\d*", text))
         place = rng.choice(places)
         try:
-            solid = solid_from_toml(text[: place.start()] + rng.choice(JUNK) + text[place.end() :]).solid
+            solid = solid_from_toml(text[: place.start()] + rng.choice(JUNK) + text[place.end() :])
             assert math.isfinite(solid.mass)
             assert solid.mass > 0.0
             assert np.isfinite([*solid.centre, *solid.inertia.ravel()]).all()

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 import rocking as rk
-from rocking.bodies.formats import read_solid
+from rocking.bodies.formats import read_body
 from rocking.bodies.solid import box, extrusion
 from rocking.cli import main
 from rocking.dynamics.space import SpatialBody
@@ -117,7 +117,7 @@ def test_round_base_says_that_it_rolls(capsys, file):
 def test_edge_without_a_parallel_one_lands_on_a_corner(capsys, file):
     """On a triangle the body falls from an edge onto the corner that faces it, with the flags of the models."""
     path = file(WEDGE)
-    answer, solid = answered(capsys, path), read_solid(path).solid
+    answer, solid = answered(capsys, path), read_body(path)
     assert [edge["lands_on"] for edge in answer["edges"]] == ["corner 2", "corner 0", "corner 1"]
     base = solid.base
     for number, edge in enumerate(answer["edges"]):
@@ -145,7 +145,7 @@ def test_options(capsys, file, tmp_path):
     assert float(rows[0]["frequency_parameter_rad_s"]) == pytest.approx(
         math.sqrt(1.2 / math.hypot(0.5, 2.0)), rel=1e-13
     )
-    assert float(rows[0]["coefficient_of_restitution"]) == edge_coefficient(read_solid(path).solid, "ked-3d")
+    assert float(rows[0]["coefficient_of_restitution"]) == edge_coefficient(read_body(path), "ked-3d")
     assert np.asarray(Image.open(picture)).std() > 1.0
 
 

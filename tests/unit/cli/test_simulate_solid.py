@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 import rocking as rk
-from rocking.bodies.formats import read_solid
+from rocking.bodies.formats import read_body
 from rocking.cli import main
 from rocking.dynamics.space.response import SpatialResponse
 from rocking.outcome import Status
@@ -66,7 +66,7 @@ def record(tmp_path):
 
 def test_json_is_python_to_the_last_digit(capsys, body):
     """x by word or option, y and z by options, restitution, scale and gravity: all are rk.simulate."""
-    solid, other = read_solid(body).solid, rk.pulses.sine(2.9, 0.6)
+    solid, other = read_body(body), rk.pulses.sine(2.9, 0.6)
     expected = rk.simulate(solid, {"x": MOTION, "y": other})
     assert len({c for _, _, c, _ in expected.intervals}) > 2
     for words in ((SINE,), ("--motion", SINE)):
@@ -99,14 +99,14 @@ def test_three_components_of_one_file(capsys, body, record):
     along = ("--component", x, "--motion-y", record, "--component-y", y)
     found = answered(capsys, body, record, *file, *along, "--motion-z", record, "--component-z", z)
     motions = [rk.read_motion(record, units="m/s2", component=name) for name in names]
-    assert found["peak_tilt_rad"] == rk.simulate(read_solid(body).solid, motions).peak_tilt
+    assert found["peak_tilt_rad"] == rk.simulate(read_body(body), motions).peak_tilt
     other = answered(capsys, body, record, *file, *along, "--vertical", z)
     assert other["peak_tilt_rad"] == pytest.approx(found["peak_tilt_rad"], rel=1e-12)
     # negative control: without the vertical motion it is another response
     level = answered(capsys, body, record, *file, *along)
     assert level["peak_tilt_rad"] != pytest.approx(found["peak_tilt_rad"], rel=1e-3)
     mixed = answered(capsys, body, SINE, "--motion-y", record, *file, "--component-y", y)
-    assert mixed["peak_tilt_rad"] == rk.simulate(read_solid(body).solid, {"x": MOTION, "y": motions[1]}).peak_tilt
+    assert mixed["peak_tilt_rad"] == rk.simulate(read_body(body), {"x": MOTION, "y": motions[1]}).peak_tilt
 
 
 def test_page_and_files(capsys, body, tmp_path):

@@ -14,7 +14,7 @@ from rocking.app.schemas.answers import BodyInFile, DescribedBody, answered
 from rocking.app.schemas.inputs import BodyAsked, BodyInput, check_file, parsed_toml
 from rocking.app.work import heavy, sized
 from rocking.bodies import Body
-from rocking.bodies.formats import read_body
+from rocking.bodies.formats import read_plane_body
 from rocking.bodies.formats.body_schema import UnitName
 from rocking.bodies.formats.body_writer import body_to_toml
 from rocking.bodies.formats.source import blamed
@@ -105,7 +105,7 @@ def body_in_file(content: bytes, name: str, units: str | None, density: float | 
         path = Path(folder) / shown
         with room_on_disk():
             path.write_bytes(content)
-        body = read_body(path, units=units, density=density)
+        body = read_plane_body(path, units=units, density=density)
     return BodyInput.model_validate({**tomllib.loads(body_to_toml(body)), "name": Path(shown).stem})
 
 

@@ -7,19 +7,17 @@ from rocking.bodies.formats.body_file import body_from_toml
 from rocking.bodies.formats.body_writer import body_to_toml
 from rocking.bodies.formats.dxf import regions_from_dxf, section_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson, section_from_geojson
-from rocking.bodies.formats.reader import FORMATS, read_body
-from rocking.bodies.formats.solid_file import SolidFile, solid_from_toml
-from rocking.bodies.formats.solid_reader import describes_solid, read_solid
+from rocking.bodies.formats.reader import FORMATS, describes_solid, read_body, read_plane_body
+from rocking.bodies.formats.solid_file import solid_from_toml
 from rocking.bodies.formats.wkt import regions_from_wkt, section_from_wkt
 
 __all__ = [
     "FORMATS",
-    "SolidFile",
     "body_from_toml",
     "body_to_toml",
     "describes_solid",
     "read_body",
-    "read_solid",
+    "read_plane_body",
     "regions_from_dxf",
     "regions_from_geojson",
     "regions_from_wkt",

@@ -109,7 +109,7 @@ def parsed_toml(text: Any) -> dict[str, Any]:
 
 def _plane(given: dict[str, Any]) -> dict[str, Any]:
     if "solid" in given:
-        raise BodyFileError("describes a body in space, [solid], which read_solid reads; a plane body is needed here")
+        raise BodyFileError("describes a body in space, [solid]; a plane body is needed here")
     return given
 
 

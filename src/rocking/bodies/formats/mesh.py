@@ -2,7 +2,7 @@
 
 import io
 import re
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike
 from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.formats.source import MOST_VERTICES, blamed, checked_file
-from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron
-from rocking.bodies.solid.repair import repaired
+from rocking.bodies.solid.repair import Repaired, repaired
 from rocking.bodies.solid.solid import Solid
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import BodyFileError, InvalidValueError, MissingExtraError, how_to_install
@@ -27,33 +26,6 @@ _LOWEST, _HIGHEST = 1e-3, 300.0
 _SINGLE = 2.0**-24
 
 
-@dataclass(frozen=True, eq=False)
-class Mesh:
-    """A closed surface from a file, with what was done to close it."""
-
-    shape: Polyhedron  # the volume, the middle of its box at the origin [m]
-    middle: FloatArray  # where that middle lies in the file's coordinates, z up [m]; shape (3,)
-    repairs: tuple[str, ...]  # one sentence for each change and each doubt
-
-    def part(self, density: float = DEFAULT_DENSITY) -> Part:
-        """Return the volume in its place, in one material.
-
-        density: density [kg/m3].
-        """
-        return Part(self.shape, density, translation=self.middle)
-
-    def solid(
-        self, density: float = DEFAULT_DENSITY, *, base: ArrayLike | None = None, base_tolerance: float | None = None
-    ) -> Solid:
-        """Return the volume as a body that stands on its lowest point.
-
-        density: density [kg/m3]; base: points (x, y) that it stands on, in the file's place [m]; base_tolerance:
-        vertices this close to the lowest one stand on the ground [m]; scans need some millimetres.
-        """
-        part = self.part(density)
-        return Solid(part, base=base, ground=float(part.box()[0, 2]), base_tolerance=base_tolerance)
-
-
 def mesh_from_file(
     path: str | Path,
     *,
@@ -61,8 +33,8 @@ def mesh_from_file(
     up: str = "z",
     weld_tolerance: float | None = None,
     fill_holes: bool = False,
-) -> Mesh:
-    """Return the volume inside a surface mesh: welded, oriented, closed, centred.
+) -> Repaired:
+    """Return the volume inside a surface mesh: welded, oriented, closed, centred; z up, with a sentence for each doubt.
 
     weld_tolerance: vertices this close are merged [m]; by default equal ones, and if that leaves the surface open,
     those within 1e-6 of its size.
@@ -83,7 +55,7 @@ def mesh_from_file(
         doubts = [*_size_doubts(done.shape, units), *_precision_doubts(vertices, kind)]
         if kind == "glb" and units != "m":
             doubts.append(f"GLB files are in m by their specification; read in {units} as asked")
-        return Mesh(done.shape, done.middle, (*done.repairs, *doubts))
+        return replace(done, repairs=(*done.repairs, *doubts))
 
 
 def solid_from_mesh(
@@ -94,15 +66,19 @@ def solid_from_mesh(
     base: ArrayLike | None = None,
     base_tolerance: float | None = None,
     **options: Any,
-) -> tuple[Solid, tuple[str, ...]]:
-    """Return the body that a surface mesh describes, and what was repaired.
+) -> Solid:
+    """Return the body that a surface mesh describes, standing on its lowest point, with what was repaired.
 
-    density: density [kg/m3]; base: points (x, y) that it stands on [m]; base_tolerance: vertices this close to the
-    lowest one stand on the ground [m]. Returns repairs: one sentence for each change and each doubt.
+    base: points (x, y) that it stands on [m]; base_tolerance: vertices this close to the lowest one stand on the
+    ground [m]; scans need some millimetres.
     """
+    path = Path(path)
     mesh = mesh_from_file(path, units=units, **options)
-    with blamed(Path(path).name):
-        return mesh.solid(density, base=base, base_tolerance=base_tolerance), mesh.repairs
+    with blamed(path.name):
+        part = mesh.part(density)
+        solid = Solid(part, base=base, ground=float(part.box()[0, 2]), base_tolerance=base_tolerance)
+    solid.name, solid.repairs = path.name, mesh.repairs
+    return solid
 
 
 def _in_file(place: FloatArray, units: str) -> str:

@@ -1,31 +1,49 @@
 """Read a body from a file: the suffix says which format, and the units are never guessed."""
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Unpack
+from typing import Any, TypedDict, TypeVar, Unpack
 
+from rocking import checks
 from rocking.bodies.body import DEFAULT_DENSITY, Body
-from rocking.bodies.formats.body_file import LARGEST_TOML, body_from_toml
+from rocking.bodies.formats.body_file import LARGEST_TOML, body_from_toml, parsed_toml
 from rocking.bodies.formats.dxf import regions_from_dxf
 from rocking.bodies.formats.geojson import regions_from_geojson
+from rocking.bodies.formats.mesh import MESH_FORMATS, solid_from_mesh
+from rocking.bodies.formats.solid_file import solid_from_toml
 from rocking.bodies.formats.source import Placement, blamed, read_text, readable
 from rocking.bodies.formats.wkt import regions_from_wkt
 from rocking.bodies.region import Region
 from rocking.bodies.section import Section
+from rocking.bodies.solid.solid import Solid
 from rocking.conventions import LENGTH_UNITS
-from rocking.errors import BodyFileError
+from rocking.errors import BodyFileError, RockingError
+
+T = TypeVar("T")
+
+
+class MeshOptions(TypedDict, total=False):
+    """How a mesh is read and stands."""
+
+    up: str | None
+    fill_holes: bool
+    base_tolerance: float | None
+
+
+class Options(Placement, MeshOptions, total=False):
+    """What `read_body` takes beside unit and density."""
 
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asked for: a file, a unit, a density, and how the body stands."""
+    """What the user asked for: a file, a unit, a density [kg/m3], and how the body is read and stands."""
 
-    path: Path  # the file
-    units: str | None  # unit of its coordinates
-    density: float | None  # density of what has none of its own [kg/m3]
-    placement: Placement  # feet, depth and ground [m]
+    path: Path
+    units: str | None
+    density: float | None
+    options: Options
 
     @property
     def some_density(self) -> float:
@@ -38,24 +56,79 @@ class Request:
             raise BodyFileError(f"does not state its unit; give units=, one of {', '.join(LENGTH_UNITS)}")
         return self.units
 
+    def given(self, names: Iterable[str]) -> str:
+        """Return which of some options were given, in words."""
+        asked: dict[str, Any] = {"density": self.density, **self.options}
+        return ", ".join(name for name in names if asked.get(name) not in (None, False))
+
 
 def read_body(
-    path: str | Path, *, units: str | None = None, density: float | None = None, **placement: Unpack[Placement]
-) -> Body:
-    """Return the body that a file describes.
+    path: str | Path, *, units: str | None = None, density: float | None = None, **options: Unpack[Options]
+) -> Body | Solid:
+    r"""Return the body that a file describes, plane or in space.
 
     Parameters
     ----------
     path : str or Path
-        TOML body file, WKT (.wkt), GeoJSON (.geojson, .json) or DXF drawing (.dxf).
+        Of plane bodies a TOML body file, WKT (.wkt), GeoJSON (.geojson, .json) or DXF drawing (.dxf); of solids TOML
+        with a table [solid], or a surface mesh (.stl, .obj, .ply, .glb).
     units : {"m", "cm", "mm", "ft", "in"}, optional
-        Unit of the coordinates: needed for WKT and GeoJSON, and for a drawing that does not state its unit. A unit
-        that contradicts the file is refused.
+        Unit of the coordinates: needed for WKT, GeoJSON, STL, OBJ and PLY, and for a drawing that does not state its
+        unit; GLB is in m by its specification. A unit that contradicts the file is refused.
     density : float, optional
-        Density of what has none of its own in a WKT, GeoJSON or DXF file [kg/m3]; plain concrete if not given.
-    **placement
-        ``feet`` [m], ``depth`` [m] and ``ground`` [m] for WKT, GeoJSON and DXF, as for `Section`; a drawing stands
-        on its lowest point if ``ground`` is not given.
+        Density of what has none of its own, TOML apart [kg/m3]; plain concrete if not given.
+    **options
+        Of drawings ``feet`` [m], ``depth`` [m] and ``ground`` [m], as for `Section`; a drawing stands on its lowest
+        point if ``ground`` is not given. Of meshes ``up``, the axis that points up ("z" if not given, but for GLB
+        "y", by its specification), ``fill_holes``, whether holes of less than 1 % of the surface may be closed, and
+        ``base_tolerance`` [m]: vertices this close to the lowest one stand on the ground; scans need some
+        millimetres.
+
+    Returns
+    -------
+    Body or Solid
+        Block, Section or MassPoints; or a `Solid`, with its `name` and a sentence in `repairs` for each change of a
+        mesh and each doubt about it.
+
+    Raises
+    ------
+    BodyFileError
+        If the file cannot be read as a body.
+    GeometryError
+        If its shapes do not describe a body, or a mesh cannot be closed safely: the message says where it is open.
+    InvalidValueError
+        If one of its numbers, or the unit, is outside its range.
+    MissingExtraError
+        If it is a drawing or a mesh and ezdxf or trimesh is not installed.
+    TypeError
+        If there is no such keyword.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     crate, drum = Path(folder) / "crate.wkt", Path(folder) / "drum.toml"
+    ...     _ = crate.write_text("POLYGON ((0 0, 1000 0, 1000 2000, 0 2000, 0 0))")
+    ...     text = 'units = "m"\n[[solid.part]]\ncylinder = { diameter = 2.0, height = 1.0 }\ndensity = 1000.0'
+    ...     _ = drum.write_text(text)
+    ...     read_body(crate, units="mm", density=800.0).mass, round(read_body(drum).mass, 6)
+    (1600.0, 3141.592654)
+    """
+    found: Body | Solid = _read(path, units, density, options, FORMATS)
+    return found
+
+
+def read_plane_body(path: str | Path, *, units: str | None = None, density: float | None = None) -> Body:
+    """Return the plane body that a file describes; a body in space is refused before it is read.
+
+    Parameters
+    ----------
+    path : str or Path
+        TOML body file, WKT, GeoJSON or DXF drawing.
+    units : {"m", "cm", "mm", "ft", "in"}, optional
+        As of `read_body`.
+    density : float, optional
+        As of `read_body` [kg/m3].
 
     Returns
     -------
@@ -65,47 +138,74 @@ def read_body(
     Raises
     ------
     BodyFileError
-        If the file cannot be read as a body.
-    GeometryError
-        If its shapes do not describe a body.
-    InvalidValueError
-        If one of its numbers, or the unit, is outside its range.
-    MissingExtraError
-        If it is a DXF drawing and ezdxf is not installed.
-    TypeError
-        If there is no such keyword.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file = Path(folder) / "crate.wkt"
-    ...     _ = file.write_text("POLYGON ((0 0, 1000 0, 1000 2000, 0 2000, 0 0))")
-    ...     read_body(file, units="mm", density=800.0).mass
-    1600.0
+        If the file cannot be read as a plane body.
     """
+    found: Body = _read(path, units, density, {}, PLANE)
+    return found
+
+
+def _read(path: Any, units: str | None, density: float | None, options: Options, formats: Mapping[str, Any]) -> Any:
     try:
         path = Path(path)
     except TypeError as error:
-        raise BodyFileError(f"a body file is given by its path, got {path!r}") from error
-    reader = FORMATS.get(path.suffix.lower())
+        raise BodyFileError(f"a body file is given by its path, got {path!r:.60}") from error
+    reader = formats.get(path.suffix.lower())
     if reader is None:
-        raise BodyFileError(f"{path.name}: the name must end in {', '.join(FORMATS)}")
-    if unknown := placement.keys() - Placement.__annotations__.keys():
+        raise BodyFileError(f"{path.name}: the name must end in {', '.join(formats)}")
+    if unknown := options.keys() - Options.__annotations__.keys():
         raise TypeError(f"read_body() has no {', '.join(sorted(unknown))}")
     with readable(path):
-        return reader(Request(path, units, density, placement))
+        return reader(Request(path, units, density, options))
 
 
-def _toml(request: Request) -> Body:
+def describes_solid(path: str | Path) -> bool:
+    """Return whether a file is one of a body in space: by its ending a mesh, or TOML with a table [solid].
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; one that cannot be read as TOML is none.
+
+    Returns
+    -------
+    bool
+        Whether `read_body` would return a `Solid`.
+
+    Examples
+    --------
+    >>> describes_solid("statue.stl"), describes_solid("section.dxf")
+    (True, False)
+    """
+    path = Path(path)
+    if path.suffix[1:].lower() in MESH_FORMATS:
+        return True
+    if path.suffix.lower() != ".toml":
+        return False
+    try:
+        return "solid" in parsed_toml(read_text(path, LARGEST_TOML))
+    except RockingError:
+        return False
+
+
+def _toml(request: Request) -> Body | Solid:
+    with blamed(request.path.name):
+        solid = "solid" in parsed_toml(read_text(request.path, LARGEST_TOML))
+    return _stated(request, solid_from_toml) if solid else _stated(request, body_from_toml)
+
+
+def _plane_toml(request: Request) -> Body:
+    return _stated(request, body_from_toml)
+
+
+def _stated(request: Request, read: Callable[[str, str, Path], T]) -> T:
     path = request.path
     with blamed(path.name):
         text = read_text(path, LARGEST_TOML)
-        if request.density is not None or request.placement:
-            raise BodyFileError("a TOML body file states density, feet, depth and ground itself; change them there")
-    body = body_from_toml(text, path.name, path.parent)
-    stated = tomllib.loads(text)["units"] if request.units is not None else None
-    if stated != request.units:
+        if given := request.given(("density", *Options.__annotations__)):
+            raise BodyFileError(f"a TOML body file states {given} itself; change it there")
+    body = read(text, path.name, path.parent)
+    stated = tomllib.loads(text)["units"]
+    if request.units not in (None, stated):
         raise BodyFileError(f'{path.name}: states units = "{stated}", but units = "{request.units}" was asked for')
     return body
 
@@ -130,16 +230,46 @@ def _dxf(request: Request) -> Body:
 
 def _standing(regions: list[Region], request: Request) -> Section:
     lowest = min(float(region.outline[:, 1].min()) for region in regions)
-    placement: Placement = {"ground": lowest, **request.placement}
     with blamed(request.path.name):
-        return Section(regions, **placement)
+        if given := request.given(MeshOptions.__annotations__):
+            raise BodyFileError(f"is a drawing and takes no {given}: these are for meshes")
+        placement: Any = {"ground": lowest, **request.options}
+        return Section(regions, **{key: value for key, value in placement.items() if key in Placement.__annotations__})
 
 
-FORMATS: dict[str, Callable[[Request], Body]] = {
-    ".toml": _toml,
+def _mesh(request: Request) -> Solid:
+    path, kind = request.path, request.path.suffix[1:].lower()
+    options, units = request.options, request.units
+    if given := request.given(Placement.__annotations__):
+        raise BodyFileError(f"{path.name}: is a mesh, which stands on its lowest point and takes no {given}")
+    up, by_specification = options.get("up"), kind == "glb"
+    taken = [*(["in m"] if units is None else []), *(["with y up"] if up is None else [])] if by_specification else []
+    density = DEFAULT_DENSITY if request.density is None else checks.density("density", request.density)
+    if units is None and not by_specification:
+        raise BodyFileError(
+            f"{path.name}: {kind.upper()} files do not state their unit; give units=, one of {', '.join(LENGTH_UNITS)}"
+        )
+    solid = solid_from_mesh(
+        path, density, units=units or "m", up=up or ("y" if by_specification else "z"),
+        fill_holes=options.get("fill_holes", False), base_tolerance=options.get("base_tolerance"),
+    )  # fmt: skip
+    if taken:
+        solid.repairs = (f"read {' and '.join(taken)}, as the specification of GLB says", *solid.repairs)
+    return solid
+
+
+PLANE: dict[str, Callable[[Request], Body]] = {
+    ".toml": _plane_toml,
     ".wkt": _wkt,
     ".geojson": _geojson,
     ".json": _geojson,
     ".dxf": _dxf,
 }
-"""Suffix and reader: a new format is one line here."""
+"""Suffix and reader of plane bodies: a new format is one line here, or in `FORMATS` for a body in space."""
+
+FORMATS: dict[str, Callable[[Request], Body | Solid]] = {
+    **PLANE,
+    ".toml": _toml,
+    **{f".{kind}": _mesh for kind in MESH_FORMATS},
+}
+"""Suffix and reader of every body."""

@@ -15,7 +15,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -40,26 +39,7 @@ if TYPE_CHECKING:
 _FARTHEST = 1e8
 
 
-@dataclass(frozen=True, eq=False)
-class SolidFile:
-    """A body in space from a file, with what was done to get it.
-
-    Parameters
-    ----------
-    solid : Solid
-        The body.
-    repairs : tuple of str
-        One sentence for each change of a mesh and each doubt about it; empty if there was none.
-    name : str
-        What the file calls the body; else the name of the file.
-    """
-
-    solid: Solid
-    repairs: tuple[str, ...] = ()
-    name: str = ""
-
-
-def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> SolidFile:
+def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None = None) -> Solid:
     r"""Return the body in space that the text of a file describes.
 
     A part has one shape (box, cylinder, cone, frustum, sphere, ellipsoid, extrusion, revolution, mesh), a density
@@ -77,8 +57,8 @@ def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None =
 
     Returns
     -------
-    SolidFile
-        The body, and what was done to its meshes.
+    Solid
+        The body, with its `name`, and in `repairs` what was done to its meshes.
 
     Raises
     ------
@@ -95,7 +75,7 @@ def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None =
     Examples
     --------
     >>> text = 'units = "cm"\n[[solid.part]]\nbox = { width = 50, depth = 50, height = 200 }\ndensity = 2000'
-    >>> solid_from_toml(text).solid.mass
+    >>> solid_from_toml(text).mass
     1000.0
     """
     with blamed(name):
@@ -107,7 +87,9 @@ def solid_from_toml(text: str, name: str = "<text>", folder: str | Path | None =
             with blamed(f"solid.part[{number}]"):
                 parts.append(_part(table, document.units, root, said))
         with blamed("solid"):
-            return SolidFile(_standing(document, parts), tuple(said), document.name or name)
+            solid = _standing(document, parts)
+            solid.name, solid.repairs = document.name or name, tuple(said)
+            return solid
 
 
 def _validated(given: dict[str, Any]) -> "schema.SolidDocument":

@@ -10,7 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rocking import checks
+from rocking.bodies.body import DEFAULT_DENSITY
 from rocking.bodies.solid.holes import boundary_loops, filled, holes_sentence
+from rocking.bodies.solid.part import Part
 from rocking.bodies.solid.polyhedron import Polyhedron, open_edges
 from rocking.bodies.solid.self_crossing import check_crossings, in_metres
 from rocking.bodies.solid.shells import oriented_shells, turned_consistently
@@ -28,6 +30,10 @@ class Repaired:
     shape: Polyhedron  # the volume, the middle of its box at the origin
     middle: FloatArray  # where that middle lies in the given coordinates [m]; shape (3,)
     repairs: tuple[str, ...]  # one sentence for each change; empty if the surface was fine
+
+    def part(self, density: float = DEFAULT_DENSITY) -> Part:
+        """Return the volume in its place, in one material [kg/m3]."""
+        return Part(self.shape, density, translation=self.middle)
 
 
 def repaired(

@@ -41,6 +41,13 @@ class Solid:
     base_tolerance : float, optional
         Corners this close to the ground stand on it [m]; by default 1e-9 of the body's size.
 
+    Attributes
+    ----------
+    name : str
+        What its file calls it, or the name of the file; empty without one.
+    repairs : tuple of str
+        One sentence for each change of a mesh that it was read from, and each doubt about it.
+
     Raises
     ------
     GeometryError
@@ -66,6 +73,8 @@ class Solid:
         ground: float = 0.0,
         base_tolerance: float | None = None,
     ) -> None:
+        self.name: str = ""
+        self.repairs: tuple[str, ...] = ()
         listed = _listed(parts)
         self._ground = checks.number("ground", ground, "m")
         boxes = np.array([part.box() for part in listed])
@@ -225,6 +234,7 @@ class Solid:
     def _copy(self, parts: list[Part], matrix: FloatArray, size: float = 1.0) -> "Solid":
         # not checked again: a similarity keeps a valid body valid
         result = object.__new__(Solid)
+        result.name, result.repairs = self.name, self.repairs
         result._ground, result._size, result.origin = self._ground, self._size * size, self.origin
         result.local_parts, result.local_base = tuple(parts), self.local_base.changed(matrix, np.zeros(3))
         return result

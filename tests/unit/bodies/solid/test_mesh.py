@@ -37,19 +37,19 @@ def sphere(divisions=3):
 @pytest.mark.parametrize("name", ["a.stl", "a.obj", "a.ply", "a.glb"])
 def test_formats(tmp_path, name):
     """Every format gives the prism's mass and inertia; STL, which repeats every corner, says that it was welded."""
-    solid, repairs = solid_from_mesh(saved(tmp_path, V, F, name), 1000.0, units="m")
+    solid = solid_from_mesh(saved(tmp_path, V, F, name), 1000.0, units="m")
     assert solid.mass == pytest.approx(MASS, rel=1e-12)
     assert np.diag(solid.inertia) == pytest.approx(SPIN, rel=1e-12)
     assert len(solid.base.vertices) == 4
-    assert [text.startswith("merged 28 of 36 vertices") for text in repairs] == [True] * (name == "a.stl")
+    assert [text.startswith("merged 28 of 36 vertices") for text in solid.repairs] == [True] * (name == "a.stl")
 
 
 def test_units_and_axis(tmp_path):
     """Millimetres are told, not guessed; y up stands the body up."""
     path = saved(tmp_path, V * 1000.0, F, "a.stl")
-    assert solid_from_mesh(path, 1000.0, units="mm")[0].mass == pytest.approx(MASS, rel=1e-6)
+    assert solid_from_mesh(path, 1000.0, units="mm").mass == pytest.approx(MASS, rel=1e-6)
     lying = saved(tmp_path, V[:, [0, 2, 1]] * [1, 1, -1], F, "b.glb")
-    assert solid_from_mesh(lying, 1000.0, units="m", up="y")[0].centre[2] == pytest.approx(2.0)
+    assert solid_from_mesh(lying, 1000.0, units="m", up="y").centre[2] == pytest.approx(2.0)
     with pytest.raises(TypeError):
         mesh_from_file(path)
     with pytest.raises(InvalidValueError, match="length unit"):
@@ -230,7 +230,7 @@ def test_dust():
 def test_far_from_the_origin(tmp_path):
     """In double precision a mesh at 1e6 m keeps its inertia to 1e-9; single precision is found out."""
     offset = np.array([1e6, 2e6, 0.0])
-    solid, _ = solid_from_mesh(saved(tmp_path, V + offset, F, "a.obj"), 1000.0, units="m")
+    solid = solid_from_mesh(saved(tmp_path, V + offset, F, "a.obj"), 1000.0, units="m")
     assert np.diag(solid.inertia) == pytest.approx(SPIN, rel=1e-9)
     assert solid.centre == pytest.approx([1e6, 2e6, 2.0], rel=1e-12)
     with pytest.raises(BodyFileError, match="single-precision"):
@@ -288,7 +288,7 @@ def test_scans_stand_on_a_tolerance(tmp_path):
     path = saved(tmp_path, vertices, F, "a.obj")
     with pytest.raises(GeometryError, match="raise base_tolerance"):
         solid_from_mesh(path, units="m")
-    assert len(solid_from_mesh(path, units="m", base_tolerance=0.003)[0].base.vertices) == 4
+    assert len(solid_from_mesh(path, units="m", base_tolerance=0.003).base.vertices) == 4
 
 
 def test_a_tetrahedron_loses_its_doubled_face_alone():

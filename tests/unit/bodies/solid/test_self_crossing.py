@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rocking.bodies.formats import read_solid
+from rocking.bodies.formats import read_body
 from rocking.bodies.solid import Part, Polyhedron, Solid, SolidMoments, box, extrusion
 from rocking.bodies.solid.box_pairs import meeting_boxes
 from rocking.bodies.solid.piercing import pierced
@@ -65,15 +65,15 @@ def tower(shares):
 def test_a_bow_is_refused_with_its_place(tmp_path):
     """The bow holds 1905 kg and sums to 200: refused at the place, in the unit and the axes of the file."""
     with pytest.raises(GeometryError, match=r"bow\.obj: the surface passes through itself") as stop:
-        read_solid(saved(tmp_path / "bow.obj", bow(), COLUMN.faces), units="m", density=1000.0)
+        read_body(saved(tmp_path / "bow.obj", bow(), COLUMN.faces), units="m", density=1000.0)
     assert f", {CROSSING:.4g}) m; " in str(stop.value)
     assert "near (0, " in str(stop.value)
     assert "boolean union" in str(stop.value)
     lying = saved(tmp_path / "bow.stl", bow()[:, [0, 2, 1]] * [1000.0, 1000.0, -1000.0], COLUMN.faces)
     with pytest.raises(GeometryError, match=rf"near \(\S+, {1000.0 * CROSSING:.0f}, \S+\) mm"):
-        read_solid(lying, units="mm", up="y")
+        read_body(lying, units="mm", up="y")
     # negative control: turned the right way, (1 + 0.9) / 2 of 4 m3
-    whole = read_solid(saved(tmp_path / "ok.obj", bow(0.9), COLUMN.faces), units="m", density=1000.0).solid
+    whole = read_body(saved(tmp_path / "ok.obj", bow(0.9), COLUMN.faces), units="m", density=1000.0)
     assert whole.mass == pytest.approx(3800.0, rel=1e-13)
 
 
