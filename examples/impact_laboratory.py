@@ -3,10 +3,7 @@
 import numpy as np
 
 import rocking as rk
-from rocking.studies.impact_laboratory.beds import Laboratory
-from rocking.studies.impact_laboratory.dependence import points_study, velocity_study
-from rocking.studies.impact_laboratory.profiles import profile_study
-from rocking.studies.impact_laboratory.speed_law import bed_speed_law
+from rocking.studies.impact_laboratory import Laboratory, bed_speed_law, points_study, profile_study, velocity_study
 
 by_points = points_study([2, 3, 5, 11, 41])
 print("r by contact points   ", by_points.coefficient.round(3).values)

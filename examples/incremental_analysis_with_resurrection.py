@@ -9,13 +9,13 @@ import rocking as rk
 from rocking import conventions
 from rocking.plots import write
 from rocking.plots.incremental import incremental_picture
-from rocking.studies import SyntheticSet, incremental
+from rocking.studies import SyntheticSet, incremental_dynamic_analysis
 
 # a full sine of three times the frequency parameter, r = 0.9, slender-linear equations: known in closed form
 block = rk.Block(width=0.4, height=1.6)
 sine = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * block.frequency_parameter))
 unit = conventions.g * block.slenderness_angle
-one = incremental(block, sine, np.linspace(1.0, 4.0, 31) * unit, 0.9, linear=True)
+one = incremental_dynamic_analysis(block, sine, np.linspace(1.0, 4.0, 31) * unit, 0.9, linear=True)
 for interval in one.intervals:
     print(f"one sine overturns from {interval.start / unit:.6f} to {interval.end / unit:.6f} times g alpha")
 first, second = one.intervals
@@ -23,7 +23,9 @@ assert abs(first.end / unit / 3.48466273332249203 - 1.0) < 1e-7
 assert abs(second.start / unit / 3.6311498724447945014 - 1.0) < 1e-7
 
 motions = list(SyntheticSet("point-source", count=30, seed=2))
-found = incremental(rk.Block(width=0.3, height=1.5), motions, np.geomspace(0.15, 1.5, 40) * conventions.g, 0.9)
+found = incremental_dynamic_analysis(
+    rk.Block(width=0.3, height=1.5), motions, np.geomspace(0.15, 1.5, 40) * conventions.g, 0.9
+)
 for name, words in found.definitions.items():
     fit = found.fits["overturned"] if name == "fraction" else found.first_crossing_fit
     print(f"{words}\n    median {fit.median / conventions.g:.3f} g, dispersion {fit.dispersion:.2f}")

@@ -5,11 +5,11 @@ from pathlib import Path
 from rocking.plots import write
 from rocking.plots.inventory import inventory_picture
 from rocking.reports.inventory_folder import write_inventory
-from rocking.studies.inventory import Hazard, Level, assess, read_inventory
-from rocking.studies.inventory.words import advice, model_note, sentence
+from rocking.studies.inventory import Hazard, IntensityLevel, assess, read_inventory
+from rocking.studies.inventory.table import advice, model_note, sentence
 
 inventory = read_inventory(Path(__file__).with_name("inventory.csv"))
-hazard = Hazard.of_family("point-source", Level.of("PGA", "0.3g"), count=200, seed=1)
+hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=200, seed=1)
 assessment = assess(inventory, hazard)
 
 print(f"{len(assessment.verdicts)} objects at {hazard.words()}, {hazard.source}\n")

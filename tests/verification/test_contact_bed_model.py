@@ -14,8 +14,7 @@ from rocking.restitution import model
 from rocking.restitution.bed import fast
 from rocking.restitution.bed_table import BANDS, POINTS, STEP, BedTable, bed_table, nodes, stated_error
 from rocking.restitution.contact_bed import CoefficientSource, ContactBedModel
-from rocking.studies.impact_laboratory.beds import Laboratory, hardness_of
-from rocking.studies.impact_laboratory.tabulation import impulse_position, resolved
+from rocking.studies.impact_laboratory import Laboratory, hardness_of, impulse_position, resolved
 
 needs_engine = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
 

@@ -14,11 +14,11 @@ import pytest
 import rocking as rk
 from rocking import conventions
 from rocking.errors import InvalidValueError
+from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
 from rocking.studies.fragility.cloud_analysis import cloud
 from rocking.studies.fragility.curves import model_of
-from rocking.studies.fragility.incremental_dynamic_analysis import incremental
-from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
-from rocking.studies.fragility.nrml import to_nrml
+from rocking.studies.fragility.export import to_nrml
 
 HALF_SINE = {
     1: 1.3223965979078765668, 2: 1.8007239305607457817, 3: 2.2938723134392918526, 5: 3.2891467775230030447,
@@ -54,7 +54,7 @@ def test_first_crossings_are_the_closed_boundaries(engine):
     pulses = [pulse(rk.pulses.half_sine, omega, BLOCK) for omega in HALF_SINE]
     # the reference engine is slow, and shows the same with a coarser start and search
     levels, tolerance = (np.linspace(1.05, 6.0, 40), 0.0) if engine == "fast" else ([1.2, 3.0, 6.0], 1e-9)
-    found = incremental(
+    found = incremental_dynamic_analysis(
         BLOCK, pulses, levels, restitution=0.9, measure=NORMALISED, tolerance=tolerance, linear=True, engine=engine
     )
     errors = found.first_crossings / np.array(list(HALF_SINE.values())) - 1.0
@@ -66,7 +66,7 @@ def test_first_crossings_are_the_closed_boundaries(engine):
 
 def test_the_reported_formula_is_unconservative():
     """Negative control: Housner's sqrt(1 + Omega^2) for half sines is rejected by the same comparison."""
-    found = incremental(
+    found = incremental_dynamic_analysis(
         BLOCK, pulse(rk.pulses.half_sine, 2.0, BLOCK), [1.5, 3.0], restitution=0.9, measure=NORMALISED, linear=True
     )
     assert abs(found.first_crossings[0] / math.sqrt(5.0) - 1.0) > 0.1
@@ -74,7 +74,7 @@ def test_the_reported_formula_is_unconservative():
 
 def test_resurrection_of_the_full_sine():
     """REF: overturning by one impact from 1.4036 to 3.4847, survival up to 3.6311, overturning without impact above."""
-    found = incremental(
+    found = incremental_dynamic_analysis(
         BLOCK, pulse(rk.pulses.sine, 3.0, BLOCK), np.linspace(1.0, 5.0, 41), restitution=0.9, measure=NORMALISED,
         linear=True, tolerance=0.0,
     )  # fmt: skip
@@ -96,7 +96,7 @@ def test_resurrection_of_the_full_sine():
 def test_resurrection_of_the_nonlinear_full_sine():
     """REF: tan(alpha) = 1/3, r = 0.85, Omega = 3: overturned from 1.43079 to 3.46980, safe up to 3.68568."""
     block = rk.Block(width=0.5, height=1.5)
-    found = incremental(
+    found = incremental_dynamic_analysis(
         block, pulse(rk.pulses.sine, 3.0, block), np.linspace(1.0, 5.0, 41), restitution=0.85, measure=NORMALISED,
         tolerance=0.0,
     )  # fmt: skip
@@ -108,8 +108,8 @@ def test_resurrection_of_the_nonlinear_full_sine():
 def test_larger_blocks_under_slower_motions():
     """Size: a block s times as large under the record at sqrt(s) times the step has the same fragility in PGA."""
     levels, size = np.linspace(2.0, 9.0, 8), 4.0
-    small = multiple_stripes(BLOCK, records(40), levels, restitution=0.9)
-    large = multiple_stripes(
+    small = multiple_stripe_analysis(BLOCK, records(40), levels, restitution=0.9)
+    large = multiple_stripe_analysis(
         rk.Block(width=0.4 * size, height=1.6 * size), records(40, step=0.02 * math.sqrt(size)), levels, restitution=0.9
     )
     same = small.responses.outcome == large.responses.outcome
@@ -123,7 +123,7 @@ def test_dimensionless_measures_know_the_size():
     size, medians = 4.0, {}
     for measure, levels in (("p pgv/(g tan alpha)", np.linspace(0.2, 2.5, 8)), ("pgv", np.linspace(0.1, 2.0, 8))):
         both = [
-            multiple_stripes(
+            multiple_stripe_analysis(
                 rk.Block(width=0.4 * s, height=1.6 * s), records(30, step=0.02 * math.sqrt(s)), levels,
                 restitution=0.9, measure=measure,
             ).fits["overturned"].median
@@ -148,7 +148,7 @@ def test_bodies_of_equal_parameters_are_one_body():
     )  # fmt: skip
     assert points.frequency_parameter == pytest.approx(BLOCK.frequency_parameter, rel=1e-13)
     levels = np.linspace(2.0, 9.0, 8)
-    found = [multiple_stripes(body, records(40), levels, restitution=0.9) for body in (BLOCK, points)]
+    found = [multiple_stripe_analysis(body, records(40), levels, restitution=0.9) for body in (BLOCK, points)]
     assert found[0].responses.outcome.tolist() == found[1].responses.outcome.tolist()
     assert found[0].counts["overturned"].sum() > 20
 
@@ -157,7 +157,7 @@ def test_mirrored_motions():
     """Turned round, all motions give the same counts, crossings and fits."""
     levels, motions = np.linspace(2.0, 9.0, 8), records(30)
     mirrored = [m.scaled(-1.0) for m in motions]
-    found = [incremental(BLOCK, given, levels, restitution=0.9) for given in (motions, mirrored)]
+    found = [incremental_dynamic_analysis(BLOCK, given, levels, restitution=0.9) for given in (motions, mirrored)]
     np.testing.assert_array_equal(found[0].curves, found[1].curves)
     np.testing.assert_array_equal(found[0].first_crossings, found[1].first_crossings)
     assert found[0].fits["overturned"].median == found[1].fits["overturned"].median
@@ -167,7 +167,7 @@ def test_scaled_records():
     """Records times c: the median in PGA stays, and the factor on the records at the first crossing is divided by c."""
     levels, motions, c = np.linspace(2.0, 12.0, 21), records(30), 3.7
     plain, scaled = (
-        incremental(BLOCK, given, levels, restitution=0.9, tolerance=1e-9)
+        incremental_dynamic_analysis(BLOCK, given, levels, restitution=0.9, tolerance=1e-9)
         for given in (motions, [m.scaled(c) for m in motions])
     )
     assert plain.stripes.counts["overturned"].tolist() == scaled.stripes.counts["overturned"].tolist()
@@ -181,8 +181,8 @@ def test_scaled_records():
 def test_gravity():
     """Gravity and motions times c, times divided by sqrt(c): the same fragility over g tan(alpha)."""
     c, levels = 2.5, np.linspace(1.1, 4.0, 8)
-    plain = multiple_stripes(BLOCK, records(30), levels, restitution=0.9, measure=NORMALISED)
-    heavy = multiple_stripes(
+    plain = multiple_stripe_analysis(BLOCK, records(30), levels, restitution=0.9, measure=NORMALISED)
+    heavy = multiple_stripe_analysis(
         BLOCK, records(30, step=0.02 / math.sqrt(c)), levels, restitution=0.9, measure=NORMALISED,
         gravity=c * conventions.g,
     )  # fmt: skip
@@ -193,11 +193,13 @@ def test_uplift_is_certain_given_pga():
     """P(no rocking) is a step at g tan(alpha): 600 histories just below and above it, none of which disagrees."""
     threshold = conventions.g * 0.25
     levels = threshold * np.array([0.9, 1.0 - 1e-6, 1.0 + 1e-6, 1.1])
-    found = multiple_stripes(BLOCK, records(150), levels, restitution=0.9)
+    found = multiple_stripe_analysis(BLOCK, records(150), levels, restitution=0.9)
     assert found.counts["rocking"].tolist() == [0, 0, 150, 150]
     assert (found.uplift.checked, found.uplift.contradictions) == (600, 0)
     # linear equations lift at g alpha instead
-    linear = multiple_stripes(BLOCK, records(20), [conventions.g * math.atan(0.25)], restitution=0.9, linear=True)
+    linear = multiple_stripe_analysis(
+        BLOCK, records(20), [conventions.g * math.atan(0.25)], restitution=0.9, linear=True
+    )
     assert linear.uplift.threshold == pytest.approx(conventions.g * math.atan(0.25), rel=1e-15)
 
 
@@ -215,7 +217,7 @@ def test_cloud_of_pulses_has_the_boundary_between_its_levels():
 
 def test_nrml_reproduces_the_curve(tmp_path):
     """Read by a parser of its own and evaluated by mpmath as OpenQuake does, the file gives P(im) to 1e-12."""
-    found = multiple_stripes(BLOCK, records(60), np.linspace(2.0, 10.0, 9), restitution=0.9, states=(0.2, 0.5))
+    found = multiple_stripe_analysis(BLOCK, records(60), np.linspace(2.0, 10.0, 9), restitution=0.9, states=(0.2, 0.5))
     made = model_of(found, "block <1>")
     with pytest.raises(InvalidValueError, match="curves must not cross, but at"):
         to_nrml(made, tmp_path / "fragility.xml")
@@ -250,7 +252,9 @@ def test_both_definitions_on_one_set():
     """Sines of many periods: the definitions differ where motions come back, by what the intervals say."""
     pulses = [pulse(rk.pulses.sine, omega, BLOCK) for omega in np.linspace(2.0, 6.0, 41)]
     levels = np.linspace(1.05, 8.0, 140)
-    found = incremental(BLOCK, pulses, levels, restitution=0.9, measure=NORMALISED, linear=True, tolerance=1e-9)
+    found = incremental_dynamic_analysis(
+        BLOCK, pulses, levels, restitution=0.9, measure=NORMALISED, linear=True, tolerance=1e-9
+    )
     by_intervals = np.array([sum(i.start <= level < i.end for i in found.intervals) / len(pulses) for level in levels])
     np.testing.assert_allclose(found.fractions, by_intervals, atol=1e-15)
     passed = np.array([np.mean(found.first_crossings <= level) for level in levels])

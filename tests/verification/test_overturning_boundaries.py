@@ -12,8 +12,8 @@ import pytest
 from scipy.optimize import brentq
 
 import rocking as rk
-from rocking.studies._boundary import boundary
 from rocking.studies._overturning_map import overturning_map
+from rocking.studies.boundaries import boundary
 from rocking.studies.islands import safe_beyond_overturning, safe_islands
 from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
 

@@ -16,7 +16,7 @@ from rocking.dynamics import RockingParameters
 from rocking.dynamics.settings import Settings
 from rocking.outcome import Outcome
 from rocking.studies.histories import HistoryTable
-from rocking.studies.motion_set import MotionList
+from rocking.studies.motion_sets import MotionList
 from rocking.studies.sensitivity import (
     SampledHistories,
     SampledRestitution,
@@ -24,9 +24,8 @@ from rocking.studies.sensitivity import (
     map_sensitivity,
     spectrum_sensitivity,
 )
-from rocking.studies.sensitivity.curves import curve_change
-from rocking.studies.sensitivity.differences import flips_of
-from rocking.studies.sensitivity.sampled import uniforms
+from rocking.studies.sensitivity.changes import curve_change, flips_of
+from rocking.studies.sensitivity.restitutions import uniforms
 
 pytest.importorskip("xarray")
 # one false alarm in a million: the draws never change, so a failure is no accident

@@ -26,7 +26,7 @@ from rocking.evidence.likelihood import scatter
 from rocking.motions.segments import Segments
 from rocking.restitution import ShiftedImpulse, coefficient_of_restitution
 from rocking.studies import SampledRestitution
-from rocking.studies.fragility import multiple_stripes
+from rocking.studies.fragility import multiple_stripe_analysis
 
 # one false alarm in a million: the draws never change, so a failure is no accident
 ALARM = 1e-6
@@ -350,7 +350,7 @@ def test_studies_take_asymmetric_bodies(law: Any) -> None:
     labels = [str(each["restitution"].values[0]) for each in (found, both)]
     for told in (*labels, plane.attrs["restitution"]):
         assert "onto right cut off, where impacts would create energy" in told
-    stripes = multiple_stripes(body, [pulse], [1.0, 2.0], restitution=made)
+    stripes = multiple_stripe_analysis(body, [pulse], [1.0, 2.0], restitution=made)
     assert stripes.failed == 0
 
 

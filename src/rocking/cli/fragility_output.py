@@ -11,7 +11,7 @@ from rocking.cli.fragility_question import FragilityAnswer, FragilityQuestion
 from rocking.cli.output import check_files
 from rocking.errors import InvalidValueError
 from rocking.statistics.separation import Separation
-from rocking.studies.fragility.incremental_dynamic_analysis import IncrementalAnalysis
+from rocking.studies.fragility._incremental_dynamic_analysis import IncrementalDynamicAnalysis
 from rocking.tables import Table, to_csv
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class FragilityFiles:
     def check(self, question: FragilityQuestion) -> None:
         """Refuse, before anything is computed, what could not be written."""
         from rocking.errors import extra
-        from rocking.studies.fragility.nrml import intensity_type
+        from rocking.studies.fragility.export import intensity_type
 
         check_files(self.picture, self.csv, *(getattr(self, name) for name in _CURVES))
         asked = [f"--{name}" for name in _CURVES if getattr(self, name) is not None]
@@ -74,7 +74,7 @@ class FragilityFiles:
 
     def _write_curves(self, answer: FragilityAnswer, name: str | None) -> None:
         from rocking.studies.fragility import export
-        from rocking.studies.fragility.nrml import to_nrml
+        from rocking.studies.fragility.export import to_nrml
 
         model = self._model(answer, name or type(answer.question.body).__name__.lower())
         if self.p58 is not None:
@@ -181,7 +181,7 @@ def _result(found: Any) -> dict[str, Any]:
     }
     if "regression" in told:
         made["regression"] = told["regression"]
-    if isinstance(found, IncrementalAnalysis):
+    if isinstance(found, IncrementalDynamicAnalysis):
         made |= {
             "first_crossing": told["first crossing"],
             "first_crossings": found.first_crossings.tolist(),
@@ -237,7 +237,7 @@ def _uplift(answer: FragilityAnswer) -> str:
 
 
 def _stripes(result: Any) -> Any:
-    return result.stripes if isinstance(result, IncrementalAnalysis) else result
+    return result.stripes if isinstance(result, IncrementalDynamicAnalysis) else result
 
 
 def _motions(facts: dict[str, Any]) -> str:
@@ -288,7 +288,7 @@ def _sentences(answer: FragilityAnswer) -> list[str]:
         told.append(_line(found))
     else:
         told += _intervals(answer)
-    if isinstance(found, IncrementalAnalysis):
+    if isinstance(found, IncrementalDynamicAnalysis):
         told += _crossings(answer, found)
     if answer.compared is not None:
         told.append(answer.compared.told(answer.question.unit))
@@ -337,7 +337,7 @@ def _line(found: Any) -> str:
     )
 
 
-def _crossings(answer: FragilityAnswer, found: IncrementalAnalysis) -> list[str]:
+def _crossings(answer: FragilityAnswer, found: IncrementalDynamicAnalysis) -> list[str]:
     unit, factor = answer.question.unit
     first, whole = found.first_crossing_fit, int(found.complete.sum())
     curve = (

@@ -15,9 +15,8 @@ from rocking.cli.simulate_question import refuse_reversed, restitution_from
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import IntensityMeasure, measure
-from rocking.studies.fragility.states import limit_states
-from rocking.studies.fragility.subject import Subject, checked_levels
-from rocking.studies.motion_set import MotionList
+from rocking.studies.fragility.subject import Subject, checked_levels, limit_states
+from rocking.studies.motion_sets import MotionList
 
 if TYPE_CHECKING:
     from rocking.studies.sensitivity import Sensitivity
@@ -105,7 +104,7 @@ class FragilityQuestion:
     def _computed(
         self, motions: MotionList, levels: FloatArray | None, tell: Callable[[int], None]
     ) -> tuple[Any, "Sensitivity | None"]:
-        from rocking.studies.fragility import cloud, incremental, multiple_stripes
+        from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
         from rocking.studies.sensitivity import fragility_sensitivity
 
         options = {**self.settings, "measure": self.measure, "states": self.states, "progress": tell}
@@ -116,7 +115,7 @@ class FragilityQuestion:
         law = self.choices[first]
         if self.analysis == "cloud":
             return cloud(self.body, motions, law, factor=self.factor, **options), None
-        study = multiple_stripes if self.analysis == "stripes" else incremental
+        study = multiple_stripe_analysis if self.analysis == "stripes" else incremental_dynamic_analysis
         return study(self.body, motions, levels, law, **options), None
 
 
@@ -169,7 +168,7 @@ def motions_from(
     Returns facts: kind, count, and family and seed, or names.
     """
     from rocking.motions.pulse import Pulse
-    from rocking.studies.record_set import SyntheticSet
+    from rocking.studies.motion_sets import SyntheticSet
 
     records, synthetic, count, seed = (sources[name] for name in _SOURCES)
     if records:

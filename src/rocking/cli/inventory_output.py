@@ -7,12 +7,11 @@ from typing import Any
 
 from rocking.cli.simulate_question import restitution_from
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory.assessment import assess
-from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED, Hazard, Level
+from rocking.studies.inventory.assessment import Assessment, assess
+from rocking.studies.inventory.hazard import COUNT, FAMILY, SEED, Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Light
 from rocking.studies.inventory.reading import read_inventory
-from rocking.studies.inventory.verdict import Assessment
-from rocking.studies.inventory.words import SLIDING, advice, model_note, sentence
+from rocking.studies.inventory.table import SLIDING, advice, model_note, sentence
 
 _STYLES = {Light.GREEN: "bold green", Light.AMBER: "bold yellow", Light.RED: "bold red"}
 Progress = Callable[[int], None]
@@ -106,7 +105,7 @@ def hazard_from(
         raise InvalidValueError("give --pga or --pgv, not both: motions are scaled to one of them")
     level = None
     if pga is not None or pgv is not None:
-        level = Level.of("PGA", pga) if pga is not None else Level.of("PGV", str(pgv))
+        level = IntensityLevel.of("PGA", pga) if pga is not None else IntensityLevel.of("PGV", str(pgv))
     if records:
         alone = {"--synthetic": synthetic, "--count": count, "--seed": seed}
         odd = [name for name, value in alone.items() if value is not None]

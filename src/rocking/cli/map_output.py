@@ -139,7 +139,7 @@ def axis_from(option: str, word: str) -> tuple[Axis, str]:
     >>> axis.values.tolist(), unit
     ([0.4, 0.8], 'cm')
     """
-    from rocking.studies._axes import axes
+    from rocking.studies.axis import axes
 
     name, equals, values = word.partition("=")
     known = axes()
@@ -179,7 +179,7 @@ def _draw(answer: MapAnswer, path: Path) -> None:
     from rocking.plots.overturning_map import overturning_map_picture
     from rocking.plots.study_words import shown_in
     from rocking.plots.style import write as write_picture
-    from rocking.studies._boundary import boundary
+    from rocking.studies.boundaries import boundary
 
     asked = answer.question
     lines = boundary(

@@ -25,7 +25,7 @@ from rocking.cli.simulate_question import restitution_from
 from rocking.conventions import ACCELERATION_UNITS, g, percent
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
-from rocking.studies.crossings import Crossings
+from rocking.studies.minimum_acceleration import Transitions
 
 _SPOKEN = 4
 """Stretches of overturning that a sentence names."""
@@ -39,7 +39,7 @@ class MinimumAnswer:
     motion: Motion
     restitution: Any
     settings: dict[str, Any]  # as of `rocking.cli.output.settings_from`
-    found: Crossings  # what was found
+    found: Transitions  # what was found
 
     @classmethod
     def of(
@@ -84,7 +84,7 @@ def search_from(lowest: str | None, highest: str | None) -> dict[str, float | No
     return found
 
 
-def sentence(found: Crossings) -> str:
+def sentence(found: Transitions) -> str:
     """Return all crossings in words.
 
     Returns one sentence; with many crossings the first and the last.
@@ -105,7 +105,7 @@ def sentence(found: Crossings) -> str:
     return f"{', '.join(parts)}; {scanned}"
 
 
-def _stretch(found: Crossings, falls: tuple[tuple[float, float], ...], k: int) -> str:
+def _stretch(found: Transitions, falls: tuple[tuple[float, float], ...], k: int) -> str:
     """Return one stretch of overturning in words, and how far it then survives."""
     low, high = falls[k]
     if k == len(falls) - 1 and high == found.highest:
@@ -147,7 +147,7 @@ def as_json(answer: MinimumAnswer) -> str:
     return json.dumps(facts, indent=1, allow_nan=False)
 
 
-def crossings(found: Crossings) -> list[dict[str, float | int]]:
+def crossings(found: Transitions) -> list[dict[str, float | int]]:
     """Return every crossing as plain values.
 
     Returns as the key ``crossings`` of the JSON.

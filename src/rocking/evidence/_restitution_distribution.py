@@ -17,7 +17,7 @@ from rocking.evidence.likelihood import scatter
 from rocking.restitution import ImpactGeometry
 from rocking.restitution.implied import energy_bound
 from rocking.restitution.shifted_impulse import shifted
-from rocking.studies.sensitivity.sampled import SampledRestitution
+from rocking.studies.sensitivity.restitutions import SampledRestitution
 
 _POINTS = 1025
 _GRID = 2001

@@ -10,7 +10,7 @@ from rocking.evidence.claim import IN_PART, UNTESTABLE, Claim, all_or_open, trut
 from rocking.evidence.comparison import compare, errors_of_groups
 from rocking.evidence.measurements import all_measurements
 from rocking.restitution import HorizontalMomentum, Ked
-from rocking.studies.impact_laboratory.large_bodies import large_bodies
+from rocking.studies.impact_laboratory import large_bodies
 
 
 def _outperforms() -> Claim:

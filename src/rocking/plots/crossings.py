@@ -14,7 +14,7 @@ from rocking.errors import InvalidValueError
 from rocking.plots.overturning_map import CLASSES, FIRST, LATER, SECOND
 from rocking.plots.study_words import PEAK, note, plain, plain_log
 from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
-from rocking.studies.crossings import Crossings
+from rocking.studies.minimum_acceleration import Transitions
 from rocking.studies.question import Question, sides_of
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class _AmplitudeRun:
 
 @in_journal_style
 def crossings_picture(
-    found: Crossings,
+    found: Transitions,
     body: Body,
     motion: Motion,
     restitution: Any = "ked",
@@ -59,7 +59,7 @@ def crossings_picture(
 
     Parameters
     ----------
-    found : Crossings
+    found : Transitions
         As of `minimum_overturning_acceleration` with the same body, motion, restitution and settings.
     body : Body
         The body.
@@ -93,7 +93,7 @@ def crossings_picture(
     >>> crossings_picture(found, block, pulse, 0.85).axes[0].get_xlabel()
     'peak ground acceleration [g]'
     """
-    if not isinstance(found, Crossings):
+    if not isinstance(found, Transitions):
         raise InvalidValueError(f"found must be of minimum_overturning_acceleration, got {type(found).__name__}")
     count = int(checks.within("points", points, 2, _MOST_POINTS))
     threads, engine = settings.pop("threads", None), settings.pop("engine", "auto")
@@ -110,14 +110,14 @@ def crossings_picture(
     return figure
 
 
-def _shown_until(found: Crossings) -> float:
+def _shown_until(found: Transitions) -> float:
     """Return the largest amplitude worth showing [m/s2]."""
     if not len(found):
         return found.highest
     return min(found.highest, _ROOM * float(found.acceleration[-1]))
 
 
-def _places(found: Crossings, count: int) -> FloatArray:
+def _places(found: Transitions, count: int) -> FloatArray:
     """Return amplitudes, closer together towards crossings, where the curve rises steeply [m/s2]."""
     last = _shown_until(found)
     near = np.concatenate([-np.geomspace(1e-7, 0.03, 25), np.geomspace(1e-7, 0.03, 25)])
@@ -134,7 +134,7 @@ def _curve(question: Question, place: FloatArray) -> tuple[FloatArray, IntArray]
     return made["peak_ratio"], made["mode"]
 
 
-def _shade(axes: "Axes", found: Crossings, place: FloatArray, modes: IntArray) -> None:
+def _shade(axes: "Axes", found: Transitions, place: FloatArray, modes: IntArray) -> None:
     """Shade every overturning interval, in the colours of maps, and say how it overturns."""
     from matplotlib.patches import Patch
 
@@ -175,7 +175,7 @@ def _name(axes: "Axes", run: _AmplitudeRun) -> None:
     )  # fmt: skip
 
 
-def _finish(axes: "Axes", found: Crossings, place: FloatArray, peaks: FloatArray) -> None:
+def _finish(axes: "Axes", found: Transitions, place: FloatArray, peaks: FloatArray) -> None:
     from matplotlib.ticker import LogLocator
 
     most = float(np.nanmax(peaks, initial=1.0))

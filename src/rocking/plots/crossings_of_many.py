@@ -10,7 +10,7 @@ from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.plots.study_words import plain, plain_log
 from rocking.plots.style import DOUBLE, INK, SINGLE, in_journal_style, new_figure
-from rocking.studies.crossings import Crossings
+from rocking.studies.minimum_acceleration import Transitions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +23,7 @@ _FALLS, _STANDS = "#E0812F", "#E4EFF8"
 
 @in_journal_style
 def crossings_of_many_picture(
-    found: Mapping[str, Sequence[Crossings]],
+    found: Mapping[str, Sequence[Transitions]],
     names: Sequence[str],
     *,
     words: str = "motion",
@@ -36,7 +36,7 @@ def crossings_of_many_picture(
 
     Parameters
     ----------
-    found : mapping of str to sequence of Crossings
+    found : mapping of str to sequence of Transitions
         For each restitution what was found for each motion.
     names : sequence of str
         What the motions are called, or short marks of them.
@@ -72,8 +72,8 @@ def crossings_of_many_picture(
             f"{len(names)}"
         )
     for each in lanes:
-        if len(each) != len(names) or not all(isinstance(one, Crossings) for one in each):
-            raise InvalidValueError(f"found must have {len(names)} Crossings for each restitution, got {each!r:.60}")
+        if len(each) != len(names) or not all(isinstance(one, Transitions) for one in each):
+            raise InvalidValueError(f"found must have {len(names)} Transitions for each restitution, got {each!r:.60}")
     order = np.argsort([one.acceleration[0] if len(one) else np.inf for one in lanes[0]], kind="stable").tolist()
     width = SINGLE if len(lanes) == 1 else DOUBLE
     figure, axes = new_figure(width, _MARGIN + _LANE * len(names), columns=len(lanes), sharex=True, sharey=True)
@@ -95,14 +95,14 @@ def crossings_of_many_picture(
     return figure
 
 
-def _ends(found: Sequence[Crossings]) -> tuple[float, float]:
+def _ends(found: Sequence[Transitions]) -> tuple[float, float]:
     """Return how far it is worth showing [g]."""
     low = min(one.lowest for one in found)
     last = [1.35 * one.acceleration[-1] for one in found if len(one)]
     return low / g, max([2.0 * low, *last]) / g
 
 
-def _lanes(axes: "Axes", found: Sequence[Crossings], ends: tuple[float, float]) -> None:
+def _lanes(axes: "Axes", found: Sequence[Transitions], ends: tuple[float, float]) -> None:
     for row, one in enumerate(found):
         axes.broken_barh(
             [(one.lowest / g, max(ends[1] - one.lowest / g, 0.0))], (row - 0.36, 0.72), color=_STANDS, linewidth=0

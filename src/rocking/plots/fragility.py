@@ -46,7 +46,7 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
 
     Parameters
     ----------
-    analysis : StripeAnalysis, CloudAnalysis or IncrementalAnalysis
+    analysis : MultipleStripeAnalysis, CloudAnalysis or IncrementalDynamicAnalysis
         The analysis.
     level : float
         Confidence of intervals and bands [-].
@@ -64,9 +64,9 @@ def fragility_picture(analysis: Any, *, level: float = 0.95) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
+    >>> from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8, 1.0)]
-    >>> found = multiple_stripes(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
+    >>> found = multiple_stripe_analysis(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
     >>> fragility_picture(found).axes[1].get_xlabel()
     'peak ground acceleration [m/s$^2$]'
     """
@@ -138,7 +138,7 @@ def gathered(levels: FloatArray, reached: FloatArray, trials: FloatArray) -> tup
 
 
 def _points(axes: "Axes", analysis: Any, name: str, place: int, level: float) -> None:
-    from rocking.studies.sensitivity.differences import share_interval
+    from rocking.studies.sensitivity.changes import share_interval
 
     counted = (np.asarray(part, dtype=np.float64) for part in (analysis.counts[name], analysis.trials))
     at, reached, trials = gathered(np.asarray(analysis.levels), *counted)

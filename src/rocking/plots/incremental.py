@@ -9,7 +9,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.plots.study_words import PEAK, axis_label, geometric, plain_log
 from rocking.plots.style import GREY, INK, SINGLE, in_journal_style, new_figure
-from rocking.studies.fragility.incremental_dynamic_analysis import IncrementalAnalysis
+from rocking.studies.fragility._incremental_dynamic_analysis import IncrementalDynamicAnalysis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +28,7 @@ _FIRST, _LAST = 1.12, 1.72
 
 
 @in_journal_style
-def incremental_picture(analysis: IncrementalAnalysis) -> "Figure":
+def incremental_picture(analysis: IncrementalDynamicAnalysis) -> "Figure":
     """Draw an incremental analysis, the measure upwards as is usual.
 
     Left: a grey curve for each motion up to where it first overturns the body; the levels above at which the body
@@ -39,8 +39,8 @@ def incremental_picture(analysis: IncrementalAnalysis) -> "Figure":
 
     Parameters
     ----------
-    analysis : IncrementalAnalysis
-        As of `incremental`.
+    analysis : IncrementalDynamicAnalysis
+        As of `incremental_dynamic_analysis`.
 
     Returns
     -------
@@ -55,13 +55,13 @@ def incremental_picture(analysis: IncrementalAnalysis) -> "Figure":
     Examples
     --------
     >>> import rocking as rk
-    >>> from rocking.studies.fragility.incremental_dynamic_analysis import incremental
+    >>> from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
-    >>> found = incremental(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], restitution=0.9)
+    >>> found = incremental_dynamic_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], restitution=0.9)
     >>> len(incremental_picture(found).axes)
     2
     """
-    if not isinstance(analysis, IncrementalAnalysis):
+    if not isinstance(analysis, IncrementalDynamicAnalysis):
         raise InvalidValueError(f"analysis must be incremental, got {analysis!r:.60}")
     figure, (left, right) = new_figure(SINGLE, HEIGHT, columns=2, sharey=True, width_ratios=[2.5, 1.0])
     for curve in analysis.curves:
@@ -90,7 +90,7 @@ def incremental_picture(analysis: IncrementalAnalysis) -> "Figure":
     return figure
 
 
-def _limits(analysis: IncrementalAnalysis) -> tuple[float, float]:
+def _limits(analysis: IncrementalDynamicAnalysis) -> tuple[float, float]:
     levels = analysis.levels
     low, high = float(levels[0]), float(levels[-1])
     if geometric(levels) and high / low > 3.0:
@@ -110,7 +110,7 @@ def _curve(axes: "Axes", levels: FloatArray, curve: FloatArray) -> None:
         )  # fmt: skip
 
 
-def _crossings(axes: "Axes", analysis: IncrementalAnalysis) -> None:
+def _crossings(axes: "Axes", analysis: IncrementalDynamicAnalysis) -> None:
     """Give every motion that overturns the body a lane, and mark its first crossing there."""
     starts = analysis.first_crossings
     order = [k for k in np.argsort(starts).tolist() if math.isfinite(starts[k])]
@@ -126,7 +126,7 @@ def _crossings(axes: "Axes", analysis: IncrementalAnalysis) -> None:
     axes.plot(places, starts[order], linestyle="none", marker="x", markersize=2.6, color=_CROSS, zorder=4)
 
 
-def _fractions(axes: "Axes", analysis: IncrementalAnalysis) -> None:
+def _fractions(axes: "Axes", analysis: IncrementalDynamicAnalysis) -> None:
     known = np.sort(analysis.first_crossings[analysis.complete])
     if known.size:
         passed = np.searchsorted(known, analysis.levels, side="right") / known.size
@@ -137,7 +137,7 @@ def _fractions(axes: "Axes", analysis: IncrementalAnalysis) -> None:
     axes.set_xlabel("share\noverturned [-]")
 
 
-def _legend(figure: "Figure", analysis: IncrementalAnalysis) -> None:
+def _legend(figure: "Figure", analysis: IncrementalDynamicAnalysis) -> None:
     from matplotlib.lines import Line2D
 
     count = int(analysis.complete.sum())

@@ -6,8 +6,8 @@ from rocking.conventions import g
 from rocking.errors import InvalidValueError
 from rocking.plots.study_words import plain, wrapped
 from rocking.plots.style import DOUBLE, GREY, INK, PALE, in_journal_style, new_figure
+from rocking.studies.inventory.assessment import Assessment, Verdict
 from rocking.studies.inventory.lights import Light
-from rocking.studies.inventory.verdict import Assessment, Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,8 +44,8 @@ def inventory_picture(assessment: Assessment) -> "Figure":
 
     Examples
     --------
-    >>> from rocking.studies.inventory import Hazard, Inventory, InventoryObject, Level, assess
-    >>> hazard = Hazard.of_family("point-source", Level.of("PGA", "0.3g"), count=5, seed=1)
+    >>> from rocking.studies.inventory import Hazard, Inventory, InventoryObject, IntensityLevel, assess
+    >>> hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=5, seed=1)
     >>> vase = InventoryObject(name="vase", width=0.12, depth=0.12, height=0.6)
     >>> figure = inventory_picture(assess(Inventory((vase,)), hazard))
     >>> figure.axes[0].get_xlabel()

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rocking.studies._boundary import Polyline
+    from rocking.studies.boundaries import Polyline
 
 HEIGHT = 3.3
 _PANEL = (2.95, 2.55)

@@ -10,8 +10,8 @@ from rocking.errors import InvalidValueError
 from rocking.plots.overturning_map import CLASSES, FAILED, FIRST, LATER, ROCKED, SECOND, UNLIFTED
 from rocking.plots.study_words import axis_label, geometric, note, plain, plain_log
 from rocking.plots.style import DOUBLE, INK, SINGLE, in_journal_style, new_figure
-from rocking.studies._boundary import Polyline
-from rocking.studies.refined import Refined
+from rocking.studies.adaptive_grid import RefinedMap
+from rocking.studies.boundaries import Polyline
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,13 +24,13 @@ Window = tuple[tuple[float, float], tuple[float, float]]
 
 @in_journal_style
 def refined_map_picture(
-    points: Refined, boundary: Sequence[Polyline], *, window: Window | None = None, words: str = ""
+    points: RefinedMap, boundary: Sequence[Polyline], *, window: Window | None = None, words: str = ""
 ) -> "Figure":
     r"""Draw a refined map: the regions, the points that were computed in the window, and the boundaries.
 
     Parameters
     ----------
-    points : Refined
+    points : RefinedMap
         As of `refined_map`.
     boundary : sequence of Polyline
         As of `boundary` on the same axes, at least one.
@@ -59,7 +59,7 @@ def refined_map_picture(
     >>> refined_map_picture(*made).axes[0].get_xlabel()
     '$\\omega_p\\,/\\,p$ [-]'
     """
-    if not isinstance(points, Refined):
+    if not isinstance(points, RefinedMap):
         raise InvalidValueError(f"points must be of refined_map, got {points!r:.60}")
     if not boundary:
         raise InvalidValueError("boundary must have at least one polyline; nothing changes over this map")
@@ -78,7 +78,7 @@ def refined_map_picture(
     return figure
 
 
-def _panel(axes: "Axes", points: Refined, boundary: Sequence[Polyline], window: Window, *, dots: bool) -> None:
+def _panel(axes: "Axes", points: RefinedMap, boundary: Sequence[Polyline], window: Window, *, dots: bool) -> None:
     from matplotlib.colors import ListedColormap
 
     ends = [np.unique(values[points.base]) for values in (points.x, points.y)]
@@ -106,7 +106,7 @@ def _fine(low: float, high: float, scale: bool) -> FloatArray:
     return np.geomspace(low, high, _RASTER) if scale else np.linspace(low, high, _RASTER)
 
 
-def _nearest(points: Refined, x: FloatArray, y: FloatArray, scales: list[bool]) -> IntArray:
+def _nearest(points: RefinedMap, x: FloatArray, y: FloatArray, scales: list[bool]) -> IntArray:
     """Return the class of the nearest point, distances in spacings of the map: cells as fine as the points are."""
     from scipy.spatial import cKDTree
 
@@ -152,7 +152,7 @@ def _enlarged(axes: "list[Axes]", window: Window) -> None:
     note(axes[1], "within the dashed frame; dots: points that were computed")
 
 
-def _legend(figure: "Figure", points: Refined) -> None:
+def _legend(figure: "Figure", points: RefinedMap) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

@@ -3,9 +3,9 @@
 from rocking.conventions import g
 from rocking.reports.document import Cell, Document, Paragraph, ReportSection, ReportTable, cell
 from rocking.reports.provenance import made_with
+from rocking.studies.inventory.assessment import Assessment, DirectionResult, Verdict
 from rocking.studies.inventory.lights import Light, percent, share_interval
-from rocking.studies.inventory.verdict import Assessment, DirectionResult, Verdict
-from rocking.studies.inventory.words import LIMITS, SLIDING, advice, model_note, rotation_words, rounded_down, sentence
+from rocking.studies.inventory.table import LIMITS, SLIDING, advice, model_note, rotation_words, rounded_down, sentence
 
 MARKS = {Light.GREEN: "good", Light.AMBER: "fair", Light.RED: "bad"}
 """Colour of a light; its letter and its word stand beside."""

@@ -11,8 +11,8 @@ from rocking.reports.html import render_html
 from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_spreadsheet import write_spreadsheet
 from rocking.reports.pdf import render_pdf
+from rocking.studies.inventory.assessment import Assessment
 from rocking.studies.inventory.table import as_csv, as_plain
-from rocking.studies.inventory.verdict import Assessment
 
 STEM = "inventory"
 """Name of every file, before its suffix."""

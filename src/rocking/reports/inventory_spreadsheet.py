@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from rocking.errors import extra
-from rocking.studies.inventory.table import HEADER, rows
-from rocking.studies.inventory.verdict import Assessment
-from rocking.studies.inventory.words import LIMITS
+from rocking.studies.inventory.assessment import Assessment
+from rocking.studies.inventory.table import HEADER, LIMITS, rows
 
 FILLS = {"G": "C6E7D6", "A": "FFE3A3", "R": "F6C1BC", "n": "E3E6EA"}
 """Background of a light by the first letter of its words; the words stand in the cell."""

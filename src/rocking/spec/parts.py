@@ -20,8 +20,7 @@ from rocking.motions.pulses import pulse
 from rocking.restitution import RestitutionModel, model
 from rocking.restitution.from_file import file_of, model_in_file
 from rocking.spec.reading import InputFiles, located
-from rocking.studies.motion_set import MotionList, MotionSet
-from rocking.studies.record_set import SyntheticSet
+from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
 
 if TYPE_CHECKING:
     from rocking.spec.document import CampaignDocument, MotionTable, RandomTable, RestitutionTable
@@ -66,7 +65,7 @@ def _model(word: str, inputs: InputFiles | None) -> RestitutionModel:
 def _drawn(
     table: "RandomTable", seed: int, bodies: Sequence[Body], inputs: InputFiles | None
 ) -> tuple[str, Any]:  # fmt: skip
-    from rocking.studies.sensitivity.sampled import SampledRestitution
+    from rocking.studies.sensitivity.restitutions import SampledRestitution
 
     times = _model(table.times, inputs) if isinstance(table.times, str) else table.times
     law = SampledRestitution if table.each == "history" else RandomRestitution

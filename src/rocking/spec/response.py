@@ -17,7 +17,7 @@ from rocking.motions.formats.reader import read_motion
 from rocking.motions.pulses import pulse
 from rocking.spec.parts import body_of, choices_of
 from rocking.spec.reading import InputFiles, located, read_text, validated
-from rocking.studies.record_set import SyntheticSet
+from rocking.studies.motion_sets import SyntheticSet
 
 if TYPE_CHECKING:
     from rocking.spec.document import OneMotionTable, ResponseDocument, ResponseTables

@@ -6,29 +6,27 @@ from rocking.lazy import exports
 
 if TYPE_CHECKING:
     from rocking.campaigns import Campaign
-    from rocking.studies._axes import axes
-    from rocking.studies._boundary import Polyline, boundary
     from rocking.studies._overturning_map import overturning_map
     from rocking.studies._rocking_spectrum import rocking_spectrum
-    from rocking.studies.axis import Axis
-    from rocking.studies.crossings import Crossings
+    from rocking.studies.adaptive_grid import RefinedMap, refined_map
+    from rocking.studies.axis import Axis, axes
+    from rocking.studies.boundaries import Polyline, boundary
     from rocking.studies.fragility import (
         LognormalFit,
         cloud,
         compare_measures,
         fit_lognormal,
-        incremental,
-        multiple_stripes,
+        incremental_dynamic_analysis,
+        multiple_stripe_analysis,
     )
     from rocking.studies.histories import Histories, HistoryTable, Product
     from rocking.studies.islands import Island, Islands, safe_beyond_overturning, safe_islands
     from rocking.studies.minimum_acceleration import (
+        Transitions,
         minimum_overturning_acceleration,
         minimum_overturning_accelerations,
     )
-    from rocking.studies.motion_set import MotionList, MotionSet
-    from rocking.studies.record_set import SyntheticSet
-    from rocking.studies.refined import Refined, refined_map
+    from rocking.studies.motion_sets import MotionList, MotionSet, SyntheticSet
     from rocking.studies.sensitivity import (
         SampledHistories,
         SampledRestitution,
@@ -41,7 +39,6 @@ if TYPE_CHECKING:
 __all__ = [
     "Axis",
     "Campaign",
-    "Crossings",
     "Histories",
     "HistoryTable",
     "Island",
@@ -51,22 +48,23 @@ __all__ = [
     "MotionSet",
     "Polyline",
     "Product",
-    "Refined",
+    "RefinedMap",
     "SampledHistories",
     "SampledRestitution",
     "Sensitivity",
     "SyntheticSet",
+    "Transitions",
     "axes",
     "boundary",
     "cloud",
     "compare_measures",
     "fit_lognormal",
     "fragility_sensitivity",
-    "incremental",
+    "incremental_dynamic_analysis",
     "map_sensitivity",
     "minimum_overturning_acceleration",
     "minimum_overturning_accelerations",
-    "multiple_stripes",
+    "multiple_stripe_analysis",
     "overturning_map",
     "refined_map",
     "rocking_spectrum",
@@ -80,34 +78,34 @@ __getattr__, __dir__ = exports(
     {
         "Axis": "rocking.studies.axis",
         "Campaign": "rocking.campaigns",
-        "Crossings": "rocking.studies.crossings",
+        "Transitions": "rocking.studies.minimum_acceleration",
         "Histories": "rocking.studies.histories",
         "Island": "rocking.studies.islands",
         "Islands": "rocking.studies.islands",
         "LognormalFit": "rocking.studies.fragility",
-        "MotionList": "rocking.studies.motion_set",
-        "MotionSet": "rocking.studies.motion_set",
-        "Polyline": "rocking.studies._boundary",
+        "MotionList": "rocking.studies.motion_sets",
+        "MotionSet": "rocking.studies.motion_sets",
+        "Polyline": "rocking.studies.boundaries",
         "Product": "rocking.studies.histories",
-        "Refined": "rocking.studies.refined",
+        "RefinedMap": "rocking.studies.adaptive_grid",
         "SampledHistories": "rocking.studies.sensitivity",
         "SampledRestitution": "rocking.studies.sensitivity",
         "Sensitivity": "rocking.studies.sensitivity",
-        "SyntheticSet": "rocking.studies.record_set",
+        "SyntheticSet": "rocking.studies.motion_sets",
         "HistoryTable": "rocking.studies.histories",
-        "axes": "rocking.studies._axes",
-        "boundary": "rocking.studies._boundary",
+        "axes": "rocking.studies.axis",
+        "boundary": "rocking.studies.boundaries",
         "cloud": "rocking.studies.fragility",
         "compare_measures": "rocking.studies.fragility",
         "fit_lognormal": "rocking.studies.fragility",
         "fragility_sensitivity": "rocking.studies.sensitivity",
-        "incremental": "rocking.studies.fragility",
+        "incremental_dynamic_analysis": "rocking.studies.fragility",
         "map_sensitivity": "rocking.studies.sensitivity",
         "minimum_overturning_acceleration": "rocking.studies.minimum_acceleration",
         "minimum_overturning_accelerations": "rocking.studies.minimum_acceleration",
-        "multiple_stripes": "rocking.studies.fragility",
+        "multiple_stripe_analysis": "rocking.studies.fragility",
         "overturning_map": "rocking.studies._overturning_map",
-        "refined_map": "rocking.studies.refined",
+        "refined_map": "rocking.studies.adaptive_grid",
         "rocking_spectrum": "rocking.studies._rocking_spectrum",
         "safe_beyond_overturning": "rocking.studies.islands",
         "safe_islands": "rocking.studies.islands",

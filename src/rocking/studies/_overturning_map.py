@@ -9,9 +9,8 @@ from rocking.dynamics.loss_of_contact import contact_words
 from rocking.dynamics.response import Motion
 from rocking.errors import extra
 from rocking.quantities import HISTORY, attributes
+from rocking.studies.adaptive_grid import Plane, refined
 from rocking.studies.axis import Axis
-from rocking.studies.plane import Plane
-from rocking.studies.refined import refined
 
 if TYPE_CHECKING:
     import xarray as xr

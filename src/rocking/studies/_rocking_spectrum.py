@@ -17,7 +17,7 @@ from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError, extra
 from rocking.quantities import HISTORY, attributes
 from rocking.studies.histories import Histories, Product
-from rocking.studies.motion_set import MotionList
+from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import Question, modes_of, peak_ratio, sides_of
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.dynamics.settings import Settings
 from rocking.errors import InvalidValueError
 from rocking.motions.segments import Segments
-from rocking.studies.motion_set import MotionSet
+from rocking.studies.motion_sets import MotionSet
 
 __all__ = ["Histories", "HistoryTable", "Product", "described_law", "hash_of", "part"]
 

@@ -1,20 +1,250 @@
 """Minimum overturning acceleration: every amplitude at which a body begins or ceases to overturn under a motion."""
 
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from rocking import conventions
+from rocking import checks, conventions
 from rocking.bodies import Body
 from rocking.conventions import FloatArray, IntArray
+from rocking.dynamics.loss_of_contact import contact_words
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.dynamics.response import Motion
-from rocking.dynamics.settings import settings_of
+from rocking.dynamics.settings import Settings, settings_of
 from rocking.errors import InvalidValueError
-from rocking.studies.crossings import Crossings
-from rocking.studies.minimum_search import Cases, Effort, searched
-from rocking.studies.question import Question, sides_of
+from rocking.motions.motion import GroundMotion
+from rocking.studies.amplitude_search import AmplitudeSearch, Run, below, search_below
+from rocking.studies.question import FAILED, Question, sides_of
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Transitions:
+    """Where a body under a motion of growing amplitude begins and ceases to overturn.
+
+    Every stretch of amplitudes, overturning or surviving, that is wider than `resolution` has been sampled. Narrower
+    ones have been looked for where the peak rotation comes close to the top, has a maximum, overturning takes
+    longest, or the way of overturning changes; that is a search, not a proof. Under a record thinner stretches may lie
+    anywhere: below the minimum it has been searched again and again, to `resolution_below`.
+
+    Parameters
+    ----------
+    acceleration : ndarray
+        Peak ground accelerations of the crossings, increasing [m/s2].
+    ratio : ndarray
+        The same over `uplift_acceleration` [-].
+    scale : ndarray
+        The same as factors on the motion [-].
+    modes : ndarray of int, shape (n, 2)
+        How the body ends just below and just above: -2 not lifted, -1 survived, n >= 0 overturned after n impacts.
+    width : ndarray
+        Widths of the brackets; the crossings are their middles [m/s2].
+    lowest, highest : float
+        Range that was searched [m/s2].
+    uplift_acceleration : float
+        Ground acceleration that lifts the body: g tan alpha, or g alpha in the linear equations [m/s2].
+    resolution : float
+        Relative spacing of the first samples [-].
+    starts_overturned : bool
+        Whether the lowest acceleration overturns already.
+    samples, failed : int
+        Histories that were computed, and those that have no result; a bracket stays wide where one failed.
+    resolution_below : float
+        Widest relative gap between samples below the minimum; NaN if there is no minimum [-].
+    lost_contact : ndarray
+        1 for histories in which the ground would have to pull, 0 for others, NaN for those that have no result [-].
+    """
+
+    acceleration: FloatArray
+    ratio: FloatArray
+    scale: FloatArray
+    modes: IntArray
+    width: FloatArray
+    lowest: float
+    highest: float
+    uplift_acceleration: float
+    resolution: float
+    starts_overturned: bool
+    samples: int
+    failed: int
+    resolution_below: float = math.nan
+    lost_contact: FloatArray = field(default_factory=lambda: np.empty(0), repr=False)
+
+    def __len__(self) -> int:
+        """Return the number of crossings."""
+        return int(self.acceleration.size)
+
+    @property
+    def contact(self) -> str:
+        """In how many of the histories the ground would have to pull, as a sentence; empty if in none."""
+        return contact_words(self.lost_contact)
+
+    @property
+    def minimum(self) -> float | None:
+        """Least acceleration that overturns, of those sampled; under a record thinner stretches may lie below [m/s2].
+
+        None if none in the range overturns, or its lowest does already.
+        """
+        return None if self.starts_overturned or not len(self) else float(self.acceleration[0])
+
+    @property
+    def certain(self) -> float | None:
+        """Acceleration above which all that were sampled overturn; under a record thinner gaps may lie above [m/s2].
+
+        None if the highest survives.
+        """
+        if not len(self):
+            return self.lowest if self.starts_overturned else None
+        return float(self.acceleration[-1]) if self.modes[-1, 1] >= 0 else None
+
+    @property
+    def safe_intervals(self) -> tuple[Interval, ...]:
+        """Stretches of the range in which the body survives, the first up to the minimum [m/s2]."""
+        return self._stretches(overturned=False)
+
+    @property
+    def overturning_intervals(self) -> tuple[Interval, ...]:
+        """Stretches of the range in which the body overturns [m/s2]."""
+        return self._stretches(overturned=True)
+
+    def _stretches(self, *, overturned: bool) -> tuple[Interval, ...]:
+        ends = [self.lowest, *self.acceleration.tolist(), self.highest]
+        falls = [self.starts_overturned, *(self.modes[:, 1] >= 0).tolist()]
+        pairs = pairwise(ends)
+        return tuple(pair for pair, fall in zip(pairs, falls, strict=True) if fall == overturned)
+
+
+# range searched over the acceleration that lifts the body, and how far below it where a vertical part lightens it
+_FROM, _FROM_VERTICAL, _TO = 1.0, 0.1, 50.0
+_MOST_POINTS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How closely to look."""
+
+    points: int = 400  # first samples, in equal ratios [-]
+    levels: int = 4  # how often suspicious intervals are halved, from 0 to 12 [-]
+    tolerance: float = 1e-12  # width of the last brackets over the acceleration [-]
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        for name, low, high in (("points", 2, _MOST_POINTS), ("levels", 0, 12)):
+            value: object = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+                raise InvalidValueError(f"{name} must be a whole number in [{low}, {high}], got {value!r:.60}")
+        object.__setattr__(self, "tolerance", checks.within("tolerance", self.tolerance, 0.0, 0.1))
+
+
+@dataclass(frozen=True)
+class Cases:
+    """Bodies whose crossings are looked for together, each under a motion."""
+
+    sides: dict[str, FloatArray]  # sides of the bodies, as of `sides_of` [rad, rad/s, -]
+    peak: FloatArray  # peak acceleration of the motion of each [m/s2]
+    uplift: FloatArray  # acceleration that lifts each [m/s2]
+    low: FloatArray  # low, high: accelerations between which to look [m/s2]
+    high: FloatArray
+    record: bool  # whether the motions are records, under which thin stretches may hide below the minimum
+
+    @classmethod
+    def of(
+        cls, motion: Motion, sides: dict[str, FloatArray], settings: Settings, lowest: float | None,
+        highest: float | None,
+    ) -> "Cases":  # fmt: skip
+        """Return the cases of some bodies under one motion.
+
+        sides: sides of the bodies, as of `sides_of` [rad, rad/s, -]; lowest, highest: peak accelerations between which
+        to look [m/s2].
+        """
+        if not motion.peak > 0.0:
+            raise InvalidValueError(f"motion must have a peak above zero to be scaled, got {motion.name!r}")
+        uplift, (low, high) = _range(motion, sides, settings, lowest, highest)
+        return cls(sides, np.full(uplift.size, motion.peak), uplift, low, high, isinstance(motion, GroundMotion))
+
+    @classmethod
+    def joined(cls, parts: Sequence["Cases"]) -> "Cases":
+        """Return the cases of several motions or restitutions as one."""
+        sides = {name: np.concatenate([each.sides[name] for each in parts]) for name in parts[0].sides}
+        names = ("peak", "uplift", "low", "high")
+        arrays = {name: np.concatenate([getattr(each, name) for each in parts]) for name in names}
+        return cls(sides, **arrays, record=parts[0].record)
+
+    def grid(self, points: int) -> FloatArray:
+        """Return the first factors on the motions.
+
+        points: how many for each case [-]. Returns in equal ratios [-].
+        """
+        return np.asarray(np.geomspace(self.low, self.high, points, axis=1) / self.peak[:, None])  # Eq. 182
+
+
+def searched(cases: Cases, effort: Effort, run: Run) -> tuple[Transitions | None, ...]:
+    """Return the crossings of all cases, which are computed together and do not know of one another.
+
+    Returns one for each case; None where no history could be computed.
+    """
+    scan = AmplitudeSearch(run, cases.sides, cases.grid(effort.points))
+    if cases.record:
+        search_below(scan, effort.points)
+    for _ in range(effort.levels):
+        scan.zoom()
+    scan.hunt()
+    return _crossings(scan, cases, effort)
+
+
+def _range(
+    motion: Motion, sides: dict[str, FloatArray], settings: Settings, lowest: float | None, highest: float | None
+) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+    """Return the accelerations that lift the bodies, and between which to look."""
+    both = np.stack([sides["alpha_right"], sides["alpha_left"]])
+    lifts = settings.gravity * (both if settings.linear else np.tan(both))  # Eq. 25
+    light = isinstance(motion, GroundMotion) and motion.vertical is not None
+    low = (_FROM_VERTICAL if light else _FROM) * lifts.min(axis=0)
+    high = _TO * lifts.max(axis=0)
+    if lowest is not None:
+        low = np.full_like(low, checks.positive("lowest", lowest, "m/s2"))
+    if highest is not None:
+        high = np.full_like(high, checks.positive("highest", highest, "m/s2"))
+    bad = np.flatnonzero(~(low < high))
+    if bad.size:
+        k = bad[0]
+        raise InvalidValueError(f"lowest must be below highest, got {low[k]:g} and {high[k]:g} m/s2 for body {k}")
+    return lifts.min(axis=0), (low, high)
+
+
+def _crossings(scan: AmplitudeSearch, cases: Cases, effort: Effort) -> tuple[Transitions | None, ...]:
+    found, all_modes, count = scan.brackets(effort.tolerance), scan.samples.mode, cases.uplift.size
+    gaps = {k: each.gap for k, each in below(scan.samples.good).items()}
+    # both are sorted by body
+    bounds, marks = (np.searchsorted(each.body, np.arange(count + 1)) for each in (found, scan.samples))
+    made: list[Transitions | None] = []
+    for k in range(count):
+        own, mine = slice(bounds[k], bounds[k + 1]), slice(marks[k], marks[k + 1])
+        modes = all_modes[mine]
+        known = modes != FAILED
+        good = modes[known]
+        if not good.size:
+            made.append(None)
+            continue
+        scale, low, high = found.ends[own].mean(axis=1), float(cases.low[k]), float(cases.high[k])
+        peak, uplift = float(cases.peak[k]), float(cases.uplift[k])
+        # what is said of the ends of the range is said of the outermost histories that have a result
+        first, last = (scan.samples.scale[mine][known][[0, -1]] * peak).tolist()
+        ends = low if known[0] else first, high if known[-1] else last
+        made.append(
+            Transitions(
+                scale * peak, scale * peak / uplift, scale, found.modes[own], np.diff(found.ends[own])[:, 0] * peak,
+                *ends, uplift, (high / low) ** (1.0 / (effort.points - 1)) - 1.0, bool(good[0] >= 0),
+                int(modes.size), int(np.sum(modes == FAILED)), gaps.get(k, math.nan),
+                scan.samples.lost[mine],
+            )
+        )  # fmt: skip
+    return tuple(made)
 
 
 def minimum_overturning_acceleration(
@@ -27,7 +257,7 @@ def minimum_overturning_acceleration(
     points: int = 400,
     tolerance: float = 1e-12,
     **options: Any,
-) -> Crossings:
+) -> Transitions:
     """Return all peak accelerations at which the verdict changes, not the first alone.
 
     The motion is scaled over a range of amplitudes in equal ratios; intervals in which a thin stretch may hide are
@@ -59,7 +289,7 @@ def minimum_overturning_acceleration(
 
     Returns
     -------
-    Crossings
+    Transitions
         All of them, in order.
 
     Raises
@@ -103,7 +333,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
     threads: int | None = None,
     progress: Callable[[int], None] | None = None,
     **settings: Any,
-) -> tuple[Crossings, ...]:
+) -> tuple[Transitions, ...]:
     """Return what `minimum_overturning_acceleration` does for many bodies, computed together.
 
     Parameters
@@ -133,7 +363,7 @@ def minimum_overturning_accelerations(  # noqa: PLR0913 - every one of them is a
 
     Returns
     -------
-    tuple of Crossings
+    tuple of Transitions
         One for each body.
 
     Raises

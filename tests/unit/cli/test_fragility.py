@@ -13,8 +13,8 @@ import typer
 import rocking as rk
 from rocking.cli import application, main
 from rocking.cli.fragility import fragility
-from rocking.studies.fragility import cloud, incremental, multiple_stripes
-from rocking.studies.record_set import SyntheticSet
+from rocking.studies.fragility import cloud, incremental_dynamic_analysis, multiple_stripe_analysis
+from rocking.studies.motion_sets import SyntheticSet
 
 G = 9.80665
 SIZE = ("--width", "0.25", "--height", "1.25")
@@ -70,7 +70,7 @@ def test_motions_follow_the_body(capsys, tmp_path):
 def test_json_is_the_python_call(capsys, motions):
     """Counts, medians and dispersions of stripes are those of the study, bit by bit; intervals hold them."""
     answer = told(capsys, *SIZE, *FAMILY, *LEVELS, "--states", "0.2,0.5")
-    found = multiple_stripes(BLOCK, motions, np.linspace(0.1 * G, 0.9 * G, 9), "ked", "pga", (0.2, 0.5))
+    found = multiple_stripe_analysis(BLOCK, motions, np.linspace(0.1 * G, 0.9 * G, 9), "ked", "pga", (0.2, 0.5))
     (result,) = answer["results"]
     assert answer["levels"] == found.levels.tolist()
     assert result["reached"] == {name: counts.tolist() for name, counts in found.counts.items()}
@@ -125,7 +125,7 @@ def test_incremental(capsys):
     words = ("--width", "0.4", "--height", "1.6", *SINES, "--levels", "3,6,9", "--restitution", "0.9")
     (result,) = told(capsys, *words, "--analysis", "incremental")["results"]
     pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
-    found = incremental(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], 0.9)
+    found = incremental_dynamic_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], 0.9)
     ends = [(one["start"], one["end"]) for one in result["overturning_intervals"]]
     assert ends == [(i.start, i.end if math.isfinite(i.end) else None) for i in found.intervals]
     assert None in [end for _, end in ends]

@@ -12,8 +12,7 @@ import rocking as rk
 from rocking.cli import application, main
 from rocking.cli.minimum import minimum
 from rocking.cli.minimum_output import sentence
-from rocking.studies.crossings import Crossings
-from rocking.studies.minimum_acceleration import minimum_overturning_acceleration
+from rocking.studies.minimum_acceleration import Transitions, minimum_overturning_acceleration
 
 G = 9.80665
 SIZE = ("--width", "0.5", "--height", "2")
@@ -38,9 +37,9 @@ def run(capsys, *words):
 
 
 def made(modes, accelerations, *, starts=False):
-    """Crossings by hand, between 1 g and 9 g, accelerations in g."""
+    """Transitions by hand, between 1 g and 9 g, accelerations in g."""
     a = G * np.array(accelerations)
-    return Crossings(a, a, a, np.array(modes).reshape(-1, 2), 0.0 * a, G, 9.0 * G, G, 0.004, starts, 1, 0)
+    return Transitions(a, a, a, np.array(modes).reshape(-1, 2), 0.0 * a, G, 9.0 * G, G, 0.004, starts, 1, 0)
 
 
 def test_json_is_the_python_call(capsys):

@@ -11,7 +11,7 @@ from rocking.motions.intensity import measure
 from rocking.motions.pulses import pulse
 from rocking.restitution import model
 from rocking.restitution.space import spatial_model, spatial_models
-from rocking.studies._axes import axis_of
+from rocking.studies.axis import axis_of
 
 SIZE = ("--width", "0.5", "--height", "2")
 PULSE = "sine:amplitude=3,period=0.8"

@@ -13,7 +13,7 @@ from rocking.plots.fragility import fragility_picture, gathered
 from rocking.plots.incremental import incremental_picture
 from rocking.plots.sensitivity import sensitivity_picture
 from rocking.plots.style import PALE
-from rocking.studies.fragility import incremental, multiple_stripes
+from rocking.studies.fragility import incremental_dynamic_analysis, multiple_stripe_analysis
 from rocking.studies.sensitivity import fragility_sensitivity, map_sensitivity
 
 G = 9.80665
@@ -27,7 +27,7 @@ def _shaded(axes):
 
 def test_what_cannot_be_lifted_is_shaded():
     """The shade ends at g b / h = g / 4 and holds no motion that rocked; it is named."""
-    found = multiple_stripes(BLOCK, PULSES, [1.0, 2.0, 3.0, 5.0, 8.0], 0.9)
+    found = multiple_stripe_analysis(BLOCK, PULSES, [1.0, 2.0, 3.0, 5.0, 8.0], 0.9)
     upper = fragility_picture(found).axes[0]
     (shade,) = _shaded(upper)
     assert shade.get_x() + shade.get_width() == pytest.approx(0.25 * G, rel=1e-12)
@@ -38,8 +38,8 @@ def test_what_cannot_be_lifted_is_shaded():
 
 def test_nothing_is_shaded_where_nothing_is_certain():
     """Levels that all lift the body, and a measure that decides nothing, give no shade."""
-    above = multiple_stripes(BLOCK, PULSES, [3.0, 4.0, 5.0, 6.0], 0.9)
-    velocity = multiple_stripes(BLOCK, PULSES, [0.1, 0.4, 0.8], 0.9, "pgv")
+    above = multiple_stripe_analysis(BLOCK, PULSES, [3.0, 4.0, 5.0, 6.0], 0.9)
+    velocity = multiple_stripe_analysis(BLOCK, PULSES, [0.1, 0.4, 0.8], 0.9, "pgv")
     for found in (above, velocity):
         upper = fragility_picture(found).axes[0]
         assert _shaded(upper) == []
@@ -48,7 +48,7 @@ def test_nothing_is_shaded_where_nothing_is_certain():
 
 def test_levels_below_uplift_alone():
     """Where no level lifts the body all is shaded, there is no curve, and the words say why."""
-    figure = fragility_picture(multiple_stripes(BLOCK, PULSES, [0.5, 1.0, 2.0], 0.9))
+    figure = fragility_picture(multiple_stripe_analysis(BLOCK, PULSES, [0.5, 1.0, 2.0], 0.9))
     upper = figure.axes[0]
     (shade,) = _shaded(upper)
     assert shade.get_x() + shade.get_width() > upper.get_xlim()[1]
@@ -59,7 +59,7 @@ def test_levels_below_uplift_alone():
 def test_few_motions_have_no_band():
     """Four motions get no band, which would be too narrow; twelve get one."""
     for count, bands in ((4, 0.0), (12, 0.1)):
-        found = multiple_stripes(BLOCK, PULSES[4 : 4 + count], np.arange(2.0, 9.0, 0.5), 0.9, states=())
+        found = multiple_stripe_analysis(BLOCK, PULSES[4 : 4 + count], np.arange(2.0, 9.0, 0.5), 0.9, states=())
         filled = [part for part in fragility_picture(found).axes[0].collections if isinstance(part, PolyCollection)]
         heights = [np.ptp(part.get_paths()[0].vertices[:, 1]) for part in filled]
         assert max(heights, default=0.0) >= bands
@@ -80,7 +80,7 @@ def raised():
     """One sine of three times the frequency parameter, r = 0.9, slender-linear, raised level by level."""
     sine = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * BLOCK.frequency_parameter))
     unit = G * BLOCK.slenderness_angle
-    return incremental(BLOCK, sine, np.linspace(1.0, 4.0, 13) * unit, 0.9, linear=True), unit
+    return incremental_dynamic_analysis(BLOCK, sine, np.linspace(1.0, 4.0, 13) * unit, 0.9, linear=True), unit
 
 
 def test_lanes_are_the_closed_form(raised):
@@ -99,7 +99,7 @@ def test_lanes_are_the_closed_form(raised):
 
 def test_every_motion_has_a_lane_of_its_own():
     """Lanes stand beside one another by first crossing, inside the panel; no lane without overturning."""
-    found = incremental(BLOCK, PULSES, np.arange(2.0, 9.1, 0.5), 0.9)
+    found = incremental_dynamic_analysis(BLOCK, PULSES, np.arange(2.0, 9.1, 0.5), 0.9)
     figure = incremental_picture(found)
     left = figure.axes[0]
     (crosses,) = (line for line in left.lines if line.get_marker() == "x")

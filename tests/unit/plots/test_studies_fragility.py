@@ -13,10 +13,10 @@ from rocking.errors import InvalidValueError
 from rocking.plots.fragility import caption, fragility_picture, gathered, state_colors, symbol
 from rocking.plots.incremental import incremental_picture
 from rocking.plots.measures import measures_picture
+from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
 from rocking.studies.fragility.cloud_analysis import cloud
-from rocking.studies.fragility.incremental_dynamic_analysis import incremental
 from rocking.studies.fragility.measure_comparison import compare_measures
-from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
 
 G = 9.80665
 BLOCK = rk.Block(width=0.4, height=1.6)
@@ -27,13 +27,13 @@ LEVELS = np.arange(1.5, 9.1, 1.5)
 @pytest.fixture(scope="module")
 def stripes():
     """24 pulses at six levels."""
-    return multiple_stripes(BLOCK, PULSES, LEVELS, 0.9)
+    return multiple_stripe_analysis(BLOCK, PULSES, LEVELS, 0.9)
 
 
 @pytest.fixture(scope="module")
 def raised():
     """The same pulses, raised level by level."""
-    return incremental(BLOCK, PULSES, np.arange(2.0, 12.1, 0.5), 0.9)
+    return incremental_dynamic_analysis(BLOCK, PULSES, np.arange(2.0, 12.1, 0.5), 0.9)
 
 
 @pytest.fixture(scope="module")
@@ -117,14 +117,14 @@ def test_words_do_not_overlap(stripes):
 
 def test_separation_is_said():
     """Outcomes that form a step get no band, and the caption says that there is no likeliest curve."""
-    found = multiple_stripes(BLOCK, PULSES[8], [2.0, 3.0, 4.0, 8.0], 0.9)
+    found = multiple_stripe_analysis(BLOCK, PULSES[8], [2.0, 3.0, 4.0, 8.0], 0.9)
     figure = fragility_picture(found)
     told = figure.get_supxlabel()
     assert "separation" in told
     assert "no likeliest curve" in told.replace("\n", " ")
     assert told == "" or len(max(told.split("\n"), key=len)) <= 84
     # negative control: outcomes that overlap have no caption
-    assert caption(multiple_stripes(BLOCK, PULSES, LEVELS, 0.9, states=())) == ""
+    assert caption(multiple_stripe_analysis(BLOCK, PULSES, LEVELS, 0.9, states=())) == ""
 
 
 def test_cloud_is_gathered(clouded):
@@ -174,7 +174,7 @@ def test_incremental_curves(raised):
 
 def test_incremental_without_overturning():
     """Levels that overturn nothing give a picture without crosses and without warnings."""
-    figure = incremental_picture(incremental(BLOCK, PULSES[:3], [2.0, 2.2, 2.4], 0.9))
+    figure = incremental_picture(incremental_dynamic_analysis(BLOCK, PULSES[:3], [2.0, 2.2, 2.4], 0.9))
     FigureCanvasAgg(figure).draw()
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert not any("stands again" in word for word in words)

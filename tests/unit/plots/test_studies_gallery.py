@@ -25,7 +25,7 @@ from rocking.studies import (
     minimum_overturning_acceleration,
     refined_map,
 )
-from rocking.studies.inventory import Hazard, Inventory, InventoryObject, Level, Thresholds, assess
+from rocking.studies.inventory import Hazard, IntensityLevel, Inventory, InventoryObject, Thresholds, assess
 
 BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.8)
 AXES = ("frequency_ratio", np.linspace(0.5, 8.0, 16)), ("amplitude_ratio", np.linspace(1.0, 10.0, 13))
@@ -149,7 +149,7 @@ def test_crossings_of_many():
     assert first.lines[0].get_xdata()[0] * conventions.g == pytest.approx(one.minimum, rel=1e-12)
     cut = crossings_of_many_picture(found, ["a", "b", "c"], until=6.0)
     assert cut.axes[0].get_xlim()[1] * conventions.g == pytest.approx(6.0, rel=1e-12)
-    for names, words in ((["a"], "must have 1 Crossings"), ([], "1 to 60 lanes")):
+    for names, words in ((["a"], "must have 1 Transitions"), ([], "1 to 60 lanes")):
         with pytest.raises(InvalidValueError, match=words):
             crossings_of_many_picture(found, names)
 
@@ -183,7 +183,7 @@ def test_inventory():
         InventoryObject(name="low chest", width=1.0, depth=1.0, height=0.5),
         InventoryObject(name="tall $5 vase", width=0.1, depth=0.1, height=0.8),
     )
-    hazard = Hazard.of_family("point-source", Level.of("PGA", "0.3g"), count=20, seed=1)
+    hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=20, seed=1)
     found = assess(Inventory(objects), hazard)
     figure = drawn(inventory_picture(found))
     left, right = figure.axes

@@ -13,8 +13,8 @@ from rocking.plots.overturning_map import CLASSES, FIRST, ISLAND, ROCKED, SECOND
 from rocking.plots.region_labels import FINE, place_in, rastered
 from rocking.plots.study_words import axis_label, geometric, plain, wrapped
 from rocking.plots.style import write
-from rocking.studies._boundary import Polyline, boundary
 from rocking.studies._overturning_map import overturning_map
+from rocking.studies.boundaries import Polyline, boundary
 
 BLOCK = rk.Block.from_angle(0.2, 1.0)
 PULSE = rk.pulses.sine(1.0, 1.0)

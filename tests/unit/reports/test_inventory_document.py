@@ -12,7 +12,7 @@ from rocking.reports.inventory_document import inventory_document
 from rocking.reports.inventory_folder import write_inventory
 from rocking.reports.inventory_spreadsheet import write_spreadsheet
 from rocking.studies.inventory.assessment import assess
-from rocking.studies.inventory.hazard import Hazard, Level
+from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Thresholds
 from rocking.studies.inventory.reading import parse_inventory
 from rocking.studies.inventory.table import as_csv
@@ -30,7 +30,7 @@ chest;120;60;50;;hall
 @pytest.fixture(scope="module")
 def assessment():
     """A red, an amber and two green objects, and a row that says nothing."""
-    hazard = Hazard.of_family("point-source", Level.of("PGA", "0.3g"), count=100, seed=3)
+    hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=100, seed=3)
     return assess(parse_inventory(TEXT, "list.csv"), hazard)
 
 

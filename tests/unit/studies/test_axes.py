@@ -8,11 +8,9 @@ import pytest
 import rocking as rk
 from rocking.dynamics.impact_laws import SpeedRestitution
 from rocking.errors import InvalidValueError
-from rocking.studies._axes import axes, axis_of
-from rocking.studies.geometry import changed_body, reference_side
-from rocking.studies.motion_axes import Scale
-from rocking.studies.motion_measures import main_period, peak_velocity
-from rocking.studies.plane import Plane
+from rocking.studies.adaptive_grid import Plane
+from rocking.studies.axis import Scale, axes, axis_of, main_period, peak_velocity
+from rocking.studies.variations import changed_body, reference_side
 
 BLOCK = rk.Block(width=0.6, height=2.4, depth=0.5, density=2000.0)
 PULSE = rk.pulses.sine(3.0, 0.6)

@@ -8,11 +8,9 @@ from scipy.optimize import brentq
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.studies._boundary import boundary
 from rocking.studies._overturning_map import overturning_map
-from rocking.studies.contours import chains, crossed_edges, edge_numbers, segments
-from rocking.studies.lattice import Lattice
-from rocking.studies.plane import Plane
+from rocking.studies.adaptive_grid import AdaptiveGrid, Plane
+from rocking.studies.boundaries import boundary, chains, crossed_edges, edge_numbers, segments
 
 BLOCK = rk.Block.from_angle(0.15, 1.0)
 HALF_SINE = rk.pulses.half_sine(1.0, 0.5)
@@ -145,7 +143,7 @@ def test_failed_corners_are_left_out():
     for line in lines:
         assert (line.modes != -3).all()
     plane = Plane.of(BLOCK, HALF_SINE, ("width", [0.1, 2.5]), ("semi_diagonal", [0.2, 1.0]), 0.9, gravity=9.81)
-    lattice = Lattice(plane, 0)
+    lattice = AdaptiveGrid(plane, 0)
     lattice.compute(lattice.base())
     assert -3 in lattice.modes
 

@@ -12,7 +12,7 @@ from rocking.errors import InvalidValueError
 from rocking.motions.pulse import Pulse
 from rocking.restitution import model
 from rocking.studies import Histories, HistoryTable, MotionList, MotionSet, Product, SampledRestitution, histories
-from rocking.studies.motion_set import digest
+from rocking.studies.motion_sets import digest
 
 
 class Sines(MotionSet):

@@ -8,12 +8,12 @@ from rocking.conventions import DEFAULT_FRICTION, percent
 from rocking.dynamics.loss_of_contact import contact_words
 from rocking.dynamics.parameters import cut_words
 from rocking.reports.facts.response import response_facts
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
 from rocking.studies.fragility.cloud_analysis import cloud
-from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
 from rocking.studies.inventory.assessment import assess
 from rocking.studies.inventory.hazard import Hazard
 from rocking.studies.inventory.objects import InventoryObject
-from rocking.studies.inventory.words import sentence
+from rocking.studies.inventory.table import sentence
 
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])
 TIME = np.arange(300) * 0.01
@@ -59,7 +59,7 @@ def test_maps_spectra_and_searches_say_it():
 def test_fragilities_say_it():
     """Stripes and clouds count the histories, in their datasets and in what is printed."""
     for motions, all_lost in ((HEAVY, True), (LIGHT, False)):
-        stripes = multiple_stripes(LEANING, motions, [3.0, 6.0], restitution=0.8)
+        stripes = multiple_stripe_analysis(LEANING, motions, [3.0, 6.0], restitution=0.8)
         assert ("would have to pull" in stripes.summary()["contact"]) is all_lost
         assert bool(stripes.dataset["lost_contact"].any()) is all_lost
         found = cloud(LEANING, motions, restitution=0.8)

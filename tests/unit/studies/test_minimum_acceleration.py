@@ -7,12 +7,14 @@ import pytest
 
 import rocking as rk
 from rocking.errors import InvalidValueError
-from rocking.studies.below import below
-from rocking.studies.crossings import Crossings
-from rocking.studies.minimum_acceleration import minimum_overturning_acceleration, minimum_overturning_accelerations
+from rocking.studies.amplitude_search import Samples, below, suspicious
+from rocking.studies.minimum_acceleration import (
+    Transitions,
+    minimum_overturning_acceleration,
+    minimum_overturning_accelerations,
+)
+from rocking.studies.motion_sets import SyntheticSet
 from rocking.studies.question import FAILED
-from rocking.studies.record_set import SyntheticSet
-from rocking.studies.scan import Samples, suspicious
 
 BLOCK = rk.Block.from_angle(0.2, 1.0)
 SINE = rk.pulses.sine(1.0, 2.0 * math.pi / (3.0 * BLOCK.frequency_parameter))
@@ -25,9 +27,9 @@ def noise(seed=1, samples=800):
 
 
 def made(modes, accelerations, *, starts=False):
-    """Crossings by hand."""
+    """Transitions by hand."""
     a = np.array(accelerations)
-    return Crossings(a, a, a, np.array(modes).reshape(-1, 2), 0.0 * a, 1.0, 9.0, 1.0, 0.01, starts, 1, 0)
+    return Transitions(a, a, a, np.array(modes).reshape(-1, 2), 0.0 * a, 1.0, 9.0, 1.0, 0.01, starts, 1, 0)
 
 
 def test_reading_crossings():
@@ -236,7 +238,7 @@ def test_only_records_are_searched_again():
 
 def test_the_properties_say_that_they_hold_among_the_samples():
     """Minimum and certainty of a search are what was sampled, in the words that every reader of the class sees."""
-    for words, where in ((Crossings.minimum.__doc__, "below"), (Crossings.certain.__doc__, "above")):
+    for words, where in ((Transitions.minimum.__doc__, "below"), (Transitions.certain.__doc__, "above")):
         assert "sampled" in words
         assert f"under a record thinner {'stretches' if where == 'below' else 'gaps'} may lie {where}" in words
 

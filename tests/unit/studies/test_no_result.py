@@ -10,8 +10,8 @@ from rocking.motions.pulses import sine
 from rocking.outcome import Outcome, Status, overturned
 from rocking.plots.falling import falling_picture
 from rocking.plots.rocking_spectrum import rocking_spectrum_picture
-from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
-from rocking.studies.minimum_search import Cases, Effort, searched
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
+from rocking.studies.minimum_acceleration import Cases, Effort, searched
 
 LEANING = rk.Section([rk.Region([(0.0, 0.0), (0.5, 0.0), (0.3, 2.0), (0.1, 2.0)], 2400.0)])
 FALLS, STANDS, NONE = Outcome.OVERTURNED.code, Outcome.ROCKED.code, Outcome.FAILED.code
@@ -48,7 +48,9 @@ def test_fragilities_say_so(body):
     """Of failed histories it is not known whether they rocked or fell; counts, curves and shares leave them out."""
     records = [rk.GroundMotion(np.sin(np.arange(200) * w), 0.01) for w in (0.05, 0.08, 0.11, 0.14, 0.2)]
     levels = [1.0, 4.0, 6.0, 9.0, 14.0]
-    whole, cut = (multiple_stripes(body, records, levels, 0.9, states=(0.5,), **o) for o in ({}, {"most_events": 2}))
+    whole, cut = (
+        multiple_stripe_analysis(body, records, levels, 0.9, states=(0.5,), **o) for o in ({}, {"most_events": 2})
+    )
     failed = cut.responses.outcome == NONE
     assert 0 < failed.sum() == cut.failed < failed.size
     for state in cut.states:

@@ -9,9 +9,7 @@ import rocking as rk
 from rocking.errors import InvalidValueError
 from rocking.quantities import HISTORY
 from rocking.studies._overturning_map import overturning_map
-from rocking.studies.lattice import Lattice
-from rocking.studies.plane import Plane
-from rocking.studies.refined import refined_map
+from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, refined_map
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSE = rk.pulses.sine(3.0, 0.7)
@@ -193,7 +191,7 @@ def test_lattice_points_of_the_axes_are_theirs():
     """Whatever the level, the axes' own values are on the lattice to the last bit."""
     x = np.array([0.1, 0.3, 0.7, 1.9])
     plane = Plane.of(BLOCK, PULSE, ("scale", x), ("semi_diagonal", [0.3, 0.9]), 0.9, gravity=9.81)
-    lattice = Lattice(plane, 3)
+    lattice = AdaptiveGrid(plane, 3)
     found, _ = lattice.coordinates(np.arange(0, lattice.columns, 8), np.zeros(4, dtype=np.int64))
     assert found.tolist() == x.tolist()
 

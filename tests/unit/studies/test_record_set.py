@@ -16,8 +16,7 @@ from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.distributions import Uniform
 from rocking.motions.synthetic.families import families, family
 from rocking.studies.histories import Product
-from rocking.studies.motion_set import MotionList
-from rocking.studies.record_set import SyntheticSet
+from rocking.studies.motion_sets import MotionList, SyntheticSet
 
 
 @pytest.mark.parametrize("name", list(families()))

@@ -158,6 +158,6 @@ def listed_measures() -> list[dict[str, Any]]:
 
 
 def _axes() -> list[dict[str, Any]]:
-    from rocking.studies._axes import axes
+    from rocking.studies.axis import axes
 
     return [{"name": one.name, "unit": one.unit, "words": one.words} for one in axes().values()]

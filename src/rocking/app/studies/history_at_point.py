@@ -24,11 +24,10 @@ from rocking.outcome import Outcome
 from rocking.spec.parts import motions_of
 from rocking.spec.reading import InputFiles
 from rocking.spec.response import ResponseQuestion
-from rocking.studies._axes import axis_of
-from rocking.studies.body_axes import RestitutionAxis
-from rocking.studies.geometry import changed_body
-from rocking.studies.plane import Plane
+from rocking.studies.adaptive_grid import Plane
+from rocking.studies.axis import RestitutionAxis, axis_of
 from rocking.studies.question import Question
+from rocking.studies.variations import changed_body
 
 if TYPE_CHECKING:
     from rocking.spec.document import MotionTable

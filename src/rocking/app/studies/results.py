@@ -12,7 +12,7 @@ from rocking.campaigns import disk
 from rocking.conventions import FloatArray
 from rocking.dynamics.loss_of_contact import contact_words, lost_contact
 from rocking.errors import InvalidValueError
-from rocking.studies.contours import chains, edge_numbers, segments
+from rocking.studies.boundaries import chains, edge_numbers, segments
 from rocking.version import __version__
 
 MODES = {-3: "not computed", -2: "not lifted", -1: "rocks, stays standing", 0: "overturns without impact"}
@@ -304,7 +304,7 @@ def _fine(levels: FloatArray) -> FloatArray:
 
 def _curve_points(found: Any, name: str) -> dict[str, Any]:
     from rocking.plots.fragility import gathered
-    from rocking.studies.sensitivity.differences import share_interval
+    from rocking.studies.sensitivity.changes import share_interval
 
     counted = (np.asarray(part, dtype=np.float64) for part in (found.counts[name], found.trials))
     at, reached, trials = gathered(np.asarray(found.levels, dtype=np.float64), *counted)

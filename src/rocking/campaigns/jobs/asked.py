@@ -12,9 +12,9 @@ from rocking.dynamics.plane.batch import Batch, Rows
 from rocking.dynamics.plane.fast_engine import RESULTS, Arrays
 from rocking.errors import InvalidValueError
 from rocking.studies.histories import Histories, HistoryTable, hash_of
-from rocking.studies.motion_set import MotionList, MotionSet
+from rocking.studies.motion_sets import MotionList, MotionSet
 from rocking.studies.question import Question
-from rocking.studies.sensitivity.sampled import sampled
+from rocking.studies.sensitivity.restitutions import sampled
 
 Compute = Callable[[Histories], Arrays]
 """Computes a round of histories; in a campaign each round is kept, and is not computed again by whoever goes on."""

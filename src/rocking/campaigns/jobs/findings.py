@@ -10,7 +10,7 @@ from rocking.campaigns.jobs.rounds import replayed
 from rocking.errors import InvalidValueError
 
 if TYPE_CHECKING:
-    from rocking.studies.inventory.verdict import Assessment
+    from rocking.studies.inventory.assessment import Assessment
 
 READ = ("outcome", "peak_rotation", "least_force")
 """All that analyses and assessments read of a history: 17 bytes."""
@@ -46,7 +46,7 @@ def analyses(folder: JobFolder) -> dict[str, Any]:
     Returns
     -------
     dict
-        By label of the restitution: what `multiple_stripes`, `cloud` or `incremental` return.
+        By label of the restitution: what `multiple_stripe_analysis`, `cloud` or `incremental_dynamic_analysis` return.
 
     Raises
     ------

@@ -47,7 +47,7 @@ def fragility_model(
 def write_fragility(model: "FragilityModel", path: Path, what: str, provenance: dict[str, Any]) -> None:
     """Write fragility curves into a file."""
     from rocking.studies.fragility import export as files
-    from rocking.studies.fragility.nrml import to_nrml
+    from rocking.studies.fragility.export import to_nrml
 
     suffix = path.suffix.lower()
     if suffix == ".csv":

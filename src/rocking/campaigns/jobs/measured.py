@@ -9,7 +9,7 @@ from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import measure
 from rocking.studies.fragility.measure_comparison import DEFAULT_MEASURES
-from rocking.studies.motion_set import MotionList, MotionSet
+from rocking.studies.motion_sets import MotionList, MotionSet
 
 if TYPE_CHECKING:
     from rocking.spec.document import CampaignDocument

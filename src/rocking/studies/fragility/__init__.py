@@ -12,19 +12,22 @@ if TYPE_CHECKING:
     from rocking.statistics.lognormal import LognormalFit, fit_lognormal
     from rocking.statistics.ordered_probit import OrderedFit, fit_ordered
     from rocking.statistics.separation import Separation
+    from rocking.studies.fragility._incremental_dynamic_analysis import (
+        IncrementalDynamicAnalysis,
+        incremental_dynamic_analysis,
+        incremental_dynamic_plan,
+    )
+    from rocking.studies.fragility._multiple_stripe_analysis import (
+        MultipleStripeAnalysis,
+        multiple_stripe_analysis,
+        multiple_stripe_plan,
+    )
+    from rocking.studies.fragility._overturning_intervals import OverturningInterval
     from rocking.studies.fragility.cloud_analysis import CloudAnalysis, cloud, cloud_plan
     from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, model_of
-    from rocking.studies.fragility.export import fema_p58_table, to_csv, to_excel, to_mat, to_netcdf
-    from rocking.studies.fragility.incremental_dynamic_analysis import (
-        IncrementalAnalysis,
-        incremental,
-        incremental_plan,
-    )
+    from rocking.studies.fragility.export import fema_p58_table, to_csv, to_excel, to_mat, to_netcdf, to_nrml
     from rocking.studies.fragility.measure_comparison import MeasureComparison, MeasureScore, compare_measures
-    from rocking.studies.fragility.multiple_stripe_analysis import StripeAnalysis, multiple_stripes, stripes_plan
-    from rocking.studies.fragility.nrml import to_nrml
-    from rocking.studies.fragility.overturning_intervals import OverturningInterval
-    from rocking.studies.fragility.states import LimitState, limit_states
+    from rocking.studies.fragility.subject import LimitState, limit_states
 
 __all__ = [
     "BootstrapSample",
@@ -34,17 +37,17 @@ __all__ = [
     "FragilityCurve",
     "FragilityModel",
     "Goodness",
-    "IncrementalAnalysis",
+    "IncrementalDynamicAnalysis",
     "IntensityMeasure",
     "LimitState",
     "LognormalFit",
     "MeasureComparison",
     "MeasureScore",
+    "MultipleStripeAnalysis",
     "OrderedFit",
     "OverturningInterval",
     "Separation",
     "StateCounts",
-    "StripeAnalysis",
     "cloud",
     "cloud_plan",
     "compare_measures",
@@ -53,15 +56,15 @@ __all__ = [
     "fema_p58_table",
     "fit_lognormal",
     "fit_ordered",
-    "incremental",
-    "incremental_plan",
+    "incremental_dynamic_analysis",
+    "incremental_dynamic_plan",
     "limit_states",
     "measure",
     "measures",
     "model_of",
-    "multiple_stripes",
+    "multiple_stripe_analysis",
+    "multiple_stripe_plan",
     "spectral_measure",
-    "stripes_plan",
     "to_csv",
     "to_excel",
     "to_mat",
@@ -79,17 +82,17 @@ __getattr__, __dir__ = exports(
         "FragilityCurve": "rocking.studies.fragility.curves",
         "FragilityModel": "rocking.studies.fragility.curves",
         "Goodness": "rocking.statistics.goodness",
-        "IncrementalAnalysis": "rocking.studies.fragility.incremental_dynamic_analysis",
+        "IncrementalDynamicAnalysis": "rocking.studies.fragility._incremental_dynamic_analysis",
         "IntensityMeasure": "rocking.motions.intensity",
-        "LimitState": "rocking.studies.fragility.states",
+        "LimitState": "rocking.studies.fragility.subject",
         "LognormalFit": "rocking.statistics.lognormal",
         "MeasureComparison": "rocking.studies.fragility.measure_comparison",
         "MeasureScore": "rocking.studies.fragility.measure_comparison",
         "OrderedFit": "rocking.statistics.ordered_probit",
-        "OverturningInterval": "rocking.studies.fragility.overturning_intervals",
+        "OverturningInterval": "rocking.studies.fragility._overturning_intervals",
         "Separation": "rocking.statistics.separation",
         "StateCounts": "rocking.statistics.counts",
-        "StripeAnalysis": "rocking.studies.fragility.multiple_stripe_analysis",
+        "MultipleStripeAnalysis": "rocking.studies.fragility._multiple_stripe_analysis",
         "cloud": "rocking.studies.fragility.cloud_analysis",
         "cloud_plan": "rocking.studies.fragility.cloud_analysis",
         "compare_measures": "rocking.studies.fragility.measure_comparison",
@@ -98,19 +101,19 @@ __getattr__, __dir__ = exports(
         "fema_p58_table": "rocking.studies.fragility.export",
         "fit_lognormal": "rocking.statistics.lognormal",
         "fit_ordered": "rocking.statistics.ordered_probit",
-        "incremental": "rocking.studies.fragility.incremental_dynamic_analysis",
-        "incremental_plan": "rocking.studies.fragility.incremental_dynamic_analysis",
-        "limit_states": "rocking.studies.fragility.states",
+        "incremental_dynamic_analysis": "rocking.studies.fragility._incremental_dynamic_analysis",
+        "incremental_dynamic_plan": "rocking.studies.fragility._incremental_dynamic_analysis",
+        "limit_states": "rocking.studies.fragility.subject",
         "measure": "rocking.motions.intensity",
         "measures": "rocking.motions.intensity",
         "model_of": "rocking.studies.fragility.curves",
-        "multiple_stripes": "rocking.studies.fragility.multiple_stripe_analysis",
+        "multiple_stripe_analysis": "rocking.studies.fragility._multiple_stripe_analysis",
         "spectral_measure": "rocking.motions.intensity",
-        "stripes_plan": "rocking.studies.fragility.multiple_stripe_analysis",
+        "multiple_stripe_plan": "rocking.studies.fragility._multiple_stripe_analysis",
         "to_csv": "rocking.studies.fragility.export",
         "to_excel": "rocking.studies.fragility.export",
         "to_mat": "rocking.studies.fragility.export",
         "to_netcdf": "rocking.studies.fragility.export",
-        "to_nrml": "rocking.studies.fragility.nrml",
+        "to_nrml": "rocking.studies.fragility.export",
     },
 )

@@ -15,8 +15,18 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError, extra
 from rocking.statistics.least_squares import Regression, regression
 from rocking.statistics.lognormal import LognormalFit, fit_lognormal
-from rocking.studies.fragility.states import LimitState, Responses, UpliftCheck, fits_of, limit_states, uplift_check
-from rocking.studies.fragility.subject import Motions, Progress, Subject, results_of
+from rocking.studies.fragility.subject import (
+    LimitState,
+    Motions,
+    Progress,
+    Responses,
+    Subject,
+    UpliftCheck,
+    fits_of,
+    limit_states,
+    results_of,
+    uplift_check,
+)
 from rocking.studies.histories import Product
 
 if TYPE_CHECKING:

@@ -198,7 +198,7 @@ def model_of(
 
     Parameters
     ----------
-    analysis : StripeAnalysis, CloudAnalysis or IncrementalAnalysis
+    analysis : MultipleStripeAnalysis, CloudAnalysis or IncrementalDynamicAnalysis
         The analysis.
     name : str
         Name of the body, as in an inventory.

@@ -14,8 +14,7 @@ from rocking.motions.intensity import measure
 from rocking.statistics.least_squares import Regression, regression
 from rocking.studies.fragility.cloud_analysis import LEAST, CloudAnalysis, checked_least, clearly_lifted
 from rocking.studies.fragility.curves import curve_of
-from rocking.studies.fragility.states import fits_of
-from rocking.studies.fragility.subject import Progress, check_progress
+from rocking.studies.fragility.subject import Progress, check_progress, fits_of
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -12,7 +12,7 @@ from rocking.motions.intensity import peak_ground_acceleration, peak_ground_velo
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.scaling import scaled_to
 from rocking.motions.synthetic.family import Family, whole
-from rocking.studies.record_set import SyntheticSet
+from rocking.studies.motion_sets import SyntheticSet
 
 VELOCITY_UNITS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001}
 """Units of a peak ground velocity [m/s]."""
@@ -27,7 +27,7 @@ _LEVEL = re.compile(r"((?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(
 
 
 @dataclass(frozen=True)
-class Level:
+class IntensityLevel:
     """Peak ground acceleration or velocity to which motions are scaled.
 
     Parameters
@@ -44,7 +44,7 @@ class Level:
 
     Examples
     --------
-    >>> Level.of("PGA", "0.3g").value, str(Level.of("PGV", "25 cm/s"))
+    >>> IntensityLevel.of("PGA", "0.3g").value, str(IntensityLevel.of("PGV", "25 cm/s"))
     (2.941995, 'PGV 0.25 m/s')
     """
 
@@ -66,7 +66,7 @@ class Level:
         return f"PGA {self.value / g:.4g} g"
 
     @classmethod
-    def of(cls, kind: str, words: str) -> "Level":
+    def of(cls, kind: str, words: str) -> "IntensityLevel":
         """Return a level from a number with its unit.
 
         Parameters
@@ -78,7 +78,7 @@ class Level:
 
         Returns
         -------
-        Level
+        IntensityLevel
             The level.
 
         Raises
@@ -107,7 +107,7 @@ class Hazard:
     ----------
     motions : tuple of GroundMotion
         The motions, scaled.
-    level : Level or None
+    level : IntensityLevel or None
         To what they are scaled; None for records as they are.
     source : str
         Where they come from, in words.
@@ -116,13 +116,13 @@ class Hazard:
 
     Examples
     --------
-    >>> hazard = Hazard.of_family("point-source", Level.of("PGA", "0.3g"), count=3, seed=1)
+    >>> hazard = Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=3, seed=1)
     >>> [round(motion.peak, 6) for motion in hazard.motions]
     [2.941995, 2.941995, 2.941995]
     """
 
     motions: tuple[GroundMotion, ...]
-    level: Level | None
+    level: IntensityLevel | None
     source: str
     description: dict[str, Any]
 
@@ -130,7 +130,7 @@ class Hazard:
     def of_family(
         cls,
         which: str | Family,
-        level: Level,
+        level: IntensityLevel,
         *,
         count: int = COUNT,
         seed: int = SEED,
@@ -142,7 +142,7 @@ class Hazard:
         ----------
         which : str or Family
             The family.
-        level : Level
+        level : IntensityLevel
             To what each motion is scaled; the families do not say how strong the shaking is.
         count : int
             How many motions [-].
@@ -168,14 +168,14 @@ class Hazard:
         return cls(tuple(made), level, words, motions.description())
 
     @classmethod
-    def of_records(cls, records: Sequence[GroundMotion], level: Level | None = None) -> "Hazard":
+    def of_records(cls, records: Sequence[GroundMotion], level: IntensityLevel | None = None) -> "Hazard":
         """Return records, scaled if a level is given.
 
         Parameters
         ----------
         records : sequence of GroundMotion
             The records.
-        level : Level, optional
+        level : IntensityLevel, optional
             To what each is scaled, with its vertical component; as they are if not given.
 
         Returns
@@ -245,7 +245,7 @@ class Hazard:
         return min(found), max(found)
 
 
-def _scaled(record: GroundMotion, level: Level | None) -> GroundMotion:
+def _scaled(record: GroundMotion, level: IntensityLevel | None) -> GroundMotion:
     if level is None:
         return record
     try:

@@ -1,15 +1,14 @@
 """How the choice of a restitution changes a study: maps, spectra and fragility, with the verdicts that flip."""
 
-from rocking.studies.sensitivity.compare import (
+from rocking.studies.sensitivity.changes import Change, CurveChange, Flips
+from rocking.studies.sensitivity.comparison import (
+    Sensitivity,
     fragility_sensitivity,
     map_sensitivity,
     sensitivity,
     spectrum_sensitivity,
 )
-from rocking.studies.sensitivity.comparison import Sensitivity
-from rocking.studies.sensitivity.curves import Change, CurveChange
-from rocking.studies.sensitivity.differences import Flips
-from rocking.studies.sensitivity.sampled import SampledHistories, SampledRestitution
+from rocking.studies.sensitivity.restitutions import SampledHistories, SampledRestitution
 
 __all__ = [
     "Change",

@@ -18,7 +18,7 @@ from rocking.motions.formats import write_motion
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulses import catalogue, pulse
 from rocking.outcome import Outcome
-from rocking.studies._axes import axes
+from rocking.studies.axis import axes
 
 Tables = dict[str, Any]
 

@@ -14,8 +14,8 @@ from rocking.app.studies.opened import OpenStudies, OpenStudy
 from rocking.app.studies.results import contours_of, plain, result_of
 from rocking.studies._overturning_map import overturning_map
 from rocking.studies._rocking_spectrum import rocking_spectrum
-from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
-from rocking.studies.record_set import SyntheticSet
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
+from rocking.studies.motion_sets import SyntheticSet
 
 Tables = dict[str, Any]
 BLOCK = rk.Block(width=0.5, height=2.0)
@@ -115,7 +115,7 @@ def test_fragility_is_that_of_python(computed: Callable[[Tables], OpenStudy], ma
         motions={"synthetic": "pulse-like", "count": 20, "seed": 7}, restitution={"model": "ked"},
     )  # fmt: skip
     told = _json(computed(job))
-    found = multiple_stripes(BLOCK, SyntheticSet("pulse-like", 20, 7), levels, "ked", states=(0.5,))
+    found = multiple_stripe_analysis(BLOCK, SyntheticSet("pulse-like", 20, 7), levels, "ked", states=(0.5,))
     (mine,) = told["analyses"]
     for name, fit in found.fits.items():
         assert mine["fits"][name]["median"] == fit.median

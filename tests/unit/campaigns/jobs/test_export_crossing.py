@@ -5,8 +5,7 @@ import pytest
 from rocking.campaigns.jobs import Job, JobFolder, analyses, export
 from rocking.errors import InvalidValueError
 from rocking.studies.fragility.curves import model_of
-from rocking.studies.fragility.export import to_csv
-from rocking.studies.fragility.nrml import to_nrml
+from rocking.studies.fragility.export import to_csv, to_nrml
 
 NAME = "a small stripes"
 TOLD = '[export]\ncrossing = "common-dispersion"\n'

@@ -7,7 +7,7 @@ from rocking.campaigns import CampaignDamagedError, CampaignIncompleteError
 from rocking.campaigns.jobs import Job, JobFolder, assessment, export
 from rocking.errors import InvalidValueError
 from rocking.motions.formats.reader import read_motion
-from rocking.studies.inventory import Hazard, Level, Thresholds, assess, read_inventory
+from rocking.studies.inventory import Hazard, IntensityLevel, Thresholds, assess, read_inventory
 from rocking.studies.inventory.table import as_plain
 
 OBJECTS = """name,width_cm,depth_cm,height_cm,centre_of_mass_height_cm,note
@@ -63,7 +63,7 @@ def test_campaign_is_assess(job, tmp_path, chunk, how):
     path = job(chunk)
     folder = JobFolder.create(tmp_path / "c", Job.read(path))
     folder.run(**how)
-    hazard = Hazard.of_family("firm-ground", Level.of("PGA", "0.3g"), count=12, seed=4)
+    hazard = Hazard.of_family("firm-ground", IntensityLevel.of("PGA", "0.3g"), count=12, seed=4)
     found = as_plain(assessment(folder))
     assert found == wanted_of(path, hazard)
     assert (len(found["objects"]), len(found["not_assessed"])) == (3, 1)
@@ -79,7 +79,7 @@ def test_records_thresholds_and_gravity(job, records, tmp_path):
     folder.run(workers=1)
     motions = [read_motion(records / f"{name}.txt", units="m/s2") for name in ("one", "two")]
     options = {"restitution": 0.9, "thresholds": Thresholds(rocking=0.1, overturning_red=0.5), "gravity": 3.7}
-    wanted = wanted_of(path, Hazard.of_records(motions, Level.of("PGA", "0.1g")), **options)
+    wanted = wanted_of(path, Hazard.of_records(motions, IntensityLevel.of("PGA", "0.1g")), **options)
     assert as_plain(assessment(folder)) == wanted
     unscaled = JobFolder.create(
         tmp_path / "d", Job.of_text(path.read_text().replace('pga = "0.1g"\n', ""), folder=tmp_path)
@@ -167,7 +167,7 @@ def test_gravity_reaches_the_equations():
     from rocking.studies.inventory import InventoryObject
 
     vase = InventoryObject(name="vase", width=0.2, depth=0.2, height=1.0)
-    hazard = Hazard.of_family("firm-ground", Level.of("PGA", "0.3g"), count=5, seed=1)
+    hazard = Hazard.of_family("firm-ground", IntensityLevel.of("PGA", "0.3g"), count=5, seed=1)
     lifted = {g: assess([vase], hazard, gravity=g).verdicts[0].worse.lifted for g in (9.80665, 98.0665)}
     assert lifted == {9.80665: 5, 98.0665: 0}
     heavy = assess([vase], hazard, gravity=98.0665).verdicts[0].worse

@@ -10,9 +10,9 @@ from rocking.campaigns.jobs import Job, analyses, export
 from rocking.campaigns.jobs.kinds import KINDS
 from rocking.errors import InvalidValueError
 from rocking.studies import SyntheticSet, overturning_map, rocking_spectrum
+from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_analysis
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
 from rocking.studies.fragility.cloud_analysis import cloud
-from rocking.studies.fragility.incremental_dynamic_analysis import incremental
-from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
 from rocking.studies.sensitivity import SampledRestitution
 
 xr = pytest.importorskip("xarray")
@@ -110,7 +110,7 @@ def test_product_is_simulate_many(finished, tmp_path):
 def test_stripes_are_multiple_stripes(finished, tmp_path):
     """Stripes of synthetic motions: outcomes, counts, curves and summary of the one call."""
     motions = SyntheticSet("pulse-like", 12, 4)
-    wanted = multiple_stripes(BLOCK, motions, np.linspace(2, 10, 5), states=(0.3,))
+    wanted = multiple_stripe_analysis(BLOCK, motions, np.linspace(2, 10, 5), states=(0.3,))
     folder = finished("stripes", 9)
     found = analyses(folder)["ked"]
     assert np.array_equal(found.responses.rotation, wanted.responses.rotation, equal_nan=True)
@@ -123,7 +123,7 @@ def test_stripes_are_multiple_stripes(finished, tmp_path):
 
 def test_incremental_is_incremental(finished):
     """Incremental: the same intervals to the last bit, searched after the campaign."""
-    wanted = incremental(BLOCK, PULSES, [2.0, 4.0, 6.0, 9.0], 0.9, states=())
+    wanted = incremental_dynamic_analysis(BLOCK, PULSES, [2.0, 4.0, 6.0, 9.0], 0.9, states=())
     found = analyses(finished("incremental", 5))["0.9"]
     assert found.intervals == wanted.intervals
     assert len(found.intervals) >= 3
@@ -145,7 +145,9 @@ def test_fragility_of_several_restitutions(finished, text):
     folder = finished("stripes", 9, text("stripes", 9) + '[restitution]\nmodels = ["ked", "housner"]\n')
     found = analyses(folder)
     for label in ("ked", "housner"):
-        wanted = multiple_stripes(BLOCK, SyntheticSet("pulse-like", 12, 4), np.linspace(2, 10, 5), label, states=(0.3,))
+        wanted = multiple_stripe_analysis(
+            BLOCK, SyntheticSet("pulse-like", 12, 4), np.linspace(2, 10, 5), label, states=(0.3,)
+        )
         assert np.array_equal(found[label].responses.rotation, wanted.responses.rotation, equal_nan=True)
     assert not np.array_equal(found["ked"].responses.rotation, found["housner"].responses.rotation)
 

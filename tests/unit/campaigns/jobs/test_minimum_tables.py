@@ -8,18 +8,17 @@ import pytest
 from rocking import conventions
 from rocking.campaigns.jobs import Job, JobFolder, answer
 from rocking.campaigns.jobs.kinds.minimum_tables import tables_of
-from rocking.studies.crossings import Crossings
-from rocking.studies.minimum_search import Cases, Effort
-from rocking.studies.record_set import SyntheticSet
+from rocking.studies.minimum_acceleration import Cases, Effort, Transitions
+from rocking.studies.motion_sets import SyntheticSet
 
 NAMES = {"motion": ["north", "south"], "restitution": ["0.9"]}
 EFFORT = Effort(points=7, levels=0, tolerance=0.01)
-ISLAND = Crossings(
+ISLAND = Transitions(
     acceleration=np.array([4.0, 5.0, 6.0]), ratio=np.array([1.6, 2.0, 2.4]), scale=np.array([0.8, 1.0, 1.2]),
     modes=np.array([[-1, 2], [3, -1], [-1, 0]]), width=np.array([0.01, 0.02, 0.03]), lowest=2.5, highest=30.0,
     uplift_acceleration=2.5, resolution=0.51, starts_overturned=False, samples=19, failed=1, resolution_below=0.04,
 )  # fmt: skip
-STARTS = Crossings(
+STARTS = Transitions(
     acceleration=np.array([9.0]), ratio=np.array([3.0]), scale=np.array([1.8]), modes=np.array([[1, -1]]),
     width=np.array([0.05]), lowest=3.5, highest=31.0, uplift_acceleration=3.0, resolution=0.44,
     starts_overturned=True, samples=12, failed=0,

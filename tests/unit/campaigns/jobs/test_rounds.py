@@ -23,7 +23,7 @@ from rocking.dynamics.impact_laws import RandomRestitution
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.studies import boundary, minimum_overturning_accelerations, overturning_map
-from rocking.studies.record_set import SyntheticSet
+from rocking.studies.motion_sets import SyntheticSet
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("h5netcdf")

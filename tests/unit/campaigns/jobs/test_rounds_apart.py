@@ -22,7 +22,7 @@ from rocking.campaigns.executors import Serial
 from rocking.campaigns.identity import Identity
 from rocking.campaigns.jobs import Job, JobFolder, answer, export, forecast, rounds, status_of, verified
 from rocking.errors import InvalidValueError
-from rocking.studies.lattice import absent, merged
+from rocking.studies.adaptive_grid import absent, merged
 
 MAP = """[campaign]
 name = "a map"

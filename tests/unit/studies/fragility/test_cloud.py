@@ -15,7 +15,7 @@ from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
 from rocking.statistics.least_squares import regression
 from rocking.studies.fragility.cloud_analysis import ClearShare, cloud, cloud_plan
-from rocking.studies.fragility.states import Responses
+from rocking.studies.fragility.subject import Responses
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 

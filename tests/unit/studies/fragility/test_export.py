@@ -12,18 +12,20 @@ from scipy.io import loadmat
 
 import rocking as rk
 from rocking.errors import InvalidValueError, MissingExtraError, extra
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_analysis
 from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, model_of
 from rocking.studies.fragility.export import (
     fema_p58_table,
+    intensity_type,
+    moments_of_lognormal,
     table,
     to_csv,
     to_excel,
     to_mat,
     to_netcdf,
+    to_nrml,
     with_added_dispersion,
 )
-from rocking.studies.fragility.multiple_stripe_analysis import multiple_stripes
-from rocking.studies.fragility.nrml import intensity_type, moments_of_lognormal, to_nrml
 from rocking.tables import safe_cell
 
 CURVES = FragilityCurve("rotation > 0.5 alpha", 3.1, 0.25), FragilityCurve("overturned", 4.7, 0.4)
@@ -214,7 +216,7 @@ def test_moments_against_integrals():
 def test_models_of_analyses():
     """An analysis becomes curves with its counts; states without a curve are named; none at all is refused."""
     pulses = [rk.pulses.sine(1.0, period) for period in np.linspace(0.3, 0.8, 20)]
-    found = multiple_stripes(rk.Block(width=0.4, height=1.6), pulses, [3.0, 4.0, 5.0, 6.0], restitution=0.9)
+    found = multiple_stripe_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 4.0, 5.0, 6.0], restitution=0.9)
     made = model_of(found, "block", "pulses")
     assert [c.state for c in made.curves] == ["rotation > 0.5 alpha", "overturned"]
     assert made.curves[1].median == found.fits["overturned"].median
@@ -223,7 +225,7 @@ def test_models_of_analyses():
     )
     assert made.reached["rocking"].tolist() == [20] * 4
     assert made.uplift_threshold == found.uplift.threshold
-    none = multiple_stripes(rk.Block(width=0.4, height=1.6), pulses, [0.5, 1.0])
+    none = multiple_stripe_analysis(rk.Block(width=0.4, height=1.6), pulses, [0.5, 1.0])
     with pytest.raises(InvalidValueError, match="nothing to export"):
         model_of(none, "block")
 

@@ -11,8 +11,15 @@ from rocking.errors import InvalidValueError
 from rocking.statistics.lognormal import fit_lognormal
 from rocking.statistics.ordered_probit import fit_ordered
 from rocking.studies.fragility.curves import FragilityCurve, FragilityModel, curve_of, largest_excess
-from rocking.studies.fragility.export import fema_p58_table, table, to_csv, to_excel, to_mat
-from rocking.studies.fragility.nrml import moments_of_lognormal, to_nrml
+from rocking.studies.fragility.export import (
+    fema_p58_table,
+    moments_of_lognormal,
+    table,
+    to_csv,
+    to_excel,
+    to_mat,
+    to_nrml,
+)
 
 TAG = "{http://openquake.org/xmlns/nrml/0.5}"
 CROSSED = FragilityCurve("rotation > 0.5 alpha", 3.1, 0.2), FragilityCurve("overturned", 3.4, 0.8)

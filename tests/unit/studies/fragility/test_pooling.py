@@ -9,10 +9,10 @@ import rocking as rk
 from rocking.motions.intensity import IntensityMeasure
 from rocking.outcome import Outcome
 from rocking.statistics.counts import count_outcomes, pooled
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_plan
 from rocking.studies.fragility.cloud_analysis import cloud_plan
 from rocking.studies.fragility.curves import model_of
-from rocking.studies.fragility.multiple_stripe_analysis import stripes_plan
-from rocking.studies.motion_set import MotionSet
+from rocking.studies.motion_sets import MotionSet
 
 LEVELS = np.array([1.0, 2.0, 3.5, 5.0])
 
@@ -114,7 +114,7 @@ def peak_of(kind, count):
     body, motions = rk.Block(width=0.4, height=1.6), Pulses(count // (8 if kind == "stripes" else 1))
     grid = np.linspace(2.0, 9.0, 8)
     if kind == "stripes":
-        _, finish = stripes_plan(body, motions, grid, measure="pgv")
+        _, finish = multiple_stripe_plan(body, motions, grid, measure="pgv")
         level = np.broadcast_to(grid, (len(motions), 8))
     else:
         _, finish = cloud_plan(body, motions, measure="pgv")

@@ -8,7 +8,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics.parameters import RockingParameters, RockingSide
 from rocking.errors import InvalidValueError
-from rocking.studies.fragility.states import Responses, limit_states
+from rocking.studies.fragility.subject import Responses, limit_states
 
 SIDES = RockingSide(0.2, 2.0, 1.0, 0.9), RockingSide(0.4, 2.0, 1.0, 0.9)
 ROCKER = RockingParameters(*SIDES, None, "")  # type: ignore[arg-type]

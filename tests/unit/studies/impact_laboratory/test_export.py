@@ -9,11 +9,14 @@ import xarray as xr
 
 from rocking.errors import InvalidValueError
 from rocking.restitution.bed import fast
-from rocking.studies.impact_laboratory.beds import Laboratory
-from rocking.studies.impact_laboratory.dependence import slenderness_study, velocity_study
-from rocking.studies.impact_laboratory.large_bodies import large_bodies_study
-from rocking.studies.impact_laboratory.profiles import profile_study
-from rocking.studies.impact_laboratory.result import LaboratoryStudy
+from rocking.studies.impact_laboratory import (
+    Laboratory,
+    LaboratoryStudy,
+    large_bodies_study,
+    profile_study,
+    slenderness_study,
+    velocity_study,
+)
 
 pytestmark = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
 

@@ -9,21 +9,26 @@ import rocking as rk
 from rocking.bodies import Block
 from rocking.errors import InvalidValueError
 from rocking.restitution.bed import fast
-from rocking.studies.impact_laboratory.beds import Laboratory, coefficients
-from rocking.studies.impact_laboratory.convergence import points_convergence, step_convergence
-from rocking.studies.impact_laboratory.dependence import (
+from rocking.studies.impact_laboratory import (
+    SHAPES,
+    Laboratory,
+    bed_speed_law,
+    coefficients,
     damping_study,
     friction_study,
+    large_bodies_study,
     mass_study,
     modulus_study,
+    points_convergence,
     points_study,
+    profile,
+    profile_study,
+    random_profiles,
     size_study,
     slenderness_study,
+    step_convergence,
     velocity_study,
 )
-from rocking.studies.impact_laboratory.large_bodies import large_bodies_study
-from rocking.studies.impact_laboratory.profiles import SHAPES, profile, profile_study, random_profiles
-from rocking.studies.impact_laboratory.speed_law import bed_speed_law
 
 pytestmark = pytest.mark.skipif(not fast.available(), reason="the bed's fast engine was not built")
 

@@ -7,9 +7,7 @@ import pytest
 
 from rocking.errors import InvalidValueError
 from rocking.restitution.bed import fast
-from rocking.studies.impact_laboratory.beds import Laboratory
-from rocking.studies.impact_laboratory.dependence import points_study
-from rocking.studies.impact_laboratory.profiles import profile, profile_study, random_profiles
+from rocking.studies.impact_laboratory import Laboratory, points_study, profile, profile_study, random_profiles
 
 
 @pytest.mark.parametrize(

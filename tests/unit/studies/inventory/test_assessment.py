@@ -14,9 +14,9 @@ from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.motions.motion import GroundMotion
 from rocking.outcome import Outcome
 from rocking.studies.inventory import assessment as module
-from rocking.studies.inventory import words
+from rocking.studies.inventory import table
 from rocking.studies.inventory.assessment import assess
-from rocking.studies.inventory.hazard import Hazard, Level
+from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Light, Thresholds
 from rocking.studies.inventory.objects import InventoryObject
 from rocking.studies.inventory.reading import parse_inventory
@@ -40,7 +40,7 @@ def rectangle(duration, acceleration=0.5 * G):
 @pytest.fixture(scope="module")
 def quakes():
     """Synthetic motions at PGA 0.3 g."""
-    return Hazard.of_family("point-source", Level.of("PGA", "0.3g"), count=60, seed=3)
+    return Hazard.of_family("point-source", IntensityLevel.of("PGA", "0.3g"), count=60, seed=3)
 
 
 def test_counts_by_hand():
@@ -55,11 +55,11 @@ def test_counts_by_hand():
     assert (verdict.light, wide.overturned_share) == (Light.RED, 0.3)
     # Clopper & Pearson for 3 of 10, as tables print it
     assert verdict.interval == pytest.approx((0.0667, 0.6525), abs=5e-5)
-    assert words.sentence(verdict, found) == (
+    assert table.sentence(verdict, found) == (
         "Stays still up to 0.25 g; at PGA 0.5 g it rocks, and fell over in 3 of 10 records."
     )
     # b / h = a / g along the width needs a base of 0.5 m * 2
-    assert "its width is 50 cm, and 100 cm would not be lifted" in words.advice(verdict, found)
+    assert "its width is 50 cm, and 100 cm would not be lifted" in table.advice(verdict, found)
 
 
 @pytest.mark.parametrize("way", ["width", "depth"])
@@ -68,7 +68,7 @@ def test_uplift_is_sharp(way):
     limit = COLUMN.uplift_acceleration(way)
     shape = np.sin(np.linspace(0.0, 6.0 * np.pi, 601))
     for factor, lifted in ((1.0 - 1e-6, 0), (1.0 + 1e-6, 1)):
-        hazard = Hazard.of_records([GroundMotion(shape, 0.01)], Level("PGA", factor * limit))
+        hazard = Hazard.of_records([GroundMotion(shape, 0.01)], IntensityLevel("PGA", factor * limit))
         (verdict,) = assess([COLUMN], hazard).verdicts
         assert {each.direction: each.lifted for each in verdict.results}[way] == lifted
     assert limit == pytest.approx(G * {"width": 0.25, "depth": 0.5}[way], rel=1e-14)
@@ -79,15 +79,15 @@ def test_what_is_never_lifted_is_green():
     hazard = Hazard.of_records([rectangle(1.0, 0.24 * G)])
     (verdict,) = (found := assess([COLUMN], hazard)).verdicts
     assert (verdict.light, verdict.worse.lifted, verdict.worse.high_rotation) == (Light.GREEN, 0, 0.0)
-    assert words.sentence(verdict, found).endswith("at PGA 0.24 g it stood still in the one record.")
-    assert words.advice(verdict, found).startswith("Nothing to do")
+    assert table.sentence(verdict, found).endswith("at PGA 0.24 g it stood still in the one record.")
+    assert table.advice(verdict, found).startswith("Nothing to do")
 
 
 def test_share_lifted_grows_with_the_level(quakes):
     """At every PGV the share lifted is the share of motions whose PGA passes g b / h, which cannot fall with PGV."""
     shares = []
     for level in (0.1, 0.2, 0.3, 0.6):
-        hazard = Hazard.of_family("point-source", Level("PGV", level), count=30, seed=1)
+        hazard = Hazard.of_family("point-source", IntensityLevel("PGV", level), count=30, seed=1)
         (verdict,) = assess([COLUMN], hazard).verdicts
         for each in verdict.results:
             assert each.lifted == sum(motion.peak > each.uplift_acceleration for motion in hazard.motions)
@@ -138,9 +138,9 @@ def test_model_of_impact_is_flagged(quakes):
     flagged = [each for each in found.verdicts if each.model_decides]
     assert flagged
     for verdict in found.verdicts:
-        note = words.model_note(verdict, found)
+        note = table.model_note(verdict, found)
         assert bool(note) == (verdict.light is not verdict.worse_compared.light)
-    assert words.model_note(flagged[0], found).startswith("The model of impact decides: housner shows")
+    assert table.model_note(flagged[0], found).startswith("The model of impact decides: housner shows")
     assert assess(items[:1], quakes, restitution="housner").comparison == "ked"
 
 
@@ -160,7 +160,7 @@ def test_failed_motions_are_said_and_forbid_green(monkeypatch, quakes):
     found = assess([chest, COLUMN], quakes)
     (verdict,) = found.verdicts
     assert (verdict.light, verdict.worse.failed, verdict.worse.count) == (Light.AMBER, 1, 59)
-    assert "1 of 60 motions could not be computed" in words.sentence(verdict, found)
+    assert "1 of 60 motions could not be computed" in table.sentence(verdict, found)
     assert "no motion could be computed" in found.not_assessed[0].reason
     json.dumps(as_plain(found), allow_nan=False)
 
@@ -234,7 +234,7 @@ def test_the_range_of_velocities_is_not_overwritten(quakes):
     # a running sum instead of trapezoids
     assert plain["pgv_range_m_s"] == pytest.approx([min(own), max(own)], rel=0.05)
     assert (plain["pga_m_s2"], plain["pgv_m_s"]) == (pytest.approx(0.3 * G), None)
-    scaled = Hazard.of_family("point-source", Level.of("PGV", "15cm/s"), count=3, seed=1)
+    scaled = Hazard.of_family("point-source", IntensityLevel.of("PGV", "15cm/s"), count=3, seed=1)
     plain = as_plain(assess([COLUMN], scaled))["hazard"]
     assert plain["pgv_m_s"] == 0.15
     assert plain["pgv_range_m_s"] == pytest.approx([0.15, 0.15], rel=1e-9)
@@ -244,7 +244,7 @@ def test_advice_does_not_call_a_base_a_width(quakes):
     """Where the base is narrower than the body, it is the base that is 8 cm; where it is not, the width is."""
     objects = [InventoryObject(name="urn", width=0.3, depth=0.4, height=1.0, base_width=0.08, base_depth=0.3)]
     objects.append(InventoryObject(name="stele", width=0.08, depth=0.4, height=1.0))
-    told = {v.item.name: words.advice(v, found) for found in [assess(objects, quakes)] for v in found.verdicts}
+    told = {v.item.name: table.advice(v, found) for found in [assess(objects, quakes)] for v in found.verdicts}
     assert "its base is 8 cm along the width, and " in told["urn"]
     assert "its width is 8 cm, and " in told["stele"]
 

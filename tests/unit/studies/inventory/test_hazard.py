@@ -7,7 +7,7 @@ import pytest
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
-from rocking.studies.inventory.hazard import Hazard, Level
+from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 
 G = 9.80665
 RECORDS = [GroundMotion([0.0, 1.0, -2.0, 0.0], 0.1, name="one"), GroundMotion([0.0, 3.0, 0.0], 0.1, [0.0, 1.0, 0.0])]
@@ -28,7 +28,7 @@ RECORDS = [GroundMotion([0.0, 1.0, -2.0, 0.0], 0.1, name="one"), GroundMotion([0
 )
 def test_level_from_words(kind, words, value):
     """A number with its unit, in SI units inside."""
-    assert Level.of(kind, words).value == pytest.approx(value, rel=1e-14)
+    assert IntensityLevel.of(kind, words).value == pytest.approx(value, rel=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -39,16 +39,16 @@ def test_level_from_words(kind, words, value):
 def test_level_refused(kind, words):
     """Without a unit, of the wrong kind, or beyond any earthquake: refused, not guessed."""
     with pytest.raises(InvalidValueError, match=r"PGA|PGV"):
-        Level.of(kind, words)
+        IntensityLevel.of(kind, words)
 
 
 def test_records_are_scaled_to_the_level():
     """Each record has the level, the vertical part goes along; without a level they are as they are."""
-    scaled = Hazard.of_records(RECORDS, Level("PGA", 4.0))
+    scaled = Hazard.of_records(RECORDS, IntensityLevel("PGA", 4.0))
     assert [motion.peak for motion in scaled.motions] == pytest.approx([4.0, 4.0], rel=1e-14)
     assert scaled.motions[1].vertical.max() == pytest.approx(4.0 / 3.0, rel=1e-14)
     assert (scaled.vertical, scaled.synthetic, scaled.peak()) == (True, False, pytest.approx(4.0))
-    velocity = Hazard.of_records(RECORDS, Level("PGV", 0.5))
+    velocity = Hazard.of_records(RECORDS, IntensityLevel("PGV", 0.5))
     assert [peak_ground_velocity(motion) for motion in velocity.motions] == pytest.approx([0.5, 0.5], rel=1e-12)
     assert velocity.velocity() == pytest.approx((0.5, 0.5))
     bare = Hazard.of_records(RECORDS)
@@ -60,7 +60,7 @@ def test_records_are_scaled_to_the_level():
 def test_family_is_scaled_and_counted():
     """Every synthetic motion has the level; the progress hears of each."""
     told = []
-    hazard = Hazard.of_family("point-source", Level.of("PGV", "20cm/s"), count=4, seed=2, progress=told.append)
+    hazard = Hazard.of_family("point-source", IntensityLevel.of("PGV", "20cm/s"), count=4, seed=2, progress=told.append)
     assert [peak_ground_velocity(motion) for motion in hazard.motions] == pytest.approx([0.2] * 4, rel=1e-12)
     assert (sum(told), hazard.synthetic, hazard.words()) == (4, True, "PGV 0.2 m/s")
     assert "seed 2" in hazard.source
@@ -71,8 +71,8 @@ def test_refusals():
     with pytest.raises(InvalidValueError, match="records must be 1 to"):
         Hazard.of_records([])
     with pytest.raises(InvalidValueError, match=r"count must be a whole number in \[1, 5000\]"):
-        Hazard.of_family("point-source", Level("PGA", 1.0), count=5001)
+        Hazard.of_family("point-source", IntensityLevel("PGA", 1.0), count=5001)
     with pytest.raises(InvalidValueError, match="'still': motion must have PGA > 0"):
-        Hazard.of_records([GroundMotion([0.0, 0.0], 0.1, name="still")], Level("PGA", 1.0))
+        Hazard.of_records([GroundMotion([0.0, 0.0], 0.1, name="still")], IntensityLevel("PGA", 1.0))
     with pytest.raises(InvalidValueError, match=r"records\[0\] must be a GroundMotion"):
         Hazard.of_records(["a path"])

@@ -5,8 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rocking.errors import InvalidValueError
-from rocking.studies.inventory.numerals import DecimalMark
-from rocking.studies.inventory.reading import parse_inventory, read_inventory
+from rocking.studies.inventory.reading import DecimalMark, parse_inventory, read_inventory
 
 HEAD = "name,width_cm,depth_cm,height_cm"
 GOOD = "vase,20,25,100"

@@ -5,8 +5,7 @@ import pytest
 from rocking.dynamics import RandomRestitution, SpeedRestitution
 from rocking.errors import InvalidValueError, RockingError
 from rocking.restitution import Fixed
-from rocking.studies.sensitivity.choices import label_of, named_choices
-from rocking.studies.sensitivity.sampled import SampledRestitution
+from rocking.studies.sensitivity.restitutions import SampledRestitution, label_of, named_choices
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 import rocking as rk
 from rocking.dynamics import RandomRestitution
 from rocking.errors import InvalidValueError
-from rocking.studies.body_axes import RestitutionAxis
+from rocking.studies.axis import RestitutionAxis
 from rocking.studies.sensitivity import (
     SampledRestitution,
     Sensitivity,
@@ -17,7 +17,7 @@ from rocking.studies.sensitivity import (
     sensitivity,
     spectrum_sensitivity,
 )
-from rocking.studies.sensitivity.differences import share_interval
+from rocking.studies.sensitivity.changes import share_interval
 
 xr = pytest.importorskip("xarray")
 BLOCK, PULSE = rk.Block(width=0.5, height=2.0), rk.pulses.sine(amplitude=3.0, period=0.6)

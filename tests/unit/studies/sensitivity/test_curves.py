@@ -5,7 +5,7 @@ import pytest
 from scipy import optimize, stats
 
 from rocking.errors import InvalidValueError
-from rocking.studies.sensitivity.curves import curve_change, curve_distance, fits, signed
+from rocking.studies.sensitivity.changes import curve_change, curve_distance, fits, signed
 
 LEVELS = np.geomspace(0.4, 4.0, 9)
 
@@ -167,6 +167,6 @@ def test_sets_are_drawn_in_pieces_of_any_size(monkeypatch):
     pair = [(capacity * factor < LEVELS).astype(float) for factor in (1.0, 0.9)]
     curves = (np.exp(0.2), 0.5), (0.9 * np.exp(0.2), 0.5)
     whole = curve_change(curves, LEVELS, *pair, repetitions=200, seed=1)
-    monkeypatch.setattr("rocking.studies.sensitivity.curves._WEIGHTS", 700)
+    monkeypatch.setattr("rocking.studies.sensitivity.changes._WEIGHTS", 700)
     assert curve_change(curves, LEVELS, *pair, repetitions=200, seed=1) == whole
     assert curve_change(curves, LEVELS, *pair, repetitions=200, seed=2) != whole

@@ -6,7 +6,7 @@ from scipy import stats
 
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome
-from rocking.studies.sensitivity.differences import Flips, difference_of, flip_map, flips_of, share_interval
+from rocking.studies.sensitivity.changes import Flips, difference_of, flip_map, flips_of, share_interval
 
 STILL, ROCKED, OVER, FAILED = range(4)
 

@@ -13,8 +13,8 @@ from rocking.dynamics.impact_laws import uniform
 from rocking.errors import InvalidValueError
 from rocking.outcome import Outcome, Status
 from rocking.studies.histories import HistoryTable, Product
-from rocking.studies.motion_set import MotionList
-from rocking.studies.sensitivity.sampled import SampledHistories, SampledRestitution, sampled, uniforms
+from rocking.studies.motion_sets import MotionList
+from rocking.studies.sensitivity.restitutions import SampledHistories, SampledRestitution, sampled, uniforms
 
 BLOCK = rk.Block(width=0.5, height=2.0)
 PULSES = MotionList([rk.pulses.sine(3.0, period) for period in (0.5, 0.7, 0.9)])

@@ -14,12 +14,12 @@ from rocking.errors import InvalidValueError
 from rocking.spec.document import FragilityTable
 from rocking.spec.parts import Parts
 from rocking.spec.reading import located
+from rocking.studies.fragility._incremental_dynamic_analysis import incremental_dynamic_plan
+from rocking.studies.fragility._multiple_stripe_analysis import multiple_stripe_plan
 from rocking.studies.fragility.cloud_analysis import cloud_plan
-from rocking.studies.fragility.incremental_dynamic_analysis import incremental_plan
-from rocking.studies.fragility.multiple_stripe_analysis import stripes_plan
 from rocking.studies.fragility.subject import Subject
 from rocking.studies.histories import Product
-from rocking.studies.sensitivity.sampled import sampled
+from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import Column
 
 Finish = Callable[[Arrays], Any]
@@ -80,12 +80,12 @@ def _plan(table: FragilityTable, parts: Parts, choice: Any) -> tuple[Product, Fi
         return cloud_plan(body, motions, choice, factor=1.0 if table.factor is None else table.factor, **how)
     assert table.levels is not None  # the document refuses to be without
     if kind == "stripes":
-        return stripes_plan(body, motions, table.levels.numbers(), choice, **how)
+        return multiple_stripe_plan(body, motions, table.levels.numbers(), choice, **how)
     tolerance = 1e-8 if table.tolerance is None else table.tolerance
     # what is in [fragility] is the search's; that of [settings] is the reference engine's
     if how["tolerance"] != type(parts.settings)().tolerance:
         raise InvalidValueError("settings.tolerance cannot be changed in an incremental analysis; leave it out")
-    return incremental_plan(body, motions, table.levels.numbers(), choice, **(how | {"tolerance": tolerance}))
+    return incremental_dynamic_plan(body, motions, table.levels.numbers(), choice, **(how | {"tolerance": tolerance}))
 
 
 def _merged(products: list[Product]) -> Product:

@@ -10,7 +10,7 @@ from rocking.spec.document import HistoriesTable
 from rocking.spec.parts import Parts
 from rocking.spec.reading import located
 from rocking.studies.histories import Product
-from rocking.studies.sensitivity.sampled import sampled
+from rocking.studies.sensitivity.restitutions import sampled
 
 
 def product_study(parts: Parts) -> Study:

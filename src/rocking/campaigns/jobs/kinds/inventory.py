@@ -7,11 +7,11 @@ from rocking.spec.document import InventoryTable
 from rocking.spec.parts import Parts
 from rocking.spec.reading import located
 from rocking.studies.inventory.assessment import assessment_plan
-from rocking.studies.inventory.hazard import Hazard, Level
+from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 from rocking.studies.inventory.lights import Thresholds
 from rocking.studies.inventory.objects import DIRECTIONS
 from rocking.studies.inventory.reading import Inventory, read_inventory
-from rocking.studies.record_set import SyntheticSet
+from rocking.studies.motion_sets import SyntheticSet
 
 
 def inventory_study(parts: Parts) -> Study:
@@ -52,7 +52,7 @@ def _objects(table: InventoryTable, parts: Parts) -> Inventory:
 
 def _hazard(table: InventoryTable, parts: Parts) -> Hazard:
     words = {"PGA": table.pga, "PGV": table.pgv}
-    level = next((Level.of(kind, word) for kind, word in words.items() if word is not None), None)
+    level = next((IntensityLevel.of(kind, word) for kind, word in words.items() if word is not None), None)
     motions = parts.motions
     if isinstance(motions, SyntheticSet):
         assert level is not None  # the document refuses to be without

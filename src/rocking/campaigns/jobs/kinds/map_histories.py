@@ -9,9 +9,9 @@ from rocking.conventions import FloatArray
 from rocking.dynamics.plane.batch import Rows
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
+from rocking.studies.adaptive_grid import Plane
 from rocking.studies.histories import Histories, hash_of
-from rocking.studies.motion_set import MotionList
-from rocking.studies.plane import Plane
+from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import sides_of
 
 _TIMES = ("peak_time", "overturning_time", "first_uplift")

@@ -18,10 +18,10 @@ from rocking.errors import InvalidValueError
 from rocking.spec.document import MinimumTable
 from rocking.spec.parts import MOST_IN_MEMORY, Parts
 from rocking.spec.reading import located
-from rocking.studies.minimum_search import Cases, Effort, searched
-from rocking.studies.motion_set import MotionList
+from rocking.studies.minimum_acceleration import Cases, Effort, searched
+from rocking.studies.motion_sets import MotionList
 from rocking.studies.question import modes_of, peak_ratio, sides_of
-from rocking.studies.sensitivity.sampled import sampled
+from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import Column
 
 
@@ -40,7 +40,7 @@ class MinimumSearch:
     def __call__(self, compute: Compute) -> AdaptiveResult:
         """Return all crossings.
 
-        Returns A tuple of `Crossings`, None where no history could be computed, and tables of them.
+        Returns A tuple of `Transitions`, None where no history could be computed, and tables of them.
         """
         motion, _, body = np.unravel_index(np.arange(self.cases.uplift.size), self.shape)
 

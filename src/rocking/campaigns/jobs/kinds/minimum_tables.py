@@ -1,12 +1,11 @@
-"""Crossings of many bodies under many motions, as tables."""
+"""Transitions of many bodies under many motions, as tables."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from rocking.studies.crossings import Crossings
-from rocking.studies.minimum_search import Cases, Effort
+from rocking.studies.minimum_acceleration import Cases, Effort, Transitions
 from rocking.tables import Column, Table, text_array
 
 _MODE = "not lifted -2, survived -1, n >= 0 overturned after n impacts"
@@ -35,7 +34,7 @@ _CROSSING = {
 
 
 def tables_of(
-    found: Sequence[Crossings | None], cases: Cases, effort: Effort, shape: tuple[int, int, int],
+    found: Sequence[Transitions | None], cases: Cases, effort: Effort, shape: tuple[int, int, int],
     names: Mapping[str, list[str]],
 ) -> dict[str, Table]:  # fmt: skip
     """Return crossings as tables.
@@ -62,7 +61,7 @@ def tables_of(
     return {"crossings": Table("crossing", _prefixed("crossing", columns)), "minima": minima}
 
 
-def _row(found: Crossings | None, cases: Cases, effort: Effort, k: int) -> dict[str, Any]:
+def _row(found: Transitions | None, cases: Cases, effort: Effort, k: int) -> dict[str, Any]:
     if found is None:  # nothing but the first samples was tried, and all of them failed
         asked = {"uplift_acceleration": cases.uplift[k], "lowest": cases.low[k], "highest": cases.high[k]}
         counts = {"crossings": 0, "starts_overturned": 0, "samples": effort.points, "failed": effort.points}

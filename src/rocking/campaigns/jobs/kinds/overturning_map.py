@@ -10,12 +10,10 @@ from rocking.errors import InvalidValueError
 from rocking.spec.document import AxisTable
 from rocking.spec.parts import Parts
 from rocking.spec.reading import located
-from rocking.studies._axes import axis_of
-from rocking.studies.axis import Axis
-from rocking.studies.body_axes import RestitutionAxis
-from rocking.studies.plane import Plane
+from rocking.studies.adaptive_grid import Plane
+from rocking.studies.axis import Axis, RestitutionAxis, axis_of
 from rocking.studies.question import Question
-from rocking.studies.sensitivity.sampled import sampled
+from rocking.studies.sensitivity.restitutions import sampled
 
 
 def map_study(parts: Parts) -> Study:

@@ -13,11 +13,9 @@ from rocking.errors import InvalidValueError
 from rocking.quantities import QUANTITIES
 from rocking.spec.document import MapTable
 from rocking.spec.reading import located
-from rocking.studies._boundary import Polyline, checked, outlines
-from rocking.studies.lattice import Lattice
-from rocking.studies.plane import Plane
+from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, RefinedMap, refine
+from rocking.studies.boundaries import Polyline, checked, outlines
 from rocking.studies.question import modes_of, peak_ratio
-from rocking.studies.refined import Refined, refine
 from rocking.tables import PIECE, Column, Table, text_array
 
 MOST_POINTS = 10_000_000
@@ -50,17 +48,17 @@ class MapSearch:
             )
         with located("map.refine"):
             tolerance = checked(planes[0], table.boundary, table.tolerance)
-            Lattice(planes[0], table.refine)
+            AdaptiveGrid(planes[0], table.refine)
         return cls(study, planes[0], table.refine, table.boundary, tolerance)
 
     def __call__(self, compute: Compute) -> AdaptiveResult:
         """Return the points and the polylines.
 
-        Returns A pair of `Refined` and a list of `Polyline`, and tables of them.
+        Returns A pair of `RefinedMap` and a list of `Polyline`, and tables of them.
         """
         modes, peaks = self._base(compute(self.study.histories))
         plane = Plane(AskedQuestion.of(self.plane.question, compute), self.plane.x, self.plane.y)
-        lattice = Lattice(plane, self.levels)
+        lattice = AdaptiveGrid(plane, self.levels)
         points, cells = refine(lattice, modes, peaks)
         lines = outlines(lattice, cells, self.by, self.tolerance)
         tables = {"refined": _points(points, plane), "boundary": _vertices(lines, plane)}
@@ -80,7 +78,7 @@ class MapSearch:
         return modes, peaks
 
 
-def _points(points: Refined, plane: Plane) -> Table:
+def _points(points: RefinedMap, plane: Plane) -> Table:
     x, y = plane.x, plane.y
     mode, ratio = QUANTITIES["mode"], QUANTITIES["peak_ratio"]
     columns = {

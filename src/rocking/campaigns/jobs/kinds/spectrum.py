@@ -17,7 +17,7 @@ from rocking.spec.parts import Parts
 from rocking.spec.reading import located
 from rocking.studies.histories import Product
 from rocking.studies.question import sides_of
-from rocking.studies.sensitivity.sampled import sampled
+from rocking.studies.sensitivity.restitutions import sampled
 from rocking.tables import Column
 
 _LONGEST = 1e100

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rocking.studies.motion_set import MotionList, MotionSet
+from rocking.studies.motion_sets import MotionList, MotionSet
 from rocking.tables import Column, text_array
 
 

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import BoolArray, FloatArray, IntArray
-from rocking.studies.fragility.multiple_stripe_analysis import StripeAnalysis
-from rocking.studies.fragility.states import Responses
-from rocking.studies.fragility.subject import results_of
+from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis
+from rocking.studies.fragility.subject import Responses, results_of
 
 Outcomes = Callable[[IntArray, FloatArray], tuple[IntArray, BoolArray]]
 """Takes numbers of motions and levels; returns sides overturned to (0 if none), and which could be computed."""
@@ -182,7 +181,7 @@ def survivals_of(intervals: Sequence[OverturningInterval], highest: float) -> li
 
 
 def overturning_intervals(
-    stripes: StripeAnalysis, tolerance: float, threads: int | None = None
+    stripes: MultipleStripeAnalysis, tolerance: float, threads: int | None = None
 ) -> list[OverturningInterval]:
     """Return all intervals of levels in which motions overturn a body, searched between the levels of stripes.
 

@@ -15,8 +15,8 @@ from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import InvalidValueError
 from rocking.statistics.censored import CensoredFit, fit_crossings
 from rocking.statistics.lognormal import LognormalFit
-from rocking.studies.fragility.multiple_stripe_analysis import StripeAnalysis, stripes_plan
-from rocking.studies.fragility.overturning_intervals import OverturningInterval, overturning_intervals, survivals_of
+from rocking.studies.fragility._multiple_stripe_analysis import MultipleStripeAnalysis, multiple_stripe_plan
+from rocking.studies.fragility._overturning_intervals import OverturningInterval, overturning_intervals, survivals_of
 from rocking.studies.fragility.subject import Motions, Progress, Subject, results_of
 from rocking.studies.histories import Product
 
@@ -42,7 +42,7 @@ OWN_LAW = (
 
 
 @dataclass(frozen=True, eq=False)
-class IncrementalAnalysis:
+class IncrementalDynamicAnalysis:
     """The outcome of an incremental analysis.
 
     A stronger motion may leave standing what a weaker one overturns (resurrection). Two definitions of the probability
@@ -50,7 +50,7 @@ class IncrementalAnalysis:
 
     Parameters
     ----------
-    stripes : StripeAnalysis
+    stripes : MultipleStripeAnalysis
         The curves: every motion at every level.
     intervals : tuple of OverturningInterval
         All intervals of levels in which a motion overturns the body, by motion and level, of motions without a failed
@@ -58,7 +58,7 @@ class IncrementalAnalysis:
         kind that are narrower than the distance between levels may be missed.
     """
 
-    stripes: StripeAnalysis
+    stripes: MultipleStripeAnalysis
     intervals: tuple[OverturningInterval, ...]
 
     @property
@@ -210,7 +210,7 @@ class IncrementalAnalysis:
         }
 
 
-def incremental_plan(
+def incremental_dynamic_plan(
     body: Body,
     motions: Motions,
     levels: Any,
@@ -220,20 +220,20 @@ def incremental_plan(
     *,
     tolerance: float = 1e-8,
     **options: Any,
-) -> tuple[Product, Callable[[Arrays], IncrementalAnalysis]]:
+) -> tuple[Product, Callable[[Arrays], IncrementalDynamicAnalysis]]:
     """Return the histories of an incremental analysis, and what makes the analysis of their results.
 
     Parameters
     ----------
     body, motions, levels, restitution, measure, states, tolerance, **options
-        As for `incremental`.
+        As for `incremental_dynamic_analysis`.
 
     Returns
     -------
     histories : Product
         What has to be computed, by a campaign for instance.
     finish : callable
-        Takes the results of all histories, searches between the levels, and returns the `IncrementalAnalysis`.
+        Takes the results of all histories, searches between the levels, and returns the `IncrementalDynamicAnalysis`.
 
     Raises
     ------
@@ -242,21 +242,21 @@ def incremental_plan(
     """
     tolerance = checks.within("tolerance", tolerance, 0.0, 0.1)
     threads = options.pop("threads", None)
-    histories, stripes = stripes_plan(body, motions, levels, restitution, measure, states, **options)
+    histories, stripes = multiple_stripe_plan(body, motions, levels, restitution, measure, states, **options)
     if histories.law.kind == RANDOM or histories.law.per_history:
         raise InvalidValueError(
             f"restitution must be the same whenever a motion is repeated, got {type(histories.law).__name__}: no level "
-            "starts the overturning if the coefficients are drawn anew; multiple_stripes() takes it"
+            "starts the overturning if the coefficients are drawn anew; multiple_stripe_analysis() takes it"
         )
 
-    def finish(arrays: Arrays) -> IncrementalAnalysis:
+    def finish(arrays: Arrays) -> IncrementalDynamicAnalysis:
         found = stripes(arrays)
-        return IncrementalAnalysis(found, tuple(overturning_intervals(found, tolerance, threads)))
+        return IncrementalDynamicAnalysis(found, tuple(overturning_intervals(found, tolerance, threads)))
 
     return histories, finish
 
 
-def incremental(
+def incremental_dynamic_analysis(
     body: Body,
     motions: Motions,
     levels: Any,
@@ -267,7 +267,7 @@ def incremental(
     tolerance: float = 1e-8,
     progress: Progress = None,
     **options: Any,
-) -> IncrementalAnalysis:
+) -> IncrementalDynamicAnalysis:
     """Raise every motion level by level, and find all intervals in which it overturns the body.
 
     Parameters
@@ -294,20 +294,20 @@ def incremental(
 
     Returns
     -------
-    IncrementalAnalysis
+    IncrementalDynamicAnalysis
         Curves, intervals and both definitions.
 
     Examples
     --------
     >>> import rocking as rk
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.5, 0.7)]
-    >>> found = incremental(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], restitution=0.9)
+    >>> found = incremental_dynamic_analysis(rk.Block(width=0.4, height=1.6), pulses, [3.0, 6.0, 9.0], restitution=0.9)
     >>> found.fractions.tolist()  # what overturns at 6 m/s2 need not at 9
     [0.0, 1.0, 0.5]
     >>> [(round(i.start, 3), round(i.end, 3)) for i in found.intervals]
     [(4.789, inf), (3.449, 8.667)]
     """
-    histories, finish = incremental_plan(
+    histories, finish = incremental_dynamic_plan(
         body, motions, levels, restitution, measure, states, tolerance=tolerance, **options
     )
     return finish(results_of(histories, threads=options.get("threads"), progress=progress))

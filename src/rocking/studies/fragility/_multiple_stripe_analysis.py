@@ -12,8 +12,19 @@ from rocking.conventions import FloatArray, IntArray
 from rocking.dynamics.plane.fast_engine import Arrays
 from rocking.errors import extra
 from rocking.statistics.lognormal import LognormalFit
-from rocking.studies.fragility.states import LimitState, Responses, UpliftCheck, fits_of, limit_states, uplift_check
-from rocking.studies.fragility.subject import Motions, Progress, Subject, checked_levels, results_of
+from rocking.studies.fragility.subject import (
+    LimitState,
+    Motions,
+    Progress,
+    Responses,
+    Subject,
+    UpliftCheck,
+    checked_levels,
+    fits_of,
+    limit_states,
+    results_of,
+    uplift_check,
+)
 from rocking.studies.histories import Product
 
 if TYPE_CHECKING:
@@ -26,7 +37,7 @@ DEFINITION = (
 
 
 @dataclass(frozen=True, eq=False)
-class StripeAnalysis:
+class MultipleStripeAnalysis:
     """The outcome of a multiple-stripe analysis.
 
     Parameters
@@ -122,7 +133,7 @@ class StripeAnalysis:
         }
 
 
-def stripes_plan(
+def multiple_stripe_plan(
     body: Body,
     motions: Motions,
     levels: Any,
@@ -130,20 +141,20 @@ def stripes_plan(
     measure: Any = "pga",
     states: Sequence[float] = (0.5,),
     **options: Any,
-) -> tuple[Product, Callable[[Arrays], StripeAnalysis]]:
+) -> tuple[Product, Callable[[Arrays], MultipleStripeAnalysis]]:
     """Return the histories of a multiple-stripe analysis, and what makes the analysis of their results.
 
     Parameters
     ----------
     body, motions, levels, restitution, measure, states, **options
-        As for `multiple_stripes`.
+        As for `multiple_stripe_analysis`.
 
     Returns
     -------
     histories : Product
         What has to be computed, by a campaign for instance.
     finish : callable
-        Takes the results of all histories and returns the `StripeAnalysis`.
+        Takes the results of all histories and returns the `MultipleStripeAnalysis`.
     """
     subject = Subject.of(body, motions, restitution, measure, options)
     wanted = checked_levels("levels", levels, subject.measure.unit)
@@ -151,13 +162,13 @@ def stripes_plan(
     histories = subject.product(subject.measure.factors(subject.intensities, wanted))
     shape = (len(subject.motions), wanted.size)
 
-    def finish(arrays: Arrays) -> StripeAnalysis:
-        return StripeAnalysis(subject, wanted, limits, histories, Responses.of(arrays, subject.rocker, shape))
+    def finish(arrays: Arrays) -> MultipleStripeAnalysis:
+        return MultipleStripeAnalysis(subject, wanted, limits, histories, Responses.of(arrays, subject.rocker, shape))
 
     return histories, finish
 
 
-def multiple_stripes(
+def multiple_stripe_analysis(
     body: Body,
     motions: Motions,
     levels: Any,
@@ -167,7 +178,7 @@ def multiple_stripes(
     *,
     progress: Progress = None,
     **options: Any,
-) -> StripeAnalysis:
+) -> MultipleStripeAnalysis:
     """Bring every motion to every level of a measure, and count how many reach which state.
 
     Parameters
@@ -191,19 +202,19 @@ def multiple_stripes(
 
     Returns
     -------
-    StripeAnalysis
+    MultipleStripeAnalysis
         Outcomes, counts and curves.
 
     Examples
     --------
     >>> import rocking as rk
     >>> pulses = [rk.pulses.sine(1.0, period) for period in (0.4, 0.6, 0.8, 1.0)]
-    >>> found = multiple_stripes(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
+    >>> found = multiple_stripe_analysis(rk.Block(width=0.4, height=1.6), pulses, [2.0, 4.0, 6.0, 8.0])
     >>> found.counts["rocking"].tolist()
     [0, 4, 4, 4]
     >>> found.uplift.verdict
     'rocking is certain above 2.45166 and impossible below: 0 of 16 histories contradict it'
     """
     threads = options.pop("threads", None)
-    histories, finish = stripes_plan(body, motions, levels, restitution, measure, states, **options)
+    histories, finish = multiple_stripe_plan(body, motions, levels, restitution, measure, states, **options)
     return finish(results_of(histories, threads=threads, progress=progress))

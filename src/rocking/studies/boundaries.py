@@ -12,10 +12,8 @@ from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
+from rocking.studies.adaptive_grid import AdaptiveGrid, Plane, absent, merged, verdicts
 from rocking.studies.axis import Axis
-from rocking.studies.contours import chains, crossed_edges, edge_numbers, segments
-from rocking.studies.lattice import Lattice, absent, merged, verdicts
-from rocking.studies.plane import Plane
 from rocking.studies.question import FAILED
 
 Inside = Callable[[IntArray], BoolArray]
@@ -129,7 +127,7 @@ def boundary(  # noqa: PLR0913 - every one of them is a question that users ask
     """
     plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
     tolerance = checked(plane, by, tolerance)
-    lattice = Lattice(plane, levels, progress)
+    lattice = AdaptiveGrid(plane, levels, progress)
     # refined by mode whatever is asked: a sliver of survival lies between two modes, long before its corners tell
     return outlines(lattice, lattice.finest(lambda modes: modes), by, tolerance)
 
@@ -147,7 +145,7 @@ def checked(plane: Plane, by: str, tolerance: float) -> float:
     return checks.within("tolerance", tolerance, 1e-15, 0.1)
 
 
-def outlines(lattice: Lattice, seeds: tuple[IntArray, IntArray], by: str, tolerance: float) -> list[Polyline]:
+def outlines(lattice: AdaptiveGrid, seeds: tuple[IntArray, IntArray], by: str, tolerance: float) -> list[Polyline]:
     """Return the boundary on a lattice that has been refined.
 
     tolerance: width of the last brackets over the coordinate [-].
@@ -161,10 +159,10 @@ def outlines(lattice: Lattice, seeds: tuple[IntArray, IntArray], by: str, tolera
 
 
 def _outlined(
-    lattice: Lattice, inside: Inside, region: str, tolerance: float, seeds: tuple[IntArray, IntArray]
+    lattice: AdaptiveGrid, inside: Inside, region: str, tolerance: float, seeds: tuple[IntArray, IntArray]
 ) -> list[Polyline]:
     """Return the outline of a region, followed from some cells."""
-    i, j = _followed(lattice, inside, seeds)
+    i, j = _cells_passed(lattice, inside, seeds)
     if not i.size:
         return []
     corners = inside(lattice.corners(i, j, 1))
@@ -179,7 +177,7 @@ def _outlined(
     return made
 
 
-def _followed(lattice: Lattice, inside: Inside, seeds: tuple[IntArray, IntArray]) -> tuple[IntArray, IntArray]:
+def _cells_passed(lattice: AdaptiveGrid, inside: Inside, seeds: tuple[IntArray, IntArray]) -> tuple[IntArray, IntArray]:
     """Return all finest cells that the boundary passes, also those that refinement alone would not have reached."""
     i, j = seeds
     known, seen = np.empty(0, np.int64), np.empty(0, np.int64)
@@ -199,12 +197,12 @@ def _followed(lattice: Lattice, inside: Inside, seeds: tuple[IntArray, IntArray]
     return known % lattice.columns, known // lattice.columns
 
 
-def _cells(lattice: Lattice, i: IntArray, j: IntArray) -> IntArray:
+def _cells(lattice: AdaptiveGrid, i: IntArray, j: IntArray) -> IntArray:
     within = (i >= 0) & (j >= 0) & (i < lattice.columns - 1) & (j < lattice.rows - 1)
     return np.asarray(j[within] * lattice.columns + i[within])
 
 
-def _centres(lattice: Lattice, inside: Inside, corners: BoolArray, i: IntArray, j: IntArray) -> BoolArray:
+def _centres(lattice: AdaptiveGrid, inside: Inside, corners: BoolArray, i: IntArray, j: IntArray) -> BoolArray:
     """Return whether the centres of saddles are inside; False elsewhere."""
     centre = np.zeros(i.size, dtype=np.bool_)
     saddle = crossed_edges(corners).all(axis=1)
@@ -216,7 +214,7 @@ def _centres(lattice: Lattice, inside: Inside, corners: BoolArray, i: IntArray, 
     return centre
 
 
-def bisected(lattice: Lattice, inside: Inside, numbers: IntArray, tolerance: float) -> Edges:
+def bisected(lattice: AdaptiveGrid, inside: Inside, numbers: IntArray, tolerance: float) -> Edges:
     """Return where the boundary of a region crosses edges of a lattice: one batch for each halving.
 
     tolerance: width of the last bracket over the coordinate [-]. Returns middles of the last brackets, and the modes at
@@ -241,3 +239,76 @@ def bisected(lattice: Lattice, inside: Inside, numbers: IntArray, tolerance: flo
         side = inside(found).astype(np.int64)
         points[rows, side], modes[rows, side] = middle, found
     return Edges(numbers, points.mean(axis=1), modes)
+
+
+# edges of a cell by number: bottom, right, top, left; corners: lower left, lower right, upper right, upper left
+_ENDS = ((0, 1), (1, 2), (3, 2), (0, 3))
+
+
+def crossed_edges(inside: BoolArray) -> BoolArray:
+    """Return which edges of cells have one end inside and one outside.
+
+    >>> crossed_edges(np.array([[True, False, False, False]])).tolist()
+    [[True, False, False, True]]
+    """
+    return np.stack([inside[:, a] != inside[:, b] for a, b in _ENDS], axis=1)
+
+
+def edge_numbers(i: IntArray, j: IntArray, columns: int) -> IntArray:
+    """Return the numbers of the edges of cells; neighbours share them.
+
+    Returns twice the number of the left or lower end, plus one for upright edges: bottom, right, top, left.
+    """
+    here = 2 * (j * columns + i)
+    return np.stack([here, here + 3, here + 2 * columns, here + 1], axis=1)
+
+
+def segments(inside: BoolArray, edges: IntArray, centre: BoolArray) -> IntArray:
+    """Return which crossed edges a boundary joins within each cell.
+
+    A saddle, whose inside corners are opposite, is decided by its centre: the inside corners are joined if the centre
+    is inside, else the outside ones.
+
+    Returns numbers of the edges at both ends.
+    """
+    crossed = crossed_edges(inside)
+    count = crossed.sum(axis=1)
+    plain = edges[count == 2][crossed[count == 2]].reshape(-1, 2)
+    saddle = count == 4
+    around_right = (inside[saddle, 0] == centre[saddle])[:, None]
+    bottom, right, top, left = edges[saddle].T
+    first = np.where(around_right, np.stack([bottom, right], 1), np.stack([bottom, left], 1))
+    second = np.where(around_right, np.stack([top, left], 1), np.stack([top, right], 1))
+    return np.concatenate([plain, first, second])
+
+
+def chains(joined: IntArray) -> list[list[int]]:
+    """Return the polylines that segments make; of closed ones the first edge is repeated at the end.
+
+    Returns numbers of the edges in order; open ones first.
+
+    >>> chains(np.array([[1, 2], [3, 2], [5, 6], [6, 7], [7, 5]]))
+    [[1, 2, 3], [5, 6, 7, 5]]
+    """
+    neighbours: dict[int, list[int]] = {}
+    for a, b in joined.tolist():
+        neighbours.setdefault(a, []).append(b)
+        neighbours.setdefault(b, []).append(a)
+    starts = [edge for edge, near in neighbours.items() if len(near) == 1]
+    seen: set[int] = set()
+    found = [_chain_from(start, neighbours, seen) for start in (*starts, *neighbours) if start not in seen]
+    return [chain for chain in found if len(chain) > 1]
+
+
+def _chain_from(start: int, neighbours: dict[int, list[int]], seen: set[int]) -> list[int]:
+    chain, here = [start], start
+    seen.add(start)
+    while True:
+        onward = [edge for edge in neighbours[here] if edge not in seen]
+        if not onward:
+            break
+        here = onward[0]
+        seen.add(here)
+        chain.append(here)
+    closed = len(chain) > 2 and start in neighbours[here]
+    return [*chain, start] if closed else chain

@@ -1,14 +1,82 @@
 """A lattice between the values of two axes, ever finer, computed only where the mode changes."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from rocking import conventions
+from rocking.bodies import Body
 from rocking.conventions import BoolArray, FloatArray, IntArray
+from rocking.dynamics.plane.fast_engine import Arrays
+from rocking.dynamics.response import Motion
+from rocking.dynamics.settings import settings_of
 from rocking.errors import InvalidValueError
-from rocking.studies.axis import Axis
-from rocking.studies.plane import Plane
+from rocking.studies.axis import Axis, axis_of
+from rocking.studies.question import Question
+from rocking.studies.variations import Case
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A question and two axes along which it varies."""
+
+    question: Question  # body, motion, restitution and settings
+    x: Axis  # x, y: the axes
+    y: Axis
+
+    def __post_init__(self) -> None:
+        """Check that the axes fit the question and each other."""
+        if self.x.sets == self.y.sets:
+            raise InvalidValueError(
+                f"x and y must set different things, got {self.x.name} and {self.y.name}: both set {self.x.sets}"
+            )
+        for axis, other in ((self.x, self.y), (self.y, self.x)):
+            axis.check(self.question)
+            axis.check_beside(other)
+
+    @classmethod
+    def of(cls, body: Any, motion: Any, x: Any, y: Any, restitution: Any, **options: Any) -> "Plane":
+        """Return a plane from what a user gives.
+
+        **options: gravity [m/s2], threads, engine and fields of `Settings`.
+        """
+        threads, engine = options.pop("threads", None), options.pop("engine", "auto")
+        settings = settings_of(options.pop("gravity"), options)
+        return cls(Question(body, motion, restitution, settings, threads, engine), axis_of(x), axis_of(y))
+
+    def case(self, x: FloatArray, y: FloatArray) -> Case:
+        """Return the variations at some points.
+
+        Returns bodies first, then restitution, time, amplitude and velocity.
+        """
+        case = Case.of(self.question, x.size)
+        steps = sorted([(self.x, x), (self.y, y)], key=lambda step: step[0].stage)
+        for axis, values in steps:
+            if axis.stage == 0:
+                case = axis.applied(case, values)
+        case = case.settled()
+        for axis, values in steps:
+            if axis.stage > 0:
+                case = axis.applied(case, values)
+        return case
+
+    def answers(
+        self, x: FloatArray, y: FloatArray, key: Any = None, progress: Callable[[int], None] | None = None
+    ) -> tuple[Arrays, dict[str, int]]:
+        """Return what happens at some points."""
+        case = self.case(x, y)
+        return self.question.run(case.values, case.stretch, key, progress)
+
+    def mesh(self) -> tuple[FloatArray, FloatArray]:
+        """Return the coordinates of all pairs of values, those of x varying fastest.
+
+        Returns one entry a pair, in the units of the axes.
+        """
+        x, y = np.meshgrid(self.x.values, self.y.values)
+        return x.ravel(), y.ravel()
+
 
 MOST_LEVELS = 12
 """A spacing 4096 times finer: a boundary is better bisected than refined beyond it."""
@@ -19,7 +87,7 @@ Label = Callable[[IntArray], Any]
 _PIECE = 1 << 17
 
 
-class Lattice:
+class AdaptiveGrid:
     """Points between the values of two axes, numbered in steps of the finest level, and what is known of them."""
 
     def __init__(self, plane: Plane, levels: int, progress: Callable[[int], None] | None = None) -> None:
@@ -172,3 +240,115 @@ def verdicts(modes: IntArray) -> BoolArray:
     [False, False, False, True, True]
     """
     return np.asarray(modes >= 0)
+
+
+@dataclass(frozen=True, eq=False)
+class RefinedMap:
+    """Points of a map that has been refined along the boundaries between modes.
+
+    Parameters
+    ----------
+    x, y : ndarray
+        Coordinates of all points, in the units of the axes.
+    modes : ndarray of int
+        How each ended: -3 failed, -2 not lifted, -1 survived, n >= 0 overturned after n impacts.
+    peak_ratio : ndarray
+        Peak rotation over the slenderness angle [-].
+    base : ndarray of bool
+        Whether a point is one of the map before refinement.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    modes: IntArray
+    peak_ratio: FloatArray
+    base: BoolArray
+
+
+def refined(
+    plane: Plane, modes: IntArray, levels: int, progress: Callable[[int], None] | None = None, peaks: Any = None
+) -> RefinedMap:
+    """Return a map that is known, refined wherever its modes differ between neighbours.
+
+    peaks: relative peaks of the map; NaN if not given [-]. Returns all points; the map's own first, in its order.
+    """
+    return refine(AdaptiveGrid(plane, levels, progress), modes, peaks)[0]
+
+
+def refine(lattice: AdaptiveGrid, modes: IntArray, peaks: Any = None) -> tuple[RefinedMap, tuple[IntArray, IntArray]]:
+    """Return a map that is known, refined on a lattice of which nothing is known yet, and its mixed finest cells.
+
+    peaks: relative peaks of the map; NaN if not given [-]. Returns refined: all points; the map's own first, in its
+    order; cells: columns and rows of the finest cells whose corners differ: where `rocking.studies.boundaries.outlines`
+    begins.
+    """
+    first = lattice.base()
+    known = np.full(first.size, np.nan) if peaks is None else np.asarray(peaks, dtype=np.float64).ravel()
+    lattice.learn(first, np.asarray(modes, dtype=np.int64).ravel(), known)
+    cells = lattice.finest(_whole)
+    own = np.zeros(lattice.keys.size, dtype=np.bool_)
+    own[np.searchsorted(lattice.keys, first)] = True
+    places = np.concatenate([np.flatnonzero(own), np.flatnonzero(~own)])  # the map's own first
+    x, y = _coordinates(lattice, places)
+    base = np.arange(places.size) < first.size
+    return RefinedMap(x, y, lattice.modes[places], lattice.peaks[places], base), cells
+
+
+def _coordinates(lattice: AdaptiveGrid, places: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return the coordinates of known points, made piece by piece: on the way they take many times their room."""
+    x, y = np.empty(places.size), np.empty(places.size)
+    for first in range(0, places.size, _PIECE):
+        part = slice(first, first + _PIECE)
+        keys = lattice.keys[places[part]]
+        x[part], y[part] = lattice.coordinates(keys % lattice.columns, keys // lattice.columns)
+    return x, y
+
+
+def refined_map(
+    body: Body,
+    motion: Motion,
+    x: Axis | tuple[str, Any],
+    y: Axis | tuple[str, Any],
+    restitution: Any = "ked",
+    *,
+    levels: int = 3,
+    gravity: float = conventions.g,
+    progress: Callable[[int], None] | None = None,
+    **options: Any,
+) -> RefinedMap:
+    """Return the points of an overturning map that is refined along the boundaries between modes.
+
+    Cells whose corners have different modes are cut into four, level by level, and only new points are computed. What
+    is narrower than a cell and touches no corner of it is not seen.
+
+    Parameters
+    ----------
+    body : Body
+        The body, as it is where the axes do not change it.
+    motion : GroundMotion or Pulse
+        The motion, as it is where the axes do not change it.
+    x, y : Axis or (str, array_like)
+        Axes, as for `overturning_map`.
+    restitution : as for `simulate`
+        Not one drawn at random.
+    levels : int
+        Levels of refinement; each halves the spacing [-].
+    gravity : float
+        Acceleration of gravity [m/s2].
+    progress : callable, optional
+        Called with the number of histories done since the last call.
+    **options
+        ``threads``, ``engine`` and fields of `Settings`.
+
+    Returns
+    -------
+    RefinedMap
+        All points; the map's own first, x varying fastest.
+    """
+    plane = Plane.of(body, motion, x, y, restitution, gravity=gravity, **options)
+    found, _ = plane.answers(*plane.mesh(), progress=progress)
+    return refined(plane, found["mode"], levels, progress, found["peak_ratio"])
+
+
+def _whole(modes: IntArray) -> IntArray:
+    return modes

@@ -1,0 +1,548 @@
+"""The bed that a study varies, and the coefficients that emerge from it."""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from rocking import checks, conventions
+from rocking.bodies import Block, Body
+from rocking.conventions import FloatArray, Foot
+from rocking.dynamics.impact_laws import SpeedRestitution
+from rocking.errors import InvalidValueError, extra
+from rocking.quantities import Quantity
+from rocking.restitution import Ked
+from rocking.restitution.bed import (
+    BaseFriction,
+    BedImpacts,
+    ContactBed,
+    Coulomb,
+    KelvinVoigt,
+    Sticking,
+    bed_impacts,
+    fast,
+    setup_of,
+)
+from rocking.restitution.bed.scaled import ScaledImpact, resolved_coefficients
+from rocking.restitution.bed.tables import Setup
+from rocking.restitution.bed_table import HARDNESS, POINTS, STEP, BedTable, nodes
+from rocking.restitution.contact_bed import ContactBedModel
+from rocking.tables import Column, Table, target_of, to_csv, to_dataframe, to_netcdf
+from rocking.version import SOFTWARE
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pandas as pd
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Laboratory:
+    """A homogeneous block on a bed of Kelvin-Voigt points: the setting from which a study starts."""
+
+    slenderness: float = 2.0  # h/b [-]
+    width: float = 0.2  # width of the base [m]
+    density: float = 2400.0  # density of the block [kg/m3]
+    points: int = 41  # contact points
+    # sqrt(k / m) / (2 pi) of the whole bed [Hz]; not used where `modulus_over_thickness` is given
+    frequency: float = 400.0
+    damping: float = 1.0  # damping ratio zeta of the whole bed [-]
+    # elastic modulus of the layer over its thickness, per metre of depth of the block [Pa/m]
+    modulus_over_thickness: float | None = None
+    release: float = 0.5  # rotation from which the block falls, over its slenderness angle [-]
+    friction: BaseFriction = field(default_factory=Sticking)  # by default the base cannot slide
+    profile: tuple[float, ...] = ()  # heights of the points over the base line, none for a flat base [m]
+    tolerance: float = 1e-9  # relative error of a step [-]
+
+    def __post_init__(self) -> None:
+        checks.within("release", self.release, 0.0, 1.0, open_low=True, open_high=True)
+        checks.positive("frequency", self.frequency, "Hz")
+        if self.modulus_over_thickness is not None:
+            checks.positive("modulus over thickness", self.modulus_over_thickness, "Pa/m")
+        if self.profile and len(self.profile) != self.points:
+            raise InvalidValueError(f"profile must have {self.points} heights, one a point, got {len(self.profile)}")
+
+    def but(self, **changes: Any) -> "Laboratory":
+        """Return the same laboratory with something changed."""
+        return replace(self, **changes)
+
+    @property
+    def block(self) -> Block:
+        """The block."""
+        return Block(width=self.width, height=self.slenderness * self.width, density=self.density)
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness of the whole bed: E A / t where a layer is given, m (2 pi f)^2 otherwise [N/m]."""
+        if self.modulus_over_thickness is not None:
+            return self.modulus_over_thickness * self.width  # Eq. 115
+        return self.block.mass * (2.0 * math.pi * self.frequency) ** 2
+
+    @property
+    def setup(self) -> Setup:
+        """The impact, ready to be computed."""
+        block = self.block
+        law = KelvinVoigt(self.stiffness, damping_ratio=self.damping)
+        bed = ContactBed.uniform(block, self.points, law, friction=self.friction)
+        if self.profile:
+            bed = bed.with_profile(np.array(self.profile))
+        angle = self.release * math.atan(1.0 / self.slenderness)
+        return setup_of(block, bed, rotation=angle, tolerance=self.tolerance)
+
+
+def hardness_of(setup: Setup) -> float:
+    """Return the dimensionless landing speed of the new foot, v sqrt(k / m) / g.
+
+    Returns Hardness, as the model `contact-bed` takes it [-].
+    """
+    return setup.start.speed * math.sqrt(setup.law.stiffness / setup.rigid.mass) / setup.rigid.gravity  # Eq. 130
+
+
+def measured(laboratories: Iterable[Laboratory], *, threads: int = 1) -> tuple[Sequence[Setup], BedImpacts]:
+    """Resolve the impacts of laboratories."""
+    setups = [each.setup for each in laboratories]
+    return setups, bed_impacts(setups, threads=threads)
+
+
+def coefficients(laboratories: Iterable[Laboratory], *, threads: int = 1) -> FloatArray:
+    """Return the coefficients of restitution of laboratories.
+
+    Returns theta_dot_after / theta_dot_before; NaN where an impact failed [-].
+    """
+    return measured(laboratories, threads=threads)[1].coefficient
+
+
+# long names of what studies find; a name that is not here says it all
+_WORDS = {
+    "coefficient": "theta_dot after over theta_dot before, by the next peak",
+    "coefficient_by_energy": "the same by the energy at the end, hops counted",
+    "hardness": "landing speed of the new foot times sqrt(k / m) over gravity",
+    "landing_velocity": "theta_dot of rigid rocking as it reaches the base",
+    "peak_force": "greatest force of the bed",
+    "bed_loss": "energy lost in compression",
+    "friction_loss": "energy lost in friction",
+    "contacts": "how often the body came into contact: hops are one less",
+    "audit": "energy at the end plus losses minus energy at the start, over the energy before the impact",
+}
+
+
+_ABOUT = ("units", "long_name")
+
+
+class LaboratoryStudy:
+    """A study of the impact laboratory: an `xarray.Dataset` over what was varied, that also goes into files.
+
+    Every attribute and index of the dataset is one of the study.
+
+    >>> from rocking.studies.impact_laboratory import slenderness_study
+    >>> found = slenderness_study([2.0, 4.0])
+    >>> found.to_dataframe()["coefficient [-]"].round(2).tolist()
+    [0.84, 0.96]
+    """
+
+    def __init__(self, dataset: "xr.Dataset") -> None:
+        self.dataset = dataset
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an attribute of the dataset."""
+        if name.startswith("__") or name == "dataset":
+            raise AttributeError(name)
+        return getattr(self.dataset, name)
+
+    def __getitem__(self, key: Any) -> Any:
+        """Return a variable of the dataset."""
+        return self.dataset[key]
+
+    def __repr__(self) -> str:
+        """Return the dataset in words."""
+        return repr(self.dataset)
+
+    @property
+    def exported(self) -> Table:
+        """What files hold: the varied quantity first, then every result, with units; and the provenance."""
+        names = [*self.dataset.coords, *self.dataset.data_vars]
+        samples = {
+            str(name): Column(self.dataset[name].values, *(self.dataset[name].attrs.get(a, "") for a in _ABOUT))
+            for name in names
+        }
+        return Table("value", samples, dict(self.dataset.attrs), no_unit="-")
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Return the study as a table.
+
+        Returns A row a value; columns such as ``peak_force [N]``; the provenance in its `attrs`.
+        """
+        frame = to_dataframe(self.exported)
+        frame.attrs.update(self.dataset.attrs)
+        return frame
+
+    def to_csv(self, path: "str | Path") -> "Path":
+        """Write the study as comma-separated values, all digits kept; headings as in `to_dataframe`."""
+        return to_csv(self.exported, target_of(path), blank=False)
+
+    def to_netcdf(self, path: "str | Path") -> "Path":
+        """Write the study as netCDF 4, with units and provenance, which xarray and MATLAB open."""
+        return to_netcdf(self.dataset, target_of(path))
+
+
+def about(name: str, unit: str) -> dict[str, str]:
+    """Return unit and meaning of a result."""
+    return Quantity(name, unit, _WORDS.get(name, "")).attributes
+
+
+def provenance(study: str, laboratory: object) -> dict[str, str]:
+    """Return what a study was computed from, and with what."""
+    engine = "contact bed, fast" if fast.available() else "contact bed, reference"
+    return {"software": SOFTWARE, "engine": engine, "study": study, "laboratory": repr(laboratory)}
+
+
+Change = Callable[[Laboratory, float], Laboratory]
+
+
+def slenderness_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return r against slenderness.
+
+    values: h/b [-].
+
+    >>> slenderness_study([2.0, 4.0]).coefficient.round(2).values.tolist()
+    [0.84, 0.96]
+    """
+    return study("slenderness", "1", values, lambda lab, x: lab.but(slenderness=x), laboratory)
+
+
+def points_study(values: Sequence[int], laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return r against the number of contact points.
+
+    values: contact points, two or more [-].
+    """
+    return study("points", "1", values, lambda lab, x: lab.but(points=whole("points", x, 2)), laboratory)
+
+
+def damping_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return r against the damping ratio of the bed.
+
+    values: zeta [-].
+    """
+    return study("damping", "1", values, lambda lab, x: lab.but(damping=x), laboratory)
+
+
+def modulus_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return r against the modulus of the layer over its thickness.
+
+    values: E / t [Pa/m].
+    """
+    return study("modulus_over_thickness", "Pa/m", values, lambda lab, x: lab.but(modulus_over_thickness=x), laboratory)
+
+
+def friction_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return r against the coefficient of friction of the base.
+
+    values: mu [-].
+    """
+    return study("friction", "1", values, lambda lab, x: lab.but(friction=Coulomb(x)), laboratory)
+
+
+def mass_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return r against the density of the block on a layer of given stiffness: mass alone, the size stays.
+
+    values: densities [kg/m3].
+    """
+    return study("density", "kg/m3", values, lambda lab, x: lab.but(density=x), layered(laboratory))
+
+
+def size_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return r against the width of blocks of one shape and density on one layer.
+
+    values: widths [m].
+    """
+    return study("width", "m", values, lambda lab, x: lab.but(width=x), layered(laboratory))
+
+
+def velocity_study(values: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return r against the rotation of release, and so against the landing velocity.
+
+    values: rotations over the slenderness angle, in (0, 1) [-].
+    """
+    return study("release", "1", values, lambda lab, x: lab.but(release=x), laboratory)
+
+
+def study(
+    name: str, unit: str, values: Any, change: Change, laboratory: Laboratory | None = None, *, threads: int = 1
+) -> LaboratoryStudy:
+    """Return what emerges as one thing about the bed or the block changes.
+
+    Returns over `name`: coefficient, coefficient_by_energy, hardness [-], landing_velocity [rad/s], peak_force [N],
+    bed_loss and friction_loss [J], contacts, audit [-]; NaN where an impact failed.
+    """
+    xarray = extra("xarray", "the impact laboratory")
+    row = np.atleast_1d(checks.real_array(name, values))
+    if row.ndim != 1 or row.size == 0 or not bool(np.isfinite(row).all()):
+        raise InvalidValueError(f"{name} must be a row of finite numbers [{unit}], got shape {row.shape}")
+    start = laboratory or Laboratory()
+    setups, impacts = measured((change(start, value) for value in row.tolist()), threads=threads)
+    results: dict[str, tuple[str, FloatArray]] = {
+        "coefficient": ("1", impacts.coefficient),
+        "coefficient_by_energy": ("1", np.array([each.by_energy for each in impacts.emergent])),
+        "hardness": ("1", np.array([hardness_of(setup) for setup in setups])),
+        "landing_velocity": ("rad/s", np.array([setup.start.landing_velocity for setup in setups])),
+        "peak_force": ("N", impacts.result("peak_force")),
+        "bed_loss": ("J", impacts.result("bed_loss")),
+        "friction_loss": ("J", impacts.result("friction_loss")),
+        "contacts": ("1", impacts.contacts.astype(np.float64)),
+        "audit": ("1", impacts.audit),
+    }
+    made: xr.Dataset = xarray.Dataset(
+        {key: (name, value, about(key, of)) for key, (of, value) in results.items()},
+        coords={name: (name, row, about(name, unit))},
+        attrs=provenance(name, start),
+    )
+    return LaboratoryStudy(made)
+
+
+def whole(name: str, value: Any, least: int) -> int:
+    """Return a number that counts something.
+
+    least: the smallest that is allowed [-].
+
+    >>> whole("points", 41.0, 2)
+    41
+    """
+    result = checks.number(name, value)
+    if result != int(result) or result < least:
+        raise InvalidValueError(
+            f"{name} must be a whole number of at least {least}, got {result:g}; it counts, and is not rounded"
+        )
+    return int(result)
+
+
+def layered(laboratory: Laboratory | None) -> Laboratory:
+    """Return a laboratory whose bed is a layer."""
+    start = laboratory or Laboratory()
+    return start if start.modulus_over_thickness is not None else start.but(modulus_over_thickness=1e9)
+
+
+Shape = Literal["convex", "concave", "tilted", "random"]
+SHAPES: tuple[Shape, ...] = ("convex", "concave", "tilted", "random")
+
+
+def profile(shape: Shape, amplitude: float, points: int, *, seed: int = 0) -> tuple[float, ...]:
+    """Return heights of contact points over the base line.
+
+    shape: A parabola that bulges down in the middle, one that is hollow there, a slope with the new foot up, or
+    independent uniform heights in [0, amplitude] from the seed; amplitude: difference between the highest and the
+    lowest point, or its bound [m]. Returns heights [m].
+
+    >>> profile("concave", 0.001, 3)
+    (0.0, 0.001, 0.0)
+    """
+    amplitude = checks.within("amplitude", amplitude, 0.0, 10.0, unit="m")
+    count, start = whole("points", points, 2), whole("seed", seed, 0)
+    s = np.linspace(-1.0, 1.0, count)
+    if shape == "concave":
+        heights = amplitude * (1.0 - s**2)
+    elif shape == "convex":
+        heights = amplitude * s**2
+    elif shape == "tilted":
+        heights = 0.5 * amplitude * (1.0 + s)
+    elif shape == "random":
+        heights = np.random.default_rng(start).uniform(0.0, amplitude, count)
+    else:
+        raise InvalidValueError(f"shape must be one of {', '.join(SHAPES)}, got {shape!r}")
+    return tuple(heights.tolist())
+
+
+def profile_study(
+    shape: Shape, amplitudes: Any, laboratory: Laboratory | None = None, *, seed: int = 0
+) -> LaboratoryStudy:
+    """Return r against the unevenness of the base.
+
+    amplitudes: heights of the unevenness [m].
+    """
+
+    def uneven(start: Laboratory, amplitude: float) -> Laboratory:
+        """Return the laboratory with a base of that unevenness."""
+        return start.but(profile=profile(shape, amplitude, start.points, seed=seed))
+
+    return study("amplitude", "m", amplitudes, uneven, laboratory)
+
+
+def random_profiles(amplitude: float, seeds: Any, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return r of bases with random unevenness.
+
+    amplitude: bound of the heights [m].
+    """
+
+    def rough(start: Laboratory, seed: float) -> Laboratory:
+        """Return the laboratory with the base of a seed."""
+        return start.but(profile=profile("random", amplitude, start.points, seed=whole("seed", seed, 0)))
+
+    return study("seed", "1", seeds, rough, laboratory)
+
+
+def large_bodies_study(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> LaboratoryStudy:
+    """Return what the bed says about blocks of one shape that grow, on a flat and on a hollow base, beside KED.
+
+    On a flat base of one layer r does not depend on the size at all (`size_study`): neither does KED. What can change
+    with size is a length that does not grow: here a hollow of fixed height under the base.
+
+    widths: widths of the base [m]; hollow: height of the hollow [m]. Returns over `width`: flat, hollow, ked and
+    hollow_minus_ked [-].
+
+    >>> found = large_bodies_study([0.1, 1.0, 10.0])
+    >>> bool((found.hollow.diff("width") > 0.0).all())
+    True
+    """
+    xarray = extra("xarray", "the impact laboratory")
+    found = large_bodies(widths, hollow=hollow, laboratory=laboratory)
+    found["hollow_minus_ked"] = found["hollow"] - found["ked"]
+    data = {name: ("width", values, {"units": "1"}) for name, values in found.items()}
+    coords = {"width": ("width", np.atleast_1d(np.asarray(widths, dtype=np.float64)), about("width", "m"))}
+    return LaboratoryStudy(xarray.Dataset(data, coords, provenance("width", layered(laboratory))))
+
+
+def large_bodies(widths: Any, *, hollow: float = 1e-4, laboratory: Laboratory | None = None) -> dict[str, FloatArray]:
+    """Return the numbers of `large_bodies_study`, which need no labelled arrays.
+
+    widths: widths of the base [m]; hollow: height of the hollow [m]. Returns flat, hollow and ked, over the widths [-].
+    """
+    start, row = layered(laboratory), np.atleast_1d(checks.positive_array("width", widths, "m"))
+    beds = {"flat": start.but(profile=()), "hollow": start.but(profile=profile("concave", hollow, start.points))}
+    found = {name: coefficients(bed.but(width=w) for w in row.tolist()) for name, bed in beds.items()}
+    return {**found, "ked": np.full(row.shape, Ked().coefficient(start.block))}
+
+
+@dataclass(frozen=True, eq=False)
+class Convergence:
+    """A sequence of coefficients and the orders that it shows."""
+
+    at: FloatArray  # contact intervals, or tolerances [-]
+    coefficient: FloatArray  # r there [-]
+    error: FloatArray  # distance from the limit [-]
+    order: FloatArray  # between neighbours: power of the spacing with which the error falls [-]
+    limit: float  # r it tends to: extrapolated, or of the finest step [-]
+
+
+def points_convergence(
+    counts: Sequence[int] = (11, 21, 41, 81, 161), *, slenderness: float = 2.0, limit: float | None = None
+) -> Convergence:
+    """Return the convergence of the viscous bed with its points.
+
+    Dashpots without springs absorb an impact in one contact: no hop hides the order.
+
+    counts: contact points, three of them or more, each with twice the intervals of the one before [-]; slenderness: h/b
+    of the block [-]; limit: the exact r; by default extrapolated from the last two with order 2 [-]. Returns the order
+    is near 2 for half shares at the ends.
+
+    >>> points_convergence((21, 41, 81)).order.round(0).tolist()
+    [2.0, 2.0]
+    """
+    intervals = np.array(counts, dtype=np.float64) - 1.0
+    if intervals.size < 3 or not bool((intervals[1:] == 2.0 * intervals[:-1]).all()):
+        raise InvalidValueError(f"counts must be three or more with doubled intervals: 11, 21, 41; got {counts}")
+    block = Laboratory(slenderness=slenderness).block
+    law = KelvinVoigt(0.0, damping=1e12 * block.mass)
+    r = bed_impacts(
+        [setup_of(block, ContactBed.uniform(block, n, law), angular_velocity=0.5, impulsive=True) for n in counts]
+    ).coefficient
+    end = float(r[-1] + (r[-1] - r[-2]) / 3.0) if limit is None else checks.number("limit", limit)
+    return _converged(intervals, r, end, np.full(intervals.size - 1, 2.0))
+
+
+def step_convergence(tolerances: Any = (1e-4, 1e-5, 1e-6, 1e-7), laboratory: Laboratory | None = None) -> Convergence:
+    """Return the convergence of r with the tolerance of a step.
+
+    tolerances: falling, above 1e-11 [-]. Returns against a tolerance of 1e-12; the order is a power of the tolerance.
+    """
+    row = np.atleast_1d(checks.positive_array("tolerances", tolerances))
+    start = laboratory or Laboratory()
+    r = coefficients(start.but(tolerance=float(tolerance)) for tolerance in (*row, 1e-12))
+    return _converged(row, r[:-1], float(r[-1]), row[:-1] / row[1:])
+
+
+def _converged(at: FloatArray, r: FloatArray, limit: float, ratio: FloatArray) -> Convergence:
+    error = np.abs(r - limit)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        order = np.log(error[:-1] / error[1:]) / np.log(ratio)  # Eq. 132
+    return Convergence(at, r, error, order, limit)
+
+
+def bed_speed_law(
+    body: Body,
+    frequency: float,
+    *,
+    points: int = 41,
+    damping: float = 1.0,
+    onto: Foot = "right",
+    gravity: float = conventions.g,
+) -> SpeedRestitution:
+    """Return r(speed) of a body on a bed of given stiffness, for `simulate`.
+
+    A speed stands for a hardness, v sqrt(k/m) / g with v = 2 w theta_dot; beyond the table r keeps its last value.
+
+    frequency: sqrt(k / m) / (2 pi) of the whole bed [Hz]; points: contact points, as `ContactBedModel` takes them [-];
+    damping: damping ratio [-]; gravity: acceleration of gravity [m/s2].
+
+    >>> from rocking import Block
+    >>> law = bed_speed_law(Block(width=0.2, height=0.4), 400.0)
+    >>> round(law.factor(2.0, 0, 0), 2), law.factor(0.5, 0, 0) > law.factor(4.0, 0, 0)
+    (0.85, True)
+    """
+    rate = 2.0 * np.pi * checks.positive("frequency", frequency, "Hz") / checks.positive("gravity", gravity, "m/s2")
+    left, right = body.local_feet
+    hardness = np.geomspace(*HARDNESS, 41)
+    hardness[[0, -1]] = HARDNESS
+    r = [ContactBedModel(points, damping, each).coefficient(body, onto) for each in hardness.tolist()]
+    return SpeedRestitution(hardness / (rate * (right - left)), np.minimum(r, 1.0))
+
+
+def impulse_position(coefficient: FloatArray, flatness: FloatArray, offset: FloatArray) -> FloatArray:
+    """Return where an impulse acts that gives a coefficient, from angular momentum about its position.
+
+    coefficient: theta_dot_after / theta_dot_before [-]; flatness, offset: of the bodies [-]. Returns kappa [-].
+    """
+    gyration = 1.0 / flatness - 1.0
+    arm = gyration * (1.0 - coefficient) / (1.0 + offset + coefficient * (1.0 - offset))  # Eq. 4
+    return np.asarray(arm + offset)
+
+
+def resolved(cases: FloatArray, points: int, *, threads: int = 1) -> FloatArray:
+    """Return coefficients of restitution resolved in time.
+
+    cases: flatness, offset, damping, hardness [-]. Returns theta_dot_after / theta_dot_before, by the next peak [-].
+    """
+    impacts = [
+        ScaledImpact(flatness, offset, points, damping, hardness)
+        for flatness, offset, damping, hardness in cases.tolist()
+    ]
+    return resolved_coefficients(impacts, threads=threads)
+
+
+def tabulated(*, threads: int = 1, progress: Callable[[int], None] | None = None) -> BedTable:
+    """Compute the table of the model `contact-bed`; takes minutes."""
+    axes = nodes()
+    shape = tuple(axis.size for axis in axes)
+    cases = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
+    planes = []
+    for points in POINTS:
+        r = np.concatenate(
+            [_told(resolved(piece, points, threads=threads), progress) for piece in np.array_split(cases, 40)]
+        )
+        planes.append(impulse_position(r, cases[:, 0], cases[:, 1]).reshape(shape))
+    return BedTable(*axes, np.array(planes))
+
+
+def stored(table: BedTable) -> np.ndarray[tuple[int, ...], np.dtype[np.int16]]:
+    """Return the positions as they are shipped.
+
+    Returns whole multiples of `bed_table.STEP`, to be written with `numpy.save`.
+    """
+    return np.asarray(np.rint(np.clip(table.positions, -3.9, 3.9) / STEP).astype(np.int16))
+
+
+def _told(values: FloatArray, progress: Callable[[int], None] | None) -> FloatArray:
+    if progress is not None:
+        progress(values.size)
+    return values

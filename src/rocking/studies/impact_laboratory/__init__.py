@@ -1,1 +1,0 @@
-"""The impact laboratory: what the coefficient of restitution of a contact bed depends on."""
