@@ -269,7 +269,7 @@ def sampled(histories: Histories) -> Histories:
 
 
 def uniforms(seed: int, numbers: Any, impact: int = 0) -> FloatArray:
-    """Return numbers in [0, 1) that depend on seed, history and impact: `rocking.dynamics.impact_laws.uniform`, of many.
+    """Return numbers in [0, 1) that depend on seed, history and impact: `impact_laws.uniform`, of many.
 
     Returns the numbers, to the last bit those of `uniform`.
 
