@@ -19,8 +19,7 @@ from rocking.conventions import FloatArray
 from rocking.dynamics import simulate
 from rocking.dynamics.space import SpatialBody, SpatialResponse, attitude
 from rocking.motions.motion import GroundMotion
-from rocking.motions.synthetic.modulation import GammaModulation
-from rocking.motions.synthetic.stochastic import NonstationaryFilter, nonstationary_motion
+from rocking.motions.synthetic.stochastic import GammaModulation, NonstationaryFilter, nonstationary_motion
 
 SIZE = (0.6, 0.6, 2.4)
 DURATION, STEP = 20.0, 0.01

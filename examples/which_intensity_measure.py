@@ -7,7 +7,7 @@ import numpy as np
 
 import rocking as rk
 from rocking import conventions
-from rocking.motions.scaling import scaled_to_pga
+from rocking.motions.processing import scaled_to_pga
 from rocking.plots import write
 from rocking.plots.measures import measures_picture
 from rocking.studies import SyntheticSet, cloud, compare_measures

@@ -7,7 +7,7 @@ import pytest
 from scipy.special import ndtri
 from scipy.stats import chi2, nct, norm, t
 
-from rocking.statistics.lognormal import fit_lognormal
+from rocking.statistics import fit_lognormal
 
 CAMPAIGN = bool(os.environ.get("ROCKING_CAMPAIGN"))
 STUDIES = 5000 if CAMPAIGN else 600

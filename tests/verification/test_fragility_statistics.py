@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 from scipy.stats import norm
 
-from rocking.statistics.lognormal import fit_lognormal
+from rocking.statistics import fit_lognormal
 from rocking.statistics.maximum_likelihood import LogScale, find_curves, log_dispersion, log_fractile, standard_errors
 from rocking.statistics.probit import Probit
 from rocking.statistics.profiles import FractileConstraint, Profile, SlopeConstraint

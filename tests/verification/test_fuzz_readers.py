@@ -17,10 +17,7 @@ from verification.record_mutations import mutated
 from verification.stated_by_headers import HEADERS
 
 from rocking.errors import InvalidValueError, RecordError
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.registry import formats
-from rocking.motions.formats.source import Source
+from rocking.motions.formats import Component, Record, RecordFormat, Source, formats
 
 COPIES = int(os.environ.get("ROCKING_FUZZ", "2000"))
 BINARY = {"miniseed", "sac"}

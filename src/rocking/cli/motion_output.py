@@ -11,8 +11,8 @@ from rocking import checks
 from rocking.cli.options import beside_g, in_unit
 from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
 from rocking.errors import InvalidValueError
+from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.intensity import Measure
-from rocking.motions.kinematics import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
 from rocking.plots.traces import traces

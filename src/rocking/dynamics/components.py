@@ -7,9 +7,9 @@ import numpy as np
 
 from rocking.bodies import Body
 from rocking.errors import InvalidValueError
+from rocking.motions.components import with_vertical
 from rocking.motions.motion import GroundMotion
 from rocking.motions.pulse import Pulse
-from rocking.motions.vertical import with_vertical
 
 Component = GroundMotion | Pulse | None
 Components = tuple[Component, Component, Component]

@@ -1,7 +1,15 @@
 """What shakes: records, pulses, synthetic motions, and what is measured on them."""
 
 from rocking.motions import pulses, synthetic
-from rocking.motions.energy import arias_intensity, significant_duration
+from rocking.motions.components import rotated, rotd_pga, with_vertical
+from rocking.motions.integrals import (
+    arias_intensity,
+    ground_displacement,
+    ground_velocity,
+    peak_ground_displacement,
+    peak_ground_velocity,
+    significant_duration,
+)
 from rocking.motions.intensity import (
     IntensityMeasure,
     Measure,
@@ -14,21 +22,27 @@ from rocking.motions.intensity import (
     normalised_acceleration,
     normalised_velocity,
     peak_ground_acceleration,
-    peak_ground_displacement,
-    peak_ground_velocity,
     spectral_acceleration,
     spectral_measure,
 )
-from rocking.motions.kinematics import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
-from rocking.motions.processing import bandpassed, demeaned, detrended, tapered
+from rocking.motions.processing import (
+    bandpassed,
+    demeaned,
+    detrended,
+    padded,
+    resampled,
+    scaled_to,
+    scaled_to_pga,
+    scaled_to_pgv,
+    scaled_to_sa,
+    tapered,
+    trimmed,
+    trimmed_to_significant,
+)
 from rocking.motions.pulse import Pulse
-from rocking.motions.resampling import padded, resampled, trimmed, trimmed_to_significant
-from rocking.motions.rotation import rotated, rotd_pga
-from rocking.motions.scaling import scaled_to, scaled_to_pga, scaled_to_pgv, scaled_to_sa
 from rocking.motions.segments import Segments
 from rocking.motions.spectrum import ResponseSpectrum, response_spectrum
-from rocking.motions.vertical import with_vertical
 
 __all__ = [
     "GroundMotion",

@@ -1,8 +1,8 @@
 """How strong a motion is: intensity measures, by the definitions and rules of the field.
 
-Each says how it treats what lies between the samples: energies and areas take the trapezoidal rule of the samples,
-velocities and spectra the straight lines that also drive bodies. An entry in `MEASURES` is all that a measure needs:
-`rocking motion`, fragility, scaling, pictures and OpenQuake's files read it there.
+Energies and areas take the trapezoidal rule of the samples, velocities and spectra the straight lines that also drive
+bodies. An entry in `MEASURES` is all that a measure needs: `rocking motion`, fragility, scaling, pictures and
+OpenQuake's files read it there.
 """
 
 import math
@@ -16,8 +16,12 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray, g
 from rocking.errors import InvalidValueError
-from rocking.motions.energy import arias_intensity, significant_duration
-from rocking.motions.kinematics import largest_displacement, largest_velocity
+from rocking.motions.integrals import (
+    arias_intensity,
+    peak_ground_displacement,
+    peak_ground_velocity,
+    significant_duration,
+)
 from rocking.motions.motion import GroundMotion, checked_motion
 from rocking.motions.pulse import Pulse
 from rocking.motions.spectrum import response_spectrum
@@ -64,46 +68,7 @@ def peak_ground_acceleration(motion: GroundMotion) -> float:
     float
         PGA [m/s2].
     """
-    motion = checked_motion(motion)
-    return motion.peak
-
-
-def peak_ground_velocity(motion: GroundMotion) -> float:
-    """Return the peak ground velocity PGV.
-
-    The samples are summed by the trapezoidal rule, as the field does; the extreme is that of the quadratic pieces
-    between them, where the body that this motion drives sees it.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion, from rest; correct its baseline first if it drifts.
-
-    Returns
-    -------
-    float
-        PGV up to the last sample [m/s].
-    """
-    return largest_velocity(motion)
-
-
-def peak_ground_displacement(motion: GroundMotion) -> float:
-    """Return the peak ground displacement PGD.
-
-    The second integral of the straight lines between the samples, as the body sees it, and its extreme also inside
-    steps.
-
-    Parameters
-    ----------
-    motion : GroundMotion
-        The motion, from rest; correct its baseline first if it drifts.
-
-    Returns
-    -------
-    float
-        PGD up to the last sample [m].
-    """
-    return largest_displacement(motion)
+    return checked_motion(motion).peak
 
 
 def cumulative_absolute_velocity(motion: GroundMotion) -> float:
@@ -234,11 +199,8 @@ def intensity_measures(motion: GroundMotion) -> dict[str, Measure]:
     >>> intensity_measures(GroundMotion([0.0, 1.0, -1.0, 0.0], 0.1))["pga"]
     Measure(name='peak ground acceleration', value=1.0, unit='m/s2')
     """
-    return {
-        name: Measure(one.words, one.of(motion), one.unit)
-        for name, one in MEASURES.items()
-        if one.is_listed and not one.needs_body
-    }
+    shown = [one for one in MEASURES.values() if one.is_listed and not one.needs_body]
+    return {one.name: Measure(one.words, one.of(motion), one.unit) for one in shown}
 
 
 def key_with_unit(name: str, unit: str) -> str:
@@ -251,6 +213,7 @@ def key_with_unit(name: str, unit: str) -> str:
 
 
 def _threshold(slenderness_angle: float, gravity: float) -> float:
+    """Return the ground acceleration that lifts a body [m/s2]."""
     alpha = checks.within(
         "slenderness_angle", slenderness_angle, 0.0, 0.5 * math.pi, unit="rad", open_low=True, open_high=True
     )
@@ -329,17 +292,12 @@ class IntensityMeasure:
         motion : GroundMotion
             The motion; its horizontal part counts.
         body : RockingScale, optional
-            What of the body counts.
+            What of the body counts; a measure that needs it is refused without.
 
         Returns
         -------
         float
             The value [unit of the measure].
-
-        Raises
-        ------
-        InvalidValueError
-            If the measure needs a body and there is none.
         """
         if self.needs_body and body is None:
             raise InvalidValueError(f"{self.name} is known of a motion and a body, got the motion alone")
@@ -351,7 +309,7 @@ class IntensityMeasure:
         return key_with_unit(self.name, self.unit)
 
     def values(self, motions: Any, body: RockingScale) -> FloatArray:
-        """Return the measure of every motion.
+        """Return the measure of every motion, all of which must be finite and above zero.
 
         Parameters
         ----------
@@ -364,11 +322,6 @@ class IntensityMeasure:
         -------
         ndarray
             One value a motion [unit of the measure].
-
-        Raises
-        ------
-        InvalidValueError
-            If the measure of a motion is not a finite number above zero; the motion is named.
         """
         each = (sampled(motions[k]) for k in range(len(motions)))
         strong = (self.of_motion(motion, body) if motion.peak > 0.0 else 0.0 for motion in each)
@@ -404,13 +357,7 @@ class IntensityMeasure:
         return np.asarray(values * np.abs(factor) ** self.power, dtype=np.float64)  # Eq. 229
 
     def check_grows(self) -> None:
-        """Refuse a measure that no factor on the motion changes.
-
-        Raises
-        ------
-        InvalidValueError
-            If its power is zero.
-        """
+        """Refuse a measure that no factor on the motion changes: one of power zero."""
         if self.power == 0:
             raise InvalidValueError(
                 f"measure must be one that grows with the motion, got {self.name!r}, which no factor changes; "
@@ -418,7 +365,7 @@ class IntensityMeasure:
             )
 
     def factors(self, values: FloatArray, targets: FloatArray) -> FloatArray:
-        """Return the factors that bring every motion to every target.
+        """Return the factors that bring every motion to every target; a measure must grow with the motion for that.
 
         Parameters
         ----------
@@ -431,11 +378,6 @@ class IntensityMeasure:
         -------
         ndarray, shape (motions, levels)
             Factors [-].
-
-        Raises
-        ------
-        InvalidValueError
-            If no factor changes the measure.
         """
         self.check_grows()
         return np.asarray((targets[None, :] / values[:, None]) ** (1.0 / self.power), dtype=np.float64)  # Eq. 229
@@ -489,12 +431,12 @@ def measures() -> dict[str, IntensityMeasure]:
     return dict(MEASURES)
 
 
-def measure(given: Any) -> IntensityMeasure:
+def measure(name: Any) -> IntensityMeasure:
     """Return a measure by its name.
 
     Parameters
     ----------
-    given : str or IntensityMeasure
+    name : str or IntensityMeasure
         A key of `measures`, ``sa(period)`` or ``sa(period,damping)`` [s, -], or a measure of one's own.
 
     Returns
@@ -512,21 +454,19 @@ def measure(given: Any) -> IntensityMeasure:
     >>> measure("sa(1.0)").words
     'pseudo-spectral acceleration at 1 s with 5 % damping'
     """
-    if isinstance(given, IntensityMeasure):
-        return given
-    if isinstance(given, str):
-        if (name := checks.spelling(given, MEASURES)) in MEASURES:
-            return MEASURES[name]
-        if found := spectral_period(given):
-            return spectral_measure(*found)
-    known, why = ", ".join(MEASURES), checks.nearest(given, MEASURES)
-    raise InvalidValueError(f"measure must be one of {known}, or sa(period in s), got {given!r:.60}{why}")
+    if isinstance(name, IntensityMeasure):
+        return name
+    if isinstance(name, str):
+        if (known := checks.spelling(name, MEASURES)) in MEASURES:
+            return MEASURES[known]
+        if spectral := spectral_period(name):
+            return spectral_measure(*spectral)
+    there, why = ", ".join(MEASURES), checks.nearest(name, MEASURES)
+    raise InvalidValueError(f"measure must be one of {there}, or sa(period in s), got {name!r:.60}{why}")
 
 
 def spectral_period(name: str) -> tuple[float, float] | None:
-    """Return period and damping of a spectral measure by its name.
-
-    Returns period [s] and damping ratio [-]; None if the name is of another kind.
+    """Return period [s] and damping ratio [-] of a spectral measure by its name; None of another kind.
 
     >>> spectral_period("sa(0.5)")
     (0.5, 0.05)
@@ -536,10 +476,7 @@ def spectral_period(name: str) -> tuple[float, float] | None:
 
 
 def sampled(motion: GroundMotion | Pulse) -> GroundMotion:
-    """Return a motion as a record: a pulse is sampled so finely that its measures are right to 1e-6.
-
-    Returns the motion itself, or the samples of the pulse [m/s2], the largest raised to its peak.
-    """
+    """Return a motion as a record: a pulse is sampled so finely that its measures are right to 1e-6, its peak exact."""
     if not isinstance(motion, Pulse):
         return motion
     count = max(200, int(np.ceil(SAMPLES_PER_PERIOD * motion.fastest * motion.duration / (2.0 * np.pi))))
@@ -591,7 +528,7 @@ _NAMED = (
         symbol="CAV", openquake=("CAV", 1.0 / g),  # g s
     ),
     IntensityMeasure(
-        "d5_95", "significant duration 5-95 %", "s", 0, lambda m, _: significant_duration(m), symbol="D5-95"
+        "d5_95", "significant duration 5-95 %", "s", 0, lambda m, _: significant_duration(m), symbol="D5-95",
     ),
     IntensityMeasure(
         "d5_75", "significant duration 5-75 %", "s", 0, lambda m, _: significant_duration(m, 5.0, 75.0),

@@ -1,4 +1,4 @@
-"""Records corrected: baselines, tapers and band-pass filters, each with a line of provenance."""
+"""Records corrected, resampled, cut and scaled, each step with a line of provenance."""
 
 import math
 from typing import Any, Literal
@@ -8,9 +8,11 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.motions.kinematics import ground_velocity
-from rocking.motions.motion import GroundMotion, checked_motion
-from rocking.motions.portable import cosine_sine
+from rocking.motions import intensity
+from rocking.motions.filters import cosine_sine
+from rocking.motions.integrals import significant_times, velocity_of
+from rocking.motions.intensity import RockingScale
+from rocking.motions.motion import LONGEST_STEP, SHORTEST_STEP, GroundMotion, checked_motion
 
 
 def demeaned(motion: GroundMotion) -> GroundMotion:
@@ -32,7 +34,7 @@ def demeaned(motion: GroundMotion) -> GroundMotion:
     [-1.0, 1.0]
     """
     motion = checked_motion(motion)
-    return _each(motion, lambda part: part.acceleration - part.acceleration.mean(), "mean acceleration removed")
+    return _each(motion, lambda a: a - a.mean(), "mean acceleration removed")
 
 
 def detrended(
@@ -73,7 +75,7 @@ def detrended(
     if len(motion) < order + 2:
         raise InvalidValueError(f"a trend of order {order} needs at least {order + 2} samples, got {len(motion)}")
     what = f"polynomial of order {order} fitted to the {fit} removed"
-    return _each(motion, lambda part: part.acceleration - _trend(part, int(order), fit), what)
+    return _each(motion, lambda a: a - _trend(a, motion.time_step, int(order), fit), what)
 
 
 def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
@@ -101,7 +103,7 @@ def tapered(motion: GroundMotion, fraction: float = 0.05) -> GroundMotion:
     place = np.linspace(0.0, 1.0, len(motion))
     edge = np.minimum(np.minimum(place, 1.0 - place) / fraction, 1.0)
     window = 0.5 * (1.0 - cosine_sine(np.pi * edge)[0])  # Eq. 154
-    return _each(motion, lambda part: part.acceleration * window, f"cosine taper over {fraction:g} of each end")
+    return _each(motion, lambda a: a * window, f"cosine taper over {fraction:g} of each end")
 
 
 def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) -> GroundMotion:
@@ -143,32 +145,25 @@ def bandpassed(motion: GroundMotion, low: float, high: float, order: int = 4) ->
     sections: Any = butter(int(order), [low, high], btype="bandpass", fs=1.0 / motion.time_step, output="sos")
     pad = math.ceil(1.5 * order / low / motion.time_step)  # Eq. 155
 
-    def filtered(part: GroundMotion) -> FloatArray:
-        result: Any = sosfiltfilt(sections, np.pad(part.acceleration, pad), padtype=None)
+    def filtered(samples: FloatArray) -> FloatArray:
+        result: Any = sosfiltfilt(sections, np.pad(samples, pad), padtype=None)
         return np.asarray(result[pad:-pad], dtype=np.float64)
 
     what = f"band-pass {low:g} to {high:g} Hz, Butterworth order {order}, forwards and backwards"
     return _each(motion, filtered, what)
 
 
-def _each(motion: GroundMotion, correct: Any, what: str) -> GroundMotion:
-    vertical = motion.vertical
-    if vertical is not None:
-        vertical = correct(GroundMotion(vertical, motion.time_step))
-    return motion.changed(what, acceleration=correct(motion), vertical=vertical)
-
-
-def _trend(part: GroundMotion, order: int, fit: str) -> FloatArray:
+def _trend(samples: FloatArray, time_step: float, order: int, fit: str) -> FloatArray:
     """Fit by polynomials that are orthogonal over the samples, from Stieltjes' recurrence: no matrix is solved."""
-    x = np.linspace(0.0, 1.0, len(part))
+    x, duration = np.linspace(0.0, 1.0, samples.size), (samples.size - 1) * time_step
     velocity = fit == "velocity"
-    weight, values = (x, ground_velocity(part)) if velocity else (np.ones_like(x), part.acceleration)
+    weight, values = (x, velocity_of(samples, time_step)) if velocity else (np.ones_like(x), samples)
     trend, before, p, slope_before, slope = 0.0 * x, 0.0 * x, np.ones_like(x), 0.0 * x, 0.0 * x
     last = 1.0
     for _ in range(order if velocity else order + 1):
         q = weight * p
         size = (q * q).sum()
-        term = (p + x * slope) / part.duration if velocity else p
+        term = (p + x * slope) / duration if velocity else p
         trend += (q * values).sum() / size * term
         middle, ratio = (x * q * q).sum() / size, size / last
         before, p, slope_before, slope = (
@@ -179,3 +174,291 @@ def _trend(part: GroundMotion, order: int, fit: str) -> FloatArray:
         )
         last = size
     return trend
+
+
+ROUNDING = 1e-6
+"""A ratio of times this close to a whole number is one."""
+
+MOST_SAMPLES = 100_000_000
+"""No motion has more samples: asking for more is a wrong unit."""
+
+
+def resampled(motion: GroundMotion, time_step: float) -> GroundMotion:
+    """Return the motion at another time step.
+
+    A finer step, of any ratio, takes the straight lines between the samples: every new sample is exact, and if the
+    ratio is whole the motion drives bodies as before; its Arias intensity falls to that of the lines. A coarser step
+    must be a whole multiple; then a linear-phase low pass (Hamming window, 20 taps a multiple on either side, no
+    shift) removes first what the new step cannot carry.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; both components are resampled.
+    time_step : float
+        New step [s].
+
+    Returns
+    -------
+    GroundMotion
+        The resampled motion. If the last sample falls between two steps, it ends with a zero one step later.
+
+    Raises
+    ------
+    InvalidValueError
+        If the step is coarser and not a whole multiple, or leaves fewer than two samples or far too many.
+
+    Examples
+    --------
+    >>> resampled(GroundMotion([0.0, 1.0], 0.1), 0.05).acceleration.tolist()
+    [0.0, 0.5, 1.0]
+    """
+    motion = checked_motion(motion)
+    new = checks.within("time_step", time_step, SHORTEST_STEP, LONGEST_STEP, unit="s", hint="in seconds")
+    ratio = new / motion.time_step
+    if abs(ratio - 1.0) <= ROUNDING:
+        return motion
+    if ratio < 1.0:
+        count = _whole(motion.duration / new) + 1
+        if count > MOST_SAMPLES:
+            raise InvalidValueError(
+                f"time_step must leave at most {MOST_SAMPLES:g} samples, got {count:g}; wrong unit?"
+            )
+        place = np.arange(count) * ratio
+        # rounding must not push the last new sample beyond the last old one
+        last = len(motion) - 1
+        place[np.abs(place - last) <= ROUNDING] = last
+        grid = np.arange(len(motion), dtype=np.float64)
+        what = f"interpolated linearly from {motion.time_step:g} s to {new:g} s"
+        return _each(motion, lambda a: np.interp(place, grid, a, right=0.0), what, new)
+    factor = round(ratio)
+    if abs(ratio - factor) > ROUNDING * factor:
+        raise InvalidValueError(
+            f"time_step must be a whole multiple of {motion.time_step:g} s if above, got {new:g} s, {ratio:g} times"
+        )
+    if factor > len(motion) - 1:
+        raise InvalidValueError(f"time_step must leave 2 samples, at most {motion.duration:g} s, got {new:g} s")
+    what = f"low-passed (linear phase) and coarsened from {motion.time_step:g} s to {new:g} s"
+    return _each(motion, lambda a: _coarse(a, factor), what, new)
+
+
+def trimmed(motion: GroundMotion, start: float, end: float) -> GroundMotion:
+    """Return the part of the motion between two times.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; its clock starts again at zero.
+    start, end : float
+        Times within the record; these go outwards to the next sample [s].
+
+    Returns
+    -------
+    GroundMotion
+        The part.
+
+    Raises
+    ------
+    InvalidValueError
+        If the times are outside the record or not in order.
+
+    Examples
+    --------
+    >>> trimmed(GroundMotion([0.0, 1.0, 2.0, 3.0], 1.0), 1.0, 2.5).acceleration.tolist()
+    [1.0, 2.0, 3.0]
+    """
+    motion = checked_motion(motion)
+    length = motion.duration
+    start = checks.within("start", start, 0.0, length * (1.0 + 1e-9), unit="s")
+    end = checks.within(
+        "end", end, start, length * (1.0 + 1e-9), unit="s", open_low=True, hint="end must be after start"
+    )
+    first = math.floor(start / motion.time_step + ROUNDING)
+    last = min(_whole(end / motion.time_step), len(motion) - 1)
+    first = min(first, last - 1)
+    what = f"trimmed to {first * motion.time_step:g} to {last * motion.time_step:g} s"
+    return _each(motion, lambda a: a[first : last + 1], what)
+
+
+def trimmed_to_significant(
+    motion: GroundMotion, start: float = 5.0, end: float = 95.0, padding: float = 0.0
+) -> GroundMotion:
+    """Return the part of the motion that holds most of its Arias intensity.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; its horizontal part counts.
+    start, end : float
+        Percentages of the Arias intensity [%].
+    padding : float
+        Time to keep before and after, as far as there is a record [s].
+
+    Returns
+    -------
+    GroundMotion
+        The part.
+    """
+    motion = checked_motion(motion)
+    padding = checks.within("padding", padding, 0.0, math.inf, unit="s")
+    first, last = significant_times(motion, start, end)
+    return trimmed(motion, max(first - padding, 0.0), min(last + padding, motion.duration))
+
+
+def padded(motion: GroundMotion, before: float, after: float | None = None) -> GroundMotion:
+    """Return the motion with zeros before and after.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion. Where it does not start and end at zero, a straight line of one step leads there.
+    before : float
+        Time to add before, rounded up to whole steps [s].
+    after : float, optional
+        Time to add after; as much as before if not given [s].
+
+    Returns
+    -------
+    GroundMotion
+        The longer motion.
+
+    Raises
+    ------
+    InvalidValueError
+        If a time is negative or far too long.
+
+    Examples
+    --------
+    >>> padded(GroundMotion([1.0, 2.0], 0.5), 0.5).acceleration.tolist()
+    [0.0, 1.0, 2.0, 0.0]
+    """
+    motion = checked_motion(motion)
+    times = [checks.within("before", before, 0.0, math.inf, unit="s")]
+    times.append(times[0] if after is None else checks.within("after", after, 0.0, math.inf, unit="s"))
+    if sum(times) / motion.time_step > MOST_SAMPLES:
+        raise InvalidValueError(f"padding must add at most {MOST_SAMPLES:g} samples, got {sum(times):g} s; wrong unit?")
+    counts = (_whole(times[0] / motion.time_step), _whole(times[1] / motion.time_step))
+    what = f"padded with zeros, {counts[0]} samples before and {counts[1]} after"
+    return _each(motion, lambda a: np.pad(a, counts), what)
+
+
+def _whole(ratio: float) -> int:
+    return math.ceil(ratio - ROUNDING)
+
+
+def _coarse(samples: FloatArray, factor: int) -> FloatArray:
+    from scipy.signal import decimate
+
+    result: Any = decimate(samples, factor, ftype="fir", zero_phase=True)
+    return np.asarray(result, dtype=np.float64)
+
+
+def _each(motion: GroundMotion, change: Any, what: str, time_step: float | None = None) -> GroundMotion:
+    vertical = None if motion.vertical is None else change(motion.vertical)
+    step = motion.time_step if time_step is None else time_step
+    return motion.changed(what, acceleration=change(motion.acceleration), vertical=vertical, time_step=step)
+
+
+def scaled_to(motion: GroundMotion, measure: Any, target: float, body: RockingScale | None = None) -> GroundMotion:
+    """Return the motion scaled to a measure of its intensity.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; both components are multiplied by the factor of the horizontal one.
+    measure : str or IntensityMeasure
+        A name of `measures`, ``sa(period)``, or a measure of one's own; one that grows with the motion.
+    target : float
+        Value that it shall have [unit of the measure].
+    body : RockingScale, optional
+        What of a body counts, for measures that need one.
+
+    Returns
+    -------
+    GroundMotion
+        The scaled motion.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such measure, no factor changes it, it needs a body, or the motion has none of it.
+
+    Examples
+    --------
+    >>> from rocking.motions.integrals import arias_intensity
+    >>> round(arias_intensity(scaled_to(GroundMotion([0.0, 1.0, -2.0], 0.1), "arias", 1.5)), 12)
+    1.5
+    """
+    one = intensity.measure(measure)
+    one.check_grows()
+    now, name = one.of(motion, body), one.symbol or one.name
+    target = checks.positive("target", target, one.unit)
+    if not now > 0.0:
+        raise InvalidValueError(f"motion must have {name} > 0 {one.unit} to be scaled, got {now:g}; zero throughout?")
+    factor = checks.number("factor", (target / now) ** (1.0 / one.power))
+    vertical = None if motion.vertical is None else motion.vertical * factor
+    what = f"multiplied by {factor!r} so that {name} is {target:g} {one.unit}"
+    return motion.changed(what, acceleration=motion.acceleration * factor, vertical=vertical)
+
+
+def scaled_to_pga(motion: GroundMotion, target: float) -> GroundMotion:
+    """Return the motion scaled to a peak ground acceleration.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; both components are multiplied by the factor of the horizontal one.
+    target : float
+        PGA that it shall have [m/s2].
+
+    Returns
+    -------
+    GroundMotion
+        The scaled motion.
+
+    Examples
+    --------
+    >>> scaled_to_pga(GroundMotion([0.0, 1.0, -2.0], 0.1), 3.0).peak
+    3.0
+    """
+    return scaled_to(motion, "pga", target)
+
+
+def scaled_to_pgv(motion: GroundMotion, target: float) -> GroundMotion:
+    """Return the motion scaled to a peak ground velocity.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; both components are multiplied by the factor of the horizontal one.
+    target : float
+        PGV that it shall have [m/s].
+
+    Returns
+    -------
+    GroundMotion
+        The scaled motion.
+    """
+    return scaled_to(motion, "pgv", target)
+
+
+def scaled_to_sa(motion: GroundMotion, target: float, period: float, damping: float = 0.05) -> GroundMotion:
+    """Return the motion scaled to a pseudo-spectral acceleration.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+        The motion; both components are multiplied by the factor of the horizontal one.
+    target : float
+        PSA that it shall have at `period` [m/s2].
+    period : float
+        Undamped natural period of the oscillator [s].
+    damping : float
+        Damping ratio, from 0 to below 1 [-].
+
+    Returns
+    -------
+    GroundMotion
+        The scaled motion.
+    """
+    return scaled_to(motion, intensity.spectral_measure(period, damping), target)

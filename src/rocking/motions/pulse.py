@@ -1,13 +1,16 @@
-"""A pulse: an acceleration known at every instant, not only at samples."""
+"""Pulses: accelerations known at every instant, not only at samples; sums of sinusoids, and Ricker's wavelets."""
 
+import math
 from abc import ABC, abstractmethod
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 
 from rocking import checks, plausibility
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.motions.filters import cosine_sine, exponential
 from rocking.motions.motion import LARGEST_ACCELERATION, LONGEST_STEP, SHORTEST_STEP, GroundMotion
 from rocking.motions.segments import Segments
 
@@ -186,3 +189,126 @@ def _times(time: Any) -> FloatArray:
     if not np.isfinite(given).all():
         raise InvalidValueError(f"time must be finite [s], got {given[~np.isfinite(given)][0]:g}")
     return given
+
+
+Wave = tuple[float, float, float]
+"""Amplitude [m/s2], circular frequency [rad/s] and phase [rad] of ``amplitude * sin(frequency * t + phase)``."""
+
+
+@dataclass(frozen=True)
+class Sinusoids(Pulse):
+    """A sum of sinusoids from time zero to `duration`."""
+
+    title: str  # what to call it
+    waves: tuple[Wave, ...]  # amplitude [m/s2], circular frequency [rad/s] and phase [rad] of each sine
+    length: float  # duration [s]
+    largest: float  # peak acceleration [m/s2]
+
+    def __post_init__(self) -> None:
+        """Check the peak."""
+        self._check_peak()
+
+    @property
+    def name(self) -> str:
+        """What to call it in titles and tables."""
+        return self.title
+
+    @property
+    def duration(self) -> float:
+        """Time at which the acceleration ends [s]."""
+        return self.length
+
+    @property
+    def peak(self) -> float:
+        """Peak ground acceleration [m/s2]."""
+        return self.largest
+
+    @property
+    def fastest(self) -> float:
+        """Highest circular frequency in it [rad/s]."""
+        return max(abs(frequency) for _, frequency, _ in self.waves)
+
+    def scaled(self, factor: float) -> "Sinusoids":
+        """Return the pulse with its acceleration multiplied by a factor.
+
+        factor: may be negative [-].
+        """
+        factor = checks.number("factor", factor)
+        waves = tuple((factor * amplitude, frequency, phase) for amplitude, frequency, phase in self.waves)
+        return replace(self, waves=waves, largest=abs(factor) * self.largest)
+
+    def _inside(self, time: FloatArray, derivative: int) -> FloatArray:
+        total = np.zeros_like(time)
+        for amplitude, frequency, phase in self.waves:
+            if frequency == 0.0:
+                power = 2 - derivative
+                total += amplitude * math.sin(phase) * time**power / (1.0, 1.0, 2.0)[power]
+            elif derivative == 2:
+                total += amplitude * cosine_sine(frequency * time + phase)[1]  # Eq. 157
+            elif derivative == 1:
+                total -= amplitude / frequency * cosine_sine(frequency * time + phase)[0]
+            else:
+                total -= amplitude / frequency**2 * cosine_sine(frequency * time + phase)[1]
+        return total
+
+
+_SQRT3 = math.sqrt(3.0)
+
+# maximum of (3 - z^2) z exp(-z^2 / 2), at z^2 = 3 - sqrt(6)
+_PEAK = math.sqrt(6.0) * math.sqrt(3.0 - math.sqrt(6.0)) * math.exp(-0.5 * (3.0 - math.sqrt(6.0)))  # Eq. 161
+
+
+@dataclass(frozen=True)
+class Ricker(Pulse):
+    """A Ricker wavelet, symmetric or antisymmetric about its middle.
+
+    With t from the middle, the symmetric one is ``a_p (1 - 2 x^2) exp(-x^2)``, x = pi t / T_p, and the antisymmetric
+    one ``(a_p / beta) (z^2 - 3) z exp(-z^2 / 2)``, z = 2 pi t / (sqrt(3) T_p), beta = 1.3801... Beyond 2 (2.5) periods
+    from the middle nothing above 1e-15 of the peak is left, and it is cut there.
+    """
+
+    amplitude: float  # peak acceleration a_p; a negative one turns it round [m/s2]
+    period: float  # period T_p [s]
+    shape: Literal["symmetric", "antisymmetric"] = "symmetric"  # which of the two
+
+    def __post_init__(self) -> None:
+        """Check the peak."""
+        self._check_peak()
+
+    @property
+    def name(self) -> str:
+        """What to call it in titles and tables."""
+        return f"{self.shape} Ricker wavelet, {abs(self.amplitude):.3g} m/s2, {self.period:.3g} s"
+
+    @property
+    def duration(self) -> float:
+        """Time at which it is cut [s]."""
+        return (4.0 if self.shape == "symmetric" else 5.0) * self.period
+
+    @property
+    def peak(self) -> float:
+        """Peak ground acceleration [m/s2]."""
+        return abs(self.amplitude)
+
+    @property
+    def fastest(self) -> float:
+        """Circular frequency that its sharpest bend corresponds to [rad/s]."""
+        return 3.0 * math.pi / self.period
+
+    def scaled(self, factor: float) -> "Ricker":
+        """Return the pulse with its acceleration multiplied by a factor.
+
+        factor: may be negative [-].
+        """
+        return replace(self, amplitude=checks.number("factor", factor) * self.amplitude)
+
+    def _inside(self, time: FloatArray, derivative: int) -> FloatArray:
+        t = time - 0.5 * self.duration
+        if self.shape == "symmetric":
+            x2 = (math.pi / self.period * t) ** 2
+            part = (-0.5 * (self.period / math.pi) ** 2, t, 1.0 - 2.0 * x2)[derivative]  # Eq. 160
+            return self.amplitude * part * exponential(-x2)
+        unit = _SQRT3 * self.period / (2.0 * math.pi)
+        z = t / unit
+        part = (unit**2 * z, -unit * (z * z - 1.0), (z * z - 3.0) * z)[derivative]  # Eq. 161
+        return self.amplitude / _PEAK * part * exponential(-0.5 * z * z)

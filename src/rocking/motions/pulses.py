@@ -11,9 +11,7 @@ from typing import Any
 from rocking import checks, plausibility
 from rocking.errors import InvalidValueError, UnknownModelError
 from rocking.motions.motion import LARGEST_ACCELERATION
-from rocking.motions.pulse import Pulse
-from rocking.motions.rickers import Ricker
-from rocking.motions.sinusoids import Sinusoids
+from rocking.motions.pulse import Pulse, Ricker, Sinusoids
 
 __all__ = [
     "antisymmetric_ricker",

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from rocking import checks
 from rocking.conventions import FloatArray, IntArray
 from rocking.errors import InvalidValueError
-from rocking.motions.kinematics import quadratic_roots
+from rocking.motions.integrals import quadratic_roots
 from rocking.motions.motion import GroundMotion, checked_motion
 
 POINTS_PER_PERIOD = 36

@@ -8,7 +8,7 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import peak_ground_acceleration, peak_ground_velocity
+from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import response_spectrum
 from rocking.plots.study_words import look, plain, plain_log

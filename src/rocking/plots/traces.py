@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.motions.kinematics import ground_displacement, ground_velocity, quadratic_roots
+from rocking.motions.integrals import ground_displacement, ground_velocity, quadratic_roots
 from rocking.motions.motion import SHORTEST_STEP, GroundMotion
 from rocking.motions.pulse import Pulse
 

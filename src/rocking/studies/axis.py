@@ -14,11 +14,9 @@ from rocking.conventions import FEET, FloatArray
 from rocking.dynamics.impact_laws import ConstantRestitution
 from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
-from rocking.motions.kinematics import largest_velocity
+from rocking.motions import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
-from rocking.motions.pulse import Pulse
-from rocking.motions.rickers import Ricker
-from rocking.motions.sinusoids import Sinusoids
+from rocking.motions.pulse import Pulse, Ricker, Sinusoids
 from rocking.studies.question import Question
 from rocking.studies.variations import Case
 
@@ -178,7 +176,7 @@ def peak_velocity(motion: Motion) -> float:
     1.0
     """
     if isinstance(motion, GroundMotion):
-        return largest_velocity(motion)
+        return peak_ground_velocity(motion)
     times = np.linspace(0.0, motion.duration, _SAMPLES + 1)
     turns = _zeros_of_acceleration(motion, times)
     return float(np.abs(motion.velocity(np.concatenate([times, turns]))).max())

@@ -11,11 +11,10 @@ from rocking.dynamics.response import Motion
 from rocking.errors import InvalidValueError
 from rocking.motions.intensity import measure
 from rocking.motions.motion import GroundMotion
+from rocking.motions.processing import scaled_to
 from rocking.motions.pulse import Pulse
-from rocking.motions.scaling import scaled_to
 from rocking.motions.synthetic.distributions import Distribution
-from rocking.motions.synthetic.families import family
-from rocking.motions.synthetic.family import Family, whole
+from rocking.motions.synthetic.families import Family, family, whole
 
 
 class MotionSet(ABC):

@@ -6,7 +6,7 @@ from rocking.bodies.block import Block
 from rocking.checks import decimal_comma, nearest
 from rocking.cli import main
 from rocking.errors import RockingError, UnknownModelError
-from rocking.motions.formats.registry import format_named
+from rocking.motions.formats.reader import format_named
 from rocking.motions.intensity import measure
 from rocking.motions.pulses import pulse
 from rocking.restitution import model

@@ -9,22 +9,23 @@ import pytest
 from scipy import stats
 
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import peak_ground_acceleration, peak_ground_velocity
-from rocking.motions.kinematics import ground_velocity
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion, ground_velocity, peak_ground_acceleration, peak_ground_velocity
+from rocking.motions.filters import highpassed
 from rocking.motions.synthetic import (
     Envelope,
     KanaiTajimi,
+    Lognormal,
+    LogUniform,
     NonstationaryFilter,
     PointSource,
+    Uniform,
+    families,
+    family,
     kanai_tajimi_motion,
     modulation_from_intensity,
     nonstationary_motion,
     point_source_motion,
 )
-from rocking.motions.synthetic.distributions import Lognormal, LogUniform, Uniform
-from rocking.motions.synthetic.families import families, family
-from rocking.motions.synthetic.oscillator import highpassed
 
 DRAWS = 600
 STATED = [(name, parameter) for name, one in families().items() for parameter in one.distributions]

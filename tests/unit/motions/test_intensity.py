@@ -11,10 +11,8 @@ from scipy.optimize import brentq
 
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
-from rocking.motions import GroundMotion
-from rocking.motions.energy import significant_times
-from rocking.motions.formats import read_motion
-from rocking.motions.intensity import (
+from rocking.motions import (
+    GroundMotion,
     arias_intensity,
     cumulative_absolute_velocity,
     housner_intensity,
@@ -27,6 +25,8 @@ from rocking.motions.intensity import (
     significant_duration,
     spectral_acceleration,
 )
+from rocking.motions.formats import read_motion
+from rocking.motions.integrals import significant_times
 
 ZIGZAG = GroundMotion([0.0, 1.0, -1.0, 0.0], 1.0)
 RECORDS = st.lists(st.floats(-10.0, 10.0).map(lambda x: round(x, 3)), min_size=2, max_size=30)

@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
-from rocking.motions import GroundMotion, ground_displacement, ground_velocity
-from rocking.motions.kinematics import largest_displacement, largest_velocity, quadratic_roots
+from rocking.motions import (
+    GroundMotion,
+    ground_displacement,
+    ground_velocity,
+    peak_ground_displacement,
+    peak_ground_velocity,
+)
+from rocking.motions.integrals import quadratic_roots
 
 
 def motion_of(samples: list[float], step: float) -> GroundMotion:
@@ -44,20 +50,20 @@ def test_steps_scale() -> None:
     np.testing.assert_allclose(ground_displacement(other), -12.0 * ground_displacement(one), rtol=1e-14)
 
 
-def test_largest_velocity_inside_a_step() -> None:
+def test_peak_ground_velocity_inside_a_step() -> None:
     """A line from 3 to -1 crosses zero at 3/4 of the step: there the velocity is 9/8 h, more than 1 h at the end."""
-    assert largest_velocity(motion_of([3.0, -1.0], 2.0)) == pytest.approx(2.25, rel=1e-15)
-    assert largest_velocity(motion_of([-3.0, 1.0], 2.0)) == pytest.approx(2.25, rel=1e-15)
-    assert largest_velocity(motion_of([1.0, 1.0], 2.0)) == 2.0
-    assert largest_velocity(motion_of([0.0, 0.0], 2.0)) == 0.0
+    assert peak_ground_velocity(motion_of([3.0, -1.0], 2.0)) == pytest.approx(2.25, rel=1e-15)
+    assert peak_ground_velocity(motion_of([-3.0, 1.0], 2.0)) == pytest.approx(2.25, rel=1e-15)
+    assert peak_ground_velocity(motion_of([1.0, 1.0], 2.0)) == 2.0
+    assert peak_ground_velocity(motion_of([0.0, 0.0], 2.0)) == 0.0
 
 
-def test_largest_displacement_inside_a_step() -> None:
+def test_peak_ground_displacement_inside_a_step() -> None:
     """From 1 to -2 in a unit step u = t^2 / 2 - t^3 / 2: the largest is 2/27 at t = 2/3, and zero at the end."""
-    assert largest_displacement(motion_of([1.0, -2.0], 1.0)) == pytest.approx(2.0 / 27.0, rel=1e-14)
-    assert largest_displacement(motion_of([-1.0, 2.0], 1.0)) == pytest.approx(2.0 / 27.0, rel=1e-14)
-    assert largest_displacement(motion_of([0.0, 0.0, 0.0], 1.0)) == 0.0
-    assert largest_displacement(motion_of([2.0, 2.0], 1.0)) == 1.0
+    assert peak_ground_displacement(motion_of([1.0, -2.0], 1.0)) == pytest.approx(2.0 / 27.0, rel=1e-14)
+    assert peak_ground_displacement(motion_of([-1.0, 2.0], 1.0)) == pytest.approx(2.0 / 27.0, rel=1e-14)
+    assert peak_ground_displacement(motion_of([0.0, 0.0, 0.0], 1.0)) == 0.0
+    assert peak_ground_displacement(motion_of([2.0, 2.0], 1.0)) == 1.0
 
 
 def test_against_many_instants() -> None:
@@ -68,8 +74,8 @@ def test_against_many_instants() -> None:
         t = np.linspace(0.0, 1.1, 11_001)
         fine = GroundMotion(np.interp(t, motion.time, motion.acceleration), float(t[1]))
         for largest, samples in (
-            (largest_velocity(motion), ground_velocity(fine)),
-            (largest_displacement(motion), ground_displacement(fine)),
+            (peak_ground_velocity(motion), ground_velocity(fine)),
+            (peak_ground_displacement(motion), ground_displacement(fine)),
         ):
             seen = float(np.abs(samples).max())
             assert seen <= largest * (1.0 + 1e-12)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.motions import GroundMotion
-from rocking.motions.scaling import scaled_to_pga
+from rocking.motions import GroundMotion, scaled_to_pga
 
 
 def motion_of(samples: Any, step: Any = 0.5, **more: Any) -> GroundMotion:

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from rocking.motions import portable
-from rocking.motions.synthetic.stochastic import NonstationaryFilter, _unit_process
+from rocking.motions import filters
+from rocking.motions.synthetic import NonstationaryFilter
+from rocking.motions.synthetic.stochastic import _unit_process
 
 
 def by_definition(noise, omega, damping, step):
@@ -40,7 +41,7 @@ def test_shared_oscillators_are_as_good_as_own_ones(frequency, slope, damping, s
     omega = NonstationaryFilter(frequency, slope, 8.0, damping).omega(step * np.arange(noise.size))
     found = _unit_process(noise, omega, damping, step)
     assert np.abs(found - by_definition(noise, omega, damping, step)).max() < 1e-10
-    monkeypatch.setattr(portable, "compiled", lambda: None)
+    monkeypatch.setattr(filters, "compiled", lambda: None)
     np.testing.assert_array_equal(_unit_process(noise, omega, damping, step), found)
 
 

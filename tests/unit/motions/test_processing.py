@@ -8,12 +8,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rocking.errors import InvalidValueError
-from rocking.motions import GroundMotion
-from rocking.motions.energy import significant_times
-from rocking.motions.kinematics import ground_displacement, ground_velocity
-from rocking.motions.processing import bandpassed, demeaned, detrended, tapered
-from rocking.motions.resampling import padded, resampled, trimmed, trimmed_to_significant
-from rocking.motions.rotation import rotated, rotd_pga
+from rocking.motions import (
+    GroundMotion,
+    bandpassed,
+    demeaned,
+    detrended,
+    ground_displacement,
+    ground_velocity,
+    padded,
+    resampled,
+    rotated,
+    rotd_pga,
+    tapered,
+    trimmed,
+    trimmed_to_significant,
+)
+from rocking.motions.integrals import significant_times
 
 T = np.arange(1001) * 0.01
 NOISE = np.random.default_rng(11).standard_normal(1001)

@@ -7,13 +7,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import peak_ground_velocity
-from rocking.motions.kinematics import ground_velocity
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion, ground_velocity, peak_ground_velocity
 from rocking.motions.pulses import mavroeidis_papageorgiou
-from rocking.motions.synthetic.distributions import Uniform
-from rocking.motions.synthetic.families import family
-from rocking.motions.synthetic.pulse_like import with_pulse
+from rocking.motions.synthetic import Uniform, family, with_pulse
 
 STEP = 0.005
 PULSE = mavroeidis_papageorgiou(velocity=0.7, period=1.2, cycles=2.0, phase=0.0)

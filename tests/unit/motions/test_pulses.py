@@ -10,9 +10,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from rocking.errors import InvalidValueError
-from rocking.motions import pulses
-from rocking.motions.pulse import Pulse
-from rocking.motions.segments import Segments
+from rocking.motions import Pulse, Segments, pulses
 
 A, T = 3.0, 0.8
 W = 2.0 * math.pi / T

@@ -7,7 +7,8 @@ import pytest
 
 from rocking import motions
 from rocking.errors import InvalidValueError
-from rocking.motions import energy, kinematics, pulses
+from rocking.motions import pulses
+from rocking.motions.integrals import significant_times
 
 RECORD = pulses.sine(3.0, 0.8).sampled(0.01)
 FUNCTIONS: dict[str, Callable[[Any], Any]] = {
@@ -20,8 +21,6 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "ground_velocity": motions.ground_velocity,
     "housner_intensity": motions.housner_intensity,
     "intensity_measures": motions.intensity_measures,
-    "largest_displacement": kinematics.largest_displacement,
-    "largest_velocity": kinematics.largest_velocity,
     "normalised_acceleration": lambda m: motions.normalised_acceleration(m, 0.2),
     "normalised_velocity": lambda m: motions.normalised_velocity(m, 0.2, 2.0),
     "padded": lambda m: motions.padded(m, 0.1),
@@ -37,7 +36,7 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "scaled_to_pgv": lambda m: motions.scaled_to_pgv(m, 1.0),
     "scaled_to_sa": lambda m: motions.scaled_to_sa(m, 1.0, 0.5),
     "significant_duration": motions.significant_duration,
-    "significant_times": energy.significant_times,
+    "significant_times": significant_times,
     "spectral_acceleration": lambda m: motions.spectral_acceleration(m, 0.5),
     "tapered": motions.tapered,
     "trimmed": lambda m: motions.trimmed(m, 0.1, 0.2),

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.motions import GroundMotion
-from rocking.motions.scaling import scaled_to_pga, scaled_to_pgv, scaled_to_sa
+from rocking.motions import GroundMotion, scaled_to_pga, scaled_to_pgv, scaled_to_sa
 
 MOTION = GroundMotion([0.0, 1.0, -1.0, 0.0], 1.0, vertical=[0.0, 0.5, 0.25, 0.0])
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from rocking.motions import GroundMotion
-from rocking.motions.segments import Segments
+from rocking.motions import GroundMotion, Segments
 
 MOTION = GroundMotion(np.array([0.0, 1.0, -2.0, 0.5]), 0.2, vertical=np.array([1.0, 1.0, 0.0, 4.0]))
 

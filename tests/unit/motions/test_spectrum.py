@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rocking.errors import InvalidValueError
-from rocking.motions import GroundMotion
-from rocking.motions.kinematics import quadratic_roots
-from rocking.motions.spectrum import _reach, _response, phi, response_spectrum
+from rocking.motions import GroundMotion, response_spectrum
+from rocking.motions.integrals import quadratic_roots
+from rocking.motions.spectrum import _reach, _response, phi
 
 JAGGED = GroundMotion(np.random.default_rng(5).standard_normal(40), 0.01)
 

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import quad
 
 from rocking.errors import InvalidValueError
+from rocking.motions.filters import transition
 from rocking.motions.synthetic import Envelope, KanaiTajimi, kanai_tajimi_motion
-from rocking.motions.synthetic.oscillator import transition
 
 LAYER = KanaiTajimi(density=0.02, frequency=2.5, damping=0.6)
 FLAT = Envelope(rise=0.0, plateau=0.0, decay=0.0)

@@ -11,15 +11,14 @@ from scipy.signal import lsim
 
 from rocking.conventions import g
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import arias_intensity
-from rocking.motions.kinematics import ground_displacement
+from rocking.motions import arias_intensity, ground_displacement
+from rocking.motions.filters import highpassed
 from rocking.motions.synthetic import (
     GammaModulation,
     NonstationaryFilter,
     modulation_from_intensity,
     nonstationary_motion,
 )
-from rocking.motions.synthetic.oscillator import highpassed
 from rocking.motions.synthetic.stochastic import _unit_process
 
 MODULATION = modulation_from_intensity(0.5, significant_duration=5.0, middle=4.0)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from rocking.motions.formats.record import Component, Record
+from rocking.motions.formats import Component, Record
 
 
 @pytest.fixture(scope="session")

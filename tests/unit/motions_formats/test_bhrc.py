@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
+from rocking.motions.formats import Component, Record, Source
 from rocking.motions.formats.bhrc import Bhrc
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.source import Source
 
 # 11 samples at 200 a second; the count stands at place 26 of the whole numbers, the duration at 3 of the real ones
 TYPED = """\

@@ -6,9 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rocking.errors import InvalidValueError, RecordError
+from rocking.motions.formats import Component, Record, Source
 from rocking.motions.formats.columns import Columns
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.source import Source
 
 COLUMNS = Columns()
 

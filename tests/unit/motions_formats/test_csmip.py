@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
+from rocking.motions.formats import Component, Record, RecordFormat, Source
 from rocking.motions.formats.csmip_v1 import CsmipV1
 from rocking.motions.formats.csmip_v2 import CsmipV2
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
 
 V1, V2 = CsmipV1(), CsmipV2()
 ACCEL = [0.5, -1.25, 3.0, -1234.567, -23456.789, 0.0, 0.25, 1.0, -1.0, 0.125]

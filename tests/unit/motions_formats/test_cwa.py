@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
+from rocking.motions.formats import Component, Record, Source
 from rocking.motions.formats.cwa import Cwa
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.source import Source
 
 TYPED = """\
 #Earthquake Information

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats.agreement import check_peak_time
+from rocking.motions.formats import Source
 from rocking.motions.formats.esm import Esm
-from rocking.motions.formats.source import Source
+from rocking.motions.formats.headers import check_peak_time
 
 ESM = Esm()
 # typed by hand: an older header without HEADER_FORMAT may have fewer keys

@@ -13,10 +13,9 @@ import numpy as np
 import pytest
 
 from rocking.errors import MissingExtraError, RecordError
-from rocking.motions.formats import foreign
+from rocking.motions.formats import Source, foreign
 from rocking.motions.formats.foreign import ForeignReader
 from rocking.motions.formats.sac import read_traces
-from rocking.motions.formats.source import Source
 
 SCRIPT = """
 import os, signal, sys, time

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
+from rocking.motions.formats import Component, Record, Source
 from rocking.motions.formats.geonet import GeonetV2A
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.source import Source
 
 # 12 samples at 0.02 s; times in the text count from 0.04 s after the first one; some numbers touch each other
 TEXT = """\

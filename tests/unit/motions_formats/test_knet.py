@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
+from rocking.motions.formats import Component, Record, Source
 from rocking.motions.formats.knet import Knet
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.source import Source
 
 # 2000 gal are 1000 counts: 2 gal a count. Mean of the counts 1010, so the accelerations are -20, 20, 60, -60 ... gal
 COUNTS = [1000, 1020, 1040, 980, 1010, 1010, 1010, 1010, 1010, 1010]

@@ -13,9 +13,8 @@ import pytest
 
 from rocking.conventions import g
 from rocking.errors import InvalidValueError, MissingExtraError, RecordError
+from rocking.motions.formats import Component, Record, Source
 from rocking.motions.formats.miniseed import MiniSeed
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.source import Source
 
 WITHOUT = importlib.util.find_spec("obspy") is None
 COPIES = max(1, int(os.environ.get("ROCKING_FUZZ", "2000")) // 10)

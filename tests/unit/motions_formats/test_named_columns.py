@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError, RecordError
+from rocking.motions.formats import Source, formats
 from rocking.motions.formats.columns import Columns
-from rocking.motions.formats.registry import formats
-from rocking.motions.formats.source import Source
 
 COLUMNS = Columns()
 VALUES = [0.125, -0.5, 0.25, 1.5, -2.0, 0.75]

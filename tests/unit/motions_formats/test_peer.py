@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
+from rocking.motions.formats import Source
 from rocking.motions.formats.peer import Peer
-from rocking.motions.formats.source import Source
 
 PEER = Peer()
 VALUES = [0.1, -0.25, 0.3, 0.0, 0.05, -0.01, 0.02]

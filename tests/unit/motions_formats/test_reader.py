@@ -12,17 +12,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rocking.errors import InvalidValueError, RecordError
+from rocking.motions import GroundMotion
 from rocking.motions.formats import (
     Component,
     Record,
+    Source,
     formats,
     read_motion,
     read_record,
     write_motion,
     write_record,
 )
-from rocking.motions.formats.source import Source
-from rocking.motions.motion import GroundMotion
 
 TEXT_FORMATS = ("peer", "esm", "cosmos", "csmip-v1", "csmip-v2")
 COLUMNS = "0.00 0.0 1.0\n0.01 0.5 2.0\n0.02 -0.2 -3.0\n"

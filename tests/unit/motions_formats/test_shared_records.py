@@ -7,8 +7,7 @@ import pytest
 
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError
-from rocking.motions.formats import formats, read_motion, read_record
-from rocking.motions.formats.source import Source
+from rocking.motions.formats import Source, formats, read_motion, read_record
 
 
 class Known(NamedTuple):

@@ -8,10 +8,8 @@ import pytest
 
 from rocking.conventions import g
 from rocking.errors import RecordError
-from rocking.motions.formats.record import Record
-from rocking.motions.formats.smc_boore import SmcBoore
-from rocking.motions.formats.smc_usgs import SmcUsgs
-from rocking.motions.formats.source import Source
+from rocking.motions.formats import Record, Source
+from rocking.motions.formats.smc import SmcBoore, SmcUsgs
 
 
 def typed(first: str = "0 UNKNOWN") -> str:

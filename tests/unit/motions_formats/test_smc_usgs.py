@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from rocking.errors import RecordError
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.smc_boore import SmcBoore
-from rocking.motions.formats.smc_usgs import SmcUsgs
-from rocking.motions.formats.source import Source
+from rocking.motions.formats import Component, Record, Source
+from rocking.motions.formats.smc import SmcBoore, SmcUsgs
 
 NONE, BLANK = -32768, 1.7e38
 SAMPLES = [

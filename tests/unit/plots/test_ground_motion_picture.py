@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from rocking.motions.intensity import peak_ground_displacement, peak_ground_velocity
-from rocking.motions.motion import GroundMotion
+from rocking.motions import GroundMotion, peak_ground_displacement, peak_ground_velocity
 from rocking.motions.pulses import cosine, rectangular, ricker, sine
 from rocking.plots import ground_motion_picture, write
 from rocking.plots.traces import fine_samples, traces

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from rocking.errors import InvalidValueError
-from rocking.statistics.censored import fit_censored, fit_crossings, fit_moments
+from rocking.statistics import fit_crossings
+from rocking.statistics.censored import fit_censored, fit_moments
 
 
 @settings(max_examples=15)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.statistics.counts import count_outcomes
-from rocking.statistics.lognormal import fit_lognormal
+from rocking.statistics import count_outcomes, fit_lognormal
 from rocking.statistics.maximum_likelihood import LogScale, with_cluster_errors
 from rocking.statistics.probit import Probit
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.statistics.counts import count_outcomes, count_states
+from rocking.statistics import count_outcomes, count_states
 
 
 def test_equal_levels_are_pooled():

@@ -5,8 +5,8 @@ import pytest
 from scipy.special import ndtr
 
 from rocking.errors import InvalidValueError
+from rocking.statistics import fit_lognormal
 from rocking.statistics.goodness import group_of
-from rocking.statistics.lognormal import fit_lognormal
 
 LEVELS = np.exp(np.linspace(-1.2, 1.2, 8))
 

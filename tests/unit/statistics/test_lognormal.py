@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.special import log_ndtr, ndtr, ndtri
 
 from rocking.errors import InvalidValueError
-from rocking.statistics.lognormal import fit_lognormal
+from rocking.statistics import fit_lognormal
 
 LEVELS = [0.2, 0.4, 0.6, 0.8]
 FAILURES, TRIALS = [1, 8, 14, 19], [20, 20, 20, 20]

@@ -8,8 +8,8 @@ from scipy.optimize import minimize
 from scipy.special import ndtr
 
 from rocking.errors import InvalidValueError
-from rocking.statistics.lognormal import fit_lognormal
-from rocking.statistics.ordered_probit import fit_ordered, nested_curves
+from rocking.statistics import fit_lognormal, fit_ordered
+from rocking.statistics.ordered_probit import nested_curves
 
 LEVELS, ROCKED, OVERTURNED = [0.2, 0.4, 0.6, 0.8], [2, 9, 18, 20], [0, 3, 9, 16]
 

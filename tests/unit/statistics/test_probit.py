@@ -6,8 +6,7 @@ import pytest
 from scipy.optimize import minimize
 from scipy.special import log_ndtr, ndtr
 
-from rocking.statistics.counts import count_outcomes
-from rocking.statistics.lognormal import fit_lognormal
+from rocking.statistics import count_outcomes, fit_lognormal
 from rocking.statistics.maximum_likelihood import LogScale, find_curves, maximise, positive_definite
 from rocking.statistics.probit import PenalisedProbit, Probit, tails
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.statistics.lognormal import fit_lognormal
-from rocking.statistics.separation import Separation, classify
+from rocking.statistics import Separation, fit_lognormal
+from rocking.statistics.separation import classify
 
 CASES = [
     ([1, 2, 3, 4], [0, 0, 1, 1], Separation.COMPLETE, (2.0, 3.0)),

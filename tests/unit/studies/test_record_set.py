@@ -11,7 +11,7 @@ import pytest
 from rocking.bodies import Block
 from rocking.dynamics.parameters import RockingParameters
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import peak_ground_velocity
+from rocking.motions import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.synthetic.distributions import Uniform
 from rocking.motions.synthetic.families import families, family

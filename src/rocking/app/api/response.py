@@ -22,7 +22,7 @@ from rocking.dynamics.plane.energy_balance import energies
 from rocking.dynamics.plane.ground_forces import forces
 from rocking.dynamics.response import Response
 from rocking.errors import InvalidValueError
-from rocking.motions.kinematics import ground_displacement
+from rocking.motions.integrals import ground_displacement
 from rocking.motions.pulse import Pulse
 from rocking.outcome import Outcome
 from rocking.plots.animation_scene import DrawnShape

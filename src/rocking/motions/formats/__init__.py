@@ -1,14 +1,13 @@
 """Reading ground-motion files and writing them, one format a file."""
 
-from rocking.motions.formats.reader import read_motion, read_record, write_motion, write_record
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.registry import formats
+from rocking.motions.formats.reader import formats, read_motion, read_record, write_motion, write_record
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 __all__ = [
     "Component",
     "Record",
     "RecordFormat",
+    "Source",
     "formats",
     "read_motion",
     "read_record",

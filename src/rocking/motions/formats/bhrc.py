@@ -12,10 +12,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import agreement, number_lines, numbers, units_and_steps
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _TEXTS, _WHOLES, _REALS = 13, 7, 7
 _PER_LINE, _WIDTH = 10, 13
@@ -74,7 +72,7 @@ class Bhrc(RecordFormat):
 
     def write(self, record: Record) -> bytes:
         """Return a Volume 1 file."""
-        rows = units_and_steps.in_unit(record, self.name, "g/10", 3)
+        rows = headers.in_unit(record, self.name, "g/10", 3)
         names = [part.name for part in record.components]
         if len(set(names)) != len(names) or not set(names) <= {"L", "V", "T"}:
             raise RecordError(f"BHRC holds components L, V and T, got {', '.join(names)[:60]}")
@@ -93,20 +91,20 @@ def _component(source: Source, top: int, units: str | None, asked: float | None)
     if volume[1] != "1":
         raise source.error(top, f"Volume {volume[1]}: only Volume 1 is read, the layout of others was not verified")
     _match(source, top + 11, "UNITS ARE SECONDS AND G/10")
-    unit = units_and_steps.acceleration_unit(source, "g/10", units)
+    unit = headers.acceleration_unit(source, "g/10", units)
     name = _match(source, top + 6, r"COMP ([LVT])\d?")[1]
     points = _match(source, top + 10, _POINTS)
     count, duration = int(points[1]), float(points[2])
     if count < 2:
         raise source.error(top + 10, f"at least 2 points expected, found {count}")
     repeated = source.lines[top + _TEXTS + 1][55:60]
-    agreement.check_count(source, numbers.whole(source, top + _TEXTS + 1, repeated, "number of points"), count)
+    headers.check_count(source, numbers.whole(source, top + _TEXTS + 1, repeated, "number of points"), count)
     reals = top + _TEXTS + _WHOLES
     rate = numbers.number(source, reals + 1, source.lines[reals + 1][:13], "sampling rate")
-    step = units_and_steps.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, asked)
-    agreement.check_duration(source, duration, count, step, agreement.half_digit(points[2]))
+    step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, asked)
+    headers.check_duration(source, duration, count, step, headers.half_digit(points[2]))
     again = numbers.number(source, reals, source.lines[reals][26:39], "duration")
-    agreement.check_stated(source, again, duration, 1e-5 * duration, "duration")
+    headers.check_stated(source, again, duration, 1e-5 * duration, "duration")
     values, line = numbers.fixed(source, reals + _REALS, count, _PER_LINE, _WIDTH)
     if line >= len(source.lines) or source.lines[line].strip() != _END:
         raise source.error(min(line, len(source.lines) - 1), f"{_END} expected after {count} samples")
@@ -125,8 +123,8 @@ def _written(record: Record, part: Component, values: FloatArray) -> list[str]:
     count = values.size
     if count > 99_999 or np.abs(values).max() >= 1e9:
         raise RecordError(f"BHRC holds up to 99999 samples below 1e9 g/10, got {count}")
-    known = {key: number_lines.one_line(record.metadata.get(key, ""), 40) for key in ("file", "instrument", "station")}
-    azimuth = number_lines.one_line(part.metadata.get("azimuth", "0"), 3)
+    known = {key: numbers.one_line(record.metadata.get(key, ""), 40) for key in ("file", "instrument", "station")}
+    azimuth = numbers.one_line(part.metadata.get("azimuth", "0"), 3)
     lines = [f"* VOL1DS FILE:  {known['file']}", f"Inst Type = {known['instrument']}", "", "", part.name, ""]
     lines += [f"COMP {part.name}1", f"{known['station']}  Station   Azimuth {part.name} {azimuth}", "Epicenter"]
     lines += ["INSTR PERIOD =  .000 SEC   DAMPING =  .000", ""]
@@ -135,7 +133,7 @@ def _written(record: Record, part: Component, values: FloatArray) -> list[str]:
     lines += ["UNITS ARE SECONDS AND G/10", ""]
     wholes = [0] * 88
     wholes[25] = count
-    lines += number_lines.in_columns(wholes, 14, "{:5d}")
+    lines += numbers.in_columns(wholes, 14, "{:5d}")
     reals = [0.0] * 38
     reals[2], reals[6] = duration, 1.0 / part.time_step
     lines += ["".join(_fortran(value) for value in reals[k : k + 6])[:70] for k in range(0, 38, 6)]

@@ -1,10 +1,12 @@
-"""Columns as text: which line holds their names, what parts them, and whether a comma is a decimal point."""
+"""Columns as text, none a number yet: what parts them, which line names them, and what each is by its name and unit."""
 
 import csv
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from rocking.motions.formats.source import Source
+from rocking.conventions import ACCELERATION_UNITS
+from rocking.motions.formats.headers import acceleration_unit
+from rocking.motions.formats.record import Source
 
 MOST_NAMED = 20
 """Columns of a file that names them."""
@@ -121,3 +123,132 @@ def _cells(text: str, separator: str, names: tuple[str, ...] | None) -> list[str
     while cells and not cells[-1] and (names is None or len(cells) > len(names)):
         cells.pop()
     return cells
+
+
+_BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))")
+_SECONDS = {"s", "sec", "secs", "second", "seconds", "sek"}
+_TIMES = {"time", "times", "zeit", "temps", "tiempo", "tempo", "tid", "tijd"}
+_OTHER_WORDS = ("vel", "disp", "geschw", "verschieb", "rotation", "period", "freq")
+_OTHER_UNITS = {
+    *("m/s", "cm/s", "mm/s", "in/s", "ft/s", "m", "cm", "mm", "in", "ft", "in/s2", "ft/s2"),
+    *("rad", "deg", "rad/s", "deg/s", "rad/s2", "deg/s2", "s", "ms", "us", "min", "h", "hz", "khz"),
+    *("v", "mv", "n", "kn", "pa", "kpa", "mpa", "count", "counts", "cnt", "%", "%g", "-", "1"),
+}
+_OF_ANY_CASE = {unit for unit in ACCELERATION_UNITS if unit not in {"g", "mg", "g/10"}}
+_SPELT = {"m/s/s": "m/s2", "cm/s/s": "cm/s2", "mm/s/s": "mm/s2", "m.s-2": "m/s2", "cm.s-2": "cm/s2", "gals": "gal"}
+_UNITS = ", ".join(ACCELERATION_UNITS)
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnName:
+    """A column by what stands above it."""
+
+    place: int  # where it is, from 0
+    text: str  # as it stands
+    name: str  # without a unit of ours
+    unit: str | None = None  # A key of `rocking.conventions.ACCELERATION_UNITS`, where that stands in brackets
+    behind: str = ""  # what else stands in the brackets, in small letters and without exponents' marks
+
+    @classmethod
+    def of(cls, place: int, text: str) -> "ColumnName":
+        """Read what stands above a column."""
+        found = _BRACKETS.fullmatch(text)
+        if found is None:
+            return cls(place, text, text)
+        behind = _plain(found[2] if found[2] is not None else found[3])
+        small = _SPELT.get(behind.lower(), behind.lower())
+        unit = behind if behind in ACCELERATION_UNITS else small if small in _OF_ANY_CASE else None
+        known = unit is not None or small in _OTHER_UNITS | _SECONDS
+        return cls(place, text, found[1].strip() if known and found[1].strip() else text, unit, small)
+
+    @property
+    def is_time(self) -> bool:
+        """Whether it is called a time; a T may be a period, or transversal."""
+        words = set(re.split(r"[\W\d_]+", self.name.casefold()))
+        called = bool(words & _TIMES) or (self.name == "t" and (self.place == 0 or self.behind in _SECONDS))
+        return called and self.unit is None
+
+    @property
+    def is_period(self) -> bool:
+        """Whether it may be what a spectrum is drawn over."""
+        return self.behind in {*_SECONDS, "hz"} or self.name.casefold().startswith(("period", "freq"))
+
+    @property
+    def is_acceleration(self) -> bool:
+        """Whether it is an acceleration, or may be one because nothing says otherwise."""
+        if self.unit is not None:
+            return True
+        other = self.behind in _OTHER_UNITS | _SECONDS or self.name.casefold().startswith(_OTHER_WORDS)
+        return not self.is_time and not other
+
+
+@dataclass(frozen=True, slots=True)
+class NamedColumns:
+    """Which of the named columns is what."""
+
+    time: ColumnName | None
+    accelerations: tuple[ColumnName, ...]
+    left_out: tuple[str, ...]  # what is neither
+
+    @classmethod
+    def of(cls, source: Source, texts: tuple[str, ...]) -> "NamedColumns":
+        """Tell columns apart by their names."""
+        named = tuple(ColumnName.of(place, text) for place, text in enumerate(texts))
+        _check_names(source, named)
+        times = [one for one in named if one.is_time]
+        found = tuple(one for one in named if one.is_acceleration)
+        if len(times) > 1:
+            raise source.error(None, f"{_listed(times)} are both called a time; remove all but one")
+        if not found:
+            raise source.error(
+                None, f"none of the columns {_listed(named)} is an acceleration in {_UNITS}; name one such as acc [g]"
+            )
+        spectral = [one for one in named if one not in found and one.is_period]
+        if not times and spectral:
+            raise source.error(
+                None, f"{_listed(spectral)} may be periods of a spectrum: call it time [s] if it is that"
+            )
+        if not times and len(found) > 1 and any(one.unit is None for one in found):
+            raise source.error(None, _which_is_the_time(found))
+        if times and times[0].behind not in {"", *_SECONDS}:
+            raise source.error(None, f"{_listed(times)}: the times must be in seconds; convert them, or remove them")
+        left_out = tuple(one.text for one in named if one not in found and one not in times)
+        return cls(times[0] if times else None, found, left_out)
+
+    def with_unit(self, source: Source, asked: str | None) -> "NamedColumns":
+        """Return the same with a unit for every acceleration."""
+        silent = [one for one in self.accelerations if one.unit is None]
+        if silent and asked is None and len(silent) < len(self.accelerations):
+            raise source.error(None, f"{_silent(silent)}; say units= one of {_UNITS}")
+        said = (replace(one, unit=acceleration_unit(source, one.unit, asked)) for one in self.accelerations)
+        return replace(self, accelerations=tuple(said))
+
+
+def _plain(unit: str) -> str:
+    bare = re.sub(r"[\s^]|\*\*", "", unit.replace("\xb2", "2").replace("\xb7", "."))
+    return re.sub(r"sec(?=\d|$|/)", "s", bare)
+
+
+def _check_names(source: Source, named: tuple[ColumnName, ...]) -> None:
+    seen: set[str] = set()
+    for one in named:
+        if not one.text:
+            raise source.error(None, f"column {one.place + 1} has no name; name it, or remove it")
+        if one.name.casefold() in seen:
+            raise source.error(None, f"two columns are called {one.name!r:.60}; rename or remove one")
+        seen.add(one.name.casefold())
+
+
+def _which_is_the_time(found: tuple[ColumnName, ...]) -> str:
+    return (
+        f"which of {_listed(found)} is the time? Name it time [s], or write the unit behind every acceleration, or "
+        "remove all columns but one acceleration"
+    )
+
+
+def _silent(columns: list[ColumnName]) -> str:
+    return f"{_listed(columns)} state{'s' if len(columns) == 1 else ''} no unit: write one behind, or remove the column"
+
+
+def _listed(columns: "list[ColumnName] | tuple[ColumnName, ...]") -> str:
+    return ", ".join(repr(one.text[:40]) for one in columns)

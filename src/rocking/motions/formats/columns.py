@@ -7,15 +7,10 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats.column_names import ColumnName, NamedColumns
-from rocking.motions.formats.column_text import MARK, MOST_NAMED, ColumnText, states_sampling
-from rocking.motions.formats.number_lines import one_line
-from rocking.motions.formats.numbers import number
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
-from rocking.motions.formats.time_column import step_of_times
-from rocking.motions.formats.units_and_steps import in_unit, step_between_samples
+from rocking.motions.formats.column_text import MARK, MOST_NAMED, ColumnName, ColumnText, NamedColumns, states_sampling
+from rocking.motions.formats.headers import in_unit, step_between_samples, step_of_times
+from rocking.motions.formats.numbers import number, one_line
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _MOST_COLUMNS = 4
 _LOOK = 5

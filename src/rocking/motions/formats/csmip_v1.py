@@ -7,15 +7,23 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.conventions import ACCELERATION_UNITS, FloatArray, g
-from rocking.motions.formats.agreement import check_count, check_end, check_peak, check_peak_time, half_digit
-from rocking.motions.formats.channels import LONGEST_LINE, Channel, distinct_names, names_in
-from rocking.motions.formats.number_lines import in_width, one_line
-from rocking.motions.formats.numbers import fixed, fortran_form, number, whole
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
-from rocking.motions.formats.time_column import uniform_step
-from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, step_between_samples
+from rocking.motions.formats.headers import (
+    LONGEST_LINE,
+    Channel,
+    acceleration_unit,
+    check_count,
+    check_end,
+    check_peak,
+    check_peak_time,
+    distinct_names,
+    half_digit,
+    in_unit,
+    names_in,
+    step_between_samples,
+    uniform_step,
+)
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, one_line, whole
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _TITLE = re.compile(r"\s*UNCORRECTED ACCELEROGRAM DATA\b", re.IGNORECASE)
 _TEXT_LINES, _WHOLE_LINES, _REAL_LINES = 13, 7, 7

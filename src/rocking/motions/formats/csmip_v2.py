@@ -6,14 +6,20 @@ from typing import ClassVar
 import numpy as np
 
 from rocking.conventions import FloatArray
-from rocking.motions.formats.agreement import check_count, check_end, check_peak, check_peak_time
-from rocking.motions.formats.channels import Channel, distinct_names, names_in
-from rocking.motions.formats.number_lines import in_width, one_line
-from rocking.motions.formats.numbers import fixed, fortran_form, number, whole
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
-from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, step_between_samples
+from rocking.motions.formats.headers import (
+    Channel,
+    acceleration_unit,
+    check_count,
+    check_end,
+    check_peak,
+    check_peak_time,
+    distinct_names,
+    in_unit,
+    names_in,
+    step_between_samples,
+)
+from rocking.motions.formats.numbers import fixed, fortran_form, in_width, number, one_line, whole
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _TITLE = re.compile(r"\s*CORRECTED ACCELEROGRAM\b", re.IGNORECASE)
 _BLOCK = re.compile(

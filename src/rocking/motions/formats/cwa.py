@@ -10,10 +10,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import agreement, number_lines, numbers, units_and_steps
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _COMPONENTS = ("U", "N", "E")
 _WIDTH, _DECIMALS = 10, 3
@@ -56,17 +54,17 @@ class Cwa(RecordFormat):
         said = _header(source, first)
         if not re.match(r"gal\b", said["AmplitudeUnit"]):
             raise source.error(None, f"the unit gal expected, found {said['AmplitudeUnit'][:40]!r}")
-        unit = units_and_steps.acceleration_unit(source, "gal", units)
+        unit = headers.acceleration_unit(source, "gal", units)
         rate = numbers.number(source, 0, said["SampleRate(Hz)"], "sample rate")
         seconds = numbers.number(source, 0, said["RecordLength(sec)"], "record length")
-        step = units_and_steps.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
+        step = headers.step_between_samples(source, 1.0 / rate if rate > 0.0 else 0.0, time_step)
         wanted = rate * seconds
         if not 2 <= wanted < 1e9 or abs(wanted - round(wanted)) > 1e-6:
             raise source.error(None, f"record length times rate must be a whole number of samples, found {wanted:g}")
         last = len(source.lines)
         while not source.lines[last - 1].strip():
             last -= 1
-        agreement.check_count(source, round(wanted), last - first - 1)
+        headers.check_count(source, round(wanted), last - first - 1)
         values, _ = numbers.fixed(source, first + 1, 4 * round(wanted), 4, _WIDTH)
         table = values.reshape(-1, 4)
         late = np.flatnonzero(np.abs(table[:, 0] - table[0, 0] - np.arange(len(table)) * step) > 1.02e-3)
@@ -80,7 +78,7 @@ class Cwa(RecordFormat):
 
     def write(self, record: Record) -> bytes:
         """Return a file of three components."""
-        samples = units_and_steps.in_unit(record, self.name, "gal", 3)
+        samples = headers.in_unit(record, self.name, "gal", 3)
         rows = dict(zip((part.name for part in record.components), samples, strict=True))
         steps = {part.time_step for part in record.components}
         if set(rows) != set(_COMPONENTS) or len({row.size for row in rows.values()}) != 1 or len(steps) != 1:
@@ -91,7 +89,7 @@ class Cwa(RecordFormat):
             raise RecordError("CWA holds accelerations below 1e5 gal and times below 1e5 s; wrong unit?")
         lines = ["#Earthquake Information"]
         lines += [
-            f"#{key}: {number_lines.one_line(record.metadata.get(key, '0'), 60)}"
+            f"#{key}: {numbers.one_line(record.metadata.get(key, '0'), 60)}"
             for key in ("Origin Time(GMT+08)", "Magnitude(Ml)", "StationCode", "StationName")
         ]
         lines += [f"#RecordLength(sec): {len(table) * step:.12g}", f"#SampleRate(Hz): {1.0 / step:.12g}"]
@@ -131,8 +129,8 @@ def _check_amplitudes(source: Source, first: int, table: FloatArray) -> dict[str
             raise source.error(line, f"both extremes of one component expected, found {text.strip()[:60]!r}")
         row = table[:, _COMPONENTS.index(stated[1]) + 1]
         high, low = float(stated[2]), float(stated[3])
-        agreement.check_stated(source, high, float(row.max()), agreement.half_digit(stated[2]), f"maximum {stated[1]}")
-        agreement.check_stated(source, low, float(row.min()), agreement.half_digit(stated[3]), f"minimum {stated[1]}")
+        headers.check_stated(source, high, float(row.max()), headers.half_digit(stated[2]), f"maximum {stated[1]}")
+        headers.check_stated(source, low, float(row.min()), headers.half_digit(stated[3]), f"minimum {stated[1]}")
         found[stated[1]] = max(abs(high), abs(low))
     if len(found) != len(_COMPONENTS):
         raise source.error(None, "the extremes of U, N and E are not all stated")

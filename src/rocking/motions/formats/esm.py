@@ -4,13 +4,17 @@ import re
 from typing import ClassVar
 
 from rocking.conventions import FloatArray
-from rocking.motions.formats.agreement import check_count, check_duration, check_peak, check_peak_time
-from rocking.motions.formats.number_lines import one_line
-from rocking.motions.formats.numbers import free, number, whole
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
-from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, step_between_samples
+from rocking.motions.formats.headers import (
+    acceleration_unit,
+    check_count,
+    check_duration,
+    check_peak,
+    check_peak_time,
+    in_unit,
+    step_between_samples,
+)
+from rocking.motions.formats.numbers import free, number, one_line, whole
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _KEY = re.compile(r"([A-Z][A-Z0-9_/^]*):(?:\s(.*))?")
 _MOST_KEYS = 200

@@ -15,7 +15,7 @@ import numpy as np
 
 from rocking.errors import MissingExtraError, RecordError, how_to_install
 from rocking.motions.formats import foreign_worker
-from rocking.motions.formats.source import Source
+from rocking.motions.formats.record import Source
 
 TO_START = 60.0
 """Time to start and to load the reader, on a busy machine [s]."""

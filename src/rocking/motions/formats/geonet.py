@@ -14,10 +14,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import agreement, number_lines, numbers, units_and_steps
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _TEXTS, _WHOLES, _REALS = 16, 4, 6
 _PER_LINE, _WIDTH = 10, 8
@@ -56,7 +54,7 @@ class GeonetV2A(RecordFormat):
 
         time_step: if given, it must be the file's [s].
         """
-        unit = units_and_steps.acceleration_unit(source, "mm/s2", units)
+        unit = headers.acceleration_unit(source, "mm/s2", units)
         components: list[Component] = []
         line = 0
         while len(components) < 3:
@@ -64,7 +62,7 @@ class GeonetV2A(RecordFormat):
             if component.name in {other.name for other in components}:
                 raise source.error(None, f"component {component.name[:20]!r} is there twice")
             components.append(component)
-        agreement.check_end(source, line)
+        headers.check_end(source, line)
         header = "\n".join(source.lines[: _TEXTS + _WHOLES + _REALS])
         station = re.match(r"Site +(\S+)", source.lines[1])
         metadata = {
@@ -77,8 +75,8 @@ class GeonetV2A(RecordFormat):
 
     def write(self, record: Record) -> bytes:
         """Return a file of three components; velocity and displacement are sums of trapezia, as text only."""
-        rows = units_and_steps.in_unit(record, self.name, "mm/s2", 3)
-        names = [number_lines.one_line(part.name, 8).partition(" ")[0] or "?" for part in record.components]
+        rows = headers.in_unit(record, self.name, "mm/s2", 3)
+        names = [numbers.one_line(part.name, 8).partition(" ")[0] or "?" for part in record.components]
         if len(rows) != 3 or len(set(names)) != 3:
             raise RecordError(f"GeoNet holds three components of different names, got {', '.join(names)}")
         lines: list[str] = []
@@ -94,15 +92,15 @@ def _component(source: Source, top: int, unit: str, asked: float | None) -> tupl
     points = _match(source, top + 9, _POINTS)
     count, duration = int(points[1]), float(points[2])
     stated = _match(source, top + 10, _STEP)
-    step = units_and_steps.step_between_samples(source, float(stated[1]), asked)
+    step = headers.step_between_samples(source, float(stated[1]), asked)
     name = _match(source, top + 12, r"Component +(\S+).*")[1]
     wholes, line = numbers.fixed(source, top + _TEXTS, _WHOLES * _PER_LINE, _PER_LINE, _WIDTH)
     reals, line = numbers.fixed(source, line, _REALS * _PER_LINE, _PER_LINE, _WIDTH)
     for stated_count in wholes[33:36]:
-        agreement.check_count(source, int(stated_count), count)
+        headers.check_count(source, int(stated_count), count)
     if count < 2:
         raise source.error(top + 9, f"at least 2 points expected, found {count}")
-    agreement.check_duration(source, duration, count, step, agreement.half_digit(points[2]))
+    headers.check_duration(source, duration, count, step, headers.half_digit(points[2]))
     series: list[FloatArray] = []
     peaks: list[float] = []
     for k, (what, of, _) in enumerate(_SERIES):
@@ -110,10 +108,10 @@ def _component(source: Source, top: int, unit: str, asked: float | None) -> tupl
         values, line = numbers.fixed(source, line, count, _PER_LINE, _WIDTH)
         peak = _match(source, top + 13 + k, _PEAK.format(what, of))
         # series of large numbers are printed with fewer decimals than their peak
-        rounding = max(agreement.half_digit(peak[1]), agreement.half_digit(first))
+        rounding = max(headers.half_digit(peak[1]), headers.half_digit(first))
         series.append(values)
-        agreement.check_peak(source, float(peak[1]), values, rounding, f"peak of {what.lower()}, {name}")
-        agreement.check_peak_time(source, float(peak[2]) + float(reals[21]), values, step, rounding)
+        headers.check_peak(source, float(peak[1]), values, rounding, f"peak of {what.lower()}, {name}")
+        headers.check_peak_time(source, float(peak[2]) + float(reals[21]), values, step, rounding)
         peaks.append(abs(float(peak[1])))
     about = {"axis": " ".join(text[12].split()[2:]), "filter": text[11].strip()}
     return Component(name, series[0], unit, step, peaks[0], {key: said for key, said in about.items() if said}), line
@@ -130,9 +128,7 @@ def _written(record: Record, name: str, values: FloatArray, step: float) -> list
     velocity = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] + values[:-1]))])
     displacement = np.concatenate([[0.0], np.cumsum(0.5 * step * (velocity[1:] + velocity[:-1]))])
     count = values.size
-    said = {
-        key: number_lines.one_line(record.metadata.get(key, "unknown"), 60) for key in ("station", "event", "filter")
-    }
+    said = {key: numbers.one_line(record.metadata.get(key, "unknown"), 60) for key in ("station", "event", "filter")}
     lines = [f"{_TITLE} unknown", f"Site {said['station'].partition(' ')[0]}", "unknown", "Instrument unknown"]
     lines += ["Resolution: unknown", "Accelerogram unknown", "unknown", said["event"], "Epicentre unknown"]
     lines.append(f"Number of points {count:5d}    Duration {(count - 1) * step:.4f} sec")
@@ -148,6 +144,6 @@ def _written(record: Record, name: str, values: FloatArray, step: float) -> list
         lines.append(f"{what + ':':<14} peak {rounded[at]:8.{decimals}f} {of:<6} at {at * step:.4f} sec")
         blocks += ["".join(words[k : k + _PER_LINE]) for k in range(0, count, _PER_LINE)]
     wholes = [0] * 33 + [count] * 3 + [0] * 4
-    lines += number_lines.in_columns(wholes, _PER_LINE, "{:8d}")
-    lines += number_lines.in_columns([0.0] * 60, _PER_LINE, "{:8.2f}")
+    lines += numbers.in_columns(wholes, _PER_LINE, "{:8d}")
+    lines += numbers.in_columns([0.0] * 60, _PER_LINE, "{:8.2f}")
     return lines + blocks

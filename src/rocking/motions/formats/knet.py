@@ -14,10 +14,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import agreement, number_lines, numbers, units_and_steps
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _KEYS = (
     "Origin Time",
@@ -72,10 +70,10 @@ class Knet(RecordFormat):
         time_step: if given, it must be the file's [s].
         """
         said = _header(source)
-        unit = units_and_steps.acceleration_unit(source, "gal", units)
+        unit = headers.acceleration_unit(source, "gal", units)
         rate = _stated(source, 10, r"(\d+(?:\.\d+)?) *Hz", said[10])[0]
         seconds = numbers.number(source, 11, said[11], "duration")
-        step = units_and_steps.step_between_samples(source, 1.0 / rate if rate else 0.0, time_step)
+        step = headers.step_between_samples(source, 1.0 / rate if rate else 0.0, time_step)
         gal, counts_per_gal = _stated(source, 13, r"(\d+(?:\.\d*)?)\(gal\)/(\d+(?:\.\d*)?)", said[13])
         if not gal or not counts_per_gal:
             raise source.error(13, f"scale factor must be above zero, found {said[13][:40]!r}")
@@ -83,12 +81,12 @@ class Knet(RecordFormat):
         wanted = rate * seconds
         if not 2 <= wanted < 1e9 or abs(wanted - round(wanted)) > 1e-6:
             raise source.error(11, f"duration times rate must be a whole number of samples, found {wanted:g}")
-        agreement.check_count(source, round(wanted), counts.size)
+        headers.check_count(source, round(wanted), counts.size)
         raw = counts * (gal / counts_per_gal)
         values = raw - raw.mean()
         peak = numbers.number(source, 14, said[14], "largest acceleration")
         what = "largest acceleration after removal of the mean"
-        agreement.check_peak(source, peak, values, agreement.half_digit(said[14]), what)
+        headers.check_peak(source, peak, values, headers.half_digit(said[14]), what)
         metadata = {key.strip(". "): text for key, text in zip(_KEYS, said, strict=True) if text}
         metadata |= {"processing": _REMOVED, "mean removed": f"{raw.mean():.6g} gal"}
         component = Component(said[12] or "unnamed", values, unit, step, abs(peak))
@@ -96,7 +94,7 @@ class Knet(RecordFormat):
 
     def write(self, record: Record) -> bytes:
         """Return a K-NET file with a scale factor that suits the record's peak."""
-        (given,) = units_and_steps.in_unit(record, self.name, "gal", 1)
+        (given,) = headers.in_unit(record, self.name, "gal", 1)
         part = record.components[0]
         rate = round(1.0 / part.time_step)
         if rate < 1 or abs(rate * part.time_step - 1.0) > 1e-9 or given.size % rate:
@@ -112,12 +110,12 @@ class Knet(RecordFormat):
         if abs(counts.mean()) > 0.5:
             raise RecordError(f"K-NET records lose their mean when read, got a mean of {given.mean():g} gal; remove it")
         peak = float(np.abs(counts - counts.mean()).max()) * gal / _FULL_SCALE
-        known = {key: number_lines.one_line(record.metadata.get(key.strip(". "), ""), 60) for key in _KEYS}
+        known = {key: numbers.one_line(record.metadata.get(key.strip(". "), ""), 60) for key in _KEYS}
         known |= {"Sampling Freq(Hz)": f"{rate}Hz", "Duration Time(s)": str(given.size // rate)}
         known |= {"Scale Factor": f"{gal}(gal)/{_FULL_SCALE}", "Max. Acc. (gal)": f"{peak:.3f}"}
-        known["Dir."] = number_lines.one_line(part.name, 20)
+        known["Dir."] = numbers.one_line(part.name, 20)
         lines = [f"{key:<18}{known[key]}" for key in _KEYS]
-        lines += number_lines.in_columns(counts, _PER_LINE, "{:8.0f} ")
+        lines += numbers.in_columns(counts, _PER_LINE, "{:8.0f} ")
         return ("\n".join(lines) + "\n").encode("latin-1")
 
 

@@ -16,11 +16,9 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError, RecordError
-from rocking.motions.formats import units_and_steps
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
+from rocking.motions.formats import headers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 from rocking.motions.formats.sac import Trace, need_obspy, read_traces, trace_of
-from rocking.motions.formats.source import Source
 
 _ACCELERATION = frozenset({"M/S**2", "M/S/S", "M/(S**2)", "M/S^2"})
 _COUNTS = frozenset({"COUNTS", "COUNT"})
@@ -82,7 +80,7 @@ class MiniSeed(RecordFormat):
 
     def write(self, record: Record) -> bytes:
         """Return a miniSEED file of real numbers, in the unit of the first component, which the file cannot state."""
-        rows = units_and_steps.in_unit(record, self.name, None, 100)
+        rows = headers.in_unit(record, self.name, None, 100)
         codes = [part.name[:3] for part in record.components]
         if len(set(codes)) != len(codes):
             raise RecordError(f"components need different channel codes of 3 letters, got {', '.join(codes)[:60]}")
@@ -117,15 +115,15 @@ def _component(source: Source, trace: Trace, units: str | None, asked: float | N
     values: FloatArray = trace.samples.astype(np.float64)
     if values.size < 2 or not np.isfinite(values).all():
         raise source.error(None, f"{trace.id}: at least 2 finite samples are needed, found {values.size}")
-    step = units_and_steps.step_between_samples(source, trace.step, asked)
+    step = headers.step_between_samples(source, trace.step, asked)
     name = trace.about["channel"] or "unnamed"
     if trace.channels is None:
         if trace.samples.dtype.kind in "iu":
             raise source.error(
                 None, f"{trace.id} holds counts, no accelerations: use MiniSeed.with_response(stationxml_path)"
             )
-        return Component(name, values, units_and_steps.acceleration_unit(source, None, units), step)
-    unit = units_and_steps.acceleration_unit(source, "m/s2", units)
+        return Component(name, values, headers.acceleration_unit(source, None, units), step)
+    unit = headers.acceleration_unit(source, "m/s2", units)
     sensitivity = _sensitivity(source, trace, trace.channels)
     offset = float(values.mean())
     about = {

@@ -4,13 +4,9 @@ import re
 from typing import ClassVar
 
 from rocking.conventions import FloatArray
-from rocking.motions.formats.agreement import check_count, check_end
-from rocking.motions.formats.number_lines import in_columns, one_line
-from rocking.motions.formats.numbers import free, number, whole
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
-from rocking.motions.formats.units_and_steps import acceleration_unit, in_unit, step_between_samples
+from rocking.motions.formats.headers import acceleration_unit, check_count, check_end, in_unit, step_between_samples
+from rocking.motions.formats.numbers import free, in_columns, number, one_line, whole
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _LONGEST_HEADER, _LONGEST_LINE = 60, 400
 _KEYED = re.compile(r"\bNPTS\s*=.*\bDT\s*=|\bDT\s*=.*\bNPTS\s*=", re.IGNORECASE)

@@ -3,21 +3,58 @@
 import hashlib
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from importlib import import_module
 from os import PathLike
 from pathlib import Path
 
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS
 from rocking.errors import InvalidValueError, RecordError, RockingError
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.registry import LAST_RESORT, format_named, formats
-from rocking.motions.formats.source import Source
+from rocking.motions.components import with_vertical
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 from rocking.motions.motion import GroundMotion
-from rocking.motions.vertical import with_vertical
+
+LAST_RESORT = "columns"
+"""Numbers without a header say nothing about themselves: tried only where no other format recognises a file."""
+
+_CLASSES = {
+    "peer": "peer.Peer",
+    "esm": "esm.Esm",
+    "cosmos": "cosmos.Cosmos",
+    "csmip-v1": "csmip_v1.CsmipV1",
+    "csmip-v2": "csmip_v2.CsmipV2",
+    "smc-usgs": "smc.SmcUsgs",
+    "smc-boore": "smc.SmcBoore",
+    "knet": "knet.Knet",
+    "cwa": "cwa.Cwa",
+    "geonet-v2a": "geonet.GeonetV2A",
+    "bhrc": "bhrc.Bhrc",
+    "miniseed": "miniseed.MiniSeed",
+    "sac": "sac.Sac",
+    LAST_RESORT: "columns.Columns",
+}
+"""Module and class of every format, in the order in which they are tried; a new one is one file and one line here."""
 
 _STARTS = ("starttime", "Record Time", "first time")
 """What miniSEED and SAC, K-NET, and columns say about the time of the first sample."""
+
+
+def formats() -> dict[str, RecordFormat]:
+    """Return every record format by name.
+
+    Returns
+    -------
+    dict of str to RecordFormat
+        In the order in which they are tried.
+    """
+    return {name: format_named(name) for name in _CLASSES}
+
+
+def format_named(name: str) -> RecordFormat:
+    """Return one record format, imported when it is asked for."""
+    module, _, kind = _CLASSES[checks.one_of("format", name, _CLASSES)].partition(".")
+    made: RecordFormat = getattr(import_module(f"rocking.motions.formats.{module}"), kind)()
+    return made
 
 
 def read_record(

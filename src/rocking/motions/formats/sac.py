@@ -16,11 +16,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from rocking.errors import MissingExtraError, RecordError, how_to_install
-from rocking.motions.formats import agreement, units_and_steps
+from rocking.motions.formats import headers
 from rocking.motions.formats.foreign import ForeignReader
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 _HEADER = 632  # bytes
 _UNDEFINED = -12345.0
@@ -55,7 +53,7 @@ class Sac(RecordFormat):
         if order is None:
             raise source.error(None, "no SAC file of version 6 or 7")
         _check_places(source, order)
-        unit = units_and_steps.acceleration_unit(source, None, units)
+        unit = headers.acceleration_unit(source, None, units)
         trace = read_traces(source, "SAC", checksize=True)[0]
         said = trace.sac
         if said.get("iftype") != _TIME_SERIES or not said.get("leven"):
@@ -63,19 +61,19 @@ class Sac(RecordFormat):
         if said.get("idep") in _OTHER:
             raise source.error(None, f"accelerations are needed, the file holds {_OTHER[said['idep']]}")
         values = trace.samples.astype(np.float64)
-        agreement.check_count(source, int(said["npts"]), values.size)
+        headers.check_count(source, int(said["npts"]), values.size)
         if values.size < 2 or not np.isfinite(values).all():
             raise source.error(None, f"at least 2 finite samples are needed, found {values.size}")
         # SAC holds single precision: 0.02 is stored as 0.0199999996
-        step = units_and_steps.step_between_samples(source, float(f"{float(said['delta']):.7g}"), time_step)
+        step = headers.step_between_samples(source, float(f"{float(said['delta']):.7g}"), time_step)
         known = {key: float(said.get(key, _UNDEFINED)) for key in ("b", "e", "depmin", "depmax")}
         if not all(math.isfinite(value) for value in known.values()):
             raise source.error(None, "the header holds numbers that are not finite")
         if _UNDEFINED not in {known["b"], known["e"]}:
-            agreement.check_duration(source, known["e"] - known["b"], values.size, step, 1e-6 * abs(known["e"]) + 1e-4)
+            headers.check_duration(source, known["e"] - known["b"], values.size, step, 1e-6 * abs(known["e"]) + 1e-4)
         for key, found in (("depmax", float(values.max())), ("depmin", float(values.min()))):
             if known[key] != _UNDEFINED:
-                agreement.check_stated(source, known[key], found, 1e-6 * abs(found), key)
+                headers.check_stated(source, known[key], found, 1e-6 * abs(found), key)
         peak = max(abs(known["depmax"]), abs(known["depmin"]))
         stated = None if _UNDEFINED in {known["depmax"], known["depmin"]} else peak
         name = trace.about["channel"] or "unnamed"
@@ -83,7 +81,7 @@ class Sac(RecordFormat):
 
     def write(self, record: Record) -> bytes:
         """Return a SAC file, in the unit of the component, which the file cannot state."""
-        (values,) = units_and_steps.in_unit(record, self.name, None, 1)
+        (values,) = headers.in_unit(record, self.name, None, 1)
         if np.abs(values).max() > 1e37:
             raise RecordError(f"SAC holds accelerations below 1e37, got {np.abs(values).max():g}; wrong unit?")
         part = record.components[0]

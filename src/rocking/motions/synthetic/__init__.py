@@ -1,13 +1,15 @@
 """Ground motions that never were: stochastic models, each with its seed."""
 
 from rocking.motions.synthetic.distributions import Lognormal, LogUniform, Uniform
-from rocking.motions.synthetic.families import families, family
-from rocking.motions.synthetic.family import Family
+from rocking.motions.synthetic.families import Family, families, family, with_pulse
 from rocking.motions.synthetic.kanai_tajimi import Envelope, KanaiTajimi, kanai_tajimi_motion
-from rocking.motions.synthetic.modulation import GammaModulation, modulation_from_intensity
 from rocking.motions.synthetic.point_source import PointSource, point_source_motion
-from rocking.motions.synthetic.pulse_like import with_pulse
-from rocking.motions.synthetic.stochastic import NonstationaryFilter, nonstationary_motion
+from rocking.motions.synthetic.stochastic import (
+    GammaModulation,
+    NonstationaryFilter,
+    modulation_from_intensity,
+    nonstationary_motion,
+)
 
 __all__ = [
     "Envelope",

@@ -7,19 +7,183 @@ scale the motions to the level that a hazard model gives.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
 
 from rocking import checks
-from rocking.motions.motion import GroundMotion
+from rocking.conventions import FloatArray
+from rocking.errors import InvalidValueError
+from rocking.motions.filters import highpassed
+from rocking.motions.motion import GroundMotion, checked_motion
+from rocking.motions.pulse import Pulse
 from rocking.motions.pulses import mavroeidis_papageorgiou
 from rocking.motions.synthetic.distributions import Distribution, Lognormal, LogUniform, Uniform
-from rocking.motions.synthetic.family import Family
 from rocking.motions.synthetic.kanai_tajimi import Envelope, KanaiTajimi, kanai_tajimi_motion
-from rocking.motions.synthetic.modulation import modulation_from_intensity
-from rocking.motions.synthetic.oscillator import highpassed
 from rocking.motions.synthetic.point_source import PointSource, point_source_motion
-from rocking.motions.synthetic.pulse_like import with_pulse
-from rocking.motions.synthetic.stochastic import NonstationaryFilter, nonstationary_motion
+from rocking.motions.synthetic.stochastic import NonstationaryFilter, modulation_from_intensity, nonstationary_motion
+
+HONESTY = "illustrative ranges chosen by this package: no fit to records, no hazard model"
+"""What every family says about where its distributions come from."""
+
+
+@dataclass(frozen=True)
+class Family:
+    """A generator with the distributions of its parameters.
+
+    Parameters
+    ----------
+    name : str
+        Short name.
+    title : str
+        What the motions are like, in a few words.
+    generator : str
+        Which model of ground motion, with its source.
+    distributions : mapping of str to Distribution
+        By parameter, in the order of drawing; the unit stands in the name.
+    make : callable
+        Takes the values by parameter, a seed and a time step [s]; returns a motion.
+    time_step : float
+        Step between samples unless asked otherwise [s].
+    origin : str
+        Where the distributions come from.
+    """
+
+    name: str
+    title: str
+    generator: str
+    distributions: Mapping[str, Distribution]
+    make: Callable[[Mapping[str, float], int, float], GroundMotion]
+    time_step: float = 0.01
+    origin: str = HONESTY
+
+    def parameters(self, shares: FloatArray) -> dict[str, float]:
+        """Return the parameters of a motion from uniform random numbers.
+
+        Parameters
+        ----------
+        shares : ndarray
+            One number from 0 to 1 for each parameter, in the order of `distributions` [-].
+
+        Returns
+        -------
+        dict of str to float
+            Value by parameter.
+
+        Raises
+        ------
+        InvalidValueError
+            If there is not one number for each parameter.
+        """
+        if np.shape(shares) != (len(self.distributions),):
+            raise InvalidValueError(f"shares must be {len(self.distributions)} numbers, got shape {np.shape(shares)}")
+        pairs = zip(self.distributions.items(), shares, strict=True)
+        # twelve digits: the last ones hang on the C library
+        return {name: float(f"{spread.value_at(float(share)):.12g}") for (name, spread), share in pairs}
+
+    def motion(self, seed: int, number: int = 0, time_step: float | None = None) -> GroundMotion:
+        """Return one motion of the family.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of the whole set, at least 0 [-].
+        number : int
+            Number of the motion, at least 0; seed and number alone make the motion [-].
+        time_step : float, optional
+            Step between samples; that of the family if not given [s].
+
+        Returns
+        -------
+        GroundMotion
+            The motion, with what was drawn as metadata.
+
+        Examples
+        --------
+        >>> from rocking.motions.synthetic.families import family
+        >>> motion = family("point-source").motion(seed=7, number=3)
+        >>> motion.name, 5.5 <= float(motion.metadata["magnitude"]) <= 7.5
+        ('point-source, seed 7, number 3', True)
+        """
+        seed, number = whole("seed", seed), whole("number", number)
+        step = self.time_step if time_step is None else checks.positive("time_step", time_step, "s")
+        shares, noise = _random(seed, number, len(self.distributions))
+        drawn = self.parameters(shares)
+        told = {"family": self.name, "seed": str(seed), "number": str(number)}
+        told |= {name: repr(value) for name, value in drawn.items()}
+        made = self.make(drawn, noise, step)
+        line = f"parameters drawn from the family {self.name} ({self.origin}), seed {seed}, number {number}"
+        return made.changed(line, name=f"{self.name}, seed {seed}, number {number}", metadata=told)
+
+
+def whole(name: str, value: object, low: int = 0, high: int = 2**63 - 1) -> int:
+    """Return a whole number within its range."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= int(value) <= high:
+        raise InvalidValueError(f"{name} must be a whole number in [{low}, {high}], got {value!r:.60}")
+    return int(value)
+
+
+def _random(seed: int, number: int, count: int) -> tuple[FloatArray, int]:
+    """Return uniform numbers for the parameters, and a seed for the noise."""
+    parameters, noise = np.random.SeedSequence(entropy=seed, spawn_key=(number,)).spawn(2)
+    low, high = noise.generate_state(2, np.uint64).tolist()
+    return np.random.Generator(np.random.Philox(parameters)).random(count), low | high << 64
+
+
+MOST_SAMPLES = 10_000_000
+"""No motion made here has more samples: a later arrival is a wrong unit."""
+
+
+def with_pulse(residual: GroundMotion, pulse: Pulse, arrival: float) -> GroundMotion:
+    """Return a motion with a pulse added to it.
+
+    Parameters
+    ----------
+    residual : GroundMotion
+        What is left of a record without its pulse; its vertical part stays as it is.
+    pulse : Pulse
+        The pulse, sampled at the step of the residual.
+    arrival : float
+        Time at which the middle of the pulse passes, rounded to a whole step; the pulse must not begin before the
+        motion [s].
+
+    Returns
+    -------
+    GroundMotion
+        The sum; longer than the residual if the pulse ends after it.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no pulse, or the arrival is outside its range.
+
+    Examples
+    --------
+    >>> from rocking.motions.pulses import mavroeidis_papageorgiou
+    >>> still = GroundMotion([0.0, 0.0], time_step=0.01)
+    >>> motion = with_pulse(still, mavroeidis_papageorgiou(velocity=0.5, period=1.0), arrival=1.0)
+    >>> from rocking.motions import peak_ground_velocity
+    >>> round(peak_ground_velocity(motion), 3)
+    0.5
+    """
+    residual, given = checked_motion(residual, "residual"), pulse
+    if not isinstance(given, Pulse):
+        raise InvalidValueError(f"pulse must be a pulse such as pulses.mavroeidis_papageorgiou(..), got {pulse!r:.60}")
+    step, half = residual.time_step, 0.5 * pulse.duration
+    arrival = checks.within(
+        "arrival", arrival, half, MOST_SAMPLES * step - half, unit="s", hint="the pulse would begin before the motion"
+    )
+    first = max(round((arrival - half) / step), 0)
+    count = max(len(residual), first + math.ceil(pulse.duration / step) + 2)
+    horizontal = np.zeros(count)
+    horizontal[: len(residual)] = residual.acceleration
+    horizontal += pulse.acceleration((np.arange(count) - first) * step)
+    vertical = None
+    if residual.vertical is not None:
+        vertical = np.concatenate([residual.vertical, np.zeros(count - len(residual))])
+    what = f"{pulse.name} added, its middle at {first * step + half:g} s"
+    return residual.changed(what, acceleration=horizontal, vertical=vertical)
 
 
 def families() -> dict[str, Family]:

@@ -12,9 +12,8 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.motions.filters import exponential, recurrence, transition
 from rocking.motions.motion import GroundMotion
-from rocking.motions.portable import exponential, recurrence
-from rocking.motions.synthetic.oscillator import transition
 from rocking.motions.synthetic.sampling import described, normals, times
 
 LEAST_PHASE = 1e-3

@@ -14,8 +14,8 @@ import numpy as np
 from rocking import checks
 from rocking.conventions import FloatArray
 from rocking.errors import InvalidValueError
+from rocking.motions.filters import exponential, logarithm
 from rocking.motions.motion import GroundMotion
-from rocking.motions.portable import exponential, logarithm
 from rocking.motions.synthetic.sampling import described, normals, times
 
 REFERENCE_DISTANCE = 1000.0

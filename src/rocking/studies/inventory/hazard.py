@@ -8,10 +8,10 @@ from typing import Any
 from rocking import checks
 from rocking.conventions import ACCELERATION_UNITS, g
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import peak_ground_acceleration, peak_ground_velocity
+from rocking.motions import peak_ground_acceleration, peak_ground_velocity
 from rocking.motions.motion import GroundMotion, checked_motion
-from rocking.motions.scaling import scaled_to
-from rocking.motions.synthetic.family import Family, whole
+from rocking.motions.processing import scaled_to
+from rocking.motions.synthetic.families import Family, whole
 from rocking.studies.motion_sets import SyntheticSet
 
 VELOCITY_UNITS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001}

@@ -180,8 +180,7 @@ def test_a_motion_has_the_numbers_of_the_library(client):
     acceleration = np.array([float(line.split()[1]) for line in COLUMNS.decode().splitlines()]) * conventions.g
     motion = rk.GroundMotion(acceleration, 0.01).scaled(-1.7)
     assert answer["peak_acceleration_m_s2"] == motion.peak
-    from rocking.motions.intensity import arias_intensity
-    from rocking.motions.spectrum import response_spectrum
+    from rocking.motions import arias_intensity, response_spectrum
 
     values = {one["name"]: one["value"] for one in answer["measures"]}
     assert values["arias"] == arias_intensity(motion)
@@ -289,7 +288,7 @@ def test_counts_and_stations_are_refused_with_a_way_out(client, tmp_path):
         "from pathlib import Path",
         "from rocking.motions.formats import write_record",
         "from rocking.motions.formats.miniseed import MiniSeed",
-        "from rocking.motions.formats.source import Source",
+        "from rocking.motions.formats.record import Source",
     )
     code = "; ".join((*imports, *recipe)).replace('"station.xml"', repr(str(tmp_path / "station.xml")))
     for name in ("counts.mseed", "motion.mseed"):

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from rocking.errors import InvalidValueError
-from rocking.motions.intensity import peak_ground_velocity
+from rocking.motions import peak_ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.studies.inventory.hazard import Hazard, IntensityLevel
 

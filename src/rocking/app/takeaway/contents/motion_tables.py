@@ -4,7 +4,7 @@ import numpy as np
 
 from rocking.app.takeaway.table_files import column, table
 from rocking.dynamics.response import Motion
-from rocking.motions.kinematics import ground_displacement, ground_velocity
+from rocking.motions.integrals import ground_displacement, ground_velocity
 from rocking.motions.motion import GroundMotion
 from rocking.motions.spectrum import SHORTEST_PERIOD, response_spectrum
 from rocking.plots.traces import fine_samples, traces

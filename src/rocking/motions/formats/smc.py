@@ -1,8 +1,4 @@
-"""SMC as the U.S. Geological Survey distributes it: 8 columns of 10 characters, with no blanks between numbers.
-
-Checked on six corrected accelerograms of the 1989 Loma Prieta earthquake. 11 lines of text, 48 whole numbers of
-width 10, 50 real numbers of width 15, lines of comment that begin with ``|``, samples.
-"""
+"""SMC: accelerations in the U.S. Geological Survey's layout, and in Boore's of high precision."""
 
 import math
 import re
@@ -14,10 +10,8 @@ import numpy as np
 
 from rocking.conventions import FloatArray
 from rocking.errors import RecordError
-from rocking.motions.formats import agreement, number_lines, numbers, units_and_steps
-from rocking.motions.formats.record import Component, Record
-from rocking.motions.formats.record_format import RecordFormat
-from rocking.motions.formats.source import Source
+from rocking.motions.formats import headers, numbers
+from rocking.motions.formats.record import Component, Record, RecordFormat, Source
 
 TEXTS, WHOLES, REALS = 11, 6, 10
 _NO_REAL = 1.7e38
@@ -84,10 +78,10 @@ class SmcUsgs(RecordFormat):
             raise source.error(TEXTS + 2, f"number of samples must be at least 2, found {count}")
         if not rate > 0.0:
             raise source.error(TEXTS + WHOLES, f"sampling rate must be above zero, found {rate:g}")
-        unit = units_and_steps.acceleration_unit(source, "cm/s2", units)
-        step = units_and_steps.step_between_samples(source, 1.0 / rate, time_step)
+        unit = headers.acceleration_unit(source, "cm/s2", units)
+        step = headers.step_between_samples(source, 1.0 / rate, time_step)
         values, after = numbers.fixed(source, header.first, count, self._per_line, self._width)
-        agreement.check_end(source, after)
+        headers.check_end(source, after)
         stated = self._check_peaks(source, header, values, rate)
         component = Component(_orientation(source, header), values, unit, step, stated)
         raw = "\n".join(source.lines[: header.first])
@@ -95,7 +89,7 @@ class SmcUsgs(RecordFormat):
 
     def write(self, record: Record) -> bytes:
         """Return an SMC file."""
-        (given,) = units_and_steps.in_unit(record, self.name, "cm/s2", 1)
+        (given,) = headers.in_unit(record, self.name, "cm/s2", 1)
         component = record.components[0]
         words = [self._word(value) for value in given.tolist()]
         values = np.array([float(word) for word in words])
@@ -109,11 +103,11 @@ class SmcUsgs(RecordFormat):
         text = ["*"] * TEXTS
         kind = next((code for code, name in _KINDS.items() if name == record.metadata.get("kind")), 2)
         text[0] = f"{kind} {_KINDS[kind].upper()}"
-        text[3] = number_lines.one_line(record.metadata.get("event", "*"), 79) or "*"
-        station = number_lines.one_line(record.metadata.get("station", "station = unknown"), 50)
-        text[5] = f"{station} component= {number_lines.one_line(component.name, 15).replace(' ', '_')}"
+        text[3] = numbers.one_line(record.metadata.get("event", "*"), 79) or "*"
+        station = numbers.one_line(record.metadata.get("station", "station = unknown"), 50)
+        text[5] = f"{station} component= {numbers.one_line(component.name, 15).replace(' ', '_')}"
         lines = [line.ljust(80) for line in text]
-        lines += number_lines.in_columns(whole, 8, "{:10d}")
+        lines += numbers.in_columns(whole, 8, "{:10d}")
         lines += ["".join(_fortran(value) for value in real[k : k + 5]) for k in range(0, 50, 5)]
         lines.append("|")
         lines += ["".join(words[k : k + self._per_line]) for k in range(0, len(words), self._per_line)]
@@ -129,13 +123,13 @@ class SmcUsgs(RecordFormat):
                 continue
             # half a unit of the samples' last digit, and as much for the header's seven
             rounding = abs(stated) * (0.51 * 10.0**-self._decimals + 6e-7)
-            agreement.check_stated(source, stated, found, rounding, what)
+            headers.check_stated(source, stated, found, rounding, what)
             at = round(when * rate) if when is not None and abs(when) * rate < 1e9 else 0
             if when is not None and not (0 <= at < values.size and abs(values[at] - stated) <= rounding):
                 raise source.error(None, f"the header states a {what} of {stated:g} at {when:g} s, the data do not")
         printed = re.search(r"pk[a-z ]*=\s*([+-]?\d+\.?\d*(?:E[+-]\d+)?)", source.lines[6])
         if printed:
-            agreement.check_peak(source, float(printed[1]), values, agreement.half_digit(printed[1]), "pk")
+            headers.check_peak(source, float(printed[1]), values, headers.half_digit(printed[1]), "pk")
         known = [abs(value) for value in extremes if value is not None]
         if len(known) == 1:
             raise source.error(None, "the header states one extreme without the other; header lines out of order?")
@@ -206,3 +200,18 @@ def _fortran(value: float) -> str:
     mantissa, exponent = f"{value:.6E}".split("E")
     sign, digits = ("-", mantissa[1:]) if mantissa.startswith("-") else ("", mantissa)
     return f"{sign}0.{digits.replace('.', '')}E{int(exponent) + 1:+03d}".rjust(15)
+
+
+class SmcBoore(SmcUsgs):
+    """SMC in high precision; all but the columns of the samples is as in `SmcUsgs`."""
+
+    name: ClassVar[str] = "smc-boore"
+    title: ClassVar[str] = "SMC of Boore's TSPP programs in high precision, 5 columns of 14 characters"
+    notes: ClassVar[str] = (
+        "Accelerations are in cm/s2 by the format's definition, also where the first line says UNKNOWN: make sure that "
+        "such a file is no velocity. What its lines of comment say of units is about the file it was made from."
+    )
+    _per_line: ClassVar[int] = 5
+    _width: ClassVar[int] = 14
+    _decimals: ClassVar[int] = 7
+    _precision: ClassVar[int] = 8

@@ -12,7 +12,7 @@ import pytest
 from benchmarks.synthetic import models
 from benchmarks.timing import cpu_seconds
 
-from rocking.motions import portable
+from rocking.motions import filters
 
 RANDOM = np.random.default_rng(3)
 ARGUMENTS = {
@@ -26,7 +26,7 @@ TRUTH = {"exponential": mpmath.exp, "logarithm": mpmath.log, "cosine": mpmath.co
 
 def _found(name, x):
     pair = {"cosine": 0, "sine": 1}
-    return portable.cosine_sine(x)[pair[name]] if name in pair else getattr(portable, name)(x)
+    return filters.cosine_sine(x)[pair[name]] if name in pair else getattr(filters, name)(x)
 
 
 @pytest.mark.parametrize("name", ARGUMENTS)
@@ -40,19 +40,19 @@ def test_functions_are_within_a_unit_or_so_of_the_last_digit(name, monkeypatch):
         units = [max(abs(one), 1) if name in {"cosine", "sine"} else abs(one) for one in exact]
         error = max(float(abs(a - b) / unit) for a, b, unit in zip(found, exact, units, strict=True))
     assert error < 2.0 * 2.220446049250313e-16
-    monkeypatch.setattr(portable, "compiled", lambda: None)
+    monkeypatch.setattr(filters, "compiled", lambda: None)
     np.testing.assert_array_equal(_found(name, x), found)
 
 
 def test_ends(monkeypatch):
     """Zero, infinity, what is below the smallest number, and the last arguments before."""
-    assert portable.exponential(np.array([-np.inf, -709.0, 0.0])).tolist() == [0.0, 0.0, 1.0]
+    assert filters.exponential(np.array([-np.inf, -709.0, 0.0])).tolist() == [0.0, 0.0, 1.0]
     outermost = np.array([-708.0 - 1e-9, -708.0, -707.5, 708.5, 709.0])
     expected = [0.0, *(math.exp(x) for x in outermost[1:])]
-    assert portable.exponential(outermost) == pytest.approx(expected, rel=1e-15, abs=0.0)
-    monkeypatch.setattr(portable, "compiled", lambda: None)
-    assert portable.exponential(outermost) == pytest.approx(expected, rel=1e-15, abs=0.0)
-    assert portable.logarithm(np.array([0.0, 1.0])).tolist() == [-np.inf, 0.0]
+    assert filters.exponential(outermost) == pytest.approx(expected, rel=1e-15, abs=0.0)
+    monkeypatch.setattr(filters, "compiled", lambda: None)
+    assert filters.exponential(outermost) == pytest.approx(expected, rel=1e-15, abs=0.0)
+    assert filters.logarithm(np.array([0.0, 1.0])).tolist() == [-np.inf, 0.0]
 
 
 _DIGESTS = """

@@ -1,0 +1,211 @@
+"""What a header states, or the user where it is silent: unit, step, channels; count, peak and duration must agree."""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rocking import checks
+from rocking.conventions import ACCELERATION_UNITS, FloatArray
+from rocking.errors import RecordError
+from rocking.motions.formats.record import Component, Record, Source
+
+
+def acceleration_unit(source: Source, stated: str | None, asked: str | None) -> str:
+    """Return the unit of a file's accelerations: what it states, or what the user says where it states nothing."""
+    asked = None if asked is None else checks.one_of("units", asked, ACCELERATION_UNITS)
+    if stated is None and asked is None:
+        raise source.error(None, f"the file does not state its unit; say units= one of {', '.join(ACCELERATION_UNITS)}")
+    if stated is not None and asked is not None and ACCELERATION_UNITS[stated] != ACCELERATION_UNITS[asked]:
+        raise source.error(None, f"the file states the unit {stated}, you say {asked}")
+    return stated or asked or ""
+
+
+def step_between_samples(source: Source, stated: float | None, asked: float | None) -> float:
+    """Return the step of a file: what it states, or what the user says where it states nothing.
+
+    stated: step by the file [s]; asked: step by the user [s]. Returns the step, between 1e-6 and 10 s [s].
+    """
+    step = stated if stated is not None else asked
+    if step is None:
+        raise source.error(None, "the file does not state its time step; say time_step= in seconds")
+    if stated is not None and asked is not None and abs(stated - asked) > 1e-9 * stated:
+        raise source.error(None, f"the file states a time step of {stated:g} s, you say {asked:g}")
+    if not 1e-6 <= step <= 10.0:
+        raise source.error(None, f"time step must be in [1e-6, 10] s, got {step:g}")
+    return float(step)
+
+
+def in_unit(record: Record, title: str, unit: str | None, most: int) -> list[FloatArray]:
+    """Return the samples of a record in the one unit that a format holds, for writers."""
+    if not 1 <= len(record.components) <= most:
+        raise RecordError(f"{title} holds 1 to {most} components a file, got {len(record.components)}")
+    rows = []
+    unit = unit or record.components[0].unit
+    for part in record.components:
+        values = np.asarray(part.acceleration, dtype=np.float64)
+        if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
+            raise RecordError(f"component {part.name!r:.60} must be a row of at least 2 finite samples")
+        if part.unit not in ACCELERATION_UNITS:
+            raise RecordError(f"unit must be one of {', '.join(ACCELERATION_UNITS)}, got {part.unit!r:.60}")
+        if not 1e-6 <= part.time_step <= 10.0:
+            raise RecordError(f"time step must be in [1e-6, 10] s, got {part.time_step!r:.60}")
+        same = ACCELERATION_UNITS[part.unit] == ACCELERATION_UNITS[unit]
+        rows.append(values if same else values * (ACCELERATION_UNITS[part.unit] / ACCELERATION_UNITS[unit]))
+    return rows
+
+
+def step_of_times(source: Source, times: FloatArray, words: list[str], told: float | None) -> float:
+    """Return the step of a column of times; the told one where it is the same to the digits of the column.
+
+    times: the times [s]; told: what the user says of the step [s]. Returns the step [s].
+    """
+    digit = _last_digit(words)
+    step = uniform_step(source, times, digit)
+    if told is not None and abs(step - told) * times.size <= 2.0 * digit:
+        return told
+    return step_between_samples(source, step, told)
+
+
+def uniform_step(source: Source, times: FloatArray, unit: float) -> float:
+    """Return the step of a time column that is uniform to the rounding of its digits.
+
+    times: times as printed [s]; unit: one unit of the last printed digit [s]. Returns the step; the shortest decimal
+    number that fits the column [s].
+    """
+    if times.size < 2:
+        raise source.error(None, f"at least 2 samples are needed, found {times.size}")
+    steps = times.size - 1
+    mean = (float(times[-1]) - float(times[0])) / steps
+    if not 1e-6 <= mean <= 10.0:
+        raise source.error(None, f"time step must be in [1e-6, 10] s, got {mean:g}; is the first column a time?")
+    # beyond rounding or cutting at the last digit, times that went through single precision are accepted
+    slack = unit + 1.2e-7 * float(np.abs(times).max())
+    rounded = (round(mean, digits) for digits in range(1, 10))
+    step = next((step for step in rounded if step > 0.0 and abs(step - mean) * steps <= slack), mean)
+    even = mean
+    if slack > 0.26 * mean:
+        # so few digits could hide a missing line: the times must lie on the decimal step itself
+        even, slack = step, 0.501 * unit
+    if slack > 0.51 * mean:
+        raise source.error(None, f"the times have too few digits to tell their step of about {mean:g} s")
+    off = np.abs(times - times[0] - even * np.arange(times.size))
+    worst = int(off.argmax())
+    if off[worst] > slack:
+        raise source.error(
+            None,
+            f"the times are not evenly spaced: sample {worst + 1} at {times[worst]:g} s is {off[worst]:.3g} s off the "
+            f"even step of {even:g} s; resample it first, or a line is missing",
+        )
+    return step
+
+
+def _last_digit(words: list[str]) -> float:
+    plain: list[int] = []
+    powers: list[int] = []
+    for word in words:
+        digits, _, power = word.lower().replace("d", "e").replace(",", ".").partition("e")
+        (powers if power else plain).append(len(digits.partition(".")[2]) - int(power or 0))
+    # plain numbers may have lost zeros at their end, numbers with an exponent lose digits as they grow
+    places = min(powers) if powers else max(plain)
+    return float(10.0 ** -min(15, max(-3, places)))
+
+
+def check_count(source: Source, stated: int, found: int) -> None:
+    """Refuse a file that holds another number of samples than its header states."""
+    if stated != found:
+        raise source.error(None, f"the header states {stated} samples, the file holds {found}")
+
+
+def check_peak(source: Source, stated: float, values: FloatArray, rounding: float, what: str = "peak") -> None:
+    """Refuse a file whose largest value is not the one that its header states."""
+    found = float(np.abs(values).max())
+    if not abs(abs(stated) - found) <= rounding:
+        raise source.error(None, f"the header states a {what} of {abs(stated):g}, the data have {found:g}")
+
+
+def check_end(source: Source, first: int) -> None:
+    """Refuse anything but blank lines from some line to the end of the file."""
+    for line in range(first, len(source.lines)):
+        # Ctrl-Z padded files to whole blocks under CP/M and DOS
+        if source.lines[line].strip(" \t\r\x1a"):
+            raise source.error(line, "nothing may follow the last sample, found more; wrong count in the header?")
+
+
+def check_peak_time(source: Source, stated: float, values: FloatArray, step: float, rounding: float) -> None:
+    """Refuse a file whose largest value is not where its header states it.
+
+    stated: time of the peak by the header, within one step [s]; step: step between samples [s].
+    """
+    largest = np.abs(values)
+    at = stated / step
+    near = largest[max(0, math.ceil(at - 1.01)) : max(0, math.floor(at + 1.01) + 1)] if 0.0 <= at < 1e9 else largest[:0]
+    if not near.size or near.max() < largest.max() - rounding:
+        found = float(largest.argmax()) * step
+        raise source.error(None, f"the header states the peak at {stated:g} s, the data have it at {found:g} s")
+
+
+def check_duration(source: Source, stated: float, count: int, step: float, rounding: float) -> None:
+    """Refuse a file whose stated duration is not that of its samples.
+
+    stated: duration by the header: of all steps, or from the first sample to the last [s]; step: step between samples
+    [s]; rounding: half a unit of the last digit of `stated` [s].
+    """
+    off = min(abs(stated - samples * step) for samples in (count - 1, count))
+    if not off <= 1.001 * rounding + 1e-9:
+        raise source.error(
+            None, f"the header states a duration of {stated:g} s, {count} samples at {step:g} s last {count * step:g} s"
+        )
+
+
+def half_digit(word: str) -> float:
+    """Return the largest error that rounding can have left in a printed number: half a unit of its last digit.
+
+    Returns the error, with a millionth to spare for arithmetic in the last place.
+
+    >>> f"{half_digit('4.954'):.3g}", f"{half_digit('4.136E+1'):.3g}", f"{half_digit('-12'):.3g}"
+    ('0.0005', '0.005', '0.5')
+    """
+    mantissa, _, exponent = word.strip().upper().replace("D", "E").partition("E")
+    return 0.500001 * 10.0 ** min(int(exponent or "0") - len(mantissa.partition(".")[2]), 300)
+
+
+def check_stated(source: Source, stated: float, found: float, rounding: float, what: str) -> None:
+    """Refuse a file whose header states another number than its data give; signs count."""
+    if not abs(stated - found) <= rounding:
+        raise source.error(None, f"the header states a {what} of {stated:g}, the data have {found:g}")
+
+
+Channel = tuple[list[str], str, Component]
+"""Header lines of a channel, the one with its number and direction, and its samples."""
+
+LONGEST_LINE = 200
+"""Characters of a header line that patterns look at."""
+
+
+def distinct_names(channels: Sequence[Channel]) -> tuple[Component, ...]:
+    """Return the components named by direction, or by channel number where directions repeat."""
+    found = [re.search(r"CHAN\s*(\d+)\s*:\s*(.*?)\s*(?:DEG\b.*)?$", label, re.IGNORECASE) for _, label, _ in channels]
+    numbers = [one[1] if one else str(place) for place, one in enumerate(found, 1)]
+    names = directions = [one[2].strip() if one else "" for one in found]
+    if len({name.casefold() for name in directions}) < len(channels) or "" in directions:
+        unique = len(set(numbers)) == len(channels)
+        names = [f"CHAN {n}" for n in (numbers if unique else range(1, len(channels) + 1))]
+    return tuple(
+        replace(part, name=name, metadata={"channel": chan, "direction": direction})
+        for (_, _, part), name, chan, direction in zip(channels, names, numbers, directions, strict=True)
+    )
+
+
+def names_in(texts: Sequence[str]) -> dict[str, str]:
+    """Return event and station from the text lines after the titles."""
+    station = re.search(r"STATION NO\.?\s*(\w+)", texts[3][:LONGEST_LINE], re.IGNORECASE)
+    found = {
+        "event": texts[0].strip(),
+        "date": texts[1].split("(")[0].strip(),
+        "station number": station[1] if station else "",
+        "station": texts[4].strip(),
+    }
+    return {key: value for key, value in found.items() if value}
